@@ -61,19 +61,14 @@ Recording simulate(const ArraySimulation& array) {
   return recording;
 }
 
-void write_recording(const std::string& path,
-                     const Recording& recording,
-                     const WriteOptions& options) {
+void write_recording(const std::string& path, const Recording& recording, const WriteOptions& options) {
   const auto writer = open_log_writer(path, recording.info, options);
-  const std::vector<std::span<const double>> columns(recording.samples.begin(),
-                                                     recording.samples.end());
+  const std::vector<std::span<const double>> columns(recording.samples.begin(), recording.samples.end());
   writer->write(columns);
   writer->finish();
 }
 
-Export export_models(std::string_view target,
-                     const std::vector<SensorModel>& models,
-                     const ExportOptions& options) {
+Export export_models(std::string_view target, const std::vector<SensorModel>& models, const ExportOptions& options) {
   return export_models(find_export_target(target), models, options);
 }
 

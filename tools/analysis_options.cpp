@@ -33,8 +33,7 @@ void read_taus(const std::string& text, AllanOptions& allan) {
   if (grid && *grid != TauGrid::list) return;
   allan.taus_s.clear();
   try {
-    for (const std::string& word : words(text))
-      allan.taus_s.push_back(parse_duration_s(word, true));
+    for (const std::string& word : words(text)) allan.taus_s.push_back(parse_duration_s(word, true));
   } catch (const Error&) {
     throw usage_error("E0201", "--taus")
         .says("octave, decade, dense, all, ten or a list of times was expected")
@@ -87,46 +86,34 @@ bool read_segment(const std::string& text, WelchOptions& spectrum, double& segme
 
 void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
-      "--still",
-      "auto|FROM..TO",
-      [&a](const std::string& text) { read_still(text, a.options.still); },
+      "--still", "auto|FROM..TO", [&a](const std::string& text) { read_still(text, a.options.still); },
       "analyse only the longest stretch in which no channel moves, or the one from FROM to TO "
       "after the first sample (s, min, h)");
 }
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_enum("--data",
-                a.options.data,
+  verb.add_enum("--data", a.options.data,
                 "what the samples are: the quantity itself, its integral, or a frequency in Hz "
                 "(default: rate)");
-  verb.add_number("--nominal-frequency",
-                  a.nominal_frequency,
+  verb.add_number("--nominal-frequency", a.nominal_frequency,
                   "with --data frequency: the frequency that counts as zero deviation, Hz "
                   "(default: values are fractional)",
                   0);
-  verb.add_number(
-      "--unwrap",
-      a.options.unwrap,
-      "the values start again after this much, in their unit, as a phase or an angle does "
-      "(default: they do not)",
-      0);
+  verb.add_number("--unwrap", a.options.unwrap,
+                  "the values start again after this much, in their unit, as a phase or an angle does "
+                  "(default: they do not)",
+                  0);
   verb.add_parsed(
-      "--frozen",
-      "N",
-      [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
+      "--frozen", "N", [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
       "treat runs of N or more equal values as missing (default: they count)");
   verb.add_parsed(
-      "--interpolated",
-      "N",
-      [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
+      "--interpolated", "N", [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
       "treat samples on straight lines of N or more samples as missing, as in gaps that were "
       "filled; lines of fewer than 8 must be straight to 0.1 % (default: they count)");
-  verb.add_bytes(
-      "--memory",
-      a.options.memory_bytes,
-      "samples kept in memory at most: with less, a log of many channels is read several times, "
-      "and an option that needs all samples of a long log is refused; no result changes "
-      "(default: 1GiB)");
+  verb.add_bytes("--memory", a.options.memory_bytes,
+                 "samples kept in memory at most: with less, a log of many channels is read several times, "
+                 "and an option that needs all samples of a long log is refused; no result changes "
+                 "(default: 1GiB)");
 }
 
 bool has_bias(const AnalysisOptions& analysis) {
@@ -137,16 +124,12 @@ bool has_bias(const AnalysisOptions& analysis) {
 }
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
-  verb.add_choices("--type",
-                   a.types,
-                   deviation_words(),
-                   a.several_types
-                       ? "statistic, or several of one reading: oadev,mdev (default: oadev, "
-                         "overlapping Allan)"
-                       : "deviation (default: oadev, overlapping Allan)");
+  verb.add_choices("--type", a.types, deviation_words(),
+                   a.several_types ? "statistic, or several of one reading: oadev,mdev (default: oadev, "
+                                     "overlapping Allan)"
+                                   : "deviation (default: oadev, overlapping Allan)");
   verb.add_parsed(
-      "--taus",
-      "TEXT",
+      "--taus", "TEXT",
       [&a](const std::string& text) {
         a.options.ten_a_decade = a.ten_asked = text == "ten";
         read_taus(text == "ten" ? "octave" : text, a.options.allan);
@@ -156,74 +139,53 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
       "(default: " +
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
-  verb.add_duration(
-      "--tau-max",
-      a.tau_max_s,
-      "longest averaging time (default: half the record; Theo three quarters, mtie and "
-      "tierms all of it)");
-  verb.add_enum("--bias",
-                a.options.allan.bias,
+  verb.add_duration("--tau-max", a.tau_max_s,
+                    "longest averaging time (default: half the record; Theo three quarters, mtie and "
+                    "tierms all of it)");
+  verb.add_enum("--bias", a.options.allan.bias,
                 "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as "
                 "allantools leaves it (default: sp1065)")
       .only("with --type mtotdev, ttotdev or htotdev", [&a] { return has_bias(a); });
-  verb.add_flag(
-      "--full-overlap",
-      a.options.full_overlap,
-      "use every term however long the record is (default: octaves and dense times take every "
-      "(m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total "
-      "deviations of windows every (m/16)th or less where they would take seconds a time)");
+  verb.add_flag("--full-overlap", a.options.full_overlap,
+                "use every term however long the record is (default: octaves and dense times take every "
+                "(m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total "
+                "deviations of windows every (m/16)th or less where they would take seconds a time)");
 }
 
-void add_spectrum_options(VerbOptions& verb,
-                          WelchOptions& spectrum,
-                          double& segment_s,
-                          bool& quarter) {
+void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s, bool& quarter) {
   verb.add_enum("--sides", spectrum.sides, "one- or two-sided spectrum (default: one)");
-  verb.add_enum(
-      "--scaling", spectrum.scaling, "density U²/Hz, power U², and their roots (default: psd)");
+  verb.add_enum("--scaling", spectrum.scaling, "density U²/Hz, power U², and their roots (default: psd)");
   verb.add_parsed(
-      "--segment",
-      "N|TIME",
-      [&spectrum, &segment_s, &quarter](const std::string& text) {
-        quarter = read_segment(text, spectrum, segment_s);
-      },
+      "--segment", "N|TIME",
+      [&spectrum, &segment_s, &quarter](const std::string& text) { quarter = read_segment(text, spectrum, segment_s); },
       "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: N/4 up "
       "to 1048576 samples, 65536 samples of a longer record)");
-  verb.add_number(
-      "--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
+  verb.add_number("--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
   verb.add_enum("--window", spectrum.window, "window (default: hann)");
-  verb.add_enum(
-      "--detrend", spectrum.detrend, "what is removed from each segment (default: constant)");
+  verb.add_enum("--detrend", spectrum.detrend, "what is removed from each segment (default: constant)");
 }
 
 void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
-      "--terms",
-      "TEXT",
-      [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
+      "--terms", "TEXT", [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
       "terms offered to the fit from the start, of N,B,K,R,quantization (default: N,B,K; the "
       "others "
       "join when an alarm asks)");
-  verb.add_number("--threshold",
-                  a.options.fit.threshold,
+  verb.add_number("--threshold", a.options.fit.threshold,
                   "likelihood ratio above which a term counts as present (default: 5.41, 1 % "
                   "false)",
                   0);
-  verb.add_flag("--no-remedies",
-                a.no_remedies,
+  verb.add_flag("--no-remedies", a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
   verb.add_parsed(
-      "--assume",
-      "white-top",
+      "--assume", "white-top",
       [&a](const std::string& text) {
-        if (text != "white-top")
-          throw usage_error("E0201", "--assume").says("white-top was expected").got(text);
+        if (text != "white-top") throw usage_error("E0201", "--assume").says("white-top was expected").got(text);
         a.options.fit.white_top = true;
       },
       "nothing shapes the top of the spectrum: no filter, no quantization noise too weak to be "
       "seen. N is known better by a third then");
-  verb.add_text("--temperature",
-                a.options.temperature,
+  verb.add_text("--temperature", a.options.temperature,
                 "channel that is the temperature: a polynomial of it, with a lag, is taken out of "
                 "the others before their noise is fitted");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
@@ -250,8 +212,7 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
         .hint("sensorchar allan takes several");
   o.allan.type = deviation_type(a.types[0]).value_or(DeviationType::oadev);
   o.more_types.clear();
-  for (std::size_t i = 1; i < a.types.size(); ++i)
-    o.more_types.push_back(*deviation_type(a.types[i]));
+  for (std::size_t i = 1; i < a.types.size(); ++i) o.more_types.push_back(*deviation_type(a.types[i]));
   for (const std::string& type : a.types)
     if (a.ten_asked && type != "oadev")
       throw usage_error("E0201", "--taus")
@@ -265,9 +226,7 @@ CharacterizeOptions finish(const AnalysisOptions& a) {
   return o;
 }
 
-RecordedReport report_of_recording(Session& session,
-                                   const std::string& log,
-                                   const CharacterizeOptions& options) {
+RecordedReport report_of_recording(Session& session, const std::string& log, const CharacterizeOptions& options) {
   CharacterizeOptions how = options;
   how.ten_a_decade = how.allan.grid == TauGrid::octave;
   Characterization result = characterize(log, how, session.terminal);
@@ -278,33 +237,21 @@ RecordedReport report_of_recording(Session& session,
 }
 
 std::vector<std::string> recording_flags(std::vector<std::string> more) {
-  for (const char* flag :
-       {"--still", "--from", "--to", "--topic", "--time-source", "--time-column", "--time-unit"})
+  for (const char* flag : {"--still", "--from", "--to", "--topic", "--time-source", "--time-column", "--time-unit"})
     more.emplace_back(flag);
   return more;
 }
 
-void add_recording_options(VerbOptions& verb,
-                           Session& session,
-                           AnalysisOptions& analysis,
-                           const std::vector<std::string>& inputs,
-                           bool with_format) {
+void add_recording_options(VerbOptions& verb, Session& session, AnalysisOptions& analysis,
+                           const std::vector<std::string>& inputs, bool with_format) {
   add_reading_options_without_channel(verb, session, analysis.options.reading, with_format);
   add_still_option(verb, analysis);
   verb.only("with a recording",
             [&inputs] {
-              return std::any_of(inputs.begin(), inputs.end(), [](const std::string& input) {
-                return libchar::detail::is_recording(input);
-              });
+              return std::any_of(inputs.begin(), inputs.end(),
+                                 [](const std::string& input) { return libchar::detail::is_recording(input); });
             },
-            {"--still",
-             "--rate",
-             "--from",
-             "--to",
-             "--topic",
-             "--time-source",
-             "--time-column",
-             "--time-unit"});
+            {"--still", "--rate", "--from", "--to", "--topic", "--time-source", "--time-column", "--time-unit"});
 }
 
 }  // namespace sensorchar

@@ -29,10 +29,7 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// --sides, --scaling, --segment, --overlap, --window, --detrend. `segment_s` is the length of a
 /// segment when a time was given for it, 0 otherwise.
 /// `quarter`: to distinguish N/4 of a log of any length from the default.
-void add_spectrum_options(VerbOptions& verb,
-                          libchar::WelchOptions& spectrum,
-                          double& segment_s,
-                          bool& quarter);
+void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s, bool& quarter);
 /// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or
 /// "N/4" (true).
 bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
@@ -54,8 +51,7 @@ struct RecordedReport {
 };
 
 /// Characterizes a recording in memory; its warnings are said.
-RecordedReport report_of_recording(Session& session,
-                                   const std::string& log,
+RecordedReport report_of_recording(Session& session, const std::string& log,
                                    const libchar::CharacterizeOptions& options);
 
 /// Flags that have an effect on a recording only, and `more`.
@@ -63,10 +59,7 @@ std::vector<std::string> recording_flags(std::vector<std::string> more);
 
 /// Options of verbs that take recordings next to reports: how they are read, --still, --temperature.
 /// `inputs`, which must live until the verb has run: they are refused where none of these is a recording.
-void add_recording_options(VerbOptions& verb,
-                           Session& session,
-                           AnalysisOptions& analysis,
-                           const std::vector<std::string>& inputs,
-                           bool with_format = true);
+void add_recording_options(VerbOptions& verb, Session& session, AnalysisOptions& analysis,
+                           const std::vector<std::string>& inputs, bool with_format = true);
 
 }  // namespace sensorchar

@@ -13,9 +13,7 @@ Colour g_colour = Colour::automatic;
 
 }  // namespace
 
-void use_colour(Colour colour) {
-  g_colour = colour;
-}
+void use_colour(Colour colour) { g_colour = colour; }
 
 bool colours(int descriptor) {
   if (g_colour != Colour::automatic) return g_colour == Colour::always;

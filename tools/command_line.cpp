@@ -48,12 +48,10 @@ std::string say_unknown(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
   const std::string word = rest.empty() ? "" : rest.front();
   const bool option = word.starts_with('-');
-  std::string line =
-      option ? fmt::format("unknown option \"{}\"", libchar::printable(word, 40))
-             : fmt::format("\"{}\" is one argument too many", libchar::printable(word, 40));
+  std::string line = option ? fmt::format("unknown option \"{}\"", libchar::printable(word, 40))
+                            : fmt::format("\"{}\" is one argument too many", libchar::printable(word, 40));
   if (option) {
-    if (const auto near =
-            libchar::nearest(word.substr(0, word.find('=')), option_names(chosen(app))))
+    if (const auto near = libchar::nearest(word.substr(0, word.find('=')), option_names(chosen(app))))
       line += fmt::format("; did you mean {}?", *near);
   }
   return line;
@@ -64,15 +62,13 @@ std::vector<std::string> with_verb(const CLI::App& app, const std::vector<std::s
   std::vector<std::string> full = command;
   if (command.size() < 2) return full;
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
-  const bool verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* sub) {
-    return sub->get_name() == command[1];
-  });
-  const bool inspects = std::any_of(
-      verbs.begin(), verbs.end(), [](const CLI::App* sub) { return sub->get_name() == "inspect"; });
+  const bool verb =
+      std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* sub) { return sub->get_name() == command[1]; });
+  const bool inspects =
+      std::any_of(verbs.begin(), verbs.end(), [](const CLI::App* sub) { return sub->get_name() == "inspect"; });
   struct stat status {};
-  const bool log =
-      command[1] == "-" || (!command[1].starts_with('-') &&
-                            ::stat(command[1].c_str(), &status) == 0 && !S_ISDIR(status.st_mode));
+  const bool log = command[1] == "-" || (!command[1].starts_with('-') && ::stat(command[1].c_str(), &status) == 0 &&
+                                         !S_ISDIR(status.st_mode));
   if (!verb && log && inspects) full.insert(full.begin() + 1, "inspect");
   return full;
 }
@@ -102,23 +98,19 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
     hint = libchar::did_you_mean(near);
   else if (::stat(command[1].c_str(), &status) == 0)
     hint = fmt::format("to see what is in this file: {} inspect FILE", app.get_name());
-  throw libchar::usage_error("E0203", app.get_name())
-      .says("unknown verb")
-      .got(command[1])
-      .hint(hint);
+  throw libchar::usage_error("E0203", app.get_name()).says("unknown verb").got(command[1]).hint(hint);
 }
 
 /// What a value's name says of it: "SCENE|LOG" is a file, "DIR" a folder, "SENSOR=FILE" neither.
 ValueKind kind_of_name(const std::string& name) {
-  static constexpr std::array<std::string_view, 9> kFiles = {
-      "LOG", "FILE", "MODEL", "SCENE", "CURVE", "RUN", "REPORT", "A", "B"};
+  static constexpr std::array<std::string_view, 9> kFiles = {"LOG", "FILE",   "MODEL", "SCENE", "CURVE",
+                                                             "RUN", "REPORT", "A",     "B"};
   if (name.find('=') != std::string::npos) return ValueKind::text;
   ValueKind kind = ValueKind::text;
   for (std::size_t at = 0; at < name.size();) {
     const std::size_t end = std::min(name.find('|', at), name.size());
     const std::string_view word = std::string_view(name).substr(at, end - at);
-    const std::string_view letters =
-        word.substr(0, word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
+    const std::string_view letters = word.substr(0, word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
     if (std::find(kFiles.begin(), kFiles.end(), letters) != kFiles.end()) return ValueKind::file;
     if (letters == "DIR" || letters == "FOLDER") kind = ValueKind::folder;
     at = end + 1;
@@ -143,12 +135,11 @@ OptionUsage usage_of_option(const CLI::Option& option, const OptionNotes& notes)
   }
   usage.comma_list = option.get_delimiter() == ',';
   usage.required = option.get_required();
-  usage.repeatable = option.get_expected_max() > 1 ||
-                     option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  usage.repeatable =
+      option.get_expected_max() > 1 || option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
   usage.group = option.get_group() == "Options" ? "" : option.get_group();
   usage.help = option.get_description();
-  for (const CLI::Option* other : option.get_excludes())
-    usage.excludes.push_back("--" + other->get_lnames().front());
+  for (const CLI::Option* other : option.get_excludes()) usage.excludes.push_back("--" + other->get_lnames().front());
   return usage;
 }
 
@@ -206,10 +197,9 @@ void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& com
     const bool of_option = !cut && i > 1 && before.starts_with('-') && before.size() > 1;
     if (const std::string& flag = cut ? word : before; flag == "-o" || flag.starts_with("--output"))
       throw libchar::output_error("E0502", "--output").says("an output file needs a name");
-    throw libchar::usage_error("E0207",
-                               cut         ? word.substr(0, word.size() - 1)
-                               : of_option ? before
-                                           : app.get_name())
+    throw libchar::usage_error("E0207", cut         ? word.substr(0, word.size() - 1)
+                                        : of_option ? before
+                                                    : app.get_name())
         .says("a value is expected, and this one is empty")
         .hint("a variable of the shell that is not set? leave the option out for its default");
   }
@@ -283,8 +273,7 @@ Option& Option::once_each() {
   return *this;
 }
 
-void VerbOptions::only(const std::string& where,
-                       const std::function<bool()>& works,
+void VerbOptions::only(const std::string& where, const std::function<bool()>& works,
                        const std::vector<std::string>& flags) {
   for (const std::string& flag : flags) added(app_->get_option(flag)).only(where, works);
 }
@@ -293,22 +282,16 @@ Option VerbOptions::add_flag(const std::string& names, bool& value, const std::s
   return added(app_->add_flag(names, value, help));
 }
 
-Option VerbOptions::add_text(const std::string& names,
-                             std::string& value,
-                             const std::string& help) {
+Option VerbOptions::add_text(const std::string& names, std::string& value, const std::string& help) {
   return added(app_->add_option(names, value, help));
 }
 
-Option VerbOptions::add_texts(const std::string& names,
-                              std::vector<std::string>& values,
-                              const std::string& help) {
+Option VerbOptions::add_texts(const std::string& names, std::vector<std::string>& values, const std::string& help) {
   return added(app_->add_option(names, values, help));
 }
 
-Option VerbOptions::add_parsed(const std::string& names,
-                               const std::string& value_name,
-                               std::function<void(const std::string&)> read,
-                               const std::string& help) {
+Option VerbOptions::add_parsed(const std::string& names, const std::string& value_name,
+                               std::function<void(const std::string&)> read, const std::string& help) {
   const std::string name = names.substr(names.rfind(',') + 1);
   const auto named = [read = std::move(read), name](const std::string& text) {
     try {
@@ -323,10 +306,15 @@ Option VerbOptions::add_parsed(const std::string& names,
   return added(option->type_name(value_name));
 }
 
-Option VerbOptions::add_number(const std::string& names,
-                               std::optional<double>& value,
-                               const std::string& help,
-                               double lowest,
+Option VerbOptions::add_number(const std::string& names, std::optional<double>& value, const std::string& help,
+                               double lowest, double highest) {
+  const auto read = [&value, lowest, highest](const std::string& text) {
+    value = libchar::parse_number(text, lowest, highest);
+  };
+  return add_parsed(names, "NUMBER", read, help);
+}
+
+Option VerbOptions::add_number(const std::string& names, double& value, const std::string& help, double lowest,
                                double highest) {
   const auto read = [&value, lowest, highest](const std::string& text) {
     value = libchar::parse_number(text, lowest, highest);
@@ -334,78 +322,46 @@ Option VerbOptions::add_number(const std::string& names,
   return add_parsed(names, "NUMBER", read, help);
 }
 
-Option VerbOptions::add_number(const std::string& names,
-                               double& value,
-                               const std::string& help,
-                               double lowest,
-                               double highest) {
-  const auto read = [&value, lowest, highest](const std::string& text) {
-    value = libchar::parse_number(text, lowest, highest);
-  };
-  return add_parsed(names, "NUMBER", read, help);
-}
-
-Option VerbOptions::add_count(const std::string& names,
-                              std::uint64_t& value,
-                              const std::string& help,
-                              std::uint64_t lowest,
-                              std::uint64_t highest) {
+Option VerbOptions::add_count(const std::string& names, std::uint64_t& value, const std::string& help,
+                              std::uint64_t lowest, std::uint64_t highest) {
   const auto read = [&value, lowest, highest](const std::string& text) {
     value = libchar::parse_count(text, lowest, highest);
   };
   return add_parsed(names, "N", read, help);
 }
 
-Option VerbOptions::add_duration(const std::string& names,
-                                 std::optional<double>& seconds,
-                                 const std::string& help) {
-  const auto read = [&seconds](const std::string& text) {
-    seconds = libchar::parse_duration_s(text, true);
-  };
+Option VerbOptions::add_duration(const std::string& names, std::optional<double>& seconds, const std::string& help) {
+  const auto read = [&seconds](const std::string& text) { seconds = libchar::parse_duration_s(text, true); };
   return add_parsed(names, "TIME", read, help);
 }
 
-Option VerbOptions::add_instant(const std::string& names,
-                                std::optional<double>& seconds,
-                                const std::string& help) {
-  const auto read = [&seconds](const std::string& text) {
-    seconds = libchar::parse_duration_s(text);
-  };
+Option VerbOptions::add_instant(const std::string& names, std::optional<double>& seconds, const std::string& help) {
+  const auto read = [&seconds](const std::string& text) { seconds = libchar::parse_duration_s(text); };
   return add_parsed(names, "TIME", read, help);
 }
 
-Option VerbOptions::add_rate(const std::string& names,
-                             std::optional<double>& hertz,
-                             const std::string& help) {
+Option VerbOptions::add_rate(const std::string& names, std::optional<double>& hertz, const std::string& help) {
   const auto read = [&hertz](const std::string& text) { hertz = libchar::parse_rate_hz(text); };
   return add_parsed(names, "RATE", read, help);
 }
 
-Option VerbOptions::add_bytes(const std::string& names,
-                              std::uint64_t& bytes,
-                              const std::string& help) {
+Option VerbOptions::add_bytes(const std::string& names, std::uint64_t& bytes, const std::string& help) {
   const auto read = [&bytes](const std::string& text) { bytes = libchar::parse_bytes(text, 1024); };
   return add_parsed(names, "BYTES", read, help);
 }
 
 Option VerbOptions::add_document_output(std::string& path) {
   const auto read = [&path](const std::string& text) { path = text == "-" ? "" : text; };
-  return add_parsed(
-      "-o,--output", "FILE", read, "write there instead of to stdout, which is - too");
+  return add_parsed("-o,--output", "FILE", read, "write there instead of to stdout, which is - too");
 }
 
-Option VerbOptions::add_choice(const std::string& names,
-                               std::string& value,
-                               std::vector<std::string> words,
+Option VerbOptions::add_choice(const std::string& names, std::string& value, std::vector<std::string> words,
                                const std::string& help) {
-  return add_word(
-      names, std::move(words), help, [&value](const std::string& word) { value = word; });
+  return add_word(names, std::move(words), help, [&value](const std::string& word) { value = word; });
 }
 
-Option VerbOptions::add_choices(const std::string& names,
-                                std::vector<std::string>& values,
-                                std::vector<std::string> words,
-                                const std::string& help) {
+Option VerbOptions::add_choices(const std::string& names, std::vector<std::string>& values,
+                                std::vector<std::string> words, const std::string& help) {
   const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
   const auto read = [words, &values](const std::string& text) {
     values.clear();
@@ -422,9 +378,7 @@ Option VerbOptions::add_choices(const std::string& names,
   return add_parsed(names, value_name, read, help).known_words(std::move(words));
 }
 
-Option VerbOptions::add_word(const std::string& names,
-                             std::vector<std::string> words,
-                             const std::string& help,
+Option VerbOptions::add_word(const std::string& names, std::vector<std::string> words, const std::string& help,
                              std::function<void(const std::string&)> use) {
   const std::string value_name = fmt::format("{}", fmt::join(words, "|"));
   const auto read = [words, use = std::move(use)](const std::string& text) {
@@ -463,9 +417,7 @@ std::vector<std::string> with_joined_verb(const std::vector<std::string>& comman
   return joined;
 }
 
-CommandLine::CommandLine(const std::string& program,
-                         const std::string& what,
-                         const std::string& version,
+CommandLine::CommandLine(const std::string& program, const std::string& what, const std::string& version,
                          const std::string& footer)
     : app_(std::make_unique<CLI::App>(what, program)) {
   app_->set_help_flag("-h,--help", "this page");
@@ -479,21 +431,16 @@ CommandLine::~CommandLine() = default;
 void CommandLine::add(const VerbEntry& entry, Session& session) {
   CLI::App* sub = app_->add_subcommand(entry.name, entry.what);
   sub->add_flag_callback(
-      "-q,--quiet",
-      [&session] { session.terminal.be_quiet(); },
+      "-q,--quiet", [&session] { session.terminal.be_quiet(); },
       "nothing but errors on stderr: no progress, no warnings, no notes");
   examples_[entry.name] = entry.examples;
   VerbOptions options(*sub, notes_);
   options
       .add_parsed(
-          "--color",
-          "auto|always|never",
+          "--color", "auto|always|never",
           [](const std::string& text) {
             const auto colour = libchar::find_enum<Colour>(text);
-            if (!colour)
-              throw libchar::usage_error("E0202")
-                  .says("expected one of auto, always, never")
-                  .got(text);
+            if (!colour) throw libchar::usage_error("E0202").says("expected one of auto, always, never").got(text);
             use_colour(*colour);
           },
           "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
@@ -521,8 +468,7 @@ ProgramUsage CommandLine::usage() const {
   usage.what = app_->get_description();
   usage.version = libchar::version();
   usage.footer = app_->get_footer();
-  for (const CLI::Option* option : app_->get_options())
-    usage.options.push_back(usage_of_option(*option, notes_));
+  for (const CLI::Option* option : app_->get_options()) usage.options.push_back(usage_of_option(*option, notes_));
   for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; }))
     usage.verbs.push_back(usage_of(*verb));
   return usage;
@@ -553,12 +499,9 @@ std::vector<ParsedWord> CommandLine::parsed(const std::vector<std::string>& argv
     const bool names_file = kind_of_name(usage.name.substr(equals + 1)) != ValueKind::text;
     for (const std::string& value : option->results()) {
       const bool alone = option->get_expected_max() == 0 && value == "true";
-      const std::string after =
-          equals == std::string::npos ? value : value.substr(value.find('=') + 1);
-      out.push_back({usage.flags.empty() ? "" : usage.flags.back(),
-                     alone ? "" : value,
-                     names_file && !usage.name.empty() ? after : "",
-                     writes});
+      const std::string after = equals == std::string::npos ? value : value.substr(value.find('=') + 1);
+      out.push_back({usage.flags.empty() ? "" : usage.flags.back(), alone ? "" : value,
+                     names_file && !usage.name.empty() ? after : "", writes});
     }
   }
   return out;

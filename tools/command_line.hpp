@@ -78,43 +78,26 @@ class VerbOptions {
   VerbOptions(CLI::App& app, OptionNotes& notes) : app_(&app), notes_(&notes) {}
 
   /// `Option::only` of options that were added.
-  void only(const std::string& where,
-            const std::function<bool()>& works,
-            const std::vector<std::string>& flags);
+  void only(const std::string& where, const std::function<bool()>& works, const std::vector<std::string>& flags);
 
   Option add_flag(const std::string& names, bool& value, const std::string& help);
   Option add_text(const std::string& names, std::string& value, const std::string& help);
-  Option add_texts(const std::string& names,
-                   std::vector<std::string>& values,
-                   const std::string& help);
+  Option add_texts(const std::string& names, std::vector<std::string>& values, const std::string& help);
   /// `read` gets the text; `value_name` stands for it in the help.
-  Option add_parsed(const std::string& names,
-                    const std::string& value_name,
-                    std::function<void(const std::string&)> read,
-                    const std::string& help);
-  Option add_number(const std::string& names,
-                    std::optional<double>& value,
-                    const std::string& help,
+  Option add_parsed(const std::string& names, const std::string& value_name,
+                    std::function<void(const std::string&)> read, const std::string& help);
+  Option add_number(const std::string& names, std::optional<double>& value, const std::string& help,
                     double lowest = -std::numeric_limits<double>::max(),
                     double highest = std::numeric_limits<double>::max());
-  Option add_number(const std::string& names,
-                    double& value,
-                    const std::string& help,
+  Option add_number(const std::string& names, double& value, const std::string& help,
                     double lowest = -std::numeric_limits<double>::max(),
                     double highest = std::numeric_limits<double>::max());
-  Option add_count(const std::string& names,
-                   std::uint64_t& value,
-                   const std::string& help,
-                   std::uint64_t lowest = 0,
+  Option add_count(const std::string& names, std::uint64_t& value, const std::string& help, std::uint64_t lowest = 0,
                    std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
   /// Seconds ("90", "1.5h"), above zero.
-  Option add_duration(const std::string& names,
-                      std::optional<double>& seconds,
-                      const std::string& help);
+  Option add_duration(const std::string& names, std::optional<double>& seconds, const std::string& help);
   /// Seconds after a beginning, which 0 is.
-  Option add_instant(const std::string& names,
-                     std::optional<double>& seconds,
-                     const std::string& help);
+  Option add_instant(const std::string& names, std::optional<double>& seconds, const std::string& help);
   /// Hertz ("200", "1.5kHz").
   Option add_rate(const std::string& names, std::optional<double>& hertz, const std::string& help);
   /// Bytes ("4096", "64KiB").
@@ -122,27 +105,20 @@ class VerbOptions {
   /// A value of an enum by its word (core/enum_table.hpp).
   template <libchar::EnumWithTable Enum>
   Option add_enum(const std::string& names, Enum& value, const std::string& help) {
-    return add_word(names, libchar::words_of<Enum>(), help, [&value](const std::string& word) {
-      value = *libchar::find_enum<Enum>(word);
-    });
+    return add_word(names, libchar::words_of<Enum>(), help,
+                    [&value](const std::string& word) { value = *libchar::find_enum<Enum>(word); });
   }
   /// -o FILE of a verb that writes one document; "" is stdout, and so is -.
   Option add_document_output(std::string& path);
   /// One of a few words; a wrong one is refused with the nearest right one.
-  Option add_choice(const std::string& names,
-                    std::string& value,
-                    std::vector<std::string> words,
+  Option add_choice(const std::string& names, std::string& value, std::vector<std::string> words,
                     const std::string& help);
   /// One or more of them, separated by commas, none twice.
-  Option add_choices(const std::string& names,
-                     std::vector<std::string>& values,
-                     std::vector<std::string> words,
+  Option add_choices(const std::string& names, std::vector<std::string>& values, std::vector<std::string> words,
                      const std::string& help);
 
  private:
-  Option add_word(const std::string& names,
-                  std::vector<std::string> words,
-                  const std::string& help,
+  Option add_word(const std::string& names, std::vector<std::string> words, const std::string& help,
                   std::function<void(const std::string&)> use);
 
   Option added(CLI::Option* option) { return {option, notes_}; }
@@ -169,9 +145,7 @@ struct ParsedWord {
 class CommandLine {
  public:
   /// `footer` is the last line of the help.
-  CommandLine(const std::string& program,
-              const std::string& what,
-              const std::string& version,
+  CommandLine(const std::string& program, const std::string& what, const std::string& version,
               const std::string& footer);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;

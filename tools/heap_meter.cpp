@@ -40,16 +40,12 @@ void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
-void* malloc(std::size_t size) {
-  return counted(__libc_malloc(size));
-}
+void* malloc(std::size_t size) { return counted(__libc_malloc(size)); }
 void free(void* block) {
   discount(block);
   __libc_free(block);
 }
-void* calloc(std::size_t count, std::size_t size) {
-  return counted(__libc_calloc(count, size));
-}
+void* calloc(std::size_t count, std::size_t size) { return counted(__libc_calloc(count, size)); }
 void* realloc(void* old, std::size_t size) {
   const auto before = old != nullptr ? static_cast<std::int64_t>(malloc_usable_size(old)) : 0;
   void* block = __libc_realloc(old, size);
@@ -57,12 +53,8 @@ void* realloc(void* old, std::size_t size) {
   if (block != nullptr || size == 0) held -= before;
   return size == 0 ? block : counted(block);
 }
-void* memalign(std::size_t alignment, std::size_t size) {
-  return counted(__libc_memalign(alignment, size));
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return counted(__libc_memalign(alignment, size));
-}
+void* memalign(std::size_t alignment, std::size_t size) { return counted(__libc_memalign(alignment, size)); }
+void* aligned_alloc(std::size_t alignment, std::size_t size) { return counted(__libc_memalign(alignment, size)); }
 int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
   *block = counted(__libc_memalign(alignment, size));
   return *block != nullptr ? 0 : ENOMEM;
@@ -88,20 +80,14 @@ libchar::HeapMeter* heap_meter() {
   return &meter;
 }
 
-bool memory_was_refused() {
-  return refused;
-}
+bool memory_was_refused() { return refused; }
 
 }  // namespace sensorchar
 
 #else
 
-libchar::HeapMeter* sensorchar::heap_meter() {
-  return nullptr;
-}
+libchar::HeapMeter* sensorchar::heap_meter() { return nullptr; }
 
-bool sensorchar::memory_was_refused() {
-  return false;
-}
+bool sensorchar::memory_was_refused() { return false; }
 
 #endif

@@ -32,10 +32,8 @@ int main(int argc, char** argv) {
     call.session.command.assign(call.words.begin(), call.words.end());
     libchar::keep_to_threads_given();
     CommandLine line(
-        "sensorchar",
-        "Measure sensor noise, export noise models and compare sensor fusion, from recordings.",
-        fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()),
-        "Begin with: sensorchar inspect LOG");
+        "sensorchar", "Measure sensor noise, export noise models and compare sensor fusion, from recordings.",
+        fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()), "Begin with: sensorchar inspect LOG");
     std::vector<std::string> names;
     for (const VerbEntry& verb : verbs()) {
       line.add(verb, call.session);

@@ -14,57 +14,41 @@ namespace sensorchar {
 namespace {
 
 void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
-  verb.add_text(
-          "--topic",
-          options.topic,
-          "of a log that holds several streams (bags, flight logs, arrays), the one to read, or "
-          "several as one, by a pattern or the name of instances "
-          "(default: the only one)")
+  verb.add_text("--topic", options.topic,
+                "of a log that holds several streams (bags, flight logs, arrays), the one to read, or "
+                "several as one, by a pattern or the name of instances "
+                "(default: the only one)")
       .value_name("NAME")
       .group("Reading");
-  verb.add_choice("--time-source",
-                  options.time_source,
-                  {"auto", "header", "log", "publish"},
+  verb.add_choice("--time-source", options.time_source, {"auto", "header", "log", "publish"},
                   "whose stamps, where messages have several: header (the sensor's), log (when "
                   "recorded), publish (default: auto)")
       .group("Reading");
-  verb.add_instant("--from",
-                   options.from_s,
+  verb.add_instant("--from", options.from_s,
                    "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
-  verb.add_duration(
-          "--to",
-          options.to_s,
-          "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
+  verb.add_duration("--to", options.to_s,
+                    "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
-  verb.add_rate("--rate",
-                options.rate_hz,
+  verb.add_rate("--rate", options.rate_hz,
                 "sampling rate (Hz, 1.5kHz, 1/300…) of a log without stamps and without a rate")
       .group("Reading");
   verb.add_parsed(
-          "--interval",
-          "TIME",
-          [&options](const std::string& text) {
-            options.rate_hz = 1 / libchar::parse_duration_s(text, true);
-          },
+          "--interval", "TIME",
+          [&options](const std::string& text) { options.rate_hz = 1 / libchar::parse_duration_s(text, true); },
           "the same as the time from sample to sample (s, or 5min…)")
       .group("Reading");
-  verb.add_text(
-          "--time-column",
-          options.time_column,
-          "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
+  verb.add_text("--time-column", options.time_column,
+                "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
       .value_name("NAME")
       .group("Reading");
-  verb.add_choice("--time-unit",
-                  options.time_unit,
-                  {"auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"},
+  verb.add_choice("--time-unit", options.time_unit, {"auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"},
                   "unit of the time column (default: auto)")
       .group("Reading");
 }
 
 void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
-  verb.add_texts("--scale",
-                 options.channel_scale,
+  verb.add_texts("--scale", options.channel_scale,
                  "factor of channels by name or pattern, such as 'gyro*=1/16.4'; repeat it or "
                  "separate by commas (default: 1, or the number in the unit)")
       .separated_by_commas()
@@ -72,12 +56,10 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
       .value_name("NAME=FACTOR")
       .once_each()
       .group("Reading");
-  verb.add_texts(
-          "--unit",
-          options.channel_unit,
-          "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is "
-          "their scale (0.05 deg/s); values in another unit of the log are converted; repeat it "
-          "or separate by commas (default: as in the log)")
+  verb.add_texts("--unit", options.channel_unit,
+                 "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is "
+                 "their scale (0.05 deg/s); values in another unit of the log are converted; repeat it "
+                 "or separate by commas (default: as in the log)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=UNIT")
@@ -87,21 +69,17 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
 
 void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  verb.add_texts("--where",
-                 options.kinds.where,
+  verb.add_texts("--where", options.kinds.where,
                  "only the rows with this value, such as sensor=Gyroscope; repeat it for several "
                  "columns (default: all rows)")
       .one_value_each()
       .value_name("COLUMN=VALUE")
       .group(csv);
-  verb.add_text("--group-by",
-                options.kinds.group_by,
+  verb.add_text("--group-by", options.kinds.group_by,
                 "column whose values become channels of their own (default: none)")
       .value_name("COLUMN")
       .group(csv);
-  verb.add_choice("--date-order",
-                  options.date_order,
-                  {"auto", "day", "month"},
+  verb.add_choice("--date-order", options.date_order, {"auto", "day", "month"},
                   "first number in 05/01/2024 (default: auto)")
       .group(csv);
 }
@@ -109,20 +87,15 @@ void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
 void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool with_format) {
   const std::string csv = "Reading CSV";
   if (with_format)
-    verb.add_choice("--format",
-                    options.format,
-                    libchar::format_words(),
-                    "format of the log (default: auto)")
+    verb.add_choice("--format", options.format, libchar::format_words(), "format of the log (default: auto)")
         .group("Reading");
-  verb.add_text("--preset",
-                options.preset,
+  verb.add_text("--preset", options.preset,
                 "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, "
                 "NAVCHIP_FLT")
       .value_name("NAME")
       .group("Reading");
   verb.add_parsed(
-          "--delimiter",
-          "CHAR",
+          "--delimiter", "CHAR",
           [&options](const std::string& text) {
             if (text != "auto" && text != "tab" && text != "space" && text.size() != 1)
               throw libchar::usage_error("E0202", "--delimiter")
@@ -132,38 +105,25 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool 
           },
           "between two cells: auto, tab, space, or one character (default: auto)")
       .group(csv);
-  verb.add_choice(
-          "--decimal", options.decimal, {"auto", "point", "comma"}, "decimal sign (default: auto)")
-      .group(csv);
-  verb.add_choice("--header",
-                  options.header,
-                  {"auto", "yes", "no"},
+  verb.add_choice("--decimal", options.decimal, {"auto", "point", "comma"}, "decimal sign (default: auto)").group(csv);
+  verb.add_choice("--header", options.header, {"auto", "yes", "no"},
                   "whether the first row is a header (default: auto)")
       .group(csv);
-  verb.add_choice("--encoding",
-                  options.encoding,
-                  {"auto", "utf-8", "latin1", "cp1252"},
+  verb.add_choice("--encoding", options.encoding, {"auto", "utf-8", "latin1", "cp1252"},
                   "encoding of the header (default: auto, UTF-8, else Windows-1252)")
       .group(csv);
   add_long_format_options(verb, options);
-  verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)")
-      .group(csv);
+  verb.add_count("--skip-rows", options.skip_rows, "lines to skip before the header (default: 0)").group(csv);
 }
 
 // Flags whose only other value is "no, end with an error", which is the default.
-void add_accepting_flag(VerbOptions& verb,
-                        const std::string& name,
-                        const std::string& word,
-                        bool& value,
+void add_accepting_flag(VerbOptions& verb, const std::string& name, const std::string& word, bool& value,
                         const std::string& help) {
   verb.add_parsed(
-          name,
-          word + "|error",
+          name, word + "|error",
           [&value, name, word](const std::string& text) {
             if (text != word && text != "error")
-              throw libchar::usage_error("E0202", name)
-                  .says("expected {} or error", word)
-                  .got(text);
+              throw libchar::usage_error("E0202", name).says("expected {} or error", word).got(text);
             value = text == word;
           },
           help)
@@ -173,11 +133,9 @@ void add_accepting_flag(VerbOptions& verb,
 }  // namespace
 
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
-  verb.add_texts(
-          "-c,--channel",
-          options.channels,
-          "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not "
-          "to read ('!temp'); repeat it or separate by commas (default: all)")
+  verb.add_texts("-c,--channel", options.channels,
+                 "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not "
+                 "to read ('!temp'); repeat it or separate by commas (default: all)")
       .separated_by_commas()
       .once_each()
       .one_value_each()
@@ -186,22 +144,17 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
   add_reading_options_without_channel(verb, session, options);
 }
 
-void add_reading_options_without_channel(VerbOptions& verb,
-                                         Session& session,
-                                         libchar::ReadOptions& options,
+void add_reading_options_without_channel(VerbOptions& verb, Session& session, libchar::ReadOptions& options,
                                          bool with_format) {
-  verb.add_texts("--names",
-                 options.names,
+  verb.add_texts("--names", options.names,
                  "names for the channels that are read, in order, where the log has none "
                  "(default: c0, c1…)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME,…")
       .group("Reading");
-  verb.add_texts(
-          "--units",
-          options.units,
-          "units of the channels that are read, in order, or one for all (default: as in the log)")
+  verb.add_texts("--units", options.units,
+                 "units of the channels that are read, in order, or one for all (default: as in the log)")
       .separated_by_commas()
       .one_value_each()
       .value_name("UNIT,…")
@@ -210,8 +163,7 @@ void add_reading_options_without_channel(VerbOptions& verb,
   add_time_options(verb, options);
   add_dialect_options(verb, options, with_format);
   verb.add_parsed(
-          "--missing",
-          "VALUE,…",
+          "--missing", "VALUE,…",
           [&options](const std::string& text) {
             std::istringstream marks(text);
             for (std::string mark; std::getline(marks, mark, ',');)
@@ -219,50 +171,35 @@ void add_reading_options_without_channel(VerbOptions& verb,
           },
           "values that mean \"no reading\" in the log, such as -999 (default: none)")
       .group("Reading");
-  add_accepting_flag(verb,
-                     "--overflow",
-                     "nan",
-                     options.missing.overflow,
+  add_accepting_flag(verb, "--overflow", "nan", options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
-  add_accepting_flag(verb,
-                     "--bad-rows",
-                     "drop",
-                     options.missing.bad_rows,
+  add_accepting_flag(verb, "--bad-rows", "drop", options.missing.bad_rows,
                      "drop: rows that cannot be read are left out and counted, of ten one at most "
                      "(default: error)");
-  add_accepting_flag(verb,
-                     "--repeated-header",
-                     "skip",
-                     options.skip_repeated_header,
+  add_accepting_flag(verb, "--repeated-header", "skip", options.skip_repeated_header,
                      "skip: header lines inside the data are skipped (default: error)");
   verb.add_parsed(
-          "--threads",
-          "N",
+          "--threads", "N",
           [&options](const std::string& text) {
             options.threads = static_cast<int>(libchar::parse_count(text, 0, 4096));
           },
           "threads for reading; the result does not depend on it (default: 0 = all cores)")
       .group("Reading");
-  verb.add_flag(
-          "--strict", session.strict, "a warning about the input ends the run with exit code 3")
-      .group("Reading");
+  verb.add_flag("--strict", session.strict, "a warning about the input ends the run with exit code 3").group("Reading");
 }
 
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info) {
   const libchar::ReadOptions usual;
   std::string flags;
-  const auto word =
-      [&](const char* flag, const std::string& value, const std::string& default_value) {
-        if (value != default_value)
-          flags += fmt::format(" {} {}", flag, libchar::shell_word(value));
-      };
+  const auto word = [&](const char* flag, const std::string& value, const std::string& default_value) {
+    if (value != default_value) flags += fmt::format(" {} {}", flag, libchar::shell_word(value));
+  };
   const auto number = [&](const char* flag, const std::optional<double>& value, const char* unit) {
     if (value) flags += fmt::format(" {} {}{}", flag, libchar::shortest(*value), unit);
   };
   const auto list = [&](const char* flag, const std::vector<std::string>& items) {
     if (!items.empty())
-      flags += fmt::format(
-          " {} {}", flag, libchar::shell_word(fmt::format("{}", fmt::join(items, ","))));
+      flags += fmt::format(" {} {}", flag, libchar::shell_word(fmt::format("{}", fmt::join(items, ","))));
   };
   word("--topic", options.topic, usual.topic);
   word("--time-source", options.time_source, usual.time_source);
@@ -271,8 +208,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   list("--units", options.units);
   list("--scale", options.channel_scale);
   list("--unit", options.channel_unit);
-  for (const std::string& where : options.kinds.where)
-    flags += " --where " + libchar::shell_word(where);
+  for (const std::string& where : options.kinds.where) flags += " --where " + libchar::shell_word(where);
   word("--group-by", options.kinds.group_by, usual.kinds.group_by);
   word("--date-order", options.date_order, usual.date_order);
   number("--from", options.from_s, "s");

@@ -10,9 +10,7 @@ namespace sensorchar {
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options);
 
 /// The same without --channel, for verbs that give channels a part each, and without --format for one whose own it is.
-void add_reading_options_without_channel(VerbOptions& verb,
-                                         Session& session,
-                                         libchar::ReadOptions& options,
+void add_reading_options_without_channel(VerbOptions& verb, Session& session, libchar::ReadOptions& options,
                                          bool with_format = true);
 
 /// The flags that read this log the same way again, what was guessed of it pinned (" --time-column

@@ -62,9 +62,7 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
     return align;
   }
   if (!where.empty() && where != "rest" && where != "learning" && where != "run")
-    throw usage_error("E0910", "--align")
-        .says("expected rest, learning, run or FROM..TO behind the @")
-        .got(where);
+    throw usage_error("E0910", "--align").says("expected rest, learning, run or FROM..TO behind the @").got(where);
   if ((where == "rest" && !scene.rest) || (where == "learning" && !scene.learning))
     throw usage_error("E0910", "--align")
         .says("there is no such window")
@@ -76,11 +74,9 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
 
 void set_grid(const ReplaySource& source, Scene& scene) {
   if (!source.prepare.resample_hz) return;
-  if (scene.simulate)
-    throw usage_error("E0910", "--resample").says("a simulation has an even grid");
+  if (scene.simulate) throw usage_error("E0910", "--resample").says("a simulation has an even grid");
   if (scene.reading.rate_hz)
-    throw usage_error("E0910", "--resample")
-        .says("goes by the stamps of the log, --rate is for logs without stamps");
+    throw usage_error("E0910", "--resample").says("goes by the stamps of the log, --rate is for logs without stamps");
   scene.resample_hz = source.prepare.resample_hz;
 }
 
@@ -101,23 +97,17 @@ void set_preparation(const ReplaySource& source, Scene& scene) {
                        : source.prepare.high_pass_hz     ? "--high-pass"
                        : !source.prepare.detrend.empty() ? "--detrend"
                                                          : "--reference-offset";
-  if (const std::string why = why_not_prepared(scene); !why.empty())
-    throw usage_error("E0910", option).says(why);
+  if (const std::string why = why_not_prepared(scene); !why.empty()) throw usage_error("E0910", option).says(why);
 }
 
 // A number, or estimate.
-void set_of_reference(const std::string& words,
-                      const std::string& option,
-                      const Scene& scene,
-                      double& value,
+void set_of_reference(const std::string& words, const std::string& option, const Scene& scene, double& value,
                       bool& estimate) {
   if (words.empty()) return;
-  if (scene.simulate)
-    throw usage_error("E0910", option).says("a simulation knows its truth").got(words);
+  if (scene.simulate) throw usage_error("E0910", option).says("a simulation knows its truth").got(words);
   const auto number = parse_double(words);
   estimate = words == "estimate";
-  if (!number && !estimate)
-    throw usage_error("E0910", option).says("expected a number, or estimate").got(words);
+  if (!number && !estimate) throw usage_error("E0910", option).says("expected a number, or estimate").got(words);
   value = number.value_or(0);
 }
 
@@ -125,11 +115,9 @@ void set_reference(const ReplaySource& source, Scene& scene) {
   if (scene.reference) {
     SceneReference& r = *scene.reference;
     set_of_reference(source.reference_lag, "--reference-lag", scene, r.lag_s, r.estimate_lag);
-    set_of_reference(
-        source.reference_offset, "--reference-offset", scene, r.offset, r.estimate_offset);
+    set_of_reference(source.reference_offset, "--reference-offset", scene, r.offset, r.estimate_offset);
   } else if (!source.reference_lag.empty() || !source.reference_offset.empty()) {
-    throw usage_error("E0910",
-                      source.reference_lag.empty() ? "--reference-offset" : "--reference-lag")
+    throw usage_error("E0910", source.reference_lag.empty() ? "--reference-offset" : "--reference-lag")
         .says("there is no reference");
   }
 }
@@ -146,8 +134,7 @@ void refuse_words_of_recordings(const ReplaySource& source) {
   if (option == nullptr && reading.empty()) return;
   const std::string flag = reading.empty() ? "" : reading.substr(1, reading.find(' ', 1) - 1);
   throw usage_error("E0910", option != nullptr ? option : flag)
-      .says("describes a recording, and {} is a scene, which says this itself",
-            printable(source.path))
+      .says("describes a recording, and {} is a scene, which says this itself", printable(source.path))
       .hint("change the scene, or give its recording instead");
 }
 
@@ -191,8 +178,7 @@ void set_faults(const ReplaySource& source, Scene& scene) {
 void add_data_options(VerbOptions& options, Session& session, ReplaySource& source) {
   const std::string group = "A recording instead of a scene";
   options
-      .add_texts("--sensors",
-                 source.sensors,
+      .add_texts("--sensors", source.sensors,
                  "channels that measure one quantity: names, positions c0, c1…, or patterns "
                  "('gyro*'); separate by commas or repeat")
       .separated_by_commas()
@@ -200,18 +186,13 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
       .one_value_each()
       .value_name("NAME,…")
       .group(group);
-  options
-      .add_texts("--reference",
-                 source.reference,
-                 "channel with the truth; of several the mean (default: none)")
+  options.add_texts("--reference", source.reference, "channel with the truth; of several the mean (default: none)")
       .separated_by_commas()
       .once_each()
       .one_value_each()
       .value_name("NAME")
       .group(group);
-  options
-      .add_text(
-          "--reference-log", source.reference_log, "log of the reference (default: the recording)")
+  options.add_text("--reference-log", source.reference_log, "log of the reference (default: the recording)")
       .value_name("FILE")
       .group(group);
   options.add_texts("--model", source.models, "noise model of a sensor, SENSOR=FILE.sensor.yaml")
@@ -220,50 +201,37 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
       .value_name("SENSOR=FILE")
       .group(group);
   options
-      .add_text("--models",
-                source.models_folder,
+      .add_text("--models", source.models_folder,
                 "folder with CHANNEL.sensor.yaml of every sensor, as characterize writes it")
       .value_name("DIR")
       .group(group);
   add_reading_options_without_channel(options, session, source.reading);
 }
 
-void add_window(VerbOptions& options,
-                const std::string& name,
-                std::string& value,
-                const std::string& help) {
+void add_window(VerbOptions& options, const std::string& name, std::string& value, const std::string& help) {
   options.add_text(name, value, help).value_name("FROM..TO");
 }
 
 void add_preparation_options(VerbOptions& options, ReplaySource& source) {
-  options.add_rate("--resample",
-                   source.prepare.resample_hz,
+  options.add_rate("--resample", source.prepare.resample_hz,
                    "interpolate each channel by its own stamps to an even grid of this rate, for "
                    "uneven stamps and channels of unlike rates (default: the scene's)");
-  options.add_choice("--detrend",
-                     source.prepare.detrend,
-                     {"none", "mean", "line"},
+  options.add_choice("--detrend", source.prepare.detrend, {"none", "mean", "line"},
                      "subtract this from each sensor and the reference, of the whole recording "
                      "(default: the scene's)");
-  const Option high_pass =
-      options.add_rate("--high-pass",
-                       source.prepare.high_pass_hz,
-                       "one high-pass for all sensors and the reference (default: the scene's)");
+  const Option high_pass = options.add_rate("--high-pass", source.prepare.high_pass_hz,
+                                            "one high-pass for all sensors and the reference (default: the scene's)");
   options
-      .add_text("--band",
-                source.prepare.band,
-                "instead: from one frequency to another, in Hz (default: the scene's)")
+      .add_text("--band", source.prepare.band, "instead: from one frequency to another, in Hz (default: the scene's)")
       .value_name("LOW..HIGH")
       .excludes(high_pass);
   options
-      .add_text("--reference-lag",
-                source.reference_lag,
+      .add_text("--reference-lag", source.reference_lag,
                 "the sensors lag the reference by so many seconds, or estimate (default: the "
                 "scene's)")
       .value_name("S|estimate");
   options
-      .add_text("--reference-offset",
-                source.reference_offset,
+      .add_text("--reference-offset", source.reference_offset,
                 "the reference reads so much more than the sensors, or estimate (default: the "
                 "scene's)")
       .value_name("NUMBER|estimate");
@@ -273,45 +241,33 @@ void add_preparation_options(VerbOptions& options, ReplaySource& source) {
 
 void add_replay_source(VerbOptions& options, Session& session, ReplaySource& source) {
   options
-      .add_text("SCENE",
-                source.path,
+      .add_text("SCENE", source.path,
                 "scene file (docs/scenes.md) of a recording or a simulation, or a recording, with "
                 "--sensors")
       .value_name("SCENE|LOG");
   add_data_options(options, session, source);
-  add_window(options,
-             "--learning",
-             source.learning,
+  add_window(options, "--learning", source.learning,
              "learning window in seconds, or none (default: the scene's, else with a reference the "
              "first half of a recording)");
-  add_window(options,
-             "--evaluation",
-             source.evaluation,
+  add_window(options, "--evaluation", source.evaluation,
              "what is scored, in seconds (default: the scene's, else all behind the learning "
              "window)");
-  add_window(options,
-             "--rest",
-             source.rest,
+  add_window(options, "--rest", source.rest,
              "the true input is zero there: offsets and noise are measured (default: the scene's)");
   options
-      .add_text("--align",
-                source.align,
+      .add_text("--align", source.align,
                 "take these out of the sensors first: auto (those that pay), all, or some of "
                 "delay,bias,gain,misalignment; "
                 "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
   add_preparation_options(options, source);
-  options.add_instant("--warm-up",
-                      source.warm_up_s,
+  options.add_instant("--warm-up", source.warm_up_s,
                       "so long at its start the evaluation is run and not scored (default: the "
                       "scene's)");
-  options
-      .add_texts(
-          "--fault", source.faults, std::string(kFaultHelp) + "; injected on top of the scene's")
+  options.add_texts("--fault", source.faults, std::string(kFaultHelp) + "; injected on top of the scene's")
       .value_name("FAULT");
   options.add_flag("--no-faults", source.no_faults, "leave out the faults that the scene injects");
-  options.add_flag(
-      "--allow-outside", source.allow_outside, "the scene may name files outside its folder");
+  options.add_flag("--allow-outside", source.allow_outside, "the scene may name files outside its folder");
 }
 
 Scene read_replay_source(const ReplaySource& source, const std::string& scene_file) {
@@ -322,14 +278,11 @@ Scene read_replay_source(const ReplaySource& source, const std::string& scene_fi
   } else if (!source.learning.empty()) {
     scene.learning = window_from_words(source.learning, "--learning");
   }
-  if (!source.evaluation.empty())
-    scene.evaluation = window_from_words(source.evaluation, "--evaluation");
+  if (!source.evaluation.empty()) scene.evaluation = window_from_words(source.evaluation, "--evaluation");
   if (!source.rest.empty()) scene.rest = window_from_words(source.rest, "--rest");
   if (source.warm_up_s) scene.warm_up_s = source.warm_up_s;
   if (!source.align.empty()) {
-    if (scene.tilt)
-      throw usage_error("E0910", "--align")
-          .says("the sensors of a tilt measure different quantities");
+    if (scene.tilt) throw usage_error("E0910", "--align").says("the sensors of a tilt measure different quantities");
     scene.align = align_from_words(source.align, scene);
   }
   set_reference(source, scene);

@@ -70,16 +70,14 @@ void refuse_reading(const RerunOptions& options, const std::vector<ParsedWord>& 
   }
   if (outside.empty() || options.allow_read) return;
   throw usage_error("E0523", options.document)
-      .says("its command reads files outside this folder and the document's: {}",
-            fmt::join(outside, ", "))
+      .says("its command reads files outside this folder and the document's: {}", fmt::join(outside, ", "))
       .hint("--allow-read where you trust it");
 }
 
 /// The command as its verb understands it, without anything that writes elsewhere than into the folder.
 std::vector<std::string> words_of(const RerunOptions& options, const Json& command) {
   const std::vector<std::string> words = words_in(command);
-  if (words.size() < 2 ||
-      std::find(std::begin(kVerbs), std::end(kVerbs), words[1]) == std::end(kVerbs))
+  if (words.size() < 2 || std::find(std::begin(kVerbs), std::end(kVerbs), words[1]) == std::end(kVerbs))
     throw rerun_refusal(options.document)
         .says("only what characterize and replay wrote is run again")
         .got(words.size() < 2 ? "" : words[1]);
@@ -146,13 +144,11 @@ bool is_of_numbers(const fs::path& name) {
 }  // namespace
 
 bool Rerun::holds() const {
-  const bool digits = std::all_of(differences.begin(), differences.end(), [](const auto& d) {
-    return d.relative <= kSameDigits;
-  });
+  const bool digits =
+      std::all_of(differences.begin(), differences.end(), [](const auto& d) { return d.relative <= kSameDigits; });
   // Tables and models hold the document's numbers: where those are the same, so are their bytes.
   return digits &&
-         (!differences.empty() ||
-          std::all_of(files.begin(), files.end(), [](const auto& f) { return f.second; }));
+         (!differences.empty() || std::all_of(files.begin(), files.end(), [](const auto& f) { return f.second; }));
 }
 
 Rerun rerun(Session& session, const RerunOptions& options) {
@@ -174,8 +170,7 @@ Rerun rerun(Session& session, const RerunOptions& options) {
   for (const Json& name : was.value("files", Json::array())) {
     if (!name.is_string()) continue;
     const fs::path file = fs::path(name.get<std::string>()).filename();
-    if (is_of_numbers(file))
-      out.files.emplace_back(file.string(), same_bytes(from.parent_path() / file, into / file));
+    if (is_of_numbers(file)) out.files.emplace_back(file.string(), same_bytes(from.parent_path() / file, into / file));
   }
   return out;
 }

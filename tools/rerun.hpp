@@ -10,9 +10,8 @@
 namespace sensorchar {
 
 struct Rerun {
-  std::string document, again;  ///< the document, and the one of the second run
-  std::vector<libchar::JsonDifference>
-      differences;  ///< measured times, the command and the files' digests apart
+  std::string document, again;                       ///< the document, and the one of the second run
+  std::vector<libchar::JsonDifference> differences;  ///< measured times, the command and the files' digests apart
   /// tables, models: name and whether the bytes are the same
   std::vector<std::pair<std::string, bool>> files;
   bool same_program = false;

@@ -62,23 +62,17 @@ void report_warnings(Session& session, const libchar::Findings& warnings, const 
   session.warned_files.push_back(file);
 }
 
-void report_findings(Session& session,
-                     const std::string& channel,
-                     const std::vector<libchar::Finding>& findings) {
+void report_findings(Session& session, const std::string& channel, const std::vector<libchar::Finding>& findings) {
   if (findings.empty()) return;
   const std::string text = libchar::printable(channel) + ":\n" + libchar::findings_text(findings);
   session.terminal.note(text.substr(0, text.size() - 1));
 }
 
-void report_findings(Session& session,
-                     const std::string& document,
-                     std::span<const libchar::Finding> findings,
+void report_findings(Session& session, const std::string& document, std::span<const libchar::Finding> findings,
                      const std::vector<std::string>& channels) {
   std::vector<libchar::Finding> said;
   for (libchar::Finding one : findings) {
-    const auto fits = [&](const std::string& pattern) {
-      return libchar::matches(pattern, one.subject);
-    };
+    const auto fits = [&](const std::string& pattern) { return libchar::matches(pattern, one.subject); };
     if (one.subject != libchar::detail::kOfRecording && !channels.empty() &&
         std::none_of(channels.begin(), channels.end(), fits))
       continue;
@@ -95,20 +89,15 @@ void refuse_strict(const Session& session) {
       .hint("leave out --strict to accept what the warnings say");
 }
 
-libchar::Json document_head(const Session& session,
-                            const std::string& format,
+libchar::Json document_head(const Session& session, const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs) {
   libchar::Json document = libchar::document_head(format, session.command, inputs);
   document["measured"] = {{"work", libchar::work_json(session.work.done())}};
   return document;
 }
 
-void write_document(Session& session,
-                    const libchar::LogInfo& log,
-                    const std::string& format,
-                    const libchar::Json& json,
-                    const std::string& csv,
-                    const DocumentOutput& output) {
+void write_document(Session& session, const libchar::LogInfo& log, const std::string& format, const libchar::Json& json,
+                    const std::string& csv, const DocumentOutput& output) {
   report_warnings(session, log);
   std::string text = csv;
   if (output.json) {
@@ -131,10 +120,7 @@ void print_summary(Session& session, const std::string& output, const std::strin
   session.terminal.note(text.substr(0, text.find_last_not_of('\n') + 1));
 }
 
-void refuse_standard_output(const char* flag,
-                            const std::string& place,
-                            const char* what,
-                            const char* hint) {
+void refuse_standard_output(const char* flag, const std::string& place, const char* what, const char* hint) {
   if (place != "-") return;
   throw libchar::usage_error("E0205", flag)
       .says(std::string("standard output takes one document, and ") + what)
@@ -160,8 +146,7 @@ void refuse_one_name(const std::vector<std::string>& paths) {
       const auto apart = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
       if (apart.first != outer.end() || libchar::writes_through(b)) continue;
       throw libchar::output_error("E0505", a)
-          .says(inner == outer ? "two outputs are one file"
-                               : "would lie in a folder that is another output")
+          .says(inner == outer ? "two outputs are one file" : "would lie in a folder that is another output")
           .got(b)
           .hint("give each a name of its own");
     }
@@ -177,12 +162,9 @@ int g_refused_exit = exit_code(ErrorKind::numeric);
 
 // Said without taking memory: there is none.
 int refuse_for_memory() noexcept {
-  for (const std::string_view part :
-       {std::string_view("sensorchar: error "),
-        std::string_view(kNoMemory),
-        std::string_view(": not enough memory for this input; hint: "),
-        std::string_view(g_memory_hint),
-        std::string_view("\n")})
+  for (const std::string_view part : {std::string_view("sensorchar: error "), std::string_view(kNoMemory),
+                                      std::string_view(": not enough memory for this input; hint: "),
+                                      std::string_view(g_memory_hint), std::string_view("\n")})
     if (::write(STDERR_FILENO, part.data(), part.size()) < 0) break;
   return g_refused_exit;
 }
@@ -197,16 +179,14 @@ bool is_of_threads(const std::exception& error) {
 /// Where the file that cannot be read as a log is a table of a curve: the verb that reads it.
 libchar::Problem with_curve_hint(const Session& session, libchar::Problem problem) {
   const bool of_content = problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric;
-  const bool known = std::any_of(session.command.begin(), session.command.end(), [](const auto& w) {
-    return w.starts_with("--curve");
-  });
+  const bool known = std::any_of(session.command.begin(), session.command.end(),
+                                 [](const auto& w) { return w.starts_with("--curve"); });
   if (!of_content || known) return problem;
   for (const std::string& word : session.command) {
     if (problem.where != word && !problem.where.starts_with(word + ":")) continue;
     if (const std::string curve = libchar::curve_in_header(word); !curve.empty())
-      problem.hint = fmt::format("this is a table of a curve: sensorchar fit {} --curve {}",
-                                 libchar::shell_word(word),
-                                 curve);
+      problem.hint =
+          fmt::format("this is a table of a curve: sensorchar fit {} --curve {}", libchar::shell_word(word), curve);
   }
   return problem;
 }
@@ -221,8 +201,7 @@ void say_unlocked(Session& session) {
 }
 
 std::string error_line(const Session& session, const Error& error) {
-  const libchar::Problem problem =
-      with_flags(with_curve_hint(session, error.problem()), session.flags);
+  const libchar::Problem problem = with_flags(with_curve_hint(session, error.problem()), session.flags);
   const std::string line = libchar::one_line(problem, colours(STDERR_FILENO));
   return ::isatty(STDERR_FILENO) == 1 ? line + marked_line(error.problem()) : line;
 }
@@ -235,9 +214,8 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     return code;
   };
   const auto stopped = [&](int number) {
-    return fail(session.wrote
-                    ? "sensorchar: stopped; what had been written before is whole and stays"
-                    : "sensorchar: stopped; no output was written",
+    return fail(session.wrote ? "sensorchar: stopped; what had been written before is whole and stays"
+                              : "sensorchar: stopped; no output was written",
                 128 + number);
   };
   try {
@@ -258,12 +236,8 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
     throw;
   } catch (const std::filesystem::filesystem_error& error) {
     if (error.code() == std::errc::not_enough_memory) throw;
-    return fail(libchar::one_line({ErrorKind::input,
-                                   "E0101",
-                                   error.path1().string(),
-                                   "cannot look at it: " + error.code().message(),
-                                   "",
-                                   ""}),
+    return fail(libchar::one_line({ErrorKind::input, "E0101", error.path1().string(),
+                                   "cannot look at it: " + error.code().message(), "", ""}),
                 3);
   } catch (const std::exception& error) {
     if (is_of_threads(error))
@@ -271,10 +245,9 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
                               "raise the limit of processes (ulimit -u), or end others",
                               kNoThread),
                   g_refused_exit);
-    return fail(
-        fmt::format("sensorchar: internal error: {}; please report this with the command line",
-                    libchar::printable(error.what())),
-        1);
+    return fail(fmt::format("sensorchar: internal error: {}; please report this with the command line",
+                            libchar::printable(error.what())),
+                1);
   }
 }
 
@@ -292,9 +265,7 @@ void set_memory_hint(const Session& session) {
     g_memory_hint = "make it shorter with --duration";
 }
 
-void try_again_where_refused() {
-  g_refused_exit = exit_code(ErrorKind::again);
-}
+void try_again_where_refused() { g_refused_exit = exit_code(ErrorKind::again); }
 
 void end_in_a_sentence() {
   constexpr std::string_view kDefect =

@@ -30,13 +30,9 @@ void say_error(Session& session, const libchar::Error& error);
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
 /// What is known of a channel, at most five lines, the worst first.
-void report_findings(Session& session,
-                     const std::string& channel,
-                     const std::vector<libchar::Finding>& findings);
+void report_findings(Session& session, const std::string& channel, const std::vector<libchar::Finding>& findings);
 /// Of a document: what is said of the recording and of the channels that fit one of the patterns (none: all).
-void report_findings(Session& session,
-                     const std::string& document,
-                     std::span<const libchar::Finding> findings,
+void report_findings(Session& session, const std::string& document, std::span<const libchar::Finding> findings,
                      const std::vector<std::string>& channels);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
 
@@ -46,8 +42,7 @@ void refuse_strict(const Session& session);
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
 /// "findings":[{file,code,severity,sentence,count,…}],"measured":{"work":{…}}}: the head of every --json
 /// document; the verb adds its own keys behind.
-libchar::Json document_head(const Session& session,
-                            const std::string& format,
+libchar::Json document_head(const Session& session, const std::string& format,
                             const std::vector<const libchar::LogInfo*>& inputs);
 
 /// Texts in addition to results in files; nothing when quiet.
@@ -63,19 +58,13 @@ struct DocumentOutput {
 };
 
 /// The keys of `json` behind the head of a document of this format, or `csv`; the log's warnings are said before.
-void write_document(Session& session,
-                    const libchar::LogInfo& log,
-                    const std::string& format,
-                    const libchar::Json& json,
-                    const std::string& csv,
-                    const DocumentOutput& output);
+void write_document(Session& session, const libchar::LogInfo& log, const std::string& format, const libchar::Json& json,
+                    const std::string& csv, const DocumentOutput& output);
 
 /// Standard output takes one document: throws where `place` is "-" and what goes there is `what`,
 /// with what to give instead.
-void refuse_standard_output(const char* flag,
-                            const std::string& place,
-                            const char* what = "the results are several files",
-                            const char* hint = "name a folder");
+void refuse_standard_output(const char* flag, const std::string& place,
+                            const char* what = "the results are several files", const char* hint = "name a folder");
 
 /// What is said of a log that was written: on stdout, or, where the log itself may be there, as a
 /// note; nothing when quiet.

@@ -37,9 +37,8 @@ void end_now(int) {
   const libchar::Discarded discarded = libchar::discard_unfinished();
   if (discarded == libchar::Discarded::not_now) return;
   if (g_line_drawn != 0) write_text("\r\x1b[K");
-  write_text(discarded == libchar::Discarded::nothing_written
-                 ? "sensorchar: stopped; no output was written\n"
-                 : "sensorchar: stopped\n");
+  write_text(discarded == libchar::Discarded::nothing_written ? "sensorchar: stopped; no output was written\n"
+                                                              : "sensorchar: stopped\n");
   ::_exit(128 + g_stop_signal);
 }
 
@@ -71,8 +70,7 @@ void take_closed_streams() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
     // The lowest free number is this one: those below are open.
-    [[maybe_unused]] const int taken =
-        ::open("/dev/null", number == STDOUT_FILENO ? O_RDONLY : O_RDWR);
+    [[maybe_unused]] const int taken = ::open("/dev/null", number == STDOUT_FILENO ? O_RDONLY : O_RDWR);
   }
 }
 
@@ -93,13 +91,9 @@ void install_signal_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void work_is_done() {
-  std::signal(SIGALRM, SIG_IGN);
-}
+void work_is_done() { std::signal(SIGALRM, SIG_IGN); }
 
-int stop_signal() {
-  return g_stop_signal;
-}
+int stop_signal() { return g_stop_signal; }
 
 std::optional<std::size_t> columns_of_stdout() {
   constexpr std::size_t kMost = 10000;
@@ -108,8 +102,7 @@ std::optional<std::size_t> columns_of_stdout() {
     if (columns > 0 && columns < kMost) return columns;
   }
   winsize size{};
-  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0)
-    return std::nullopt;
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return std::nullopt;
   if (size.ws_col == 0) return std::nullopt;
   return size.ws_col;
 }
@@ -124,13 +117,9 @@ void print(std::string_view text) {
   }
 }
 
-std::size_t table_width() {
-  return columns_of_stdout().value_or(0);
-}
+std::size_t table_width() { return columns_of_stdout().value_or(0); }
 
-libchar::TextLook text_look() {
-  return {table_width(), colours(STDOUT_FILENO)};
-}
+libchar::TextLook text_look() { return {table_width(), colours(STDOUT_FILENO)}; }
 
 namespace {
 
@@ -143,8 +132,7 @@ std::string fitted(std::string_view text, std::size_t width) {
     if (width > 0 && libchar::width_of(line) > width) {
       const std::size_t indent = std::min(line.find_first_not_of(' '), width / 2);
       const std::string inner(indent + 2, ' ');
-      out += inner.substr(2) +
-             libchar::wrapped(line.substr(indent), width, inner).substr(inner.size());
+      out += inner.substr(2) + libchar::wrapped(line.substr(indent), width, inner).substr(inner.size());
     } else {
       out += line;
     }
@@ -156,13 +144,9 @@ std::string fitted(std::string_view text, std::size_t width) {
 
 }  // namespace
 
-void print_text(const std::string& text) {
-  print(fitted(with_flags(text), table_width()));
-}
+void print_text(const std::string& text) { print(fitted(with_flags(text), table_width())); }
 
-void say(std::string_view line) {
-  write_all(STDERR_FILENO, std::string(line) + "\n");
-}
+void say(std::string_view line) { write_all(STDERR_FILENO, std::string(line) + "\n"); }
 
 Terminal::Terminal() : start_(Clock::now()), drawn_(start_) {
   const char* term = std::getenv("TERM");
@@ -184,16 +168,12 @@ void Terminal::update(double fraction, std::string_view what) {
   if (const int number = stop_signal(); number != 0) throw libchar::Cancelled(number);
   if (!draws_ || quiet_) return;
   const Clock::time_point now = Clock::now();
-  if (now - start_ < std::chrono::seconds(1) || now - drawn_ < std::chrono::milliseconds(100))
-    return;
+  if (now - start_ < std::chrono::seconds(1) || now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
   std::string line = libchar::printable(what, 60);
-  if (fraction >= 0)
-    line +=
-        fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0)) + time_left(fraction, what, now);
+  if (fraction >= 0) line += fmt::format(" {:3.0f} %", 100 * std::min(fraction, 1.0)) + time_left(fraction, what, now);
   const std::size_t places = libchar::width_of(line);
-  const std::string rest =
-      escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
+  const std::string rest = escapes_ ? "\x1b[K" : std::string(shown_ > places ? shown_ - places : 0, ' ');
   write_all(STDERR_FILENO, "\r" + line + rest);
   shown_ = places;
   g_line_drawn = 1;
@@ -214,8 +194,7 @@ std::string Terminal::time_left(double fraction, std::string_view what, Clock::t
 
 void Terminal::clear() {
   if (shown_ == 0) return;
-  write_all(STDERR_FILENO,
-            escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
+  write_all(STDERR_FILENO, escapes_ ? std::string("\r\x1b[K") : "\r" + std::string(shown_, ' ') + "\r");
   shown_ = 0;
   g_line_drawn = 0;
 }

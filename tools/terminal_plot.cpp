@@ -17,8 +17,7 @@ std::string terminal_plots(std::span<const libchar::SourceCurve> curves) {
   // Curves of one unit and one statistic share axes, in the order of their first.
   std::vector<FigureSource> groups;
   for (const SourceCurve& curve : curves) {
-    const bool drawable =
-        std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return y > 0; });
+    const bool drawable = std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return y > 0; });
     if (!drawable) continue;
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const FigureSource& g) {
       return g.curves[0].unit == curve.unit && g.curves[0].statistic == curve.statistic;

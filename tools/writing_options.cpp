@@ -17,33 +17,19 @@ std::optional<bool> becomes_table(const WritingOptions& writing, const std::stri
 
 }  // namespace
 
-void add_writing_options(VerbOptions& verb,
-                         WritingOptions& writing,
-                         const std::string& stamps,
+void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::string& stamps,
                          const std::string& output) {
-  verb.add_choice("--as",
-                  writing.options.format,
-                  libchar::written_format_words(),
+  verb.add_choice("--as", writing.options.format, libchar::written_format_words(),
                   "format to write (default: auto, by the suffix)");
-  verb.add_choice("--dtype",
-                  writing.options.dtype,
-                  {"f64", "f32"},
-                  "npy, raw: type of the numbers (default: f64)");
-  verb.add_choice("--order",
-                  writing.options.order,
-                  {"interleaved", "planar"},
+  verb.add_choice("--dtype", writing.options.dtype, {"f64", "f32"}, "npy, raw: type of the numbers (default: f64)");
+  verb.add_choice("--order", writing.options.order, {"interleaved", "planar"},
                   "npy, raw: row by row or channel by channel (default: interleaved)");
-  verb.add_choice("--endian",
-                  writing.endian,
-                  {"little", "big"},
-                  "npy, raw: order of the bytes (default: little)");
-  verb.add_flag(
-      "--no-time-column", writing.no_time_column, "csv: leave out the first column " + stamps);
+  verb.add_choice("--endian", writing.endian, {"little", "big"}, "npy, raw: order of the bytes (default: little)");
+  verb.add_flag("--no-time-column", writing.no_time_column, "csv: leave out the first column " + stamps);
   verb.only("where the log becomes npy or raw",
             [&writing, &output] { return !becomes_table(writing, output).value_or(false); },
             {"--dtype", "--order", "--endian"});
-  verb.only("where the log becomes csv",
-            [&writing, &output] { return becomes_table(writing, output).value_or(true); },
+  verb.only("where the log becomes csv", [&writing, &output] { return becomes_table(writing, output).value_or(true); },
             {"--no-time-column"});
 }
 

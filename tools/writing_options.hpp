@@ -16,9 +16,7 @@ struct WritingOptions {
 /// Adds every flag that says how a log is to be written (--as, --dtype, --order, --endian,
 /// --no-time-column). `stamps` is what the time column is called ("t[s]"). `writing` must live until
 /// the verb has run.
-void add_writing_options(VerbOptions& verb,
-                         WritingOptions& writing,
-                         const std::string& stamps,
+void add_writing_options(VerbOptions& verb, WritingOptions& writing, const std::string& stamps,
                          const std::string& output);
 
 libchar::WriteOptions write_options(const WritingOptions& writing);

@@ -10,12 +10,8 @@ int main() {
   for (const libchar::ChannelResult& c : result.channels) {
     if (!c.fit) continue;  // c.problems says why
     const libchar::Coefficient& n = (*c.fit)[libchar::Term::white];
-    std::printf("%s: N %.3g %s·√s, 95 %% from %.3g to %.3g\n",
-                c.channel.name.c_str(),
-                *n.value,
-                c.channel.unit.c_str(),
-                n.ci95.low,
-                n.ci95.high);
+    std::printf("%s: N %.3g %s·√s, 95 %% from %.3g to %.3g\n", c.channel.name.c_str(), *n.value, c.channel.unit.c_str(),
+                n.ci95.low, n.ci95.high);
   }
   libchar::write_whole_file("library-report.html", libchar::html_report(result), true);
   for (const libchar::SensorModel& model : libchar::sensor_models(result))

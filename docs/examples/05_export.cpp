@@ -8,11 +8,9 @@
 int main() {
   std::vector<libchar::SensorModel> models;
   const std::string head = "format: sensor-model\nversion: 1\nrate_hz: 200\n";
-  for (const std::string noise :
-       {"channel: gyro\nunit: rad/s\nwhite_noise: 1.7e-4\nrandom_walk: 1.9e-5\n",
-        "channel: accel\nunit: m/s^2\nwhite_noise: 2.0e-3\nrandom_walk: 3.0e-3\n"})
-    models.push_back(
-        libchar::parse_sensor_model(head + "density: two-sided\n" + noise, "data sheet"));
+  for (const std::string noise : {"channel: gyro\nunit: rad/s\nwhite_noise: 1.7e-4\nrandom_walk: 1.9e-5\n",
+                                  "channel: accel\nunit: m/s^2\nwhite_noise: 2.0e-3\nrandom_walk: 3.0e-3\n"})
+    models.push_back(libchar::parse_sensor_model(head + "density: two-sided\n" + noise, "data sheet"));
 
   libchar::ExportOptions options;
   options.topic = "/imu";

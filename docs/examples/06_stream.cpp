@@ -6,9 +6,7 @@
 struct Curve : libchar::BlockSink {
   libchar::AllanPyramid pyramid;
   void begin(const libchar::LogInfo&) override {}
-  void block(const libchar::SampleBlock& samples) override {
-    pyramid.push({samples.channels[0], samples.rows});
-  }
+  void block(const libchar::SampleBlock& samples) override { pyramid.push({samples.channels[0], samples.rows}); }
 };
 
 int main() {

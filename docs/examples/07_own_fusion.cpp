@@ -7,11 +7,10 @@
 namespace fusion = libchar::fusion;
 
 struct Midrange {
-  static constexpr fusion::Description description{
-      .name = "midrange",
-      .title = "Middle between the smallest and the largest",
-      .source = "this page",
-      .complexity = "O(n)"};
+  static constexpr fusion::Description description{.name = "midrange",
+                                                   .title = "Middle between the smallest and the largest",
+                                                   .source = "this page",
+                                                   .complexity = "O(n)"};
   explicit Midrange(const fusion::Array&) {}
   fusion::Estimate step(const fusion::Sample& y) const {
     return fusion::Estimate::scalar((y.minCoeff() + y.maxCoeff()) / 2, 0);

@@ -43,10 +43,7 @@ struct PairCount {
 
 constexpr double kDirectLags = 2048;  // fewer are added one by one, with the exact number of pairs
 
-std::vector<double> breakpoints(const Side& a,
-                                const Side& b,
-                                const PairCount& count,
-                                double start) {
+std::vector<double> breakpoints(const Side& a, const Side& b, const PairCount& count, double start) {
   std::vector<double> at;
   for (const double i : {-1.0, 0.0, 1.0})
     for (const double j : {-1.0, 0.0, 1.0}) at.push_back((i * a.m + j * b.m - start) / a.stride);
@@ -89,8 +86,7 @@ Products aligned_pair_sum(const Side& a, const Side& b, double start, double dt)
 /// Strides that do not divide each other: every P-th term of b is in step with a, so b is taken as
 /// P interleaved sets.
 Products pair_sum(const Side& a, const Side& b, double dt) {
-  const auto fine = static_cast<std::uint64_t>(a.stride),
-             coarse = static_cast<std::uint64_t>(b.stride);
+  const auto fine = static_cast<std::uint64_t>(a.stride), coarse = static_cast<std::uint64_t>(b.stride);
   const std::uint64_t apart = fine / std::gcd(fine, coarse);
   const double sets = std::min(static_cast<double>(apart), b.terms);
   Products sum;
@@ -102,14 +98,10 @@ Products pair_sum(const Side& a, const Side& b, double dt) {
 }
 
 Side side_of(const AllanCurve& curve, const AllanPoint& p) {
-  return {static_cast<double>(p.m),
-          static_cast<double>(p.terms),
-          static_cast<double>(stride_of(curve, p))};
+  return {static_cast<double>(p.m), static_cast<double>(p.terms), static_cast<double>(stride_of(curve, p))};
 }
 
-double factor_of(const Side& a, const Side& b) {
-  return 1 / (2 * a.terms * b.terms);
-}
+double factor_of(const Side& a, const Side& b) { return 1 / (2 * a.terms * b.terms); }
 
 }  // namespace
 
@@ -133,11 +125,9 @@ AllanCovariance::AllanCovariance(const AllanCurve& curve) : dt_s_(curve.dt_s) {
   }
   products_.resize(pairs.size());
   parallel::for_each(0, pairs.size(), [&](std::size_t k) {
-    Side a = side_of(curve, curve.points[pairs[k].first]),
-         b = side_of(curve, curve.points[pairs[k].second]);
+    Side a = side_of(curve, curve.points[pairs[k].first]), b = side_of(curve, curve.points[pairs[k].second]);
     if (a.stride > b.stride) std::swap(a, b);
-    const double inflation =
-        curve.points[pairs[k].first].inflation * curve.points[pairs[k].second].inflation;
+    const double inflation = curve.points[pairs[k].first].inflation * curve.points[pairs[k].second].inflation;
     products_[k] = pair_sum(a, b, dt_s_) * (factor_of(a, b) * inflation);
   });
 }

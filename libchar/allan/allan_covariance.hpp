@@ -60,8 +60,7 @@ class AllanCovarianceCache {
 
  private:
   struct Entry {
-    std::vector<std::uint64_t>
-        key;  ///< type, stride divisor, then m, terms and inflation of each point
+    std::vector<std::uint64_t> key;  ///< type, stride divisor, then m, terms and inflation of each point
     double dt_s = 0;
     std::shared_ptr<const AllanCovariance> covariance;
   };

@@ -68,8 +68,7 @@ std::vector<std::uint64_t> regular_grid(TauGrid grid, std::uint64_t largest) {
   if (grid == TauGrid::dense) {
     for (std::uint64_t m = 1; m <= std::min(largest, kDenseUpTo); ++m) factors.push_back(m);
     for (double k = 1;; ++k) {
-      const double m =
-          std::round(static_cast<double>(kDenseUpTo) * std::pow(10, k / kDensePerDecade));
+      const double m = std::round(static_cast<double>(kDenseUpTo) * std::pow(10, k / kDensePerDecade));
       if (m > static_cast<double>(largest)) break;
       factors.push_back(static_cast<std::uint64_t>(m));
     }
@@ -77,9 +76,7 @@ std::vector<std::uint64_t> regular_grid(TauGrid grid, std::uint64_t largest) {
   return factors;
 }
 
-std::vector<std::uint64_t> listed(const std::vector<double>& taus,
-                                  double dt_s,
-                                  double largest,
+std::vector<std::uint64_t> listed(const std::vector<double>& taus, double dt_s, double largest,
                                   std::vector<std::string>& notes) {
   std::vector<std::uint64_t> factors;
   std::uint64_t too_long = 0, moved = 0;
@@ -100,10 +97,9 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus,
                     " of the listed averaging times left out: longer than the record allows (" +
                     duration_text(largest * dt_s) + ")");
   if (moved > 0)
-    notes.push_back(
-        std::to_string(moved) +
-        " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
-        duration_text(dt_s) + ")");
+    notes.push_back(std::to_string(moved) +
+                    " of the listed averaging times moved to the nearest multiple of the sampling interval (" +
+                    duration_text(dt_s) + ")");
   return factors;
 }
 
@@ -145,9 +141,7 @@ class TheoGrid {
 /// Ascending averaging factors of the grid that `options` asks for in a record of `samples` rate
 /// samples. Listed times that the record is too short for are left out and noted. Throws
 /// Error(usage) for a time that is not positive and finite.
-std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
-                                             double dt_s,
-                                             std::uint64_t samples,
+std::vector<std::uint64_t> averaging_factors(const AllanOptions& options, double dt_s, std::uint64_t samples,
                                              std::vector<std::string>& notes) {
   const double duration = static_cast<double>(samples) * dt_s;
   const DeviationRow& row = deviation_row(options.type);
@@ -162,9 +156,9 @@ std::vector<std::uint64_t> averaging_factors(const AllanOptions& options,
   const double slack = 1 + 1e-9;
   double reach = std::max(1.0, std::floor(tau_max / dt_s * slack * (theo ? theo->stretch() : 1)));
   reach = std::min(reach, static_cast<double>(largest_factor(row, samples)));
-  std::vector<std::uint64_t> factors =
-      options.grid == TauGrid::list ? listed(options.taus_s, dt_s, reach, notes)
-                                    : regular_grid(options.grid, static_cast<std::uint64_t>(reach));
+  std::vector<std::uint64_t> factors = options.grid == TauGrid::list
+                                           ? listed(options.taus_s, dt_s, reach, notes)
+                                           : regular_grid(options.grid, static_cast<std::uint64_t>(reach));
   if (theo) factors = theo->factors(factors);
   for (const std::uint64_t m : options.more_factors)
     if (static_cast<double>(m) <= reach) factors.push_back(m);
@@ -186,10 +180,7 @@ struct Starts {
 
 /// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
 /// it sums.
-Starts starts_in(const IndexRange& stretch,
-                 const DeviationRow& f,
-                 std::uint64_t m,
-                 std::uint64_t stride) {
+Starts starts_in(const IndexRange& stretch, const DeviationRow& f, std::uint64_t m, std::uint64_t stride) {
   const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
   const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
   return {(stretch.begin + stride - 1) / stride * stride, end, stride};
@@ -209,8 +200,7 @@ std::vector<double> continued(std::span<const double> x, std::size_t reach, Data
   const double last = x.back() - x[0];
   for (std::size_t j = reach; j > 0; --j) all.push_back(-(x[j] - x[0]));
   for (const double value : x) all.push_back(value - x[0]);
-  for (std::size_t j = 1; j <= reach; ++j)
-    all.push_back(last + (last - (x[x.size() - 1 - j] - x[0])));
+  for (std::size_t j = 1; j <= reach; ++j) all.push_back(last + (last - (x[x.size() - 1 - j] - x[0])));
   return all;
 }
 
@@ -220,30 +210,21 @@ struct Totals {
 };
 
 /// All terms with starts in the ranges, cut into pieces at multiples of kPiece and added in order.
-Totals total_over(const AnchoredPhase& phase,
-                  const DeviationRow& f,
-                  std::uint64_t m,
+Totals total_over(const AnchoredPhase& phase, const DeviationRow& f, std::uint64_t m,
                   const std::vector<Starts>& ranges) {
   const std::size_t pieces = detail::in_memory(phase.points / kPiece + 1);
   std::vector<Totals> part(pieces);
   parallel::for_each(0, pieces, [&](std::size_t piece) {
     const std::uint64_t begin = piece * kPiece, end = begin + kPiece;
-    auto range = std::partition_point(
-        ranges.begin(), ranges.end(), [&](const Starts& r) { return r.end <= begin; });
+    auto range = std::partition_point(ranges.begin(), ranges.end(), [&](const Starts& r) { return r.end <= begin; });
     for (; range != ranges.end() && range->begin < end; ++range) {
       const std::uint64_t stride = range->stride;
-      const Starts cut = {std::max(range->begin, (begin + stride - 1) / stride * stride),
-                          std::min(range->end, end),
+      const Starts cut = {std::max(range->begin, (begin + stride - 1) / stride * stride), std::min(range->end, end),
                           stride};
       if (cut.count() == 0) continue;
       part[piece].terms += cut.count();
-      part[piece].sum += sum_of_squares(phase,
-                                        f.order,
-                                        f.of_sum,
-                                        detail::in_memory(m),
-                                        detail::in_memory(cut.begin),
-                                        detail::in_memory(cut.end),
-                                        detail::in_memory(stride));
+      part[piece].sum += sum_of_squares(phase, f.order, f.of_sum, detail::in_memory(m), detail::in_memory(cut.begin),
+                                        detail::in_memory(cut.end), detail::in_memory(stride));
     }
   });
   Totals all;
@@ -254,10 +235,7 @@ Totals total_over(const AnchoredPhase& phase,
   return all;
 }
 
-std::vector<Starts> ranges_of(const AnchoredPhase& phase,
-                              const DeviationRow& f,
-                              std::uint64_t m,
-                              std::uint64_t reach,
+std::vector<Starts> ranges_of(const AnchoredPhase& phase, const DeviationRow& f, std::uint64_t m, std::uint64_t reach,
                               std::uint64_t stride) {
   if (f.reflected)  // centred on the inner points of the record within its continuation
     return {{reach + 1 - m, phase.points - reach - 1 - m, 1}};
@@ -269,11 +247,7 @@ std::vector<Starts> ranges_of(const AnchoredPhase& phase,
   return ranges;
 }
 
-AllanPoint point_of(const Totals& total,
-                    const DeviationRow& f,
-                    std::uint64_t m,
-                    double dt_s,
-                    double scale,
+AllanPoint point_of(const Totals& total, const DeviationRow& f, std::uint64_t m, double dt_s, double scale,
                     DataKind kind) {
   AllanPoint point;
   const double factor = static_cast<double>(m);
@@ -290,10 +264,9 @@ AllanPoint point_of(const Totals& total,
 
 [[noreturn]] void too_short(const DeviationRow& f, std::uint64_t samples) {
   const std::uint64_t needed = f.span(1);
-  throw numeric_error("E0401").says(std::string(f.word) + " needs at least " +
-                                    std::to_string(needed) +
-                                    " consecutive samples; none of its terms fits the " +
-                                    std::to_string(samples) + " of this record");
+  throw numeric_error("E0401").says(std::string(f.word) + " needs at least " + std::to_string(needed) +
+                                    " consecutive samples; none of its terms fits the " + std::to_string(samples) +
+                                    " of this record");
 }
 
 IndexRange longest(std::span<const double> record) {
@@ -308,16 +281,13 @@ IndexRange longest(std::span<const double> record) {
 }
 
 /// Of the longest gap-free stretch only: reflection has no meaning at a gap.
-std::span<const double> without_gaps(std::span<const double> record,
-                                     const DeviationRow& row,
-                                     AllanCurve& curve) {
+std::span<const double> without_gaps(std::span<const double> record, const DeviationRow& row, AllanCurve& curve) {
   const IndexRange s = longest(record);
   if (s.end - s.begin == record.size()) return record;
-  curve.notes.push_back((row.family == DeviationFamily::differences ? std::string("total deviation")
-                                                                    : std::string(row.title)) +
-                        " of the longest stretch without gaps only, samples " +
-                        std::to_string(s.begin) + " to " + std::to_string(s.end) + " of " +
-                        std::to_string(record.size()));
+  curve.notes.push_back(
+      (row.family == DeviationFamily::differences ? std::string("total deviation") : std::string(row.title)) +
+      " of the longest stretch without gaps only, samples " + std::to_string(s.begin) + " to " + std::to_string(s.end) +
+      " of " + std::to_string(record.size()));
   return record.subspan(s.begin, s.end - s.begin);
 }
 
@@ -328,34 +298,26 @@ std::span<const double> without_gaps(std::span<const double> record,
 
 void check(double dt_s, const AllanOptions& options) {
   if (!(dt_s > 0) || !std::isfinite(dt_s))
-    throw usage_error("E0201")
-        .says("the sampling interval must be a positive number of seconds")
-        .got(shortest(dt_s));
+    throw usage_error("E0201").says("the sampling interval must be a positive number of seconds").got(shortest(dt_s));
   if (options.grid == TauGrid::list && options.taus_s.empty())
     throw usage_error("E0201").says("no averaging time is listed");
 }
 
-std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase,
-                                        const DeviationRow& f,
-                                        std::uint64_t reach,
-                                        const std::vector<std::uint64_t>& factors,
-                                        DataKind kind,
+std::vector<AllanPoint> points_of_phase(const AnchoredPhase& phase, const DeviationRow& f, std::uint64_t reach,
+                                        const std::vector<std::uint64_t>& factors, DataKind kind,
                                         const AllanCurve& curve) {
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::uint64_t m = factors[k];
     AllanPoint asked;
     asked.m = m;
-    const Totals total =
-        total_over(phase, f, m, ranges_of(phase, f, m, reach, stride_of(curve, asked)));
+    const Totals total = total_over(phase, f, m, ranges_of(phase, f, m, reach, stride_of(curve, asked)));
     if (total.terms > 0) points[k] = point_of(total, f, m, curve.dt_s, phase.scale, kind);
   });
   return points;
 }
 
-void fill_points(const std::vector<AllanPoint>& points,
-                 const std::vector<std::uint64_t>& factors,
-                 AllanCurve& curve) {
+void fill_points(const std::vector<AllanPoint>& points, const std::vector<std::uint64_t>& factors, AllanCurve& curve) {
   std::vector<std::uint64_t> empty;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (points[k].terms > 0)
@@ -372,8 +334,7 @@ std::uint64_t not_finite(std::span<const double> record) {
 }
 
 AnchoredPhase anchored(std::span<const double> record, DataKind kind, bool summed) {
-  return kind == DataKind::rate ? anchored_phase_of_rate(record, summed)
-                                : anchored_phase_of_phase(record, summed);
+  return kind == DataKind::rate ? anchored_phase_of_rate(record, summed) : anchored_phase_of_phase(record, summed);
 }
 
 FamilyPoints maker_of(DeviationFamily family) {
@@ -399,10 +360,8 @@ std::uint64_t share_of_work(const AllanOptions& options, std::size_t points) {
   return std::max<std::uint64_t>(1, options.work_a_point / points * kPointsInFull);
 }
 
-std::vector<AllanPoint> points_of_family(std::span<const double> used,
-                                         const DeviationRow& row,
-                                         const AllanOptions& options,
-                                         const std::vector<std::uint64_t>& factors,
+std::vector<AllanPoint> points_of_family(std::span<const double> used, const DeviationRow& row,
+                                         const AllanOptions& options, const std::vector<std::uint64_t>& factors,
                                          AllanCurve& curve) {
   FamilyInput input{used, options.data, curve.dt_s, balancing_scale(used), {}, 0};
   input.work_a_point = share_of_work(options, factors.size());
@@ -415,15 +374,11 @@ std::vector<AllanPoint> points_of_family(std::span<const double> used,
 }
 
 /// Takes no gaps: the longest stretch without one is used.
-bool of_one_stretch(const DeviationRow& row) {
-  return row.reflected || row.family == DeviationFamily::theo;
-}
+bool of_one_stretch(const DeviationRow& row) { return row.reflected || row.family == DeviationFamily::theo; }
 
 }  // namespace
 
-AllanCurve allan_deviation(std::span<const double> record,
-                           double dt_s,
-                           const AllanOptions& options) {
+AllanCurve allan_deviation(std::span<const double> record, double dt_s, const AllanOptions& options) {
   check(dt_s, options);
   const DeviationRow& f = deviation_row(options.type);
   const auto rate_samples = [&](std::uint64_t size) {
@@ -444,18 +399,15 @@ AllanCurve allan_deviation(std::span<const double> record,
   const int cores = processors_given();
   parallel::Threads arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
   arena.run([&] {
-    if (family)
-      return fill_points(points_of_family(used, f, options, factors, curve), factors, curve);
+    if (family) return fill_points(points_of_family(used, f, options, factors, curve), factors, curve);
     if (curve.missing > 0 && options.data == DataKind::rate && of_window_means(f))
       return fill_points(points_of_present(used, f, factors, dt_s), factors, curve);
-    const AnchoredPhase phase =
-        total ? anchored(continued(used, reach, options.data), options.data, false)
-              : anchored(used, options.data, f.of_sum);
+    const AnchoredPhase phase = total ? anchored(continued(used, reach, options.data), options.data, false)
+                                      : anchored(used, options.data, f.of_sum);
     if (f.overlapping && !total) curve.stride_divisor = options.stride_divisor;
     fill_points(points_of_phase(phase, f, reach, factors, options.data, curve), factors, curve);
   });
-  if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list)
-    too_short(f, curve.samples);
+  if (curve.points.empty() && curve.missing > 0 && options.grid != TauGrid::list) too_short(f, curve.samples);
   if (curve.points.empty()) none_fits(curve);
   for (const AllanPoint& point : curve.points) count_work(WorkKind::allan_terms, point.terms);
   return curve;
@@ -463,11 +415,9 @@ AllanCurve allan_deviation(std::span<const double> record,
 
 AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options) {
   AllanCurve curve = octaves;
-  const std::vector<std::uint64_t> wanted =
-      averaging_factors(options, curve.dt_s, curve.samples, curve.notes);
-  std::erase_if(curve.points, [&](const AllanPoint& point) {
-    return !std::binary_search(wanted.begin(), wanted.end(), point.m);
-  });
+  const std::vector<std::uint64_t> wanted = averaging_factors(options, curve.dt_s, curve.samples, curve.notes);
+  std::erase_if(curve.points,
+                [&](const AllanPoint& point) { return !std::binary_search(wanted.begin(), wanted.end(), point.m); });
   if (curve.points.empty()) none_fits(curve);
   return curve;
 }

@@ -79,9 +79,7 @@ struct AllanOptions {
 /// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
 /// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
 /// needed; Error(usage) for a bad tau.
-AllanCurve allan_deviation(std::span<const double> record,
-                           double dt_s,
-                           const AllanOptions& options = {});
+AllanCurve allan_deviation(std::span<const double> record, double dt_s, const AllanOptions& options = {});
 
 /// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would
 /// leave it. Throws Error(numeric) when nothing is.
@@ -104,9 +102,7 @@ void set_dof(AllanPoint& point, double edf);
 namespace detail {
 /// Factors between octaves whose terms start every sample: an `allan_deviation` that also takes them
 /// (more_factors) sums the record once for both.
-std::vector<std::uint64_t> exact_factors(const AllanOptions& options,
-                                         double dt_s,
-                                         std::uint64_t samples);
+std::vector<std::uint64_t> exact_factors(const AllanOptions& options, double dt_s, std::uint64_t samples);
 }  // namespace detail
 
 /// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and
@@ -114,11 +110,8 @@ std::vector<std::uint64_t> exact_factors(const AllanOptions& options,
 /// the degrees of freedom; m is rounded to that. Records longer than `exact_samples` get none below
 /// m = 64; records with missing samples exact ones, or none. `exact`: points at
 /// `exact_factors`, where they are there already.
-void add_ten_a_decade(std::span<const double> record,
-                      const AllanOptions& options,
-                      std::uint64_t exact_samples,
-                      AllanCurve& octaves,
-                      std::span<const AllanPoint> exact = {});
+void add_ten_a_decade(std::span<const double> record, const AllanOptions& options, std::uint64_t exact_samples,
+                      AllanCurve& octaves, std::span<const AllanPoint> exact = {});
 
 // Deviations of single devices from their differences: the three-cornered hat, and the same for any number of them.
 
@@ -130,8 +123,7 @@ enum class HatStatus {
 };
 
 template <>
-inline constexpr auto enum_table<HatStatus> =
-    enum_words<HatStatus, "resolved not_resolved negative">;
+inline constexpr auto enum_table<HatStatus> = enum_words<HatStatus, "resolved not_resolved negative">;
 
 struct HatPoint {
   std::uint64_t m = 0;
@@ -153,15 +145,12 @@ struct CorneredHat {
 /// own: variances of all pairwise differences, then least squares (cornered_hat.cpp). A statistic
 /// that is a mean square (all but MTIE, TheoBR and TheoH). Throws Error(usage) for others, fewer
 /// than three records, or lengths that differ; as allan_deviation.
-CorneredHat cornered_hat(std::span<const std::vector<double>> records,
-                         double dt_s,
-                         const AllanOptions& options = {});
+CorneredHat cornered_hat(std::span<const std::vector<double>> records, double dt_s, const AllanOptions& options = {});
 
 /// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances
 /// of the two that a device is in, in which the noise of the measurements drops out (Groslambert).
 /// Overlapping Allan variance only.
-CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences,
-                                        double dt_s,
+CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences, double dt_s,
                                         const AllanOptions& options = {});
 
 // The Allan deviation as it changes in time.
@@ -186,9 +175,7 @@ struct DynamicDeviation {
 /// deviation of each window of the record, which stands for its middle. Windows begin at 0, step, 2
 /// step … while they fit. Throws Error(usage) for a window that is too short or longer than the
 /// record, or more windows than a million; Error(numeric) when no window gives a point.
-DynamicDeviation dynamic_deviation(std::span<const double> record,
-                                   double dt_s,
-                                   const DynamicOptions& dynamic,
+DynamicDeviation dynamic_deviation(std::span<const double> record, double dt_s, const DynamicOptions& dynamic,
                                    const AllanOptions& options = {});
 
 }  // namespace libchar

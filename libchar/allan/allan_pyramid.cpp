@@ -27,17 +27,14 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-constexpr std::size_t kTail =
-    7;  // samples of the last block that terms reaching into the next one need
+constexpr std::size_t kTail = 7;  // samples of the last block that terms reaching into the next one need
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// `squares` of differences of sums, not of means.
 using Tally = PresentTerms;
 
 /// Squares this large or small lose nothing to overflow or underflow.
-bool safe(double sum) {
-  return sum > 1e-250 && sum < 1e300;
-}
+bool safe(double sum) { return sum > 1e-250 && sum < 1e300; }
 
 }  // namespace
 
@@ -83,17 +80,11 @@ struct AllanPyramid::State {
   void finish_block(std::size_t level, const double* z, const double* absent, std::size_t n);
   void finish_held(std::size_t level);
   void within(Level& level, bool base, const double* z, std::size_t n, const double* sums);
-  void across(
-      Level& level, std::size_t index, const double* z, const double* absent, std::size_t n);
+  void across(Level& level, std::size_t index, const double* z, const double* absent, std::size_t n);
   void across_holed(Level& level, std::size_t index, const Holed& joint, std::size_t taken);
-  void holed_block(
-      std::size_t level, const double* z, const double* sum, const double* absent, std::size_t n);
+  void holed_block(std::size_t level, const double* z, const double* sum, const double* absent, std::size_t n);
   void holed_base(const double* x, std::size_t n);
-  void hand_up(std::size_t level,
-               const double* z,
-               const double* absent,
-               std::size_t n,
-               double origin_of_level);
+  void hand_up(std::size_t level, const double* z, const double* absent, std::size_t n, double origin_of_level);
   void keep_tail(Level& level, const double* z, const double* absent) const;
   void keep_ends(Level& level, const double* z, const double* absent, std::size_t n) const;
   Level& at(std::size_t level);
@@ -136,8 +127,7 @@ void AllanPyramid::State::finish_held(std::size_t level) {
 }
 
 /// Terms inside one block; `sums` of a block without missing values, else null.
-void AllanPyramid::State::within(
-    Level& level, bool base, const double* z, std::size_t n, const double* sums) {
+void AllanPyramid::State::within(Level& level, bool base, const double* z, std::size_t n, const double* sums) {
   for (std::size_t k = base ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k;
     if (n < 2 * width) continue;
@@ -152,8 +142,8 @@ void AllanPyramid::State::within(
 }
 
 /// Terms that begin in the previous block and end in this one.
-void AllanPyramid::State::across(
-    Level& level, std::size_t index, const double* z, const double* absent, std::size_t n) {
+void AllanPyramid::State::across(Level& level, std::size_t index, const double* z, const double* absent,
+                                 std::size_t n) {
   if (!level.started) return;
   const std::size_t taken = std::min(n, kTail), all = kTail + taken;
   double joint[2 * kTail], lacks[2 * kTail] = {};
@@ -164,8 +154,7 @@ void AllanPyramid::State::across(
   if (index == 0 && std::any_of(joint, joint + all, [](double v) { return std::isnan(v); }))
     split_present(joint, all, origin, joint, lacks);
   if (any_absent(lacks, all))
-    return across_holed(
-        level, index, {joint, lacks, std::ldexp(1.0, static_cast<int>(index))}, taken);
+    return across_holed(level, index, {joint, lacks, std::ldexp(1.0, static_cast<int>(index))}, taken);
   const double scale = block_scale(joint, all);
   for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k,
@@ -175,19 +164,12 @@ void AllanPyramid::State::across(
   }
 }
 
-void AllanPyramid::State::across_holed(Level& level,
-                                       std::size_t index,
-                                       const Holed& joint,
-                                       std::size_t taken) {
+void AllanPyramid::State::across_holed(Level& level, std::size_t index, const Holed& joint, std::size_t taken) {
   const double scale = block_scale(joint.sum, kTail + taken);
   for (std::size_t k = index == 0 ? 0 : 2; k < 3; ++k) {
     const std::size_t width = std::size_t{1} << k, reach = 2 * width - 1;
     const std::size_t from = kTail - reach, right = std::min(taken, reach);
-    add_present({joint.sum + from, joint.absent + from, joint.size},
-                reach + right,
-                width,
-                scale,
-                level.tally[k]);
+    add_present({joint.sum + from, joint.absent + from, joint.size}, reach + right, width, scale, level.tally[k]);
   }
 }
 
@@ -199,36 +181,29 @@ void AllanPyramid::State::keep_tail(Level& level, const double* z, const double*
 }
 
 /// What joins this part of a record to its neighbours (allan_sums.hpp).
-void AllanPyramid::State::keep_ends(Level& level,
-                                    const double* z,
-                                    const double* absent,
-                                    std::size_t n) const {
+void AllanPyramid::State::keep_ends(Level& level, const double* z, const double* absent, std::size_t n) const {
   const auto lacks = [&](std::size_t i) { return absent != nullptr ? absent[i] : 0.0; };
   for (std::size_t i = 0; i < std::min(n, kTail); ++i) level.first.push_back(z[i], lacks(i));
   for (std::size_t i = n - std::min(n, kTail); i < n; ++i) level.last.push_last(z[i], lacks(i));
   level.count += n;
 }
 
-void AllanPyramid::State::hand_up(
-    std::size_t level, const double* z, const double* absent, std::size_t n, double shift) {
+void AllanPyramid::State::hand_up(std::size_t level, const double* z, const double* absent, std::size_t n,
+                                  double shift) {
   const std::size_t pairs = n / 2;
   if (pairs == 0) return;
   Level& above = at(level + 1);
   sum_pairs(z, pairs, shift, above.block.data() + above.held);
   if (absent != nullptr && above.absent.empty()) above.absent.resize(kBlock);
   if (absent != nullptr)
-    for (std::size_t i = 0; i < pairs; ++i)
-      above.absent[above.held + i] = absent[2 * i] + absent[2 * i + 1];
+    for (std::size_t i = 0; i < pairs; ++i) above.absent[above.held + i] = absent[2 * i] + absent[2 * i + 1];
   above.held += pairs;
   if (above.held == kBlock) finish_held(level + 1);
 }
 
 /// One block of a level: its terms, its tail, its pair sums. All blocks but the very last have
 /// kBlock values. `absent` is null where none is missing, and at the base, where NaN says so.
-void AllanPyramid::State::finish_block(std::size_t index,
-                                       const double* z,
-                                       const double* absent,
-                                       std::size_t n) {
+void AllanPyramid::State::finish_block(std::size_t index, const double* z, const double* absent, std::size_t n) {
   const bool base = index == 0;
   if (absent != nullptr) return holed_block(index, z, z, absent, n);
   double sums[3] = {};
@@ -251,8 +226,8 @@ void AllanPyramid::State::finish_block(std::size_t index,
 
 /// Where something is missing: `z` as it stands in the tail, `sum` and `absent` as the terms and
 /// the level above need it.
-void AllanPyramid::State::holed_block(
-    std::size_t index, const double* z, const double* sum, const double* absent, std::size_t n) {
+void AllanPyramid::State::holed_block(std::size_t index, const double* z, const double* sum, const double* absent,
+                                      std::size_t n) {
   const double size = std::ldexp(1.0, static_cast<int>(index));
   Level& level = at(index);
   across(level, index, z, absent, n);
@@ -304,9 +279,7 @@ AllanPyramid::AllanPyramid(const AllanSums& sums) : AllanPyramid() {
   }
 }
 
-void AllanPyramid::push(std::span<const double> samples) {
-  state_->push(samples.data(), samples.size());
-}
+void AllanPyramid::push(std::span<const double> samples) { state_->push(samples.data(), samples.size()); }
 
 AllanCurve AllanPyramid::finish(double dt_s) const& {
   AllanPyramid closed;  // the open blocks are closed in a copy: more samples may still come
@@ -314,9 +287,7 @@ AllanCurve AllanPyramid::finish(double dt_s) const& {
   return std::move(closed).finish(dt_s);
 }
 
-AllanCurve AllanPyramid::finish(double dt_s) && {
-  return octave_curve(std::move(*this).sums(), dt_s);
-}
+AllanCurve AllanPyramid::finish(double dt_s) && { return octave_curve(std::move(*this).sums(), dt_s); }
 
 AllanSums AllanPyramid::sums() && {
   state_->close();

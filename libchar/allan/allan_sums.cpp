@@ -29,10 +29,7 @@ namespace {
 
 constexpr std::size_t kReach = LevelEnd::kMost;
 
-void add_point(std::uint64_t m,
-               const PresentTerms& tally,
-               MissingSamples& missing,
-               std::vector<std::uint64_t>& without,
+void add_point(std::uint64_t m, const PresentTerms& tally, MissingSamples& missing, std::vector<std::uint64_t>& without,
                AllanCurve& curve) {
   if (2 * m > curve.samples) return;
   const long double factor = static_cast<long double>(m);
@@ -41,18 +38,15 @@ void add_point(std::uint64_t m,
   point.tau_s = static_cast<double>(factor) * curve.dt_s;
   point.terms = tally.terms;
   if (curve.missing == 0 && tally.terms > 0) {
-    point.deviation = static_cast<double>(
-        std::sqrt(tally.squares / (2.0L * static_cast<long double>(tally.terms))) / factor);
+    point.deviation =
+        static_cast<double>(std::sqrt(tally.squares / (2.0L * static_cast<long double>(tally.terms))) / factor);
     return curve.points.push_back(point);
   }
   PresentTerms means = tally;
   means.squares /= factor * factor;
   const double dof =
-      tally.terms == 0
-          ? 1
-          : equivalent_dof(curve.type, {1}, m, tally.terms, stride_of(curve, point), curve.dt_s);
-  const auto found =
-      missing.corrected(static_cast<double>(m), means, 2, 1 / static_cast<double>(m), dof);
+      tally.terms == 0 ? 1 : equivalent_dof(curve.type, {1}, m, tally.terms, stride_of(curve, point), curve.dt_s);
+  const auto found = missing.corrected(static_cast<double>(m), means, 2, 1 / static_cast<double>(m), dof);
   missing.add_octave(static_cast<double>(m), means, found.variance);
   if (found.variance < 0) return without.push_back(m);
   point.deviation = static_cast<double>(std::sqrt(found.variance));
@@ -73,10 +67,7 @@ void move_origin(LevelEnd& end, std::size_t index, double from, double to) {
 }
 
 /// Terms that begin in `before` and end in `after`.
-void add_across(std::size_t index,
-                double origin,
-                const LevelEnd& before,
-                const LevelEnd& after,
+void add_across(std::size_t index, double origin, const LevelEnd& before, const LevelEnd& after,
                 std::array<PresentTerms, 3>& terms) {
   const std::size_t all = before.count + after.count;
   double z[2 * kReach], lacks[2 * kReach];
@@ -104,10 +95,8 @@ void join_level(AllanSums& sums, std::size_t index, const AllanLevel& later) {
   AllanLevel& level = sums.levels[index];
   add_across(index, sums.origin, level.tail, later.head, level.terms);
   for (std::size_t k = 0; k < 3; ++k) level.terms[k] += later.terms[k];
-  for (std::size_t i = 0; i < later.head.count; ++i)
-    level.head.push_back(later.head.value[i], later.head.absent[i]);
-  for (std::size_t i = 0; i < later.tail.count; ++i)
-    level.tail.push_last(later.tail.value[i], later.tail.absent[i]);
+  for (std::size_t i = 0; i < later.head.count; ++i) level.head.push_back(later.head.value[i], later.head.absent[i]);
+  for (std::size_t i = 0; i < later.tail.count; ++i) level.tail.push_last(later.tail.value[i], later.tail.absent[i]);
   level.count += later.count;
 }
 
@@ -223,25 +212,21 @@ static void allan_layout(Archive& at, Sums& sums) {
     at(level.count);
     end_layout(at, level.head);
     end_layout(at, level.tail);
-    for (auto& terms : level.terms)
-      at(terms.squares, terms.shortfall, terms.imbalance, terms.terms, terms.starts);
+    for (auto& terms : level.terms) at(terms.squares, terms.shortfall, terms.imbalance, terms.terms, terms.starts);
   });
 }
 
-void write_state(const AllanSums& sums, StateWriter& to) {
-  allan_layout(to, sums);
-}
+void write_state(const AllanSums& sums, StateWriter& to) { allan_layout(to, sums); }
 
 AllanSums read_allan_sums(StateReader& from) {
   AllanSums sums;
   allan_layout(from, sums);
   for (const AllanLevel& level : sums.levels)
-    if (level.head.count != std::min<std::uint64_t>(level.count, kReach) ||
-        level.tail.count != level.head.count || !possible(level))
+    if (level.head.count != std::min<std::uint64_t>(level.count, kReach) || level.tail.count != level.head.count ||
+        !possible(level))
       from.refuse("a level of the pyramid");
   // What follows is joined by these numbers.
-  if (sums.levels.size() != static_cast<std::size_t>(std::bit_width(sums.samples)) ||
-      sums.missing > sums.samples)
+  if (sums.levels.size() != static_cast<std::size_t>(std::bit_width(sums.samples)) || sums.missing > sums.samples)
     from.refuse("levels of the pyramid");
   for (std::size_t l = 0; l < sums.levels.size(); ++l)
     if (sums.levels[l].count != sums.samples >> l) from.refuse("values of a level of the pyramid");

@@ -78,9 +78,7 @@ double phase_covariance_of(const Mixture& theta, double n, double dt_s) {
 }
 
 double parabolic_dof(Mixture theta, double m, double terms, double dt_s) {
-  if (m == 1)
-    return equivalent_dof(
-        DeviationType::oadev, theta, 1, static_cast<std::uint64_t>(terms), 1, dt_s);
+  if (m == 1) return equivalent_dof(DeviationType::oadev, theta, 1, static_cast<std::uint64_t>(terms), 1, dt_s);
   if (m > kExactPoints) {
     const double coarser = m / kExactPoints;
     terms = std::max(1.0, terms / coarser);
@@ -93,12 +91,10 @@ double parabolic_dof(Mixture theta, double m, double terms, double dt_s) {
   const std::vector<double> a = autocorrelation(weights_of_slopes(points));
   const std::size_t lags = std::min(static_cast<std::size_t>(std::ceil(terms)), kFarLags * points);
   std::vector<double> s(lags + 2 * points);
-  for (std::size_t n = 0; n < s.size(); ++n)
-    s[n] = phase_covariance_of(theta, static_cast<double>(n), dt_s);
+  for (std::size_t n = 0; n < s.size(); ++n) s[n] = phase_covariance_of(theta, static_cast<double>(n), dt_s);
   const auto covariance = [&](std::size_t lag) {
     double sum = a[0] * s[lag];
-    for (std::size_t d = 1; d < a.size(); ++d)
-      sum += a[d] * (s[lag + d] + s[lag > d ? lag - d : d - lag]);
+    for (std::size_t d = 1; d < a.size(); ++d) sum += a[d] * (s[lag + d] + s[lag > d ? lag - d : d - lag]);
     return sum;
   };
   const double variance = covariance(0);
@@ -111,28 +107,19 @@ double parabolic_dof(Mixture theta, double m, double terms, double dt_s) {
   return terms * terms / total;
 }
 
-double extended_dof(const DeviationRow& row,
-                    const Mixture& theta,
-                    const AllanPoint& point,
-                    std::uint64_t samples,
+double extended_dof(const DeviationRow& row, const Mixture& theta, const AllanPoint& point, std::uint64_t samples,
                     double dt_s) {
   const std::uint64_t starts = samples + (row.of_sum ? 2 : 1) - 3 * point.m;
-  const double plain = equivalent_dof(row.of_sum ? DeviationType::mdev : DeviationType::ohdev,
-                                      theta,
-                                      point.m,
-                                      std::max<std::uint64_t>(1, starts),
-                                      1,
-                                      dt_s);
+  const double plain = equivalent_dof(row.of_sum ? DeviationType::mdev : DeviationType::ohdev, theta, point.m,
+                                      std::max<std::uint64_t>(1, starts), 1, dt_s);
   if (point.m == 1) return plain;
   const PerTerm share = allan_shares(theta, static_cast<double>(point.m), dt_s);
   return plain * weighted(row.of_sum ? kModifiedGain : kHadamardGain, share, 1);
 }
 
 double theo_dof(const Mixture& theta, double r, double n, double dt_s) {
-  const double white =
-      ((4.1 * n + 0.8) / r - (3.1 * n + 6.5) / n) * (std::pow(r, 1.5) / (std::pow(r, 1.5) + 5.2));
-  const double flicker =
-      (2 * n * n - 1.3 * n * r - 3.5 * r) / (n * r) * (r * r * r / (r * r * r + 2.3));
+  const double white = ((4.1 * n + 0.8) / r - (3.1 * n + 6.5) / n) * (std::pow(r, 1.5) / (std::pow(r, 1.5) + 5.2));
+  const double flicker = (2 * n * n - 1.3 * n * r - 3.5 * r) / (n * r) * (r * r * r / (r * r * r + 2.3));
   const double walk = (4.4 * n - 2) / (2.9 * r) *
                       ((4.4 * n - 1) * (4.4 * n - 1) - 8.6 * r * (4.4 * n - 1) + 11.4 * r * r) /
                       ((4.4 * n - 3) * (4.4 * n - 3));
@@ -151,24 +138,17 @@ double bias_removed_dof(const Mixture& theta, double r, double n, double dt_s) {
 
 // Expected modified or Hadamard total variance over the modified or Hadamard one, for the mixture
 // at the point: as SP 1065, 5.4, states it. 1 of all others.
-double family_bias(const DeviationRow& row,
-                   const Mixture& theta,
-                   const AllanPoint& point,
-                   double dt_s) {
+double family_bias(const DeviationRow& row, const Mixture& theta, const AllanPoint& point, double dt_s) {
   if (row.family != DeviationFamily::extended || (point.m == 1 && !row.of_sum)) return 1;
   const PerTerm share = allan_shares(theta, static_cast<double>(point.m), dt_s);
   return weighted(row.of_sum ? kModifiedBias : kHadamardBias, share, 1);
 }
 
 // Equivalent degrees of freedom at a point from `samples` rate samples (confidence.cpp), at least 1.
-double family_dof(const DeviationRow& row,
-                  const Mixture& theta,
-                  const AllanPoint& point,
-                  std::uint64_t samples,
+double family_dof(const DeviationRow& row, const Mixture& theta, const AllanPoint& point, std::uint64_t samples,
                   double dt_s) {
   const auto m = static_cast<double>(point.m);
-  if (row.family == DeviationFamily::extended)
-    return std::max(1.0, extended_dof(row, theta, point, samples, dt_s));
+  if (row.family == DeviationFamily::extended) return std::max(1.0, extended_dof(row, theta, point, samples, dt_s));
   if (row.family == DeviationFamily::parabola)
     return std::max(1.0, parabolic_dof(theta, m, static_cast<double>(point.terms), dt_s));
   if (row.type == DeviationType::theoh && point.m <= last_allan_factor(samples))
@@ -187,11 +167,9 @@ void note_total_bias(AllanCurve& curve, const Mixture& theta) {
   const bool flicker = theta[static_cast<std::size_t>(Term::flicker)] > 0;
   const bool walk = theta[static_cast<std::size_t>(Term::walk)] > 0;
   if (!flicker && !walk) return;
-  const double share =
-      curve.points.back().tau_s / (static_cast<double>(curve.samples) * curve.dt_s);
-  curve.notes.push_back(
-      "the total variance is low by up to " + percent_text((walk ? 0.75 : 0.481) * share) +
-      " at the longest averaging time (not corrected); its degrees of freedom are approximate");
+  const double share = curve.points.back().tau_s / (static_cast<double>(curve.samples) * curve.dt_s);
+  curve.notes.push_back("the total variance is low by up to " + percent_text((walk ? 0.75 : 0.481) * share) +
+                        " at the longest averaging time (not corrected); its degrees of freedom are approximate");
 }
 
 /// The least of a curve; nothing to say of 1.
@@ -226,11 +204,9 @@ void add_intervals(AllanCurve& curve, const Mixture& theta) {
     }
     Mixture with_added = theta;
     with_added[static_cast<std::size_t>(Term::white)] += point.added * point.tau_s;
-    point.edf =
-        differences
-            ? equivalent_dof(
-                  curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s)
-            : family_dof(row, theta, point, curve.used, curve.dt_s);
+    point.edf = differences
+                    ? equivalent_dof(curve.type, with_added, point.m, point.terms, stride_of(curve, point), curve.dt_s)
+                    : family_dof(row, theta, point, curve.used, curve.dt_s);
     detail::set_dof(point, point.edf / (point.inflation * point.inflation));
   }
   if (differences && row.reflected) note_total_bias(curve, theta);

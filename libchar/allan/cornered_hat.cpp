@@ -64,9 +64,7 @@ class PairTable {
  public:
   explicit PairTable(std::size_t n) : n_(n), value_(n * n) {}
   double& at(std::size_t i, std::size_t j) { return value_[std::min(i, j) * n_ + std::max(i, j)]; }
-  double at(std::size_t i, std::size_t j) const {
-    return value_[std::min(i, j) * n_ + std::max(i, j)];
-  }
+  double at(std::size_t i, std::size_t j) const { return value_[std::min(i, j) * n_ + std::max(i, j)]; }
 
  private:
   std::size_t n_;
@@ -91,9 +89,7 @@ double hat_variance_sd(const std::vector<double>& v, std::size_t i, double dof) 
   const auto devices = static_cast<double>(n);
   const double of_others = -1 / ((devices - 1) * (devices - 2));
   const double own = 1 / (devices - 2) + of_others;
-  const auto weight = [&](std::size_t j, std::size_t k) {
-    return j == i || k == i ? own : of_others;
-  };
+  const auto weight = [&](std::size_t j, std::size_t k) { return j == i || k == i ? own : of_others; };
   const auto noise = [&](std::size_t j) { return std::max(0.0, v[j]); };
   double sum = 0;
   for (std::size_t j = 0; j < n; ++j)
@@ -129,12 +125,8 @@ double dof_of(DeviationType type, const AllanPoint& point, double dt_s, Term noi
   const std::uint64_t stride = exact && !row.overlapping ? point.m : 1;
   Mixture theta{};
   theta[static_cast<std::size_t>(noise)] = 1;
-  return equivalent_dof(exact ? type : DeviationType::oadev,
-                        theta,
-                        point.m,
-                        std::max<std::uint64_t>(1, point.terms),
-                        stride,
-                        dt_s);
+  return equivalent_dof(exact ? type : DeviationType::oadev, theta, point.m, std::max<std::uint64_t>(1, point.terms),
+                        stride, dt_s);
 }
 
 void note_negative(CorneredHat& hat) {
@@ -148,15 +140,12 @@ void note_negative(CorneredHat& hat) {
     hat.notes.push_back(
         fmt::format("{} of {} variances are negative: there the noise of the other devices hides "
                     "the device, or the devices are not independent",
-                    negative,
-                    all));
+                    negative, all));
 }
 
 }  // namespace
 
-CorneredHat cornered_hat(std::span<const std::vector<double>> records,
-                         double dt_s,
-                         const AllanOptions& options) {
+CorneredHat cornered_hat(std::span<const std::vector<double>> records, double dt_s, const AllanOptions& options) {
   check_records(records);
   if (options.type == DeviationType::mtie || options.type == DeviationType::theobr ||
       options.type == DeviationType::theoh)
@@ -178,18 +167,15 @@ CorneredHat cornered_hat(std::span<const std::vector<double>> records,
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = i + 1; j < n; ++j) {
         const auto& points = curves[i][j - i - 1].points;
-        const auto at = std::lower_bound(
-            points.begin(), points.end(), like.m, [](const AllanPoint& p, std::uint64_t m) {
-              return p.m < m;
-            });
+        const auto at = std::lower_bound(points.begin(), points.end(), like.m,
+                                         [](const AllanPoint& p, std::uint64_t m) { return p.m < m; });
         everywhere = everywhere && at != points.end() && at->m == like.m;
         if (everywhere) s.at(i, j) = at->deviation * at->deviation;
       }
     if (!everywhere) continue;
     const std::vector<double> v = least_squares(s, n);
     const double dof = dof_of(options.type, like, dt_s);
-    for (std::size_t i = 0; i < n; ++i)
-      hat.devices[i].push_back(hat_point(like, v[i], hat_variance_sd(v, i, dof)));
+    for (std::size_t i = 0; i < n; ++i) hat.devices[i].push_back(hat_point(like, v[i], hat_variance_sd(v, i, dof)));
   }
   note_negative(hat);
   return hat;
@@ -217,14 +203,11 @@ std::vector<double> phase_of_log(const std::vector<double>& record, DataKind kin
   return x;
 }
 
-MeanProduct mean_product(const std::vector<double>& a,
-                         const std::vector<double>& b,
-                         std::size_t m,
-                         double tau_s) {
+MeanProduct mean_product(const std::vector<double>& a, const std::vector<double>& b, std::size_t m, double tau_s) {
   MeanProduct out;
   for (std::size_t i = 0; i + 2 * m < a.size(); ++i) {
-    const double product = ((a[i + 2 * m] - a[i + m]) - (a[i + m] - a[i])) *
-                           ((b[i + 2 * m] - b[i + m]) - (b[i + m] - b[i]));
+    const double product =
+        ((a[i + 2 * m] - a[i + m]) - (a[i + m] - a[i])) * ((b[i + 2 * m] - b[i + m]) - (b[i + m] - b[i]));
     if (!std::isfinite(product)) continue;
     out.value += product;
     ++out.terms;
@@ -239,16 +222,12 @@ Term noise_at(const std::vector<NoiseType>& types, std::uint64_t m) {
   int alpha = 0;
   for (const NoiseType& type : types)
     if (type.m <= m) alpha = type.alpha;
-  return alpha > 0    ? Term::quantization
-         : alpha == 0 ? Term::white
-         : alpha < -1 ? Term::walk
-                      : Term::flicker;
+  return alpha > 0 ? Term::quantization : alpha == 0 ? Term::white : alpha < -1 ? Term::walk : Term::flicker;
 }
 
 }  // namespace
 
-CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences,
-                                        double dt_s,
+CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences, double dt_s,
                                         const AllanOptions& options) {
   check_records(differences);
   if (differences.size() != 3 || options.type != DeviationType::oadev)

@@ -59,25 +59,18 @@ std::uint64_t DeviationRow::span(std::uint64_t m) const {
   return static_cast<std::uint64_t>(order) * m - (of_sum ? 1 : 0);
 }
 
-std::span<const DeviationRow> deviation_rows() {
-  return kRows;
-}
+std::span<const DeviationRow> deviation_rows() { return kRows; }
 
-const DeviationRow& deviation_row(DeviationType type) {
-  return kRows[static_cast<std::size_t>(type)];
-}
+const DeviationRow& deviation_row(DeviationType type) { return kRows[static_cast<std::size_t>(type)]; }
 
 std::string deviation_unit(DeviationType type, std::string_view unit) {
   const DeviationRow& row = deviation_row(type);
   if (!row.as_time && row.family != DeviationFamily::interval) return std::string(unit);
   if (unit.empty() || dimensionless(unit)) return "s";
-  return unit.ends_with("/s") ? std::string(unit.substr(0, unit.size() - 2))
-                              : std::string(unit) + "·s";
+  return unit.ends_with("/s") ? std::string(unit.substr(0, unit.size() - 2)) : std::string(unit) + "·s";
 }
 
-std::string_view name_of(DeviationType type) {
-  return deviation_row(type).word;
-}
+std::string_view name_of(DeviationType type) { return deviation_row(type).word; }
 
 std::optional<DeviationType> deviation_type(std::string_view name) {
   for (const DeviationRow& row : kRows)

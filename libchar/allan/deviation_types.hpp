@@ -56,9 +56,7 @@ struct DeviationRow {
   /// Rate samples that one term spans at averaging factor m (at the smallest possible factor, if m is below it).
   std::uint64_t span(std::uint64_t m) const;
   /// Its square is the Allan variance, whose curves and covariance are known exactly.
-  bool is_allan() const {
-    return order == 2 && !reflected && family == DeviationFamily::differences;
-  }
+  bool is_allan() const { return order == 2 && !reflected && family == DeviationFamily::differences; }
   /// Nothing states how well it is known.
   bool without_interval() const { return family == DeviationFamily::interval; }
 };

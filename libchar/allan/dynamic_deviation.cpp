@@ -32,13 +32,10 @@ void check_window(std::uint64_t samples, std::uint64_t window, std::uint64_t ste
 
 }  // namespace
 
-DynamicDeviation dynamic_deviation(std::span<const double> record,
-                                   double dt_s,
-                                   const DynamicOptions& dynamic,
+DynamicDeviation dynamic_deviation(std::span<const double> record, double dt_s, const DynamicOptions& dynamic,
                                    const AllanOptions& options) {
-  const std::uint64_t window = dynamic.window, step = dynamic.step > 0
-                                                          ? dynamic.step
-                                                          : std::max<std::uint64_t>(1, window / 2);
+  const std::uint64_t window = dynamic.window,
+                      step = dynamic.step > 0 ? dynamic.step : std::max<std::uint64_t>(1, window / 2);
   check_window(record.size(), window, step);
   DynamicDeviation out;
   out.type = options.type;
@@ -50,8 +47,7 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
     result.from_s = static_cast<double>(from) * dt_s;
     result.to_s = static_cast<double>(from + window) * dt_s;
     try {
-      result.curve = allan_deviation(
-          record.subspan(detail::in_memory(from), detail::in_memory(window)), dt_s, options);
+      result.curve = allan_deviation(record.subspan(detail::in_memory(from), detail::in_memory(window)), dt_s, options);
     } catch (const Error& error) {
       if (error.problem().kind != ErrorKind::numeric) throw;
       empty[k] = 1;
@@ -62,9 +58,7 @@ DynamicDeviation dynamic_deviation(std::span<const double> record,
     throw numeric_error("E0401")
         .says("no window of the record gives a deviation: too few samples are there")
         .hint("a longer window may");
-  if (lost > 0)
-    out.notes.push_back(
-        fmt::format("{} of {} windows hold too few samples", lost, out.windows.size()));
+  if (lost > 0) out.notes.push_back(fmt::format("{} of {} windows hold too few samples", lost, out.windows.size()));
   return out;
 }
 

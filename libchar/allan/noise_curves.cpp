@@ -29,16 +29,14 @@ constexpr double kSeriesFrom = 24;  // beyond it six terms of the series are exa
 /// series of digamma(n + 1/2).
 double odd_harmonic_remainder(double n) {
   const double z = 1 / (n * n);
-  return z * (1.0 / 48 -
-              z * (7.0 / 1920 -
-                   z * (31.0 / 16128 -
-                        z * (127.0 / 61440 - z * (511.0 / 135168 - z * 1414477.0 / 134184960)))));
+  return z *
+         (1.0 / 48 - z * (7.0 / 1920 -
+                          z * (31.0 / 16128 - z * (127.0 / 61440 - z * (511.0 / 135168 - z * 1414477.0 / 134184960)))));
 }
 
 /// H_2m - H_m = 1/(2m+1) + … + 1/(4m-1), without the logarithms that cancel.
 double odd_harmonic_octave(double m) {
-  if (m >= kSeriesFrom)
-    return 0.5 * std::numbers::ln2 + (odd_harmonic_remainder(2 * m) - odd_harmonic_remainder(m));
+  if (m >= kSeriesFrom) return 0.5 * std::numbers::ln2 + (odd_harmonic_remainder(2 * m) - odd_harmonic_remainder(m));
   if (std::floor(m) != m) return odd_harmonic(2 * m) - odd_harmonic(m);
   double sum = 0;
   for (double i = 2 * m; i > m; --i) sum += 1 / (2 * i - 1);
@@ -73,8 +71,7 @@ double driving_variance(Term term, double dt) {
 double odd_harmonic(double n) {
   assert(n >= 0);
   if (n >= kSeriesFrom)
-    return 0.5 * (std::log(n) + std::numbers::egamma) + std::numbers::ln2 +
-           odd_harmonic_remainder(n);
+    return 0.5 * (std::log(n) + std::numbers::egamma) + std::numbers::ln2 + odd_harmonic_remainder(n);
   double sum = 0;
   if (std::floor(n) == n) {
     for (double i = n; i > 0; --i) sum += 1 / (2 * i - 1);
@@ -194,9 +191,7 @@ double summed_phase_covariance(Term term, double n, double dt_s) {
     case Term::white:
       return -variance * n * (z - 1) / 12;
     case Term::flicker:
-      return variance *
-             ((4 * z - 1) * (4 * z - 9) * odd_harmonic(n) / 48 - z * (25 * z / 72 - 95.0 / 144)) /
-             (4 * kPi);
+      return variance * ((4 * z - 1) * (4 * z - 9) * odd_harmonic(n) / 48 - z * (25 * z / 72 - 95.0 / 144)) / (4 * kPi);
     case Term::walk:
       return variance * n * (z - 1) * (z - 4) / 240;
     case Term::quantization:
@@ -241,8 +236,7 @@ MeanCovariance gauss_markov_means(double tau_s, double m, double dt_s) {
 double gauss_markov_allan_variance(double tau_s, double m, double dt_s) {
   constexpr double kShort = 1e-5;
   const long double x = static_cast<long double>(dt_s) / tau_s, across = x * m;
-  if (across < kShort)
-    return static_cast<double>(x * (2 * m * m + 1) / (3 * m) * (1 - 0.75L * across));
+  if (across < kShort) return static_cast<double>(x * (2 * m * m + 1) / (3 * m) * (1 - 0.75L * across));
   const long double phi = std::exp(-x), e = -std::expm1(-x), all = -std::expm1(-across);
   return static_cast<double>((m * (1 + phi) / e - phi * all * (2 + all) / (e * e)) / m / m);
 }

@@ -65,8 +65,8 @@ std::vector<double> without_gaps(std::span<const double> phase) {
       continue;
     }
     for (std::size_t j = before + 1; j < i; ++j)
-      out[j] = phase[before] + (phase[i] - phase[before]) * static_cast<double>(j - before) /
-                                   static_cast<double>(i - before);
+      out[j] = phase[before] +
+               (phase[i] - phase[before]) * static_cast<double>(j - before) / static_cast<double>(i - before);
     before = i;
   }
   if (missing * 100 > phase.size()) return {};
@@ -94,9 +94,7 @@ std::string_view noise_type_name(int alpha) {
   }
 }
 
-std::optional<NoiseType> lag1_noise_type(std::span<const double> phase,
-                                         std::uint64_t m,
-                                         double dt_s) {
+std::optional<NoiseType> lag1_noise_type(std::span<const double> phase, std::uint64_t m, double dt_s) {
   std::vector<double> z;
   for (std::size_t i = 0; i < phase.size(); i += m) z.push_back(phase[i]);
   if (z.size() < kFewestReadings) return std::nullopt;
@@ -130,8 +128,7 @@ std::string noise_types_text(std::span<const NoiseType> types) {
     while (end < types.size() && types[end].alpha == types[i].alpha) ++end;
     text += (text.empty() ? "" : ", ") + std::string(noise_type_name(types[i].alpha));
     text += end == i + 1 ? " at " + duration_text(types[i].tau_s)
-                         : " from " + duration_text(types[i].tau_s) + " to " +
-                               duration_text(types[end - 1].tau_s);
+                         : " from " + duration_text(types[i].tau_s) + " to " + duration_text(types[end - 1].tau_s);
   }
   return text;
 }

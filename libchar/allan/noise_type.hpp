@@ -25,9 +25,7 @@ std::string_view noise_type_name(int alpha);
 
 /// Of phase readings decimated by m; nothing when fewer than 30 of them are left or they do not
 /// vary. Readings must be present.
-std::optional<NoiseType> lag1_noise_type(std::span<const double> phase,
-                                         std::uint64_t m,
-                                         double dt_s);
+std::optional<NoiseType> lag1_noise_type(std::span<const double> phase, std::uint64_t m, double dt_s);
 
 /// Averaging factors 1, 2, 4… while enough readings are left. At most 1 % of the readings may be
 /// missing; these are interpolated, and left out at the ends. Empty otherwise.

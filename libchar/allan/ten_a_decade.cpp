@@ -36,9 +36,8 @@ std::map<std::uint64_t, std::vector<std::uint64_t>> wanted_factors(const AllanOp
     const std::uint64_t in_means = (whole + r / 2) / r;
     const double tau = static_cast<double>(in_means * r) * octaves.dt_s;
     if (tau < options.tau_min_s || (options.tau_max_s > 0 && tau > options.tau_max_s)) continue;
-    if (std::any_of(octaves.points.begin(), octaves.points.end(), [&](const AllanPoint& p) {
-          return p.m == in_means * r;
-        }))
+    if (std::any_of(octaves.points.begin(), octaves.points.end(),
+                    [&](const AllanPoint& p) { return p.m == in_means * r; }))
       continue;
     if (out[r].empty() || out[r].back() != in_means) out[r].push_back(in_means);
   }
@@ -70,16 +69,11 @@ Means means_of(std::span<const double> values) {
 
 /// The same as two times and two again, in as few passes as there may be.
 Means means_of(std::size_t length, std::span<const double> values) {
-  return length >= 8   ? means_of<8>(values)
-         : length == 4 ? means_of<4>(values)
-                       : means_of<2>(values);
+  return length >= 8 ? means_of<8>(values) : length == 4 ? means_of<4>(values) : means_of<2>(values);
 }
 
-void add_points(std::span<const double> means,
-                std::uint64_t r,
-                const std::vector<std::uint64_t>& factors,
-                const AllanOptions& options,
-                AllanCurve& curve) {
+void add_points(std::span<const double> means, std::uint64_t r, const std::vector<std::uint64_t>& factors,
+                const AllanOptions& options, AllanCurve& curve) {
   AllanOptions list;
   list.grid = TauGrid::list;
   list.threads = options.threads;
@@ -99,25 +93,19 @@ void add_points(std::span<const double> means,
 
 }  // namespace
 
-std::vector<std::uint64_t> detail::exact_factors(const AllanOptions& options,
-                                                 double dt_s,
-                                                 std::uint64_t samples) {
+std::vector<std::uint64_t> detail::exact_factors(const AllanOptions& options, double dt_s, std::uint64_t samples) {
   AllanCurve none;
   none.dt_s = dt_s;
   none.samples = samples;
   const auto factors = wanted_factors(options, none);
   const auto each = factors.find(1);
-  std::vector<std::uint64_t> out =
-      each == factors.end() ? std::vector<std::uint64_t>() : each->second;
+  std::vector<std::uint64_t> out = each == factors.end() ? std::vector<std::uint64_t>() : each->second;
   std::erase_if(out, [](std::uint64_t m) { return std::has_single_bit(m); });
   return out;
 }
 
-void add_ten_a_decade(std::span<const double> record,
-                      const AllanOptions& options,
-                      std::uint64_t exact_samples,
-                      AllanCurve& octaves,
-                      std::span<const AllanPoint> exact) {
+void add_ten_a_decade(std::span<const double> record, const AllanOptions& options, std::uint64_t exact_samples,
+                      AllanCurve& octaves, std::span<const AllanPoint> exact) {
   if (octaves.points.empty() || octaves.type != DeviationType::oadev) return;
   const auto factors = wanted_factors(options, octaves);
   Means halves;  // of r samples, half as many as are wanted
@@ -135,8 +123,7 @@ void add_ten_a_decade(std::span<const double> record,
     if (length <= kOfLong) {  // of the record itself, no second one beside it
       const std::size_t first = detail::in_memory(length / 2);
       const auto from = record.subspan(std::min(first, record.size()));
-      add_points(
-          means_of(detail::in_memory(length), from).all(), length, in_means, options, octaves);
+      add_points(means_of(detail::in_memory(length), from).all(), length, in_means, options, octaves);
       continue;
     }
     while (2 * r < length) {
@@ -147,8 +134,7 @@ void add_ten_a_decade(std::span<const double> record,
     const auto from = r == 1 ? record : halves.all();
     add_points(means_of<2>(from.subspan(1)).all(), length, in_means, options, octaves);
   }
-  std::sort(octaves.points.begin(),
-            octaves.points.end(),
+  std::sort(octaves.points.begin(), octaves.points.end(),
             [](const AllanPoint& a, const AllanPoint& b) { return a.m < b.m; });
 }
 

@@ -66,8 +66,7 @@ const Fields<CharacterizationBench> kCharacterizationFields = always(Fields<Char
 
 const FieldText kMethodRan{.written = Written::if_known,
                            .known = when<[](const FusionBenchCell&cell) { return cell.ran; }>},
-    kMethodSkipped{.written = Written::if_known,
-                   .known = when<[](const FusionBenchCell&cell) { return !cell.ran; }>};
+    kMethodSkipped{.written = Written::if_known, .known = when<[](const FusionBenchCell&cell) { return !cell.ran; }>};
 const Fields<FusionBenchCell> kMethodCells = always(Fields<FusionBenchCell>{
     field<&FusionBenchCell::ran>("ran"),
     field<&FusionBenchCell::why>("why", kMethodSkipped),
@@ -196,8 +195,7 @@ const Fields<BenchReport>& bench_fields() {
 
 BenchReport parse_bench_report(std::string_view text, const std::string& path) {
   const Document document = parse_json_document(text, path);
-  const DocumentEntry* format =
-      document.kind == Document::Kind::map ? document.find("format") : nullptr;
+  const DocumentEntry* format = document.kind == Document::Kind::map ? document.find("format") : nullptr;
   if (format == nullptr || format->value.text != "bench")
     throw input_error("E0968", path)
         .says("no document of benchmarks")
@@ -211,10 +209,8 @@ BenchReport parse_bench_report(std::string_view text, const std::string& path) {
 namespace {
 
 std::size_t terms_in(const SensorModel& model) {
-  return static_cast<std::size_t>(
-      std::count_if(model.noise.begin(), model.noise.end(), [](const Coefficient& c) {
-        return simulated_value(c) > 0;
-      }));
+  return static_cast<std::size_t>(std::count_if(model.noise.begin(), model.noise.end(),
+                                                [](const Coefficient& c) { return simulated_value(c) > 0; }));
 }
 
 void add_model(const std::string& path, const BenchInputOptions& options, BenchInputs& inputs) {
@@ -227,15 +223,11 @@ void add_model(const std::string& path, const BenchInputOptions& options, BenchI
         .says("the model does not say its rate, and a record needs one")
         .hint("give `rate_hz`");
   const double own = signal.model.duration_s * signal.rate_hz;
-  signal.samples = own > 0 ? std::min(options.most_samples, static_cast<std::uint64_t>(own))
-                           : options.most_samples;
+  signal.samples = own > 0 ? std::min(options.most_samples, static_cast<std::uint64_t>(own)) : options.most_samples;
   inputs.signals.push_back(std::move(signal));
 }
 
-void add_log(const std::string& path,
-             const BenchInputOptions& options,
-             BenchInputs& inputs,
-             Progress& progress) {
+void add_log(const std::string& path, const BenchInputOptions& options, BenchInputs& inputs, Progress& progress) {
   CharacterizeOptions how;
   how.reading = options.reading;
   const Characterization found = characterize(path, how, progress);
@@ -255,18 +247,15 @@ void add_log(const std::string& path,
     throw input_error("E0965", path)
         .says("no channel has noise that could be fitted and simulated")
         .hint("its characterization says why");
-  std::stable_sort(signals.begin(), signals.end(), [](const auto& a, const auto& b) {
-    return terms_in(a.model) > terms_in(b.model);
-  });
+  std::stable_sort(signals.begin(), signals.end(),
+                   [](const auto& a, const auto& b) { return terms_in(a.model) > terms_in(b.model); });
   if (signals.size() > options.most_channels) signals.resize(options.most_channels);
   std::move(signals.begin(), signals.end(), std::back_inserter(inputs.signals));
 }
 
 }  // namespace
 
-void add_bench_input(const std::string& path,
-                     const BenchInputOptions& options,
-                     BenchInputs& inputs,
+void add_bench_input(const std::string& path, const BenchInputOptions& options, BenchInputs& inputs,
                      Progress& progress) {
   if (!looks_like_scene(path)) return add_log(path, options, inputs, progress);
   if (is_scene_file(path))

@@ -61,8 +61,7 @@ struct EstimatorAccuracy {
   /// records in which it states a coefficient that is not in them; no count: it was given the terms, or all exist
   Figure false_terms;
   Figure ns_per_sample;
-  Figure
-      time_ratio;  ///< over the first method's on the same record: what load falls on alike is not in it
+  Figure time_ratio;  ///< over the first method's on the same record: what load falls on alike is not in it
   std::optional<double> bytes_per_sample;  ///< of heap apart from the record
   /// detail/records.cpp; methods given the terms do not count against the others
   double front_gap = 0;
@@ -79,10 +78,8 @@ struct CharacterizationBench {
 /// Records are simulated one after the other, and each is given to every method in turn. Throws
 /// Error(usage) for a method that is not known, Error(input) for a model without white noise,
 /// flicker or walk.
-CharacterizationBench bench_characterization(const BenchSignal& signal,
-                                             const CharacterizationBenchOptions& options,
-                                             Progress& progress = no_progress(),
-                                             HeapMeter* heap = nullptr);
+CharacterizationBench bench_characterization(const BenchSignal& signal, const CharacterizationBenchOptions& options,
+                                             Progress& progress = no_progress(), HeapMeter* heap = nullptr);
 
 // Fusion algorithms on scenes, with seeds and options varied: error against time and memory, with
 // intervals on both, scene by scene and over all of them.
@@ -91,8 +88,8 @@ CharacterizationBench bench_characterization(const BenchSignal& signal,
 std::vector<Scene> bench_scenes();
 
 struct FusionBenchOptions {
-  std::size_t seeds = 10;  ///< runs of a simulated scene; a recording runs as often for its times
-  std::uint64_t seed = 1;  ///< of the first run
+  std::size_t seeds = 10;               ///< runs of a simulated scene; a recording runs as often for its times
+  std::uint64_t seed = 1;               ///< of the first run
   std::vector<std::string> algorithms;  ///< empty: the scene's, else all
   std::vector<Sweep> sweeps;
 };
@@ -142,10 +139,8 @@ struct FusionBench {
 };
 
 /// Throws what `replay` throws; that no algorithm can run on a scene (E0905), only where none can on any.
-FusionBench bench_fusion(const std::vector<Scene>& scenes,
-                         const FusionBenchOptions& options,
-                         Progress& progress = no_progress(),
-                         HeapMeter* heap = nullptr);
+FusionBench bench_fusion(const std::vector<Scene>& scenes, const FusionBenchOptions& options,
+                         Progress& progress = no_progress(), HeapMeter* heap = nullptr);
 
 // How cost grows: with the length of a record, the number of sensors, true inputs, threads. Fitted
 // exponents, and where a method stops keeping up with its sensors.
@@ -180,8 +175,7 @@ struct ScalingBench {
   std::vector<ScalingSeries> series;
 };
 
-ScalingBench bench_scaling(const ScalingBenchOptions& options,
-                           Progress& progress = no_progress(),
+ScalingBench bench_scaling(const ScalingBenchOptions& options, Progress& progress = no_progress(),
                            HeapMeter* heap = nullptr);
 
 /// p of cost ~ x^p by least squares on the logarithms of the points whose x is at least an eighth
@@ -195,11 +189,10 @@ struct DesignOptions {
   /// of the Allan deviation at `tau_s` of the fused sensors, in the models' unit; none: that question is not asked
   std::optional<double> target;
   double tau_s = 1;
-  double share = 0.1;  ///< a coefficient is known to this share of it (one standard deviation)
+  double share = 0.1;        ///< a coefficient is known to this share of it (one standard deviation)
   std::size_t records = 40;  ///< of each check
   std::uint64_t seed = 1;
-  double most_samples =
-      4e6;  ///< of one simulated record over all its sensors; what needs more is not checked
+  double most_samples = 4e6;  ///< of one simulated record over all its sensors; what needs more is not checked
 };
 
 /// Equal sensors whose weighted mean reaches the target.
@@ -230,8 +223,7 @@ struct DesignBench {
 
 /// Throws Error(usage) for an averaging time below a sample's, or models of several units or rates
 /// where a target is asked for.
-DesignBench bench_design(const std::vector<BenchSignal>& models,
-                         const DesignOptions& options,
+DesignBench bench_design(const std::vector<BenchSignal>& models, const DesignOptions& options,
                          Progress& progress = no_progress());
 
 // Hard inputs through every estimator, simulator and fusion algorithm: how many digits are right,
@@ -250,8 +242,7 @@ enum class StressOutcome {
 };
 
 template <>
-inline constexpr auto enum_table<StressOutcome> =
-    enum_words<StressOutcome, "digits held refused wrong">;
+inline constexpr auto enum_table<StressOutcome> = enum_words<StressOutcome, "digits held refused wrong">;
 
 /// One subject on one input.
 struct StressCell {
@@ -308,9 +299,7 @@ struct BenchInputOptions {
 /// model is a signal, as long as the log (at most `most_samples`). Throws what reading and
 /// characterizing throw; Error(input) for a log or model with no noise to simulate, or a model
 /// without a rate.
-void add_bench_input(const std::string& path,
-                     const BenchInputOptions& options,
-                     BenchInputs& inputs,
+void add_bench_input(const std::string& path, const BenchInputOptions& options, BenchInputs& inputs,
                      Progress& progress = no_progress());
 
 // A run of benchmarks as its reports show it: sections with sentences, a table and a chart.

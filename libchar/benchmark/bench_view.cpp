@@ -14,24 +14,16 @@ std::string gap_text(double gap) {
   return gap <= 0 ? "on the front" : excess_text(gap) + (gap < 1 ? " above" : "");
 }
 
-std::string bytes_cell(const std::optional<double>& bytes) {
-  return bytes ? number_text(*bytes, 3) : "–";
-}
+std::string bytes_cell(const std::optional<double>& bytes) { return bytes ? number_text(*bytes, 3) : "–"; }
 
 BenchSection machine_section(const BenchReport& report) {
   const Machine& m = report.machine;
   BenchSection out;
   out.title = "Machine";
-  out.sentences = {
-      fmt::format("{}, {} processors, {} GiB, {}; {} of this run, {} of processor time; seed {}{}.",
-                  m.processor,
-                  m.cores,
-                  brief_text(m.memory_gib, 3),
-                  m.system,
-                  duration_text(m.wall_s),
-                  duration_text(m.cpu_s),
-                  report.seed,
-                  report.quick ? "; quick: short records, few runs" : "")};
+  out.sentences = {fmt::format("{}, {} processors, {} GiB, {}; {} of this run, {} of processor time; seed {}{}.",
+                               m.processor, m.cores, brief_text(m.memory_gib, 3), m.system, duration_text(m.wall_s),
+                               duration_text(m.cpu_s), report.seed,
+                               report.quick ? "; quick: short records, few runs" : "")};
   if (const std::string load = load_sentence(m); !load.empty()) out.sentences.push_back(load);
   return out;
 }
@@ -44,9 +36,7 @@ std::string coverage_cell(const EstimatorAccuracy& method) {
   std::string out;
   for (const TermAccuracy& term : method.terms) {
     if (term.coverage.count == 0) continue;
-    out += fmt::format("{}{} {:.0f}",
-                       out.empty() ? "" : ", ",
-                       kTermNames[static_cast<std::size_t>(term.term)].letter,
+    out += fmt::format("{}{} {:.0f}", out.empty() ? "" : ", ", kTermNames[static_cast<std::size_t>(term.term)].letter,
                        100 * term.coverage.value);
   }
   return out.empty() ? "states none" : out + " %";
@@ -71,15 +61,10 @@ BenchSection section_of(const CharacterizationBench& bench) {
   out.title = "Noise coefficients: " + bench.signal.name;
   std::string truth;
   for (const TermAccuracy& term : bench.methods.front().terms)
-    truth += fmt::format("{} = {} (bound {}), ",
-                         kTermNames[static_cast<std::size_t>(term.term)].letter,
-                         number_text(term.truth, 3),
-                         percent_text(term.bound / term.truth));
-  out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.",
-                               truth,
-                               bench.records,
-                               count_text(bench.signal.samples),
-                               brief_text(bench.signal.rate_hz, 4))};
+    truth += fmt::format("{} = {} (bound {}), ", kTermNames[static_cast<std::size_t>(term.term)].letter,
+                         number_text(term.truth, 3), percent_text(term.bound / term.truth));
+  out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.", truth, bench.records,
+                               count_text(bench.signal.samples), brief_text(bench.signal.rate_hz, 4))};
   out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
   out.table = Table("Method");
   for (const TermAccuracy& term : bench.methods.front().terms)
@@ -89,8 +74,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (Table::Column& column : rest.columns) out.table.columns.push_back(std::move(column));
   std::vector<const EstimatorAccuracy*> order;
   for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
-  std::stable_sort(
-      order.begin(), order.end(), [](const auto* a, const auto* b) { return a->error < b->error; });
+  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->error < b->error; });
   for (const EstimatorAccuracy* method : order) {
     std::vector<Cell> row = {method->name};
     for (std::size_t t = 0; t < method->terms.size(); ++t) row.push_back(term_cell(*method, t));
@@ -111,8 +95,7 @@ std::string verdict_of(const CharacterizationBench& bench) {
   const auto best = [&](bool ours) -> const EstimatorAccuracy* {
     const EstimatorAccuracy* out = nullptr;
     for (const EstimatorAccuracy& m : bench.methods)
-      if (m.is_ours == ours && !m.told && m.error > 0 && (out == nullptr || m.error < out->error))
-        out = &m;
+      if (m.is_ours == ours && !m.told && m.error > 0 && (out == nullptr || m.error < out->error)) out = &m;
     return out;
   };
   const EstimatorAccuracy *ours = best(true), *others = best(false);
@@ -120,28 +103,21 @@ std::string verdict_of(const CharacterizationBench& bench) {
   std::string out = fmt::format(
       "{}: of the methods that find the terms themselves {} is most exact, {} × the bound at {} ns "
       "per sample",
-      bench.signal.name,
-      ours->name,
-      number_text(ours->error, 3),
-      number_text(ours->ns_per_sample.value, 3));
+      bench.signal.name, ours->name, number_text(ours->error, 3), number_text(ours->ns_per_sample.value, 3));
   if (others != nullptr)
-    out += fmt::format(
-        "; the best recipe of others, {}, {} ×", others->name, number_text(others->error, 3));
+    out += fmt::format("; the best recipe of others, {}, {} ×", others->name, number_text(others->error, 3));
   return out + ".";
 }
 
 std::string verdict_of(const FusionBench& bench) {
   const FusionBenchRow* best = nullptr;
   for (const FusionBenchRow& row : bench.rows)
-    if (!row.bound && row.excess.count > 0 &&
-        (best == nullptr || row.excess.value < best->excess.value))
-      best = &row;
+    if (!row.bound && row.excess.count > 0 && (best == nullptr || row.excess.value < best->excess.value)) best = &row;
   return best == nullptr ? ""
                          : fmt::format(
                                "Fusion: {} has the least error over all scenes, {} × that of "
                                "the yardstick.",
-                               best->label,
-                               number_text(1 + best->excess.value, 3));
+                               best->label, number_text(1 + best->excess.value, 3));
 }
 
 BenchSection legend_section(const CharacterizationBench& bench) {
@@ -167,9 +143,7 @@ BenchSection legend_section(const CharacterizationBench& bench) {
   return out;
 }
 
-std::string scene_cell(const FusionBenchCell& cell) {
-  return cell.ran ? figure_text(cell.excess, 3, 100) : "–";
-}
+std::string scene_cell(const FusionBenchCell& cell) { return cell.ran ? figure_text(cell.excess, 3, 100) : "–"; }
 
 std::vector<Cell> row_cells(const FusionBenchRow& row) {
   std::vector<Cell> out = {row.label + (row.bound ? " (bound)" : "")};
@@ -192,25 +166,17 @@ BenchSection over_all(const FusionBench& bench) {
     const FusionBenchScene& scene = bench.scenes[s];
     out.table.columns.push_back({fmt::format("scene {}", s + 1)});
     out.sentences.push_back(
-        fmt::format("Scene {}: {}; {} sensors, {} true {}, {} instants, {} runs{}; yardstick: {}.",
-                    s + 1,
-                    scene.name,
-                    scene.sensors,
-                    scene.inputs,
-                    scene.inputs == 1 ? "input" : "inputs",
-                    count_text(scene.instants),
-                    scene.runs,
-                    scene.pooled ? "" : " (another kind, not in the means over all)",
-                    scene.yardstick));
+        fmt::format("Scene {}: {}; {} sensors, {} true {}, {} instants, {} runs{}; yardstick: {}.", s + 1, scene.name,
+                    scene.sensors, scene.inputs, scene.inputs == 1 ? "input" : "inputs", count_text(scene.instants),
+                    scene.runs, scene.pooled ? "" : " (another kind, not in the means over all)", scene.yardstick));
   }
   for (const FusionBenchLeftOut& scene : bench.left_out)
     out.sentences.push_back(fmt::format("Left out: {}; {}.", scene.name, scene.why));
-  for (const char* head : {"ns per instant", "B at most", "Front"})
-    out.table.columns.push_back({head});
+  for (const char* head : {"ns per instant", "B at most", "Front"}) out.table.columns.push_back({head});
   BenchChart chart{"processor time, ns per instant", "RMSE over the yardstick's", {}};
   for (const FusionBenchRow& row : bench.rows) {
-    const bool anywhere = std::any_of(
-        row.cells.begin(), row.cells.end(), [](const FusionBenchCell& cell) { return cell.ran; });
+    const bool anywhere =
+        std::any_of(row.cells.begin(), row.cells.end(), [](const FusionBenchCell& cell) { return cell.ran; });
     if (!anywhere) continue;
     out.table.add(row_cells(row));
     if (row.bound || row.excess.count == 0 || row.ns_per_sample.count == 0) continue;
@@ -241,18 +207,14 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
   out.title = "Growth of cost over " + over;
   const bool sensors = over == "sensors";
   out.table = Table("Work|at the least|at the most|Memory at the most|Exponent");
-  if (sensors)
-    out.table.columns.push_back(
-        {fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3))});
+  if (sensors) out.table.columns.push_back({fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3))});
   for (const ScalingSeries& series : bench.series) {
     if (series.over != over || series.points.empty()) continue;
     const ScalingPoint &least = series.points.front(), &most = series.points.back();
     const auto cell = [&](const ScalingPoint& p) {
       return fmt::format("{}: {} {}", at_text(over, p.x), figure_text(p.cost), series.unit);
     };
-    std::vector<Cell> row = {series.name,
-                             cell(least),
-                             cell(most),
+    std::vector<Cell> row = {series.name, cell(least), cell(most),
                              most.bytes ? bytes_text(static_cast<std::uint64_t>(*most.bytes)) : "–",
                              figure_text(series.exponent, 3)};
     if (sensors)
@@ -262,8 +224,7 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
     out.table.add(std::move(row));
   }
   if (over == "samples")
-    out.notes = {
-        "Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
+    out.notes = {"Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
   if (sensors)
     out.notes = {
         "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the "
@@ -277,19 +238,14 @@ BenchSection sensors_section(const DesignBench& bench) {
   BenchSection out;
   out.title = "Design: how many sensors";
   out.sentences = {fmt::format("Asked for: an Allan deviation of {} at {} of averaging.",
-                               number_text(*bench.options.target, 4),
-                               duration_text(bench.options.tau_s))};
+                               number_text(*bench.options.target, 4), duration_text(bench.options.tau_s))};
   if (bench.one_of_each)
-    out.sentences.push_back(fmt::format(
-        "One of each together, weighted: {}{}.",
-        number_text(*bench.one_of_each, 4),
-        *bench.one_of_each <= *bench.options.target ? ", which does" : ", which does not do"));
+    out.sentences.push_back(
+        fmt::format("One of each together, weighted: {}{}.", number_text(*bench.one_of_each, 4),
+                    *bench.one_of_each <= *bench.options.target ? ", which does" : ", which does not do"));
   out.table = Table("Model|One has|Needed|They have|Simulated");
   for (const SensorsNeeded& row : bench.sensors)
-    out.table.add({row.model,
-                   number_text(row.single, 4),
-                   count_text(row.sensors),
-                   number_text(row.predicted, 4),
+    out.table.add({row.model, number_text(row.single, 4), count_text(row.sensors), number_text(row.predicted, 4),
                    row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
   out.notes = {
       "For independent sensors: what they share (temperature, supply, a common clock) no number of "
@@ -300,12 +256,11 @@ BenchSection sensors_section(const DesignBench& bench) {
 BenchSection records_section(const DesignBench& bench) {
   BenchSection out;
   out.title = "Design: how long a record";
-  out.sentences = {fmt::format("Each coefficient to {} of itself (one standard deviation).",
-                               percent_text(bench.options.share))};
+  out.sentences = {
+      fmt::format("Each coefficient to {} of itself (one standard deviation).", percent_text(bench.options.share))};
   out.table = Table("Model|Coefficient|Record|Samples|Simulated, %");
   for (const RecordNeeded& row : bench.records)
-    out.table.add({row.model,
-                   std::string(kTermNames[static_cast<std::size_t>(row.term)].letter),
+    out.table.add({row.model, std::string(kTermNames[static_cast<std::size_t>(row.term)].letter),
                    row.seconds ? duration_text(*row.seconds) : "none is long enough",
                    row.seconds ? number_text(row.samples, 3) : "–",
                    row.simulated.count == 0 ? "not checked" : figure_text(row.simulated, 3, 100)});
@@ -315,26 +270,20 @@ BenchSection records_section(const DesignBench& bench) {
   return out;
 }
 
-std::string digits_text(const StressCell& cell) {
-  return std::isnan(cell.digits) ? "–" : number_text(cell.digits, 3);
-}
+std::string digits_text(const StressCell& cell) { return std::isnan(cell.digits) ? "–" : number_text(cell.digits, 3); }
 
 /// A row a subject, in the order of its worst cell.
 BenchSection stress_section(const StressBench& bench) {
   BenchSection out;
   out.title = "Stress: digits that are right, worst first";
-  out.sentences = {fmt::format(
-      "{} hard inputs and subjects: {} compared with a reference, {} held, {} refused in a "
-      "sentence, {} wrong.",
-      bench.cells.size(),
-      bench.count(StressOutcome::digits),
-      bench.count(StressOutcome::held),
-      bench.count(StressOutcome::refused),
-      bench.count(StressOutcome::wrong))};
+  out.sentences = {
+      fmt::format("{} hard inputs and subjects: {} compared with a reference, {} held, {} refused in a "
+                  "sentence, {} wrong.",
+                  bench.cells.size(), bench.count(StressOutcome::digits), bench.count(StressOutcome::held),
+                  bench.count(StressOutcome::refused), bench.count(StressOutcome::wrong))};
   for (const StressCell& cell : bench.cells)
     if (cell.outcome == StressOutcome::wrong)
-      out.sentences.push_back(
-          fmt::format("Wrong: {}, {}: {}.", cell.subject, cell.input, cell.what));
+      out.sentences.push_back(fmt::format("Wrong: {}, {}: {}.", cell.subject, cell.input, cell.what));
   out.table = Table("Of|Digits|Stated|Worst input|Compared|Held|Refused");
   std::vector<std::string> seen;
   for (const StressCell& cell : bench.cells) {
@@ -344,12 +293,8 @@ BenchSection stress_section(const StressBench& bench) {
     for (const StressCell& other : bench.cells)
       if (other.subject == cell.subject) own.cells.push_back(other);
     const auto count = [&](StressOutcome outcome) { return std::to_string(own.count(outcome)); };
-    out.table.add({cell.subject,
-                   digits_text(cell),
-                   std::isnan(cell.stated) ? "–" : number_text(cell.stated, 2),
-                   std::isnan(cell.digits) ? "–" : cell.input,
-                   count(StressOutcome::digits),
-                   count(StressOutcome::held),
+    out.table.add({cell.subject, digits_text(cell), std::isnan(cell.stated) ? "–" : number_text(cell.stated, 2),
+                   std::isnan(cell.digits) ? "–" : cell.input, count(StressOutcome::digits), count(StressOutcome::held),
                    count(StressOutcome::refused)});
   }
   out.notes = {
@@ -379,20 +324,17 @@ std::string figure_text(const Figure& figure, int digits, double factor) {
   if (figure.count == 0 || std::isnan(figure.value)) return "–";
   std::string out = number_text(factor * figure.value, digits);
   if (std::isfinite(figure.ci95.low) && std::isfinite(figure.ci95.high))
-    out += fmt::format(" [{}, {}]",
-                       number_text(factor * figure.ci95.low, digits),
+    out += fmt::format(" [{}, {}]", number_text(factor * figure.ci95.low, digits),
                        number_text(factor * figure.ci95.high, digits));
   return out;
 }
 
 std::vector<std::string> detail::bench_verdict(const BenchReport& report) {
   std::vector<std::string> out;
-  for (const CharacterizationBench& bench : report.characterization)
-    out.push_back(verdict_of(bench));
+  for (const CharacterizationBench& bench : report.characterization) out.push_back(verdict_of(bench));
   if (report.fusion) out.push_back(verdict_of(*report.fusion));
   if (report.stress)
-    out.push_back(fmt::format("Stress: {} of {} results are wrong.",
-                              report.stress->count(StressOutcome::wrong),
+    out.push_back(fmt::format("Stress: {} of {} results are wrong.", report.stress->count(StressOutcome::wrong),
                               report.stress->cells.size()));
   std::erase(out, "");
   return out;
@@ -400,10 +342,8 @@ std::vector<std::string> detail::bench_verdict(const BenchReport& report) {
 
 std::vector<BenchSection> bench_view(const BenchReport& report) {
   std::vector<BenchSection> out;
-  for (const CharacterizationBench& bench : report.characterization)
-    out.push_back(section_of(bench));
-  if (!report.characterization.empty())
-    out.push_back(legend_section(report.characterization.front()));
+  for (const CharacterizationBench& bench : report.characterization) out.push_back(section_of(bench));
+  if (!report.characterization.empty()) out.push_back(legend_section(report.characterization.front()));
   if (report.fusion) out.push_back(over_all(*report.fusion));
   if (report.scaling)
     for (const char* over : {"samples", "threads", "sensors", "inputs"})

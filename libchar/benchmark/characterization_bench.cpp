@@ -66,9 +66,7 @@ bool says_present(const CoefficientEstimate& estimate) {
   return estimate.value && *estimate.value > 0 && (!estimate.ci95 || estimate.ci95->low > 0);
 }
 
-void add(const NoiseEstimate& estimate,
-         const Mixture& truth,
-         const std::array<std::optional<double>, kTerms>& bound,
+void add(const NoiseEstimate& estimate, const Mixture& truth, const std::array<std::optional<double>, kTerms>& bound,
          Tally& tally) {
   bool any_false = false;
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -86,13 +84,8 @@ void add(const NoiseEstimate& estimate,
   ++tally.records;
 }
 
-void run(const Estimator& estimator,
-         const std::vector<double>& record,
-         double rate_hz,
-         const Mixture& truth,
-         const std::array<std::optional<double>, kTerms>& bound,
-         HeapMeter* heap,
-         Tally& tally) {
+void run(const Estimator& estimator, const std::vector<double>& record, double rate_hz, const Mixture& truth,
+         const std::array<std::optional<double>, kTerms>& bound, HeapMeter* heap, Tally& tally) {
   TermSet terms{};
   for (std::size_t i = 0; i < kTerms; ++i) terms[i] = truth[i] > 0;
   if (heap != nullptr) heap->begin();
@@ -100,15 +93,11 @@ void run(const Estimator& estimator,
   const NoiseEstimate estimate = estimator.estimate(record, rate_hz, terms);
   const auto samples = static_cast<double>(record.size());
   tally.ns.push_back(1e9 * (thread_seconds() - from) / samples);
-  if (heap != nullptr)
-    tally.bytes =
-        std::max(tally.bytes.value_or(0), static_cast<double>(heap->end().peak) / samples);
+  if (heap != nullptr) tally.bytes = std::max(tally.bytes.value_or(0), static_cast<double>(heap->end().peak) / samples);
   add(estimate, truth, bound, tally);
 }
 
-EstimatorAccuracy accuracy_of(const Estimator& estimator,
-                              const Tally& tally,
-                              const Mixture& truth,
+EstimatorAccuracy accuracy_of(const Estimator& estimator, const Tally& tally, const Mixture& truth,
                               const std::array<std::optional<double>, kTerms>& bound) {
   EstimatorAccuracy out;
   out.name = estimator.name;
@@ -133,8 +122,7 @@ EstimatorAccuracy accuracy_of(const Estimator& estimator,
     ++tellable;
   }
   out.error = std::exp(log_sum / tellable);
-  if (has_absent && !estimator.told)
-    out.false_terms = share_figure(tally.false_records, tally.records);
+  if (has_absent && !estimator.told) out.false_terms = share_figure(tally.false_records, tally.records);
   out.ns_per_sample = time_figure(tally.ns);
   out.bytes_per_sample = tally.bytes;
   return out;
@@ -147,14 +135,13 @@ void add_front_gaps(std::vector<EstimatorAccuracy>& methods) {
     deciding.push_back(m.told ? CostAndError{NAN, NAN} : all.back());
   }
   const std::vector<double> gaps = front_gaps(all), own = front_gaps(deciding);
-  for (std::size_t i = 0; i < methods.size(); ++i)
-    methods[i].front_gap = methods[i].told ? gaps[i] : own[i];
+  for (std::size_t i = 0; i < methods.size(); ++i) methods[i].front_gap = methods[i].told ? gaps[i] : own[i];
 }
 
 std::vector<std::string> notes_on(const SensorModel& model) {
   std::vector<std::string> out;
-  if (model.noise_shape.kind != NoiseShape::Kind::none || model.bandwidth_hz ||
-      model.gauss_markov.sigma > 0 || model.flicker_phase > 0)
+  if (model.noise_shape.kind != NoiseShape::Kind::none || model.bandwidth_hz || model.gauss_markov.sigma > 0 ||
+      model.flicker_phase > 0)
     out.emplace_back(
         "the model has a shape, a bandwidth or a further process: the bound is that of its terms "
         "without them, which nobody can reach");
@@ -175,10 +162,8 @@ std::vector<BenchSignal> bench_signals(std::uint64_t samples) {
   return out;
 }
 
-CharacterizationBench bench_characterization(const BenchSignal& signal,
-                                             const CharacterizationBenchOptions& options,
-                                             Progress& progress,
-                                             HeapMeter* heap) {
+CharacterizationBench bench_characterization(const BenchSignal& signal, const CharacterizationBenchOptions& options,
+                                             Progress& progress, HeapMeter* heap) {
   const Mixture truth = truth_of(signal.model);
   if (truth[0] + truth[1] + truth[2] == 0)
     throw input_error("E0962", signal.name)
@@ -201,8 +186,7 @@ CharacterizationBench bench_characterization(const BenchSignal& signal,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     out.methods.push_back(accuracy_of(rows[i], tallies[i], truth, bound));
     std::vector<double> ratios;
-    for (std::size_t r = 0; r < options.records; ++r)
-      ratios.push_back(tallies[i].ns[r] / tallies[0].ns[r]);
+    for (std::size_t r = 0; r < options.records; ++r) ratios.push_back(tallies[i].ns[r] / tallies[0].ns[r]);
     out.methods[i].time_ratio = time_figure(std::move(ratios));
   }
   add_front_gaps(out.methods);

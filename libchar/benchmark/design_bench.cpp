@@ -53,9 +53,7 @@ double variance_in(const std::vector<double>& y, std::size_t m) {
 
 constexpr std::size_t kAverages = 16;  // in a simulated record
 
-SensorsNeeded sensors_needed(const BenchSignal& model,
-                             const DesignOptions& options,
-                             Progress& progress) {
+SensorsNeeded sensors_needed(const BenchSignal& model, const DesignOptions& options, Progress& progress) {
   SensorsNeeded out;
   out.model = model.name;
   const double variance = variance_at(model, options), target = *options.target;
@@ -63,8 +61,7 @@ SensorsNeeded sensors_needed(const BenchSignal& model,
   out.sensors = static_cast<std::uint64_t>(std::max(1.0, std::ceil(variance / (target * target))));
   out.predicted = std::sqrt(variance / static_cast<double>(out.sensors));
   const auto m = static_cast<std::size_t>(averaging(model, options));
-  if (static_cast<double>(m * kAverages) * static_cast<double>(out.sensors) > options.most_samples)
-    return out;
+  if (static_cast<double>(m * kAverages) * static_cast<double>(out.sensors) > options.most_samples) return out;
   BenchSignal record = model;
   record.samples = m * kAverages;
   std::vector<double> deviations;
@@ -79,16 +76,12 @@ SensorsNeeded sensors_needed(const BenchSignal& model,
   squares.reserve(deviations.size());
   for (const double d : deviations) squares.push_back(d * d);
   const Figure mean = mean_figure(squares);
-  out.simulated = {std::sqrt(mean.value),
-                   {std::sqrt(std::max(0.0, mean.ci95.low)), std::sqrt(mean.ci95.high)},
-                   mean.count};
+  out.simulated = {
+      std::sqrt(mean.value), {std::sqrt(std::max(0.0, mean.ci95.low)), std::sqrt(mean.ci95.high)}, mean.count};
   return out;
 }
 
-RecordNeeded record_needed(const BenchSignal& model,
-                           Term term,
-                           const DesignOptions& options,
-                           Progress& progress) {
+RecordNeeded record_needed(const BenchSignal& model, Term term, const DesignOptions& options, Progress& progress) {
   RecordNeeded out;
   out.model = model.name;
   out.term = term;
@@ -119,9 +112,7 @@ RecordNeeded record_needed(const BenchSignal& model,
 
 }  // namespace
 
-DesignBench bench_design(const std::vector<BenchSignal>& models,
-                         const DesignOptions& options,
-                         Progress& progress) {
+DesignBench bench_design(const std::vector<BenchSignal>& models, const DesignOptions& options, Progress& progress) {
   check_models(models, options);
   DesignBench out;
   out.options = options;

@@ -75,8 +75,7 @@ void add(const ReplayResult& result, SceneRuns& runs, std::vector<FusionBenchRow
     run.ratio.push_back(ratio_of(algorithm, result));
     if (!std::isnan(algorithm.ns_per_sample)) run.ns.push_back(algorithm.ns_per_sample);
     run.learning_s.push_back(algorithm.learning_s);
-    if (algorithm.peak_bytes)
-      run.bytes = std::max(run.bytes.value_or(0), static_cast<double>(*algorithm.peak_bytes));
+    if (algorithm.peak_bytes) run.bytes = std::max(run.bytes.value_or(0), static_cast<double>(*algorithm.peak_bytes));
   }
 }
 
@@ -117,10 +116,8 @@ FusionBenchCell cell_of(const Runs& runs) {
 void choose_pooled(std::vector<SceneRuns>& scenes) {
   std::map<std::string, std::size_t> count;
   for (const SceneRuns& scene : scenes) ++count[scene.kind];
-  const auto most =
-      std::max_element(scenes.begin(), scenes.end(), [&](const auto& a, const auto& b) {
-        return count[a.kind] < count[b.kind];
-      });
+  const auto most = std::max_element(scenes.begin(), scenes.end(),
+                                     [&](const auto& a, const auto& b) { return count[a.kind] < count[b.kind]; });
   for (SceneRuns& scene : scenes) scene.pooled = scene.kind == most->kind;
 }
 
@@ -128,9 +125,7 @@ void choose_pooled(std::vector<SceneRuns>& scenes) {
 void over_scenes(const std::vector<SceneRuns>& all, FusionBenchRow& row) {
   std::size_t runs = std::numeric_limits<std::size_t>::max(), timed = runs;
   std::vector<SceneRuns> scenes;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(scenes), [](const SceneRuns& scene) {
-    return scene.pooled;
-  });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(scenes), [](const SceneRuns& scene) { return scene.pooled; });
   for (const SceneRuns& scene : scenes) {
     const auto found = scene.of.find(row.label);
     if (found == scene.of.end()) return;
@@ -153,28 +148,22 @@ void over_scenes(const std::vector<SceneRuns>& all, FusionBenchRow& row) {
 void add_fronts(FusionBench& bench) {
   std::vector<CostAndError> points;
   for (const FusionBenchRow& row : bench.rows)
-    points.push_back(row.bound ? CostAndError{NAN, NAN}
-                               : CostAndError{row.ns_per_sample.value, 1 + row.excess.value});
+    points.push_back(row.bound ? CostAndError{NAN, NAN} : CostAndError{row.ns_per_sample.value, 1 + row.excess.value});
   const std::vector<double> gaps = front_gaps(points);
   for (std::size_t i = 0; i < gaps.size(); ++i) bench.rows[i].front_gap = gaps[i];
   for (std::size_t s = 0; s < bench.scenes.size(); ++s) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const FusionBenchCell& cell = bench.rows[i].cells[s];
-      points[i] = bench.rows[i].bound || !cell.ran
-                      ? CostAndError{NAN, NAN}
-                      : CostAndError{cell.ns_per_sample.value, 1 + cell.excess.value};
+      points[i] = bench.rows[i].bound || !cell.ran ? CostAndError{NAN, NAN}
+                                                   : CostAndError{cell.ns_per_sample.value, 1 + cell.excess.value};
     }
     const std::vector<double> of_scene = front_gaps(points);
-    for (std::size_t i = 0; i < of_scene.size(); ++i)
-      bench.rows[i].cells[s].front_gap = of_scene[i];
+    for (std::size_t i = 0; i < of_scene.size(); ++i) bench.rows[i].cells[s].front_gap = of_scene[i];
   }
 }
 
-void run_scene(Scene scene,
-               const FusionBenchOptions& options,
-               HeapMeter* heap,
-               const std::function<void(double, const std::string&)>& progress,
-               FusionBench& out,
+void run_scene(Scene scene, const FusionBenchOptions& options, HeapMeter* heap,
+               const std::function<void(double, const std::string&)>& progress, FusionBench& out,
                std::vector<SceneRuns>& runs) {
   const std::vector<SceneAlgorithm> all = algorithms_of(scene, options);
   for (std::size_t r = 0; r < options.seeds; ++r) {
@@ -207,9 +196,7 @@ std::vector<Scene> bench_scenes() {
   return out;
 }
 
-FusionBench bench_fusion(const std::vector<Scene>& scenes,
-                         const FusionBenchOptions& options,
-                         Progress& progress,
+FusionBench bench_fusion(const std::vector<Scene>& scenes, const FusionBenchOptions& options, Progress& progress,
                          HeapMeter* heap) {
   FusionBench out;
   out.seed = options.seed;
@@ -233,9 +220,8 @@ FusionBench bench_fusion(const std::vector<Scene>& scenes,
       const auto found = scene.of.find(row.label);
       row.cells.push_back(found == scene.of.end() ? FusionBenchCell{} : cell_of(found->second));
     }
-    row.swept = std::any_of(options.sweeps.begin(), options.sweeps.end(), [&](const Sweep& sweep) {
-      return sweep.algorithm == row.name;
-    });
+    row.swept = std::any_of(options.sweeps.begin(), options.sweeps.end(),
+                            [&](const Sweep& sweep) { return sweep.algorithm == row.name; });
     over_scenes(runs, row);
   }
   std::stable_sort(out.rows.begin(), out.rows.end(), [](const auto& a, const auto& b) {

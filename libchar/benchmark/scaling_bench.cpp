@@ -36,9 +36,7 @@ struct RecordWork {
   void (*run)(std::span<const double>, int threads);
 };
 
-void octaves(std::span<const double> y, int) {
-  pyramid_deviation(y, 0.01);
-}
+void octaves(std::span<const double> y, int) { pyramid_deviation(y, 0.01); }
 void overlap(std::span<const double> y, int threads) {
   AllanOptions options;
   options.threads = threads;
@@ -56,9 +54,7 @@ void spectrum_of(std::span<const double> y, int threads) {
   options.segment = 4096;
   welch(y, 100, options);
 }
-void fit(std::span<const double> y, int) {
-  fit_record(y, 100, nullptr);
-}
+void fit(std::span<const double> y, int) { fit_record(y, 100, nullptr); }
 
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr RecordWork kRecordWork[] = {{"Allan deviation at octaves, streamed", kAny, octaves},
@@ -116,13 +112,10 @@ class Plan {
   std::vector<ScalingSeries> out_;
 };
 
-void add_samples(const ScalingBenchOptions& options,
-                 const std::vector<double>& record,
-                 Plan& plan) {
+void add_samples(const ScalingBenchOptions& options, const std::vector<double>& record, Plan& plan) {
   for (const RecordWork& work : kRecordWork) {
     const std::size_t series = plan.series(work.name, "samples", "ms");
-    for (std::size_t n = 1U << 12U; n <= std::min(record.size(), work.most);
-         n *= options.quick ? 4 : 8)
+    for (std::size_t n = 1U << 12U; n <= std::min(record.size(), work.most); n *= options.quick ? 4 : 8)
       plan.task(series, static_cast<double>(n), [&record, n, run = work.run] {
         const double from = thread_seconds();
         run({record.data(), n}, 1);
@@ -132,8 +125,7 @@ void add_samples(const ScalingBenchOptions& options,
 }
 
 void add_threads(const std::vector<double>& record, Plan& plan) {
-  const std::size_t series =
-      plan.series("Allan deviation at octaves, full overlap: time of the wall", "threads", "ms");
+  const std::size_t series = plan.series("Allan deviation at octaves, full overlap: time of the wall", "threads", "ms");
   const auto most = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   for (int threads = 1; threads <= most; threads *= 2)
     plan.task(series, threads, [&record, threads] {
@@ -165,8 +157,7 @@ struct Samples {
 };
 
 Samples samples_of(const fusion::Array& array, std::uint64_t seed) {
-  Samples out{Eigen::MatrixXd(array.channels, kInstants),
-              Eigen::MatrixXd(array.inputs(), kInstants)};
+  Samples out{Eigen::MatrixXd(array.channels, kInstants), Eigen::MatrixXd(array.inputs(), kInstants)};
   DeviateStream noise({seed, 0, Purpose::white}), truth({seed, 0, Purpose::truth});
   truth.fill_normal({out.truth.data(), static_cast<std::size_t>(out.truth.size())});
   noise.fill_normal({out.y.data(), static_cast<std::size_t>(out.y.size())});
@@ -175,9 +166,7 @@ Samples samples_of(const fusion::Array& array, std::uint64_t seed) {
 }
 
 /// ns per instant of a runner that has learnt.
-std::function<double()> instants_of(const fusion::Entry& entry,
-                                    const fusion::Array& array,
-                                    std::uint64_t seed) {
+std::function<double()> instants_of(const fusion::Entry& entry, const fusion::Array& array, std::uint64_t seed) {
   const auto samples = std::make_shared<Samples>(samples_of(array, seed));
   return [&entry, array, samples] {
     const auto runner = entry.make(array, fusion::Settings(entry.options));
@@ -190,18 +179,14 @@ std::function<double()> instants_of(const fusion::Entry& entry,
   };
 }
 
-bool is_bound(const fusion::Entry& entry) {
-  return entry.description->needs.reference_throughout;
-}
+bool is_bound(const fusion::Entry& entry) { return entry.description->needs.reference_throughout; }
 
 void add_sensors(const ScalingBenchOptions& options, Plan& plan) {
-  const std::vector<Eigen::Index> sizes =
-      options.quick ? std::vector<Eigen::Index>{2, 4, 8, 16, 32}
-                    : std::vector<Eigen::Index>{2, 3, 6, 12, 25, 50, 100, 200};
+  const std::vector<Eigen::Index> sizes = options.quick ? std::vector<Eigen::Index>{2, 4, 8, 16, 32}
+                                                        : std::vector<Eigen::Index>{2, 3, 6, 12, 25, 50, 100, 200};
   for (const fusion::Entry& entry : fusion::algorithms()) {
     if (is_bound(entry) || entry.description->needs.tilt) continue;
-    const std::size_t series =
-        plan.series(std::string(entry.description->name), "sensors", "ns per instant");
+    const std::size_t series = plan.series(std::string(entry.description->name), "sensors", "ns per instant");
     for (const Eigen::Index n : sizes)
       if (const fusion::Array array = fed_array(n, 1); why_not(*entry.description, array).empty())
         plan.task(series, static_cast<double>(n), instants_of(entry, array, options.seed));
@@ -211,8 +196,8 @@ void add_sensors(const ScalingBenchOptions& options, Plan& plan) {
 void add_inputs(const ScalingBenchOptions& options, Plan& plan) {
   for (const fusion::Entry& entry : fusion::algorithms()) {
     if (is_bound(entry) || !why_not(*entry.description, fed_array(16, 4)).empty()) continue;
-    const std::size_t series = plan.series(
-        std::string(entry.description->name) + ", 16 sensors", "inputs", "ns per instant");
+    const std::size_t series =
+        plan.series(std::string(entry.description->name) + ", 16 sensors", "inputs", "ns per instant");
     for (const Eigen::Index r : {1, 2, 4})
       plan.task(series, static_cast<double>(r), instants_of(entry, fed_array(16, r), options.seed));
   }
@@ -222,8 +207,7 @@ void add_inputs(const ScalingBenchOptions& options, Plan& plan) {
 std::optional<double> keeps_up_to(const ScalingSeries& series, double rate_hz) {
   constexpr double kMost = 1e6;
   const double budget = 1e9 / rate_hz;
-  const auto over = std::find_if(series.points.begin(),
-                                 series.points.end(),
+  const auto over = std::find_if(series.points.begin(), series.points.end(),
                                  [&](const ScalingPoint& p) { return p.cost.value > budget; });
   if (series.points.empty() || series.exponent.count == 0) return std::nullopt;
   if (over == series.points.begin()) return std::nullopt;
@@ -232,8 +216,7 @@ std::optional<double> keeps_up_to(const ScalingSeries& series, double rate_hz) {
     const double p = std::max(series.exponent.value, 0.1);
     return std::min(kMost, below.x * std::pow(budget / below.cost.value, 1 / p));
   }
-  const double share =
-      std::log(budget / below.cost.value) / std::log(over->cost.value / below.cost.value);
+  const double share = std::log(budget / below.cost.value) / std::log(over->cost.value / below.cost.value);
   return below.x * std::pow(over->x / below.x, share);
 }
 
@@ -244,15 +227,13 @@ Figure growth_exponent(const std::vector<ScalingPoint>& points) {
   for (const ScalingPoint& p : points) most = std::max(most, p.x);
   std::vector<std::pair<double, double>> logs;
   for (const ScalingPoint& p : points)
-    if (p.x >= most / 8 && p.x > 0 && p.cost.value > 0)
-      logs.emplace_back(std::log(p.x), std::log(p.cost.value));
+    if (p.x >= most / 8 && p.x > 0 && p.cost.value > 0) logs.emplace_back(std::log(p.x), std::log(p.cost.value));
   Figure out;
   const auto n = static_cast<double>(logs.size());
   if (logs.size() < 2) return out;
   double mean_x = 0, mean_y = 0, sxx = 0, sxy = 0, residual = 0;
   for (const auto& [x, y] : logs) mean_x += x / n, mean_y += y / n;
-  for (const auto& [x, y] : logs)
-    sxx += (x - mean_x) * (x - mean_x), sxy += (x - mean_x) * (y - mean_y);
+  for (const auto& [x, y] : logs) sxx += (x - mean_x) * (x - mean_x), sxy += (x - mean_x) * (y - mean_y);
   out.value = sxy / sxx;
   out.count = logs.size();
   if (logs.size() < 3) return out;
@@ -262,14 +243,10 @@ Figure growth_exponent(const std::vector<ScalingPoint>& points) {
   return out;
 }
 
-ScalingBench bench_scaling(const ScalingBenchOptions& options,
-                           Progress& progress,
-                           HeapMeter* heap) {
-  const std::vector<double> record =
-      white(options.quick ? std::size_t{1} << 18U : std::size_t{1} << 24U, options.seed);
-  const std::vector<double> part(record.begin(),
-                                 record.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
-                                                      record.size(), std::size_t{1} << 22U)));
+ScalingBench bench_scaling(const ScalingBenchOptions& options, Progress& progress, HeapMeter* heap) {
+  const std::vector<double> record = white(options.quick ? std::size_t{1} << 18U : std::size_t{1} << 24U, options.seed);
+  const std::vector<double> part(record.begin(), record.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
+                                                                      record.size(), std::size_t{1} << 22U)));
   Plan plan(options, heap);
   add_samples(options, record, plan);
   add_threads(part, plan);

@@ -25,8 +25,8 @@ double rank(const StressCell& cell) {
 }  // namespace
 
 std::size_t StressBench::count(StressOutcome outcome) const {
-  return static_cast<std::size_t>(std::count_if(
-      cells.begin(), cells.end(), [&](const StressCell& cell) { return cell.outcome == outcome; }));
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [&](const StressCell& cell) { return cell.outcome == outcome; }));
 }
 
 StressBench bench_stress(const StressBenchOptions& options, Progress& progress) {
@@ -35,8 +35,7 @@ StressBench bench_stress(const StressBenchOptions& options, Progress& progress) 
   out.cells = stress_estimators(options, progress);
   for (auto& part : {stress_simulators(options), stress_fusion(options, progress)})
     out.cells.insert(out.cells.end(), part.begin(), part.end());
-  std::stable_sort(out.cells.begin(),
-                   out.cells.end(),
+  std::stable_sort(out.cells.begin(), out.cells.end(),
                    [](const StressCell& a, const StressCell& b) { return rank(a) < rank(b); });
   return out;
 }

@@ -49,27 +49,21 @@ std::vector<std::size_t> order_of_round(std::size_t count, std::size_t round) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (count == 0) return order;
-  std::rotate(
-      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(round / 2 % count), order.end());
+  std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(round / 2 % count), order.end());
   if (round % 2 == 1) std::reverse(order.begin(), order.end());
   return order;
 }
 
-double thread_seconds() {
-  return clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-}
+double thread_seconds() { return clock_seconds(CLOCK_THREAD_CPUTIME_ID); }
 
 MachineWatch::MachineWatch()
-    : wall_(clock_seconds(CLOCK_MONOTONIC)),
-      own_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)),
-      busy_(busy_seconds()) {}
+    : wall_(clock_seconds(CLOCK_MONOTONIC)), own_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)), busy_(busy_seconds()) {}
 
 Machine MachineWatch::finish() const {
   Machine out;
   out.processor = processor_name();
   out.cores = std::max(1U, std::thread::hardware_concurrency());
-  const auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES)),
-             page = static_cast<double>(sysconf(_SC_PAGESIZE));
+  const auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES)), page = static_cast<double>(sysconf(_SC_PAGESIZE));
   out.memory_gib = pages * page / (1024.0 * 1024 * 1024);
   utsname names{};
   if (uname(&names) == 0) out.system = fmt::format("{} {}", names.sysname, names.machine);
@@ -84,8 +78,7 @@ std::string load_sentence(const Machine& machine) {
   return fmt::format(
       "other programs kept {:.1f} of {} processors busy meanwhile: times have wider intervals "
       "than they need",
-      machine.others,
-      machine.cores);
+      machine.others, machine.cores);
 }
 
 namespace {
@@ -108,18 +101,14 @@ Figure median_within(std::vector<double> values, double outside) {
   if (values.empty()) return out;
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
-  out.value =
-      n % 2 == 1 ? values[n / 2] : values[n / 2 - 1] + (values[n / 2] - values[n / 2 - 1]) / 2;
-  if (const std::size_t k = median_rank(n, outside); k > 0)
-    out.ci95 = {values[k - 1], values[n - k]};
+  out.value = n % 2 == 1 ? values[n / 2] : values[n / 2 - 1] + (values[n / 2] - values[n / 2 - 1]) / 2;
+  if (const std::size_t k = median_rank(n, outside); k > 0) out.ci95 = {values[k - 1], values[n - k]};
   return out;
 }
 
 }  // namespace
 
-Figure median_figure(std::vector<double> values) {
-  return median_within(std::move(values), kOutside);
-}
+Figure median_figure(std::vector<double> values) { return median_within(std::move(values), kOutside); }
 
 Figure time_figure(std::vector<double> values) {
   Figure out = median_within(std::move(values), kOutsideOfRuns);
@@ -167,8 +156,6 @@ Figure share_figure(std::size_t hits, std::size_t count) {
   return out;
 }
 
-bool unresolved(const Figure& a, const Figure& b) {
-  return !(a.ci95.high < b.ci95.low || b.ci95.high < a.ci95.low);
-}
+bool unresolved(const Figure& a, const Figure& b) { return !(a.ci95.high < b.ci95.low || b.ci95.high < a.ci95.low); }
 
 }  // namespace libchar

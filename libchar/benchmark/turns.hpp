@@ -16,8 +16,7 @@ namespace libchar {
 struct Figure {
   double value = std::numeric_limits<double>::quiet_NaN();
   /// about 95 %; infinite on a side where the values are too few to say
-  Interval ci95 = {-std::numeric_limits<double>::infinity(),
-                   std::numeric_limits<double>::infinity()};
+  Interval ci95 = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::uint64_t count = 0;  ///< values behind it
 };
 

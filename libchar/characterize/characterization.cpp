@@ -32,8 +32,7 @@ class StillSearch final : public BlockSink {
  public:
   void begin(const LogInfo& so_far) override { means_.assign(so_far.channels.size(), {}); }
   void block(const SampleBlock& samples) override {
-    for (std::size_t c = 0; c < means_.size(); ++c)
-      means_[c].push({samples.channels[c], samples.rows});
+    for (std::size_t c = 0; c < means_.size(); ++c) means_[c].push({samples.channels[c], samples.rows});
   }
   /// Throws Error(numeric) where the log moves throughout, or cannot be searched.
   Stretch finish(const LogInfo& log) const {
@@ -54,14 +53,11 @@ class StillSearch final : public BlockSink {
         tested += motion.tested;
         if (round == 0 && motion.whole)
           throw numeric_error("E0705", log.file)
-              .says("the channel {} moves throughout: the log has no still stretch",
-                    log.channels[c].name)
+              .says("the channel {} moves throughout: the log has no still stretch", log.channels[c].name)
               .hint("name the stretch with `still` FROM..TO, or choose other `channels`");
         for (const auto* stretches : {&motion.moving_s, &motion.louder_s})
-          for (const Interval& s : *stretches)
-            left_out.push_back({still.low + s.low, still.low + s.high});
-        if (!motion.moving_s.empty() || !motion.louder_s.empty())
-          restless.insert(log.channels[c].name);
+          for (const Interval& s : *stretches) left_out.push_back({still.low + s.low, still.low + s.high});
+        if (!motion.moving_s.empty() || !motion.louder_s.empty()) restless.insert(log.channels[c].name);
       }
       if (round == 0 && tested == 0) refuse_untested(log);
       if (left_out.empty()) break;
@@ -102,8 +98,7 @@ class StillSearch final : public BlockSink {
 void check_still(const StillOptions& still, const ReadOptions& reading) {
   if (!still.search && !still.stretch_s) return;
   if (reading.from_s || reading.to_s)
-    throw usage_error("E0704").says(
-        "`still` chooses the stretch: it does not go with `from_s` and `to_s`");
+    throw usage_error("E0704").says("`still` chooses the stretch: it does not go with `from_s` and `to_s`");
   if (!still.stretch_s) return;
   const Interval& s = *still.stretch_s;
   if (!(s.low >= 0) || !(s.low < s.high))
@@ -126,10 +121,9 @@ std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResu
     return any_restless(channels) ? "No part of the recording is loud enough to be left out: "
                                     "all of it was analysed."
                                   : "Nothing moves in the recording: all of it was analysed.";
-  std::string text = fmt::format("Only the stretch from {} to {} s was analysed, {}",
-                                 brief_text(stretch.from_s, 6),
-                                 brief_text(stretch.to_s, 6),
-                                 stretch.found ? "the longest in which nothing moves" : "as asked");
+  std::string text =
+      fmt::format("Only the stretch from {} to {} s was analysed, {}", brief_text(stretch.from_s, 6),
+                  brief_text(stretch.to_s, 6), stretch.found ? "the longest in which nothing moves" : "as asked");
   if (stretch.moving.empty()) return text + ".";
   const std::size_t shown = std::min<std::size_t>(stretch.moving.size(), 6);
   text += " (moving or louder outside: ";
@@ -142,12 +136,11 @@ std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResu
 
 /// Nothing that is said of the channel in the table's grid is about the sensor.
 void doubt(const Channel& channel, bool alone, ChannelResult& result) {
-  Finding slow =
-      finding("slow_channel",
-              fmt::format("The channel has a value in one of {} rows: in the grid of the "
-                          "table most of its samples are missing, and its rate is wrong.",
-                          brief_text(channel.every, 3)),
-              "in a table of faster rows it has no rate of its own");
+  Finding slow = finding("slow_channel",
+                         fmt::format("The channel has a value in one of {} rows: in the grid of the "
+                                     "table most of its samples are missing, and its rate is wrong.",
+                                     brief_text(channel.every, 3)),
+                         "in a table of faster rows it has no rate of its own");
   slow.severity = Severity::bad;
   if (alone) slow.help.push_back({"Read it alone.", {{"channels", channel.name}}});
   result.findings.push_back(std::move(slow));
@@ -156,9 +149,7 @@ void doubt(const Channel& channel, bool alone, ChannelResult& result) {
 /// Reads the slow channels of a log again, each alone on its own grid, and puts what they give in the place
 /// of what they gave in the grid of the table. Where the log cannot be read twice, or a temperature binds the
 /// channels together, a finding says so.
-void read_slow_channels_alone(const std::string& path,
-                              const CharacterizeOptions& options,
-                              Characterization& result,
+void read_slow_channels_alone(const std::string& path, const CharacterizeOptions& options, Characterization& result,
                               Progress& progress) {
   std::vector<std::size_t> slow;
   for (std::size_t c = 0; c < result.log.channels.size(); ++c)
@@ -182,10 +173,9 @@ void read_slow_channels_alone(const std::string& path,
     channel.rate_hz = own.log.time.rate_hz;
     result.channels[c] = std::move(own.channels.at(0));
     result.channels[c].channel.rate_hz = channel.rate_hz;
-    result.log.warnings.add(
-        "own_grid",
-        "channels slower than the rows of their table, each analysed on a grid of its own",
-        fmt::format("channel {} at {} Hz", channel.name, brief_text(channel.rate_hz, 6)));
+    result.log.warnings.add("own_grid",
+                            "channels slower than the rows of their table, each analysed on a grid of its own",
+                            fmt::format("channel {} at {} Hz", channel.name, brief_text(channel.rate_hz, 6)));
   }
 }
 
@@ -197,9 +187,7 @@ struct Source {
   std::function<void(BlockSink& sink)> read_again;  ///< none: what was read is gone
 };
 
-Characterization characterize_source(const Source& source,
-                                     const CharacterizeOptions& options,
-                                     Progress& progress) {
+Characterization characterize_source(const Source& source, const CharacterizeOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
   CharacterizeWorkspace workspace;
@@ -210,8 +198,7 @@ Characterization characterize_source(const Source& source,
       result.log = source.read(stages);
     else
       source.read_again(stages);
-    for (ChannelResult& channel : stages.finish(result.log, progress))
-      result.channels.push_back(std::move(channel));
+    for (ChannelResult& channel : stages.finish(result.log, progress)) result.channels.push_back(std::move(channel));
     result.temperature = stages.temperature();
     if (stages.end() == next) break;
     next = stages.end();
@@ -219,8 +206,7 @@ Characterization characterize_source(const Source& source,
   if (options.data == SampleKind::rate) {
     std::vector<Channel> channels;
     for (const ChannelResult& channel : result.channels) channels.push_back(channel.channel);
-    judge_gravity(channels,
-                  [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
+    judge_gravity(channels, [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
   }
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -245,17 +231,14 @@ ReadOptions with_temperature(const CharacterizeOptions& options) {
 
 /// It was read for the others only.
 void drop_temperature(Characterization& result) {
-  const auto is_temperature = [&](const Channel& channel) {
-    return channel.name == result.temperature->name;
-  };
+  const auto is_temperature = [&](const Channel& channel) { return channel.name == result.temperature->name; };
   std::erase_if(result.channels, [&](const ChannelResult& c) { return is_temperature(c.channel); });
   std::erase_if(result.log.channels, is_temperature);
 }
 
 void check_columns(const RecordingView& recording) {
   if (recording.info.channels.size() != recording.samples.size())
-    throw usage_error("E0706").says("a recording has {} columns of samples for {} channels",
-                                    recording.samples.size(),
+    throw usage_error("E0706").says("a recording has {} columns of samples for {} channels", recording.samples.size(),
                                     recording.info.channels.size());
   for (const auto& column : recording.samples)
     if (column.size() != recording.samples[0].size())
@@ -270,19 +253,16 @@ LogInfo push_recording(const RecordingView& recording, BlockSink& sink, Progress
   SampleBlock block;
   for (; block.first < log.samples; block.first += block.rows) {
     progress.update(static_cast<double>(block.first) / static_cast<double>(log.samples), "reading");
-    block.rows =
-        detail::in_memory(std::min<std::uint64_t>(kBlockOfMemory, log.samples - block.first));
+    block.rows = detail::in_memory(std::min<std::uint64_t>(kBlockOfMemory, log.samples - block.first));
     block.channels.clear();
-    for (const auto& column : recording.samples)
-      block.channels.push_back(column.data() + block.first);
+    for (const auto& column : recording.samples) block.channels.push_back(column.data() + block.first);
     sink.block(block);
   }
   return log;
 }
 
 /// The window of `still`, and what is said of it.
-Stretch still_stretch(const CharacterizeOptions& options,
-                      const std::function<LogInfo(BlockSink& sink)>& read) {
+Stretch still_stretch(const CharacterizeOptions& options, const std::function<LogInfo(BlockSink& sink)>& read) {
   StillSearch search;
   Stretch stretch;
   if (options.still.search) {
@@ -305,14 +285,11 @@ void check_reached(const Stretch& stretch, const LogInfo& log) {
       .got("{} s, the log ends at {} s", brief_text(stretch.to_s, 6), brief_text(end_s, 6));
 }
 
-bool wants_still(const StillOptions& still) {
-  return still.search || still.stretch_s;
-}
+bool wants_still(const StillOptions& still) { return still.search || still.stretch_s; }
 
 void note_stretch(Stretch stretch, Characterization& result) {
   if (std::isinf(stretch.to_s))  // open: to the end of the log
-    stretch.to_s =
-        stretch.from_s + static_cast<double>(result.log.samples) / result.log.time.rate_hz;
+    stretch.to_s = stretch.from_s + static_cast<double>(result.log.samples) / result.log.time.rate_hz;
   check_reached(stretch, result.log);
   stretch.sentence = stretch_sentence(stretch, result.channels);
   if (!stretch.whole) result.log.stretch_s = Interval{stretch.from_s, stretch.to_s};
@@ -326,8 +303,7 @@ RecordingView between(const RecordingView& recording, const Stretch& stretch) {
   if (!(rate_hz > 0)) throw usage_error("E0704").says("the rate is not known: there are no times");
   for (const auto& column : recording.samples) {
     const auto at = [&](double time_s) {
-      return static_cast<std::size_t>(
-          std::min(static_cast<double>(column.size()), std::round(time_s * rate_hz)));
+      return static_cast<std::size_t>(std::min(static_cast<double>(column.size()), std::round(time_s * rate_hz)));
     };
     const std::size_t first = at(stretch.from_s);
     part.samples.push_back(column.subspan(first, std::max(first, at(stretch.to_s)) - first));
@@ -347,13 +323,10 @@ void check_characterization(const std::string& path, const CharacterizeOptions& 
   CharacterizeWorkspace workspace;
   ChannelStages(asked, workspace, 0, false).begin(head);
   if (asked.wanted.spectrum)
-    refuse_longer_segment(
-        path, asked.reading, asked.spectrum.segment, asked.segment_s, no_progress());
+    refuse_longer_segment(path, asked.reading, asked.spectrum.segment, asked.segment_s, no_progress());
 }
 
-Characterization characterize(const std::string& path,
-                              const CharacterizeOptions& options,
-                              Progress& progress) {
+Characterization characterize(const std::string& path, const CharacterizeOptions& options, Progress& progress) {
   check_still(options.still, options.reading);
   ReadOptions chosen = with_temperature(options);
   std::optional<Stretch> stretch;
@@ -392,21 +365,16 @@ Characterization characterize(const std::string& path,
   return result;
 }
 
-Characterization characterize(const Recording& recording,
-                              const CharacterizeOptions& options,
-                              Progress& progress) {
+Characterization characterize(const Recording& recording, const CharacterizeOptions& options, Progress& progress) {
   return characterize(view_of(recording), options, progress);
 }
 
-Characterization characterize(const RecordingView& recording,
-                              const CharacterizeOptions& options,
-                              Progress& progress) {
+Characterization characterize(const RecordingView& recording, const CharacterizeOptions& options, Progress& progress) {
   check_columns(recording);
   check_still(options.still, {});
   std::optional<Stretch> stretch;
   if (wants_still(options.still))
-    stretch = still_stretch(
-        options, [&](BlockSink& sink) { return push_recording(recording, sink, progress); });
+    stretch = still_stretch(options, [&](BlockSink& sink) { return push_recording(recording, sink, progress); });
   const RecordingView part = stretch ? between(recording, *stretch) : RecordingView{};
   const RecordingView& used = stretch ? part : recording;
   Source source;

@@ -73,8 +73,7 @@ inline constexpr auto enum_table<SampleKind> = enum_words<SampleKind, "rate phas
 /// What is to be computed; nothing else is.
 struct Wanted {
   bool quality = true;  ///< and the trace
-  bool allan =
-      true;  ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
+  bool allan = true;    ///< needs the mixture of a fit for its intervals: one of white noise is made when `fit` is off
   bool spectrum = true;
   bool fit = true;
   bool lines = true;  ///< of the spectrum
@@ -82,7 +81,7 @@ struct Wanted {
 
 /// Only rest is analysed.
 struct StillOptions {
-  bool search = false;  ///< the longest stretch in which no channel moves (motion.hpp)
+  bool search = false;                ///< the longest stretch in which no channel moves (motion.hpp)
   std::optional<Interval> stretch_s;  ///< this stretch, in seconds after the first sample
 };
 
@@ -92,7 +91,7 @@ struct CharacterizeOptions {
   Wanted wanted;
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
-  double unwrap = 0;  ///< the values start again after this much, in their unit; 0: they do not
+  double unwrap = 0;             ///< the values start again after this much, in their unit; 0: they do not
   /// Runs of so many equal values and longer are missing; so are the samples inside of straight lines of so many
   /// samples and longer. 0: they count.
   std::uint64_t frozen = 0, interpolated = 0;
@@ -117,8 +116,7 @@ struct CharacterizeOptions {
   /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade
   /// besides, for plots
   bool ten_a_decade = false;
-  bool full_overlap =
-      false;  ///< every term of the overlapping Allan deviation whatever the record's length
+  bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
 
 /// What was analysed of a log.
@@ -139,8 +137,7 @@ struct ChannelResult {
   Trace trace;             ///< of the samples as they are in the log
   std::string trace_unit;  ///< of those
   Motion motion;           ///< stretches in which the sensor was moved, where that was looked for
-  AllanCurve
-      allan;  ///< with intervals for the fitted mixture; no points when the record is too short
+  AllanCurve allan;        ///< with intervals for the fitted mixture; no points when the record is too short
   std::vector<AllanCurve> more_allan;  ///< of `more_types`; no points where a record is too short
   Spectrum spectrum;                   ///< in `spectrum_bins`
   std::vector<SpectralLine> lines;
@@ -149,17 +146,16 @@ struct ChannelResult {
   DigitalFaults digital;               ///< rails, held values, a staircase
   /// Why something is absent, motion, what the converter did. `judge` (judgement.hpp) adds those of quality and fit.
   std::vector<Finding> findings;
-  std::shared_ptr<const ChannelVerification>
-      verification;  ///< when it was asked for (verification.hpp)
+  std::shared_ptr<const ChannelVerification> verification;  ///< when it was asked for (verification.hpp)
 };
 
 struct Characterization {
   LogInfo log;
   std::vector<ChannelResult> channels;
-  std::optional<Stretch> still;      ///< where `still` was asked for
-  std::vector<Entry> settings;       ///< effective settings, for provenance (settings.hpp)
-  std::vector<std::string> command;  ///< as typed
-  std::vector<std::string> next;     ///< commands to go on with: for the page
+  std::optional<Stretch> still;                          ///< where `still` was asked for
+  std::vector<Entry> settings;                           ///< effective settings, for provenance (settings.hpp)
+  std::vector<std::string> command;                      ///< as typed
+  std::vector<std::string> next;                         ///< commands to go on with: for the page
   std::shared_ptr<const TemperatureRecord> temperature;  ///< that was asked for, sample by sample
   std::shared_ptr<const LimitReport> limits;             ///< when they were asked for (limits.hpp)
   WorkDone work{};                                       ///< that it took
@@ -173,18 +169,15 @@ void check_characterization(const std::string& path, const CharacterizeOptions& 
 /// Reads the log once (several times where its channels together are more than `memory_bytes`) and
 /// computes what the report shows. Throws Error(input) about the log, Error(usage) about options
 /// that do not fit it; what the numbers of a channel do not allow is among its `findings`.
-Characterization characterize(const std::string& path,
-                              const CharacterizeOptions& options = {},
+Characterization characterize(const std::string& path, const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
 /// The same of samples in memory: a recording that was read, or arrays of the caller's
 /// (recording_view.hpp), which are not copied. Of `options.reading` only the
 /// threads count. Throws Error(usage) unless each channel has a column, and all are of one length.
-Characterization characterize(const RecordingView& recording,
-                              const CharacterizeOptions& options = {},
+Characterization characterize(const RecordingView& recording, const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
-Characterization characterize(const Recording& recording,
-                              const CharacterizeOptions& options = {},
+Characterization characterize(const Recording& recording, const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
 /// What of these options needs every sample of a log of more than a leaf ("the deviation mdev");

@@ -36,8 +36,7 @@ ModelCurve allan_model(const NoiseFit& fit, const AllanCurve& curve) {
 
 ModelCurve spectrum_model(const NoiseFit& fit, const Spectrum& spectrum) {
   ModelCurve out;
-  for (const double f : spectrum.frequency_hz)
-    out.values.push_back(model_spectrum(fit, spectrum, f));
+  for (const double f : spectrum.frequency_hz) out.values.push_back(model_spectrum(fit, spectrum, f));
   out.asymptotes = spectrum_asymptotes(fit, spectrum);
   return out;
 }
@@ -59,9 +58,7 @@ std::vector<OtherOpinion> other_opinions(const NoiseFit& fit) {
 
 // A curve of zeros (constant data) has no place on a logarithmic axis; its table says it.
 bool stands_on_log_axes(const AllanCurve& curve) {
-  return std::any_of(curve.points.begin(), curve.points.end(), [](const AllanPoint& p) {
-    return p.deviation > 0;
-  });
+  return std::any_of(curve.points.begin(), curve.points.end(), [](const AllanPoint& p) { return p.deviation > 0; });
 }
 
 bool stands_on_log_axes(const Spectrum& s) {
@@ -89,10 +86,7 @@ void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
 
 TraceMark mark_of(const Event& event, double duration_s, const std::string& unit) {
   const std::string name(event_name(event.kind)), symbol = unit.empty() ? "" : " " + unit;
-  TraceMark mark{name,
-                 event.at_s,
-                 event.at_s,
-                 fmt::format("{} {}{}", name, number_text(event.size, 2), symbol)};
+  TraceMark mark{name, event.at_s, event.at_s, fmt::format("{} {}{}", name, number_text(event.size, 2), symbol)};
   if (event.kind == EventKind::warm_up) {
     mark.from_s = event.from_s;
     mark.to_s = std::min(duration_s, event.from_s + 3 * event.tau_s);
@@ -104,14 +98,10 @@ TraceMark mark_of(const Event& event, double duration_s, const std::string& unit
 
 std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::string& unit) {
   std::vector<TraceMark> out;
-  for (const Interval& moving : channel.motion.moving_s)
-    out.push_back({"motion", moving.low, moving.high, "motion"});
+  for (const Interval& moving : channel.motion.moving_s) out.push_back({"motion", moving.low, moving.high, "motion"});
   for (const StrengthChange& change : channel.motion.changes)
     if (change.kind == EventKind::step)
-      out.push_back({"strength",
-                     change.at_s,
-                     change.at_s,
-                     fmt::format("noise × {}", number_text(change.factor, 3))});
+      out.push_back({"strength", change.at_s, change.at_s, fmt::format("noise × {}", number_text(change.factor, 3))});
   for (const Finding& one : channel.quality.findings) {
     const char* kind = one.code == "stuck" ? "frozen" : one.code == "interpolated" ? "filled" : "";
     for (std::size_t i = 0; *kind != '\0' && i < one.where.time_s.size(); ++i)
@@ -125,8 +115,7 @@ std::vector<TraceMark> trace_marks(const ChannelResult& channel, const std::stri
     add("quietest", found.smallest_s, found.smallest);
     add("loudest", found.largest_s, found.largest);
   }
-  for (const Event& event : channel.fit->events)
-    out.push_back(mark_of(event, channel.fit->duration_s, unit));
+  for (const Event& event : channel.fit->events) out.push_back(mark_of(event, channel.fit->duration_s, unit));
   return out;
 }
 
@@ -134,8 +123,7 @@ std::vector<ChannelGroup> groups_of(const std::vector<ChannelView>& channels) {
   std::vector<ChannelGroup> out;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const std::string& unit = channels[i].unit;
-    auto group =
-        std::find_if(out.begin(), out.end(), [&](const ChannelGroup& g) { return g.unit == unit; });
+    auto group = std::find_if(out.begin(), out.end(), [&](const ChannelGroup& g) { return g.unit == unit; });
     if (group == out.end()) group = out.insert(out.end(), {detail::quantity_title(unit), unit, {}});
     group->channels.push_back(i);
   }
@@ -163,15 +151,13 @@ ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& 
   out.draws_spectrum = stands_on_log_axes(channel.spectrum);
   out.spectrum_ci68 = spectrum_intervals(channel.spectrum, factors.in68);
   out.spectrum_ci95 = spectrum_intervals(channel.spectrum, factors.in95);
-  if (channel.verification)
-    out.verification_ci95 = spectrum_intervals(channel.verification->spectrum, factors.in95);
+  if (channel.verification) out.verification_ci95 = spectrum_intervals(channel.verification->spectrum, factors.in95);
   if (channel.fit) add_fit(out, channel, rate_hz);
   return out;
 }
 
 // Of the terms that have a limit; no limit is no noise.
-std::vector<std::optional<double>> data_sheet_curve(const ChannelResult& channel,
-                                                    const LimitReport& limits) {
+std::vector<std::optional<double>> data_sheet_curve(const ChannelResult& channel, const LimitReport& limits) {
   Mixture theta{};
   bool any = false;
   for (const LimitJudgement& j : limits.judgements) {
@@ -193,12 +179,10 @@ void choose_details(std::vector<ChannelView>& channels) {
   std::vector<ChannelView*> worst_first;
   worst_first.reserve(channels.size());
   for (ChannelView& channel : channels) worst_first.push_back(&channel);
-  std::stable_sort(
-      worst_first.begin(), worst_first.end(), [](const ChannelView* a, const ChannelView* b) {
-        return a->judgement.rating > b->judgement.rating;
-      });
-  for (std::size_t k = kMostInDetail; k < worst_first.size(); ++k)
-    worst_first[k]->in_detail = false;
+  std::stable_sort(worst_first.begin(), worst_first.end(), [](const ChannelView* a, const ChannelView* b) {
+    return a->judgement.rating > b->judgement.rating;
+  });
+  for (std::size_t k = kMostInDetail; k < worst_first.size(); ++k) worst_first[k]->in_detail = false;
 }
 
 }  // namespace

@@ -17,10 +17,9 @@ namespace libchar {
 
 /// What the fit predicts for a measured curve.
 struct ModelCurve {
-  std::vector<std::optional<double>> values;  ///< one per point of the curve; none: unknown there
-  std::vector<std::optional<Interval>>
-      intervals;                      ///< of the Allan curve, as many; empty: not stated (spectra)
-  std::vector<Asymptote> asymptotes;  ///< of its terms
+  std::vector<std::optional<double>> values;       ///< one per point of the curve; none: unknown there
+  std::vector<std::optional<Interval>> intervals;  ///< of the Allan curve, as many; empty: not stated (spectra)
+  std::vector<Asymptote> asymptotes;               ///< of its terms
 };
 
 /// A coefficient as the fit of the Allan curve sees it.
@@ -32,7 +31,7 @@ struct OtherOpinion {
 
 /// Something found in the record, at its place in time.
 struct TraceMark {
-  std::string kind;  ///< "step", "warm-up", "ramp", "motion", "strength", "frozen", "filled"
+  std::string kind;             ///< "step", "warm-up", "ramp", "motion", "strength", "frozen", "filled"
   double from_s = 0, to_s = 0;  ///< alike for an instant
   std::string label;            ///< "step 0.0031 deg/s"
 };
@@ -55,20 +54,20 @@ struct ChannelView {
   std::string shown_unit;  ///< in texts: "U" where none is stated, "" for a ratio
   std::string trace_unit;  ///< the same of the trace's
   Judgement judgement;
-  std::string summary;           ///< one sentence
-  std::vector<TraceMark> marks;  ///< in the trace
-  double plain_from_s = 0;  ///< averaging time from which on the noise terms alone are the curve
-  std::vector<std::string> findings;      ///< sentences with numbers
-  std::vector<std::string> beside_terms;  ///< those of them that are not about a noise term
-  std::vector<std::string> cautions;      ///< what asks for a look before the numbers are used
-  std::string goodness;  ///< how well the model explains the channel; "" without a fit
-  const AllanPoint* allan_minimum = nullptr;  ///< lowest reliable point; null: none
-  std::optional<double> per_sample_sd;        ///< N·√f: what white noise alone gives in a sample
-  std::optional<double> noise_density_one_sided;          ///< √2·N, as data sheets say it
-  std::vector<ReadOff> read_off;                          ///< points of the Allan curve
-  std::optional<ModelCurve> allan_model, spectrum_model;  ///< none: no fit
+  std::string summary;                            ///< one sentence
+  std::vector<TraceMark> marks;                   ///< in the trace
+  double plain_from_s = 0;                        ///< averaging time from which on the noise terms alone are the curve
+  std::vector<std::string> findings;              ///< sentences with numbers
+  std::vector<std::string> beside_terms;          ///< those of them that are not about a noise term
+  std::vector<std::string> cautions;              ///< what asks for a look before the numbers are used
+  std::string goodness;                           ///< how well the model explains the channel; "" without a fit
+  const AllanPoint* allan_minimum = nullptr;      ///< lowest reliable point; null: none
+  std::optional<double> per_sample_sd;            ///< N·√f: what white noise alone gives in a sample
+  std::optional<double> noise_density_one_sided;  ///< √2·N, as data sheets say it
+  std::vector<ReadOff> read_off;                  ///< points of the Allan curve
+  std::optional<ModelCurve> allan_model, spectrum_model;              ///< none: no fit
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one per bin; none: no dof
-  std::vector<std::optional<Interval>> verification_ci95;  ///< of the simulation's spectrum
+  std::vector<std::optional<Interval>> verification_ci95;             ///< of the simulation's spectrum
   std::vector<OtherOpinion> other_opinions;
   std::vector<ConsumerNumber> consumers;  ///< which number goes where
   /// of the Allan curve, one per point: a sensor at the limits of its data sheet; empty: no limits for this channel

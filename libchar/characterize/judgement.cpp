@@ -39,8 +39,8 @@ std::string events_taken_out(const NoiseFit& fit) {
   std::vector<std::string> parts;
   std::size_t all = 0;
   for (const EventKind kind : {EventKind::step, EventKind::warm_up, EventKind::ramp}) {
-    const auto count = static_cast<std::size_t>(std::count_if(
-        fit.events.begin(), fit.events.end(), [&](const Event& e) { return e.kind == kind; }));
+    const auto count = static_cast<std::size_t>(
+        std::count_if(fit.events.begin(), fit.events.end(), [&](const Event& e) { return e.kind == kind; }));
     if (count > 0) parts.push_back(counted(count, std::string(event_name(kind))));
     all += count;
   }
@@ -63,18 +63,15 @@ struct Judge {
   void add(std::string_view code, std::string sentence, std::string phrase = "") {
     out.push_back(finding(code, std::move(sentence), std::move(phrase)));
   }
-  void add_all(const std::vector<Finding>& found) {
-    out.insert(out.end(), found.begin(), found.end());
-  }
+  void add_all(const std::vector<Finding>& found) { out.insert(out.end(), found.begin(), found.end()); }
 
   void look_at_goodness(const NoiseFit& fit) {
-    const bool said = has(fit.findings, "misfit") || has(fit.findings, "digital_misfit") ||
-                      has(fit.findings, "power_law");
+    const bool said =
+        has(fit.findings, "misfit") || has(fit.findings, "digital_misfit") || has(fit.findings, "power_law");
     constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
     const bool unexplained = !letters_with(fit, Status::misfit).empty() || fit.goodness.p < kMisfit;
     if (unexplained && !said)
-      add("misfit",
-          "The noise terms do not describe the recording: no coefficient is borne out.",
+      add("misfit", "The noise terms do not describe the recording: no coefficient is borne out.",
           "the noise terms do not describe the recording");
     if (!fit.converged) add("not_converged", "The fit did not converge.");
   }
@@ -87,14 +84,12 @@ struct Judge {
                       "or its Allan curve "
                       "speaks against it.",
                       letters),
-          letters +
-              " undetermined: not told from another term, or contradicted by the Allan curve");
+          letters + " undetermined: not told from another term, or contradicted by the Allan curve");
       if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
     }
     for (std::size_t t = 0; t < kTerms; ++t)
       if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
-        add("reaches_zero",
-            fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
+        add("reaches_zero", fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
   }
 
   void look_at_remedies(const NoiseFit& fit) {
@@ -105,9 +100,7 @@ struct Judge {
       if (share_of(spikes->count, samples) > kManySpikes) out.back().severity = Severity::caution;
     }
     if (const Remedy* lines = find_remedy(fit, "lines")) {
-      add("lines_left_out",
-          fmt::format("Spectral lines: {}.", lines->action),
-          "spectral lines were left out");
+      add("lines_left_out", fmt::format("Spectral lines: {}.", lines->action), "spectral lines were left out");
       for (const SpectralLine& line : channel.lines)
         out.back().where.frequency_hz.push_back(
             {line.frequency_hz - line.width_hz / 2, line.frequency_hz + line.width_hz / 2});
@@ -122,8 +115,7 @@ struct Judge {
     for (const Finding& one : fit.findings) {
       if (one.code != all.code) continue;
       all.sentence += (all.sentence.empty() ? "" : " ") + one.sentence;
-      all.where.time_s.insert(
-          all.where.time_s.end(), one.where.time_s.begin(), one.where.time_s.end());
+      all.where.time_s.insert(all.where.time_s.end(), one.where.time_s.begin(), one.where.time_s.end());
     }
     out.push_back(std::move(all));
   }
@@ -136,15 +128,13 @@ struct Judge {
     for (const Finding& one : fit.findings)
       if (one.code != "event") out.push_back(one);
     if (fit.second_opinion && !fit.second_opinion->agrees)
-      add("allan_disagrees",
-          "The Allan fit disagrees: " + fit.second_opinion->sentence,
+      add("allan_disagrees", "The Allan fit disagrees: " + fit.second_opinion->sentence,
           "the fit of the Allan curve disagrees");
   }
 
   void look_at_verification(const ChannelVerification& simulated) {
     if (simulated.agrees) return;
-    add("simulation_disagrees",
-        simulated.sentences.front(),
+    add("simulation_disagrees", simulated.sentences.front(),
         simulated.nearly ? "a simulation of the model differs by a few per cent"
                          : "a simulation of the model does not agree");
     if (!simulated.nearly) out.back().severity = Severity::bad;
@@ -157,8 +147,7 @@ struct Judge {
       if (!cut || one.code != "rail") out.push_back(one);
     const double share = share_of(q.missing, q.samples + q.missing);
     if (!(share > kMostMissing)) return;
-    add("missing_samples",
-        fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share)),
+    add("missing_samples", fmt::format("{} samples ({}) are missing.", count_text(q.missing), percent_text(share)),
         percent_text(share) + " of the samples are missing");
     out.back().count = q.missing;
   }
@@ -167,13 +156,12 @@ struct Judge {
 /// What is recorded is no noise: the channel is of no use, and that it has no fit and no curve needs no saying.
 void drop_what_follows(std::vector<Finding>& found) {
   for (const char* cause : {"no_value", "constant", "counter", "moves_throughout"}) {
-    const auto one = std::find_if(
-        found.begin(), found.end(), [&](const Finding& finding) { return finding.code == cause; });
+    const auto one =
+        std::find_if(found.begin(), found.end(), [&](const Finding& finding) { return finding.code == cause; });
     if (one == found.end()) continue;
     one->severity = Severity::bad;
     std::erase_if(found, [](const Finding& other) {
-      return other.code == "no_fit" || other.code == "not_computed" ||
-             other.code == "missing_samples";
+      return other.code == "no_fit" || other.code == "not_computed" || other.code == "missing_samples";
     });
     return;
   }
@@ -186,9 +174,7 @@ std::string_view rating_word(Rating rating) {
 }
 
 Tint tint_of(Rating rating) {
-  return rating == Rating::good      ? Tint::good
-         : rating == Rating::caution ? Tint::doubtful
-                                     : Tint::bad;
+  return rating == Rating::good ? Tint::good : rating == Rating::caution ? Tint::doubtful : Tint::bad;
 }
 
 std::vector<Finding> findings_of(const ChannelResult& channel) {
@@ -198,14 +184,9 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   if (channel.verification) found.look_at_verification(*channel.verification);
   if (!channel.fit) drop_what_follows(found.out);
   // Heavy tails of the differences are the alarm, and these are what it was about.
-  for (const char* cause : {"spikes_left_out",
-                            "spikes_kept",
-                            "heavy_tails",
-                            "held_values",
-                            "motion",
-                            "moves_throughout"})
-    if (has(found.out, cause))
-      std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
+  for (const char* cause :
+       {"spikes_left_out", "spikes_kept", "heavy_tails", "held_values", "motion", "moves_throughout"})
+    if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   // Marks are far from all samples: they look like movement, and what moves is seen without them.
   if (has(found.out, "missing_mark"))
     std::erase_if(found.out, [](const Finding& one) {
@@ -218,10 +199,8 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
 Judgement judge(const ChannelResult& channel) {
   std::vector<Finding> found = findings_of(channel);
   if (!channel.fit && worst_of(found) != Severity::bad)
-    found.push_back(finding("no_fit",
-                            found.empty()
-                                ? "No noise coefficients were computed."
-                                : "No noise coefficients: " + as_part(found[0].sentence) + "."));
+    found.push_back(finding("no_fit", found.empty() ? "No noise coefficients were computed."
+                                                    : "No noise coefficients: " + as_part(found[0].sentence) + "."));
   const Severity worst = worst_of(found);
   const Rating rating = worst == Severity::bad       ? Rating::bad
                         : worst == Severity::caution ? Rating::caution
@@ -232,14 +211,11 @@ Judgement judge(const ChannelResult& channel) {
 std::string goodness_sentence(const Goodness& g) {
   constexpr double kDoubtful = 1e-3;  // of residuals so large once in a thousand recordings
   if (!(g.dof > 0)) return "The fit has no degrees of freedom left to be checked with.";
-  const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}",
-                                          brief_text(g.chi2, 4),
-                                          brief_text(g.dof, 4),
-                                          probability_text(g.p));
+  const std::string figures = fmt::format("χ² = {} for {} degrees of freedom, {}", brief_text(g.chi2, 4),
+                                          brief_text(g.dof, 4), probability_text(g.p));
   if (g.p >= 0.01) return "The model explains the spectrum within its scatter (" + figures + ").";
   if (g.p >= kDoubtful) return "The model explains the spectrum barely (" + figures + ").";
-  return "The model does not explain the spectrum (" + figures +
-         "): look at the residuals before using the intervals.";
+  return "The model does not explain the spectrum (" + figures + "): look at the residuals before using the intervals.";
 }
 
 }  // namespace libchar

@@ -53,9 +53,7 @@ std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::s
 namespace detail {
 /// A channel in one sentence: what its noise is, how far that can be used, and what spoils it. The terms, then what
 /// speaks against them; without a fit, why there is none.
-std::string summary_sentence(const ChannelResult& channel,
-                             const Judgement& judgement,
-                             const std::string& unit);
+std::string summary_sentence(const ChannelResult& channel, const Judgement& judgement, const std::string& unit);
 }  // namespace detail
 
 }  // namespace libchar

@@ -42,11 +42,8 @@ std::string reason_of(const LimitJudgement& j) {
 std::string sentence_of(const LimitJudgement& j) {
   const std::string own = term_unit(kTermNames[static_cast<std::size_t>(j.term)].key, j.unit);
   const bool known = j.measured.value || j.measured.upper95;
-  return fmt::format("{} of {}: {}, allowed {}: {}.",
-                     term_title(j.term),
-                     j.channel,
-                     known ? coefficient_text(j.measured) + " " + own : "no value",
-                     limit_text(j.text, j.most, own),
+  return fmt::format("{} of {}: {}, allowed {}: {}.", term_title(j.term), j.channel,
+                     known ? coefficient_text(j.measured) + " " + own : "no value", limit_text(j.text, j.most, own),
                      reason_of(j));
 }
 
@@ -70,15 +67,9 @@ std::string limits_verdict(const LimitReport& report) {
   const std::string limits = all == 1 ? "limit" : "limits";
   std::string out;
   if (failed > 0)
-    out = fmt::format("{} of {} {} fail{}: {}.",
-                      failed,
-                      all,
-                      limits,
-                      failed == 1 ? "s" : "",
-                      list_of_failures(report));
+    out = fmt::format("{} of {} {} fail{}: {}.", failed, all, limits, failed == 1 ? "s" : "", list_of_failures(report));
   else if (open > 0)
-    out = fmt::format(
-        "No limit fails; {} of {} {} kept.", all - open, all, all - open == 1 ? "is" : "are");
+    out = fmt::format("No limit fails; {} of {} {} kept.", all - open, all, all - open == 1 ? "is" : "are");
   else
     out = all == 1 ? "The limit is kept." : fmt::format("All {} limits are kept.", all);
   if (open > 0) out += fmt::format(" {} {} not decided.", open, open == 1 ? "is" : "are");
@@ -93,19 +84,15 @@ std::string limit_text(const std::string& text, double most, const std::string& 
 
 std::size_t LimitReport::count(LimitStatus status) const {
   return static_cast<std::size_t>(
-      std::count_if(judgements.begin(), judgements.end(), [&](const LimitJudgement& j) {
-        return j.status == status;
-      }));
+      std::count_if(judgements.begin(), judgements.end(), [&](const LimitJudgement& j) { return j.status == status; }));
 }
 
 LimitStatus judge_limit(const Coefficient& measured, double most) {
-  const bool relied_on = measured.status == Status::detected ||
-                         measured.status == Status::not_detected ||
+  const bool relied_on = measured.status == Status::detected || measured.status == Status::not_detected ||
                          measured.status == Status::given;
   if (!relied_on) return LimitStatus::not_decided;
   if (!measured.value)
-    return measured.upper95 && *measured.upper95 <= most ? LimitStatus::pass
-                                                         : LimitStatus::not_decided;
+    return measured.upper95 && *measured.upper95 <= most ? LimitStatus::pass : LimitStatus::not_decided;
   if (measured.ci95.high <= most) return LimitStatus::pass;
   return measured.ci95.low > most ? LimitStatus::fail : LimitStatus::not_decided;
 }
@@ -136,8 +123,7 @@ LimitReport judge_limits(const std::vector<LimitSubject>& subjects, const NoiseL
 
 LimitReport judge_limits(const Characterization& result, const NoiseLimits& limits) {
   std::vector<LimitSubject> subjects;
-  for (const ChannelResult& c : result.channels)
-    subjects.push_back({c.channel, c.fit ? &*c.fit : nullptr});
+  for (const ChannelResult& c : result.channels) subjects.push_back({c.channel, c.fit ? &*c.fit : nullptr});
   return judge_limits(subjects, limits);
 }
 

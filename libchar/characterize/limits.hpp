@@ -14,7 +14,7 @@
 namespace libchar {
 
 enum class LimitStatus {
-  pass,  ///< the whole interval, or the upper 95 % limit of a term not detected, is within the limit
+  pass,         ///< the whole interval, or the upper 95 % limit of a term not detected, is within the limit
   fail,         ///< the whole interval is above it
   not_decided,  ///< the interval straddles it, or the coefficient cannot be relied on
 };

@@ -36,8 +36,7 @@ void check_units(const std::vector<Channel>& channels) {
   for (const Channel& channel : channels)
     if (channel.unit != channels[0].unit)
       throw usage_error("E0870")
-          .says("the devices of a cornered hat must be in one unit; " + channels[0].name +
-                " is in " + channels[0].unit)
+          .says("the devices of a cornered hat must be in one unit; " + channels[0].name + " is in " + channels[0].unit)
           .got(channel.name + " in " + channel.unit)
           .hint("choose the `channels` that measure the same");
 }
@@ -55,10 +54,7 @@ std::vector<Channel> devices_of(const std::vector<Channel>& differences) {
 
 }  // namespace
 
-LogHat log_cornered_hat(const std::string& path,
-                        const LogAllanOptions& options,
-                        bool differences,
-                        Progress& progress) {
+LogHat log_cornered_hat(const std::string& path, const LogAllanOptions& options, bool differences, Progress& progress) {
   const Prepared input = prepared(path, options, progress);
   LogHat out;
   out.log = input.recording.info;
@@ -71,9 +67,7 @@ LogHat log_cornered_hat(const std::string& path,
   return out;
 }
 
-LogDynamic log_dynamic_deviation(const std::string& path,
-                                 const LogAllanOptions& options,
-                                 const DynamicTimes& times,
+LogDynamic log_dynamic_deviation(const std::string& path, const LogAllanOptions& options, const DynamicTimes& times,
                                  Progress& progress) {
   const Prepared input = prepared(path, options, progress);
   const auto samples_of = [&](double seconds) {
@@ -87,8 +81,7 @@ LogDynamic log_dynamic_deviation(const std::string& path,
   out.log = input.recording.info;
   for (std::size_t c = 0; c < input.recording.samples.size(); ++c) {
     out.channels.push_back(out.log.channels[c]);
-    out.deviations.push_back(
-        dynamic_deviation(input.recording.channel(c), input.dt_s, dynamic, input.allan));
+    out.deviations.push_back(dynamic_deviation(input.recording.channel(c), input.dt_s, dynamic, input.allan));
   }
   return out;
 }

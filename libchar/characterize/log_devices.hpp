@@ -23,9 +23,7 @@ struct LogHat {
 
 /// Three or more channels that measure the same at once: the deviation of each. `differences`: three channels are a - b, b - c and c - a
 /// instead, and the devices are called after them. Reads the log whole. Throws as read_recording and cornered_hat.
-LogHat log_cornered_hat(const std::string& path,
-                        const LogAllanOptions& options,
-                        bool differences,
+LogHat log_cornered_hat(const std::string& path, const LogAllanOptions& options, bool differences,
                         Progress& progress = no_progress());
 
 struct LogDynamic {
@@ -39,9 +37,7 @@ struct DynamicTimes {
 };
 
 /// Reads the log whole. Throws as read_recording and dynamic_deviation.
-LogDynamic log_dynamic_deviation(const std::string& path,
-                                 const LogAllanOptions& options,
-                                 const DynamicTimes& times,
+LogDynamic log_dynamic_deviation(const std::string& path, const LogAllanOptions& options, const DynamicTimes& times,
                                  Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -27,8 +27,7 @@ void set_tau_range(SensorModel& model, const AllanCurve& allan) {
 GaussMarkovNoise process_of(const NoiseFit& fit) {
   if (!fit.gauss_markov || !fit.gauss_markov->in_model) return {};
   const Coefficient &sigma = fit.gauss_markov->sigma, &tau = fit.gauss_markov->tau_s;
-  GaussMarkovNoise out{
-      *sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}, sigma.status};
+  GaussMarkovNoise out{*sigma.value, *tau.value, {sigma.ci95.low, sigma.ci95.high}, {tau.ci95.low}, sigma.status};
   if (std::isfinite(tau.ci95.high)) out.tau_ci95_s.push_back(tau.ci95.high);
   return out;
 }
@@ -71,9 +70,7 @@ void add_findings_of(const LogInfo& log, SensorModel& model) {
 
 }  // namespace
 
-SensorModel sensor_model_from_curve(const Channel& channel,
-                                    const NoiseFit& fit,
-                                    const std::string& obtained,
+SensorModel sensor_model_from_curve(const Channel& channel, const NoiseFit& fit, const std::string& obtained,
                                     const LogInfo& source) {
   SensorModel model;
   model.channel = channel.name;

@@ -14,9 +14,7 @@ SensorModel sensor_model_from(const ChannelResult& channel, const LogInfo& log);
 
 /// The noise part alone, of a fit that knows no recording: `obtained` says of what ("fit of an Allan
 /// curve"). `file` and `sha256` are those of the curve.
-SensorModel sensor_model_from_curve(const Channel& channel,
-                                    const NoiseFit& fit,
-                                    const std::string& obtained,
+SensorModel sensor_model_from_curve(const Channel& channel, const NoiseFit& fit, const std::string& obtained,
                                     const LogInfo& source);
 
 }  // namespace libchar

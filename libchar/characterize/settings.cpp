@@ -11,8 +11,7 @@ namespace {
 const std::vector<Word>& deviations() {
   static const std::vector<Word> words = [] {
     std::vector<Word> all;
-    for (const DeviationRow& row : deviation_rows())
-      all.push_back({row.word, static_cast<int>(row.type)});
+    for (const DeviationRow& row : deviation_rows()) all.push_back({row.word, static_cast<int>(row.type)});
     return all;
   }();
   return words;
@@ -76,10 +75,8 @@ const Fields<FitOptions>& fit_settings() {
 // configurations.
 const Fields<ReadOptions>& reading_settings() {
   static const Fields<ReadOptions> rows = [] {
-    Fields<ReadOptions> all =
-        selected(reading_fields(),
-                 {"channels", "time_column", "time_unit", "delimiter", "decimal", "header"},
-                 Written::always);
+    Fields<ReadOptions> all = selected(
+        reading_fields(), {"channels", "time_column", "time_unit", "delimiter", "decimal", "header"}, Written::always);
     const std::vector<std::string> always_written = keys_of(all);
     for (const Field& row : reading_fields().rows)
       if (std::find(always_written.begin(), always_written.end(), row.key) == always_written.end())
@@ -98,8 +95,7 @@ void read_still(const MapReader& at, std::string_view key, Options& options) {
 void write_still(const Field& row, const Options& options, std::vector<Entry>& out) {
   if (options.still.stretch_s)
     out.push_back(
-        {std::string(row.key),
-         std::vector<double>{options.still.stretch_s->low, options.still.stretch_s->high}});
+        {std::string(row.key), std::vector<double>{options.still.stretch_s->low, options.still.stretch_s->high}});
 }
 
 }  // namespace
@@ -111,8 +107,7 @@ const Fields<CharacterizeOptions>& characterize_fields() {
         field<&Options::nominal_frequency>("nominal_frequency_hz", {.unit = "Hz"}),
         field<&Options::unwrap>("unwrap", {.meaning = "the values start again after this much"}),
         field<&Options::frozen>("frozen", {.meaning = "runs of so many equal values are missing"}),
-        field<&Options::interpolated>("interpolated",
-                                      {.meaning = "lines of so many samples are missing"}),
+        field<&Options::interpolated>("interpolated", {.meaning = "lines of so many samples are missing"}),
         field<&Options::memory_bytes>("memory_bytes", {.unit = "bytes"}),
         level<Options>("allan", always(allan_settings())),
         part<&Options::spectrum>("spectrum", always(spectrum_settings())),
@@ -124,8 +119,7 @@ const Fields<CharacterizeOptions>& characterize_fields() {
     all.rows.push_back(field<&Options::quarter_segments>("spectrum_quarter").field);
     all.rows.push_back(field<&Options::temperature>("temperature").field);
     all.rows.push_back(field<&Options::still, &StillOptions::search>("still_search").field);
-    all.rows.push_back(
-        custom<Options, read_still, write_still>("still_s", "[low, high]", {.unit = "s"}).field);
+    all.rows.push_back(custom<Options, read_still, write_still>("still_s", "[low, high]", {.unit = "s"}).field);
     return all;
   }();
   return rows;

@@ -31,17 +31,10 @@ struct OrderedState {
 
 void check_log(const OrderedState& one, const OrderedState& first, const std::string& settings) {
   const StretchHead &head = one.head, &other = first.head;
-  if (head.identity != other.identity || head.samples != other.samples ||
-      head.channels != other.channels)
+  if (head.identity != other.identity || head.samples != other.samples || head.channels != other.channels)
     throw input_error("E0724", one.state->name)
-        .says("is of another log than {}: {} of {} samples of {} channels, not {} of {} of {}",
-              first.state->name,
-              head.identity,
-              head.samples,
-              head.channels,
-              other.identity,
-              other.samples,
-              other.channels)
+        .says("is of another log than {}: {} of {} samples of {} channels, not {} of {} of {}", first.state->name,
+              head.identity, head.samples, head.channels, other.identity, other.samples, other.channels)
         .hint("join states of one log");
   if (head.settings != settings)
     throw input_error("E0724", one.state->name)
@@ -54,10 +47,7 @@ std::string of_channel(const StretchHead& head) {
   return head.channels > 1 ? fmt::format(" of channel {}", head.channel + 1) : "";
 }
 
-[[noreturn]] void refuse_hole(const OrderedState& at,
-                              std::uint64_t first,
-                              std::uint64_t last,
-                              const char* where) {
+[[noreturn]] void refuse_hole(const OrderedState& at, std::uint64_t first, std::uint64_t last, const char* where) {
   throw input_error("E0725", at.state->name)
       .says("no state has the leaves {} to {}{} {} it", first, last, of_channel(at.head), where)
       .hint("characterize that stretch, and give its state");
@@ -71,10 +61,7 @@ void check_cover(const std::vector<OrderedState>& states) {
     const auto [from, end] = one.head.range;
     if (from < next)
       throw input_error("E0725", one.state->name)
-          .says("covers leaf {}{}, which {} does too",
-                from,
-                of_channel(one.head),
-                before->state->name)
+          .says("covers leaf {}{}, which {} does too", from, of_channel(one.head), before->state->name)
           .hint("leave one of them out");
     if (from > next) refuse_hole(one, next, from - 1, "in front of");
     next = end;
@@ -92,8 +79,7 @@ std::vector<std::vector<OrderedState>> states_in_order(std::span<const NamedStat
   for (const NamedState& state : states) all.push_back({&state, stretch_head(state)});
   if (all.empty()) throw input_error("E0725").says("there is no state to be joined");
   std::stable_sort(all.begin(), all.end(), [](const OrderedState& a, const OrderedState& b) {
-    return std::pair(a.head.channel, a.head.range.first_leaf) <
-           std::pair(b.head.channel, b.head.range.first_leaf);
+    return std::pair(a.head.channel, a.head.range.first_leaf) < std::pair(b.head.channel, b.head.range.first_leaf);
   });
   std::vector<std::vector<OrderedState>> channels;
   for (OrderedState& one : all) {
@@ -142,8 +128,7 @@ struct LeafSamples final : BlockSink {
 void check_range(const std::string& path, StretchRange range, std::uint64_t leaves) {
   if (range.first_leaf < range.end_leaf && range.end_leaf <= leaves) return;
   throw usage_error("E0727", path)
-      .says(
-          "the log has {} leaves of {} samples; a stretch is of some of them", leaves, kLeafSamples)
+      .says("the log has {} leaves of {} samples; a stretch is of some of them", leaves, kLeafSamples)
       .got("{}..{}", range.first_leaf, range.end_leaf)
       .hint("choose from 0..{}", leaves);
 }
@@ -157,35 +142,26 @@ void keep_head(LogInfo read, LogInfo& log) {
 }
 
 /// Every part is of as many samples as the node has, or of what was not asked for.
-void check_samples(const ChannelSums& sums,
-                   std::uint64_t samples,
-                   std::uint64_t whole,
-                   const StateReader& from) {
+void check_samples(const ChannelSums& sums, std::uint64_t samples, std::uint64_t whole, const StateReader& from) {
   std::vector<std::uint64_t> seen = {sums.meters.trace.samples(), sums.kept.size()};
   // Differences of a phase: the last leaf has one less.
-  for (const std::uint64_t n : {sums.spectrum.samples,
-                                sums.record.plain.allan.samples,
-                                sums.record.plain.means.samples(),
-                                sums.record.cleaned ? sums.record.cleaned->allan.samples : 0})
+  for (const std::uint64_t n :
+       {sums.spectrum.samples, sums.record.plain.allan.samples, sums.record.plain.means.samples(),
+        sums.record.cleaned ? sums.record.cleaned->allan.samples : 0})
     seen.push_back(n + 1 == samples ? samples : n);
   for (const std::uint64_t n : seen)
     if (n != samples && n != 0) from.refuse("a node has another number of samples than its leaves");
-  if (whole <= kLeafSamples && samples > 0 && sums.kept.empty())
-    from.refuse("a log of one leaf has no samples");
+  if (whole <= kLeafSamples && samples > 0 && sums.kept.empty()) from.refuse("a log of one leaf has no samples");
 }
 
 /// The nodes of a state into the tree; they are of its range, and follow each other.
-void add_nodes(StateReader& from,
-               const StretchHead& head,
-               const LeafStage& stage,
-               ChannelTree& tree) {
+void add_nodes(StateReader& from, const StretchHead& head, const LeafStage& stage, ChannelTree& tree) {
   std::uint64_t next = head.range.first_leaf;
   for (std::size_t left = read_node_count(from); left > 0; --left) {
     ChannelNode node = read_node(from, stage);
     if (node.first_leaf() != next) from.refuse("its nodes do not follow each other");
     next = std::min(node.end_leaf(), leaves_of(head.samples));
-    const std::uint64_t samples =
-        std::min(next * kLeafSamples, head.samples) - node.first_leaf() * kLeafSamples;
+    const std::uint64_t samples = std::min(next * kLeafSamples, head.samples) - node.first_leaf() * kLeafSamples;
     check_samples(node.sums, samples, head.samples, from);
     tree.add(std::move(node));
   }
@@ -194,10 +170,7 @@ void add_nodes(StateReader& from,
 }
 
 /// One channel of a log, from its states.
-ChannelSums joined(const std::vector<OrderedState>& states,
-                   LeafStage& stage,
-                   LogInfo& log,
-                   Progress& progress) {
+ChannelSums joined(const std::vector<OrderedState>& states, LeafStage& stage, LogInfo& log, Progress& progress) {
   ChannelTree tree(stage);
   for (const OrderedState& one : states) {
     progress.update(-1, "reading " + one.state->name);
@@ -230,35 +203,24 @@ ChannelSums kept_leaf(std::vector<double> samples) {
 }
 
 /// A pass over a stretch: the states of a few channels.
-void take_channels(const std::string& path,
-                   const CharacterizeOptions& options,
-                   ChannelRange channels,
-                   StretchState state,
-                   CharacterizeWorkspace& workspace,
-                   const StateSink& sink,
+void take_channels(const std::string& path, const CharacterizeOptions& options, ChannelRange channels,
+                   StretchState state, CharacterizeWorkspace& workspace, const StateSink& sink,
                    const std::function<void(std::uint64_t leaf)>& at) {
   const std::uint64_t samples = state.head.samples, leaves = leaves_of(samples);
   std::vector<LeafStage> stages;
-  for (std::size_t c = channels.first; c < channels.end; ++c)
-    stages.emplace_back(options, workspace.welch);
+  for (std::size_t c = channels.first; c < channels.end; ++c) stages.emplace_back(options, workspace.welch);
   std::vector<ChannelTree> trees(stages.begin(), stages.end());
   LeafSamples read(channels);
   for (std::uint64_t leaf = state.head.range.first_leaf; leaf < state.head.range.end_leaf; ++leaf) {
     at(leaf);
     const std::uint64_t first = leaf * kLeafSamples;
-    keep_head(read_rows(path,
-                        options.reading,
-                        first,
-                        std::min(first + stages[0].rows(), samples),
-                        read,
-                        channels),
+    keep_head(read_rows(path, options.reading, first, std::min(first + stages[0].rows(), samples), read, channels),
               state.log);
     const bool last = leaf + 1 == leaves;
     parallel::for_each(0, stages.size(), [&](std::size_t c) {
-      trees[c].add({0,
-                    leaf,
-                    last && leaf == 0 ? kept_leaf(std::move(read.channels[c]))
-                                      : stages[c].take(read.channels[c], last)});
+      trees[c].add(
+          {0, leaf,
+           last && leaf == 0 ? kept_leaf(std::move(read.channels[c])) : stages[c].take(read.channels[c], last)});
     });
   }
   read.channels.clear();
@@ -279,8 +241,7 @@ std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& optio
   std::string why = why_no_rows(log);
   const std::string all = what_needs_all_samples(options);
   if (why.empty() && !all.empty()) why = fmt::format("{} takes all samples at once", all);
-  if (why.empty() && (options.still.search || options.still.stretch_s))
-    why = "a still stretch is a part of it already";
+  if (why.empty() && (options.still.search || options.still.stretch_s)) why = "a still stretch is a part of it already";
   if (why.empty() && (options.reading.from_s || options.reading.to_s))
     why = "`from_s` and `to_s` are a part of it already";
   if (why.empty()) why = why_not_in_leaves(in_samples(log, options));
@@ -301,12 +262,8 @@ std::string settings_digest(const CharacterizeOptions& options) {
   return digest.finish();
 }
 
-void characterize_stretch(const std::string& path,
-                          const CharacterizeOptions& options,
-                          StretchRange range,
-                          const std::string& identity,
-                          const StateSink& sink,
-                          Progress& progress) {
+void characterize_stretch(const std::string& path, const CharacterizeOptions& options, StretchRange range,
+                          const std::string& identity, const StateSink& sink, Progress& progress) {
   StretchState state;
   state.log = read_log_head(path, options.reading);
   if (const std::string why = why_not_divided(state.log, options); !why.empty())
@@ -324,8 +281,7 @@ void characterize_stretch(const std::string& path,
     const ChannelRange few = {first, std::min(channels, first + kAtOnce)};
     const auto at = [&](std::uint64_t leaf) {
       const std::uint64_t done = first * leaves + (few.end - first) * (leaf - range.first_leaf);
-      progress.update(static_cast<double>(done) / static_cast<double>(channels * leaves),
-                      "reading " + path);
+      progress.update(static_cast<double>(done) / static_cast<double>(channels * leaves), "reading " + path);
     };
     arena.run([&] { take_channels(path, chosen, few, state, workspace, sink, at); });
     give_back_free_memory();
@@ -346,8 +302,7 @@ StretchHead stretch_head(const NamedState& state) {
   return read_stretch(from).head;
 }
 
-Characterization characterize_from_stretches(std::span<const NamedState> states,
-                                             const CharacterizeOptions& options,
+Characterization characterize_from_stretches(std::span<const NamedState> states, const CharacterizeOptions& options,
                                              Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;
@@ -365,14 +320,11 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
     if (read.sums.meters.quality.finish().samples > 0)
       ++with_values;
     else
-      result.log.warnings.add(
-          "no_finite_value", "channels without any finite value", "channel " + channel.name);
-    result.channels.push_back(
-        finish_channel(std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
+      result.log.warnings.add("no_finite_value", "channels without any finite value", "channel " + channel.name);
+    result.channels.push_back(finish_channel(std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
     give_back_free_memory();
   }
-  if (with_values == 0)
-    throw input_error("E0318", result.log.file).says("no channel has a finite value");
+  if (with_values == 0) throw input_error("E0318", result.log.file).says("no channel has a finite value");
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -45,12 +45,8 @@ using StateSink = std::function<void(const std::string& bytes)>;
 /// each 8 MB and some 1 MB for each of up to 2 log2(leaves) nodes of the tree. Throws Error(usage)
 /// where the log or the options cannot be divided (E0726) or the range is none of the log's
 /// (E0727), Error(input) as read_log.
-void characterize_stretch(const std::string& path,
-                          const CharacterizeOptions& options,
-                          StretchRange range,
-                          const std::string& identity,
-                          const StateSink& sink,
-                          Progress& progress = no_progress());
+void characterize_stretch(const std::string& path, const CharacterizeOptions& options, StretchRange range,
+                          const std::string& identity, const StateSink& sink, Progress& progress = no_progress());
 
 /// A state under the name that messages have for it. It is read twice, one state at a time: they
 /// need not be in memory together.
@@ -83,8 +79,7 @@ std::string settings_digest(const CharacterizeOptions& options);
 /// of another log or of other settings (E0724), for one that covers what another does, and for
 /// leaves that none has (E0725); Error(numeric) where no channel has a finite value. `log.sha256`
 /// of the result is empty: the caller knows the log.
-Characterization characterize_from_stretches(std::span<const NamedState> states,
-                                             const CharacterizeOptions& options,
+Characterization characterize_from_stretches(std::span<const NamedState> states, const CharacterizeOptions& options,
                                              Progress& progress = no_progress());
 
 }  // namespace libchar

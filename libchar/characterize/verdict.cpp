@@ -18,8 +18,7 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
   const bool clock = fit.flicker_phase.has_value();
   const TermCells cells = term_cells(c, term, unit, clock);
   const std::string name = clock ? cells.title : cells.title + " " + cells.letter;
-  const std::string value =
-      said(cells.own) + (cells.field.empty() ? "" : " (" + said(cells.field.front()) + ")");
+  const std::string value = said(cells.own) + (cells.field.empty() ? "" : " (" + said(cells.field.front()) + ")");
   switch (c.status) {
     case Status::detected:
       return fmt::format("{} = {}, known to {}.", name, value, percent_text(c.relative_sd));
@@ -27,11 +26,9 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
       return fmt::format(
           "{} = {}, but undetermined: the record cannot tell it from another term, or contradicts "
           "it.",
-          name,
-          value);
+          name, value);
     case Status::misfit:
-      return fmt::format(
-          "{} = {}, but the noise terms do not describe the recording.", name, value);
+      return fmt::format("{} = {}, but the noise terms do not describe the recording.", name, value);
     case Status::not_detected:
       return fmt::format("{} not detected, {} (95 %).", name, value);
     case Status::given:
@@ -49,18 +46,9 @@ struct HeadlineRow {
   const char* behind;
 };
 constexpr HeadlineRow kHeadline[] = {
-    {"misfit",
-     "misfit",
-     " It does not explain ",
-     ": see the residuals there before using the intervals."},
-    {"allan_disagrees",
-     "allan_disagrees",
-     " The Allan fit disagrees with the spectral fit on ",
-     "."},
-    {"simulation_disagrees",
-     "simulation_disagrees",
-     " A simulation of the model does not agree with ",
-     "."},
+    {"misfit", "misfit", " It does not explain ", ": see the residuals there before using the intervals."},
+    {"allan_disagrees", "allan_disagrees", " The Allan fit disagrees with the spectral fit on ", "."},
+    {"simulation_disagrees", "simulation_disagrees", " A simulation of the model does not agree with ", "."},
     {"no_fit", "no_fit", " No fit was possible for ", "."},
     {"undetermined", "misfit", " Coefficients of ", " are doubtful."}};
 
@@ -68,44 +56,33 @@ constexpr HeadlineRow kHeadline[] = {
 const Finding* unsaid(const Judgement& judgement, Severity severity) {
   for (const Finding& one : judgement.findings)
     if (one.severity == severity &&
-        std::none_of(std::begin(kHeadline), std::end(kHeadline), [&](const HeadlineRow& row) {
-          return one.code == row.code || one.code == row.or_code;
-        }))
+        std::none_of(std::begin(kHeadline), std::end(kHeadline),
+                     [&](const HeadlineRow& row) { return one.code == row.code || one.code == row.or_code; }))
       return &one;
   return nullptr;
 }
 
 // "The noise model explains both channels within their scatter, and the Allan fits agree."
-std::string explained_sentence(const Characterization& result,
-                               const std::vector<Judgement>& judged) {
+std::string explained_sentence(const Characterization& result, const std::vector<Judgement>& judged) {
   const std::size_t n = judged.size();
-  const auto good =
-      static_cast<std::size_t>(std::count_if(judged.begin(), judged.end(), [](const Judgement& j) {
-        return !j.has("no_fit") && !j.has("misfit");
-      }));
-  if (good < n)
-    return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
-  const auto opinions = static_cast<std::size_t>(
-      std::count_if(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
-        return c.fit && c.fit->second_opinion;
-      }));
-  const std::string out =
-      n == 1 ? "The noise model explains the channel within its scatter"
-             : fmt::format("The noise model explains {} within their scatter",
-                           n == 2 ? "both channels" : fmt::format("all {} channels", n));
-  const bool agree = std::none_of(
-      judged.begin(), judged.end(), [](const Judgement& j) { return j.has("allan_disagrees"); });
+  const auto good = static_cast<std::size_t>(std::count_if(
+      judged.begin(), judged.end(), [](const Judgement& j) { return !j.has("no_fit") && !j.has("misfit"); }));
+  if (good < n) return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
+  const auto opinions =
+      static_cast<std::size_t>(std::count_if(result.channels.begin(), result.channels.end(),
+                                             [](const ChannelResult& c) { return c.fit && c.fit->second_opinion; }));
+  const std::string out = n == 1 ? "The noise model explains the channel within its scatter"
+                                 : fmt::format("The noise model explains {} within their scatter",
+                                               n == 2 ? "both channels" : fmt::format("all {} channels", n));
+  const bool agree =
+      std::none_of(judged.begin(), judged.end(), [](const Judgement& j) { return j.has("allan_disagrees"); });
   if (opinions == 0 || !agree) return out + ".";
-  if (opinions == n)
-    return out + (n == 1 ? ", and the Allan fit agrees." : ", and the Allan fits agree.");
-  return out +
-         fmt::format(", and the Allan fits, where they are made ({} of {}), agree.", opinions, n);
+  if (opinions == n) return out + (n == 1 ? ", and the Allan fit agrees." : ", and the Allan fits agree.");
+  return out + fmt::format(", and the Allan fits, where they are made ({} of {}), agree.", opinions, n);
 }
 
 // What else speaks against channels: the objection of one, the names of several.
-std::string unsaid_sentence(const Characterization& result,
-                            const std::vector<Judgement>& judged,
-                            Rating rating) {
+std::string unsaid_sentence(const Characterization& result, const std::vector<Judgement>& judged, Rating rating) {
   std::vector<std::string> names;
   std::string phrase;
   bool one_reason = true;
@@ -119,10 +96,8 @@ std::string unsaid_sentence(const Characterization& result,
     }
   }
   if (names.empty()) return "";
-  return fmt::format(" {} {}{}: {}.",
-                     rating == Rating::bad ? "Do not use" : "Use",
-                     judged.size() == 1 ? "it" : first_names(names),
-                     rating == Rating::bad ? "" : " with caution",
+  return fmt::format(" {} {}{}: {}.", rating == Rating::bad ? "Do not use" : "Use",
+                     judged.size() == 1 ? "it" : first_names(names), rating == Rating::bad ? "" : " with caution",
                      one_reason ? phrase : "see what is said of them");
 }
 
@@ -143,16 +118,12 @@ std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::s
   if (fit.gauss_markov && fit.gauss_markov->in_model)
     out.push_back(fmt::format(
         "Gauss–Markov process: standard deviation σ = {} {}, correlation time τ = {}{}.",
-        value_text(fit.gauss_markov->sigma),
-        unit.empty() ? "U" : unit,
-        duration_text(*fit.gauss_markov->tau_s.value),
+        value_text(fit.gauss_markov->sigma), unit.empty() ? "U" : unit, duration_text(*fit.gauss_markov->tau_s.value),
         fit.gauss_markov->sigma.status == Status::detected
-            ? fmt::format(", known to {} and {}",
-                          percent_text(fit.gauss_markov->sigma.relative_sd),
+            ? fmt::format(", known to {} and {}", percent_text(fit.gauss_markov->sigma.relative_sd),
                           percent_text(fit.gauss_markov->tau_s.relative_sd))
             : ", but the record contradicts it or the terms do not describe it"));
-  if (fit.temperature && fit.temperature->order > 0)
-    out.push_back(temperature_sentence(*fit.temperature, unit));
+  if (fit.temperature && fit.temperature->order > 0) out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
     out.push_back(
         fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "
@@ -168,12 +139,10 @@ std::string verdict_of(const Characterization& result, const std::vector<Judgeme
   for (const HeadlineRow& row : kHeadline) {
     std::vector<std::string> names;
     for (std::size_t c = 0; c < judged.size(); ++c)
-      if (judged[c].has(row.code) || judged[c].has(row.or_code))
-        names.push_back(result.channels[c].channel.name);
+      if (judged[c].has(row.code) || judged[c].has(row.or_code)) names.push_back(result.channels[c].channel.name);
     if (!names.empty()) out += row.before + first_names(names) + row.behind;
   }
-  for (const Rating rating : {Rating::bad, Rating::caution})
-    out += unsaid_sentence(result, judged, rating);
+  for (const Rating rating : {Rating::bad, Rating::caution}) out += unsaid_sentence(result, judged, rating);
   if (result.still) out += " " + result.still->sentence;
   return out;
 }
@@ -188,9 +157,8 @@ namespace {
 
 std::string term_phrase(const std::string& name, const ShownValue& shown, Status status) {
   const char* doubt = status == Status::undetermined ? ", undetermined" : "";
-  return shown.low.empty()
-             ? fmt::format("{} not seen ({}{})", name, said(shown), doubt)
-             : fmt::format("{} {} {}{}", name, said(shown), interval_brackets(shown), doubt);
+  return shown.low.empty() ? fmt::format("{} not seen ({}{})", name, said(shown), doubt)
+                           : fmt::format("{} {} {}{}", name, said(shown), interval_brackets(shown), doubt);
 }
 
 std::string terms_of(const NoiseFit& fit, const std::string& unit) {
@@ -201,8 +169,7 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
     parts.push_back(parts.empty() ? phrase : as_part(phrase));
   };
   const std::vector<PowerLaw> laws = power_laws(fit);
-  for (const PowerLaw& law : laws)
-    say(fmt::format("{} h_{}", law.name, law.alpha), shown_value(law.h, 1, ""), law.h);
+  for (const PowerLaw& law : laws) say(fmt::format("{} h_{}", law.name, law.alpha), shown_value(law.h, 1, ""), law.h);
   for (std::size_t t = laws.empty() ? 0 : static_cast<std::size_t>(Term::ramp); t < kTerms; ++t) {
     const TermCells cells = term_cells(fit.term[t], static_cast<Term>(t), unit, !laws.empty());
     say(cells.title + " " + cells.letter, headline(cells), fit.term[t]);
@@ -211,9 +178,7 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
   if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
     const std::string symbol = shown_unit(unit);
     parts.push_back(fmt::format("a Gauss–Markov process of {}{}{} with a correlation time of {}",
-                                value_text(fit.gauss_markov->sigma),
-                                symbol.empty() ? "" : " ",
-                                symbol,
+                                value_text(fit.gauss_markov->sigma), symbol.empty() ? "" : " ", symbol,
                                 duration_text(*fit.gauss_markov->tau_s.value)));
   }
   return parts.empty() ? "No noise term was found" : fmt::format("{}", fmt::join(parts, ", "));
@@ -221,11 +186,9 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
 
 // Where the terms hold, when that is not everywhere, and what the sensor does beside its noise.
 std::string beside_phrase(const NoiseFit& fit) {
-  const std::string temperature = fit.temperature && fit.temperature->order > 0
-                                      ? " Its dependence on temperature was taken out."
-                                      : "";
-  if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz)
-    return temperature;
+  const std::string temperature =
+      fit.temperature && fit.temperature->order > 0 ? " Its dependence on temperature was taken out." : "";
+  if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz) return temperature;
   return fmt::format(" They hold below {} Hz.", brief_text(fit.band.top_hz)) + temperature;
 }
 
@@ -235,8 +198,7 @@ std::string spoils_phrase(const Judgement& judgement) {
   std::vector<std::string> told;
   std::size_t more = 0;
   for (const Finding& one : judgement.findings)
-    if (one.severity != Severity::note)
-      told.size() < kMostSpoils ? told.push_back(one.phrase) : void(++more);
+    if (one.severity != Severity::note) told.size() < kMostSpoils ? told.push_back(one.phrase) : void(++more);
   std::string out = fmt::format("{}", fmt::join(told, "; "));
   if (more > 0) out += fmt::format("; and {} more", more);
   return out + ".";
@@ -250,14 +212,12 @@ std::string begun(std::string text) {
 
 }  // namespace
 
-std::string detail::summary_sentence(const ChannelResult& channel,
-                                     const Judgement& judgement,
+std::string detail::summary_sentence(const ChannelResult& channel, const Judgement& judgement,
                                      const std::string& unit) {
   if (!channel.fit) return begun(spoils_phrase(judgement));
   const std::string terms = begun(terms_of(*channel.fit, unit)) + "." + beside_phrase(*channel.fit);
   if (judgement.rating == Rating::good) return terms;
-  return terms + (judgement.rating == Rating::bad ? " Do not rely on them: " : " But: ") +
-         spoils_phrase(judgement);
+  return terms + (judgement.rating == Rating::bad ? " Do not rely on them: " : " But: ") + spoils_phrase(judgement);
 }
 
 }  // namespace libchar

@@ -9,9 +9,7 @@
 namespace libchar {
 namespace {
 
-bool is_letter(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0;
-}
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 // The lower-case name up to a unit in brackets, trailing digits and marks dropped.
 std::string stem_of(std::string_view name) {
@@ -21,25 +19,10 @@ std::string stem_of(std::string_view name) {
 }
 
 // A word of the field in front of the letter, not any word ending in x.
-constexpr std::array<std::string_view, 19> kWords = {"a",
-                                                     "g",
-                                                     "w",
-                                                     "m",
-                                                     "b",
-                                                     "acc",
-                                                     "accel",
-                                                     "gyr",
-                                                     "gyro",
-                                                     "mag",
-                                                     "omega",
-                                                     "rate",
-                                                     "acceleration",
-                                                     "accelerometer",
-                                                     "gyroscope",
-                                                     "imu",
-                                                     "angvel",
-                                                     "linacc",
-                                                     "axis"};
+constexpr std::array<std::string_view, 19> kWords = {
+    "a",         "g",    "w",      "m",      "b",    "acc",          "accel",
+    "gyr",       "gyro", "mag",    "omega",  "rate", "acceleration", "accelerometer",
+    "gyroscope", "imu",  "angvel", "linacc", "axis"};
 
 }  // namespace
 

@@ -14,9 +14,9 @@ enum class Status {
   detected,      ///< value and interval
   not_detected,  ///< likelihood ratio below the threshold: no value, only `upper95`
   undetermined,  ///< present alone or with another term, but the record cannot tell them apart: value and wide interval
-  misfit,  ///< fitted, but the noise terms do not describe the record: intervals are widened by the scatter
-  given,       ///< not fitted but stated by somebody (models only)
-  not_fitted,  ///< the term was not part of the model that was asked for
+  misfit,        ///< fitted, but the noise terms do not describe the record: intervals are widened by the scatter
+  given,         ///< not fitted but stated by somebody (models only)
+  not_fitted,    ///< the term was not part of the model that was asked for
 };
 template <>
 inline constexpr auto enum_table<Status> =
@@ -32,10 +32,10 @@ struct SquareInAll {
 /// One coefficient (not squared), in the channel's unit times the unit of core/units.hpp's term_unit.
 struct Coefficient {
   Status status = Status::not_fitted;
-  std::optional<double> value;  ///< nothing when not detected
-  Interval ci95;                ///< low = 0 when it reaches zero; meaningful when there is a value
-  double relative_sd = 0;       ///< standard deviation / value, from the fit's covariance
-  bool profile = false;  ///< ci95 by profile likelihood (relative_sd > 15 %), else log-normal Wald
+  std::optional<double> value;    ///< nothing when not detected
+  Interval ci95;                  ///< low = 0 when it reaches zero; meaningful when there is a value
+  double relative_sd = 0;         ///< standard deviation / value, from the fit's covariance
+  bool profile = false;           ///< ci95 by profile likelihood (relative_sd > 15 %), else log-normal Wald
   std::optional<double> upper95;  ///< one-sided upper 95 % limit when there is no value
   double likelihood_ratio = 0;    ///< 2 (lnL with - lnL without)
   std::optional<double> bound;    ///< Cramér–Rao bound at the fit, relative sd

@@ -13,7 +13,7 @@ enum class ErrorKind {
   numeric,  ///< the numbers do not allow a result (singular, too few…)    (exit 4)
   output,   ///< a result cannot be written                                (exit 5)
   check,    ///< a requested check failed                                  (exit 6)
-  again,  ///< not possible now; the same call may succeed later         (exit 75, as schedulers know it)
+  again,    ///< not possible now; the same call may succeed later         (exit 75, as schedulers know it)
 };
 
 /// What happened, in the parts of one sentence. Text fields may hold untrusted bytes of a file: they are escaped by
@@ -24,8 +24,7 @@ struct Problem {
   /// "FILE:LINE:COL (byte N)" or "FILE (byte N, field NAME)"; "" when nowhere in particular
   std::string where = {};
   std::string what = {};  ///< what was found and what was expected
-  std::string got =
-      {};  ///< offending excerpt, shown quoted and cut to 40 characters; "" when there is none
+  std::string got = {};   ///< offending excerpt, shown quoted and cut to 40 characters; "" when there is none
   std::string hint = {};  ///< what to do; "" when there is nothing to do
 };
 

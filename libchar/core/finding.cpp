@@ -26,8 +26,7 @@ std::vector<Finding::Effect> effects_in(std::string_view cell) {
   if (cell.empty()) return out;
   for (const std::string_view part : split(cell, ", ")) {
     const std::vector<std::string_view> words = split(part, ":");
-    Finding::Effect& effect =
-        out.emplace_back(Finding::Effect{find_enum<Affected>(words[0]).value()});
+    Finding::Effect& effect = out.emplace_back(Finding::Effect{find_enum<Affected>(words[0]).value()});
     if (words.size() > 1) effect.direction = find_enum<Direction>(words[1]).value();
   }
   return out;
@@ -39,12 +38,8 @@ std::vector<FindingKind> kinds_in(std::string_view table) {
     if (line.empty() || line[0] == '#') continue;
     const std::vector<std::string_view> cells = split(line, "\t");
     assert(cells.size() == 6);
-    out.push_back({cells[0],
-                   find_enum<Severity>(cells[1]).value(),
-                   cells[2],
-                   cells[3],
-                   cells[4],
-                   effects_in(cells[5])});
+    out.push_back(
+        {cells[0], find_enum<Severity>(cells[1]).value(), cells[2], cells[3], cells[4], effects_in(cells[5])});
   }
   return out;
 }
@@ -58,10 +53,9 @@ std::span<const FindingKind> finding_kinds() {
 
 const FindingKind* find_finding_kind(std::string_view code) {
   const auto kinds = finding_kinds();
-  const auto found = std::lower_bound(
-      kinds.begin(), kinds.end(), code, [](const FindingKind& kind, std::string_view wanted) {
-        return kind.code < wanted;
-      });
+  const auto found =
+      std::lower_bound(kinds.begin(), kinds.end(), code,
+                       [](const FindingKind& kind, std::string_view wanted) { return kind.code < wanted; });
   return found != kinds.end() && found->code == code ? &*found : nullptr;
 }
 
@@ -86,14 +80,12 @@ Severity worst_of(std::span<const Finding> findings) {
 }
 
 bool has(std::span<const Finding> findings, std::string_view code) {
-  return std::any_of(
-      findings.begin(), findings.end(), [&](const Finding& one) { return one.code == code; });
+  return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) { return one.code == code; });
 }
 
 std::vector<Finding> worst_first(std::vector<Finding> findings) {
-  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-    return a.severity > b.severity;
-  });
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   return findings;
 }
 
@@ -103,8 +95,7 @@ std::string as_part(const std::string& whole) {
   const auto is_in = [&](std::size_t i, char first, char last) {
     return sentence.size() > i && sentence[i] >= first && sentence[i] <= last;
   };
-  if (is_in(0, 'A', 'Z') && is_in(1, 'a', 'z'))
-    sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
+  if (is_in(0, 'A', 'Z') && is_in(1, 'a', 'z')) sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
   return sentence;
 }
 
@@ -125,17 +116,14 @@ std::string remedies_behind(const Finding& one, bool all) {
     const std::string& before = out.empty() ? one.sentence : out;
     std::string what = help.sentence;
     if (what.ends_with('.')) what.pop_back();
-    out += (before.ends_with('.') || before.ends_with('?') ? " " : ". ") +
-           printable(what + settings_text(help)) + ".";
+    out += (before.ends_with('.') || before.ends_with('?') ? " " : ". ") + printable(what + settings_text(help)) + ".";
   }
   return out;
 }
 
 }  // namespace
 
-std::string with_help(const Finding& one) {
-  return printable(one.sentence) + remedies_behind(one, true);
-}
+std::string with_help(const Finding& one) { return printable(one.sentence) + remedies_behind(one, true); }
 
 std::string findings_text(std::span<const Finding> findings, std::size_t most, bool colours) {
   const std::vector<Finding> all = worst_first({findings.begin(), findings.end()});
@@ -164,30 +152,23 @@ std::string sentence_of(const Finding& one) {
   return line;
 }
 
-std::string detail::help_of(const Finding& one) {
-  return remedies_behind(one, false);
-}
+std::string detail::help_of(const Finding& one) { return remedies_behind(one, false); }
 
 std::string one_line(const Finding& one, std::string_view file, bool colours) {
   const bool note = one.severity == Severity::note;
-  return printable(file) + ": " +
-         tinted(note ? "note" : "warning", note ? Tint::absent : Tint::doubtful, colours) + ": " +
-         sentence_of(one) + detail::help_of(one);
+  return printable(file) + ": " + tinted(note ? "note" : "warning", note ? Tint::absent : Tint::doubtful, colours) +
+         ": " + sentence_of(one) + detail::help_of(one);
 }
 
 Finding& Findings::entry(std::string_view code, std::string_view sentence) {
-  const auto found = std::find_if(
-      list_.begin(), list_.end(), [&](const Finding& one) { return one.code == code; });
+  const auto found = std::find_if(list_.begin(), list_.end(), [&](const Finding& one) { return one.code == code; });
   if (found != list_.end()) return *found;
   list_.push_back(finding(code, std::string(sentence)));
   list_.back().count = 0;
   return list_.back();
 }
 
-Finding& Findings::add(std::string_view code,
-                       std::string_view sentence,
-                       std::string_view place,
-                       std::uint64_t count) {
+Finding& Findings::add(std::string_view code, std::string_view sentence, std::string_view place, std::uint64_t count) {
   Finding& one = entry(code, sentence);
   one.count += count;
   if (!place.empty() && one.where.rows.size() < 3) one.where.rows.emplace_back(place);
@@ -209,8 +190,7 @@ void Findings::remove(std::string_view code) {
 }
 
 const Finding* Findings::find(std::string_view code) const {
-  const auto found = std::find_if(
-      list_.begin(), list_.end(), [&](const Finding& one) { return one.code == code; });
+  const auto found = std::find_if(list_.begin(), list_.end(), [&](const Finding& one) { return one.code == code; });
   return found == list_.end() ? nullptr : &*found;
 }
 

@@ -25,19 +25,7 @@ template <>
 inline constexpr auto enum_table<Severity> = enum_words<Severity, "note caution bad">;
 
 /// What a finding changes.
-enum class Affected {
-  values,
-  time,
-  rate,
-  scale,
-  mean,
-  noise,
-  white,
-  flicker,
-  walk,
-  weights,
-  verdict
-};
+enum class Affected { values, time, rate, scale, mean, noise, white, flicker, walk, weights, verdict };
 template <>
 inline constexpr auto enum_table<Affected> =
     enum_words<Affected, "values time rate scale mean noise N B K weights verdict">;
@@ -112,9 +100,7 @@ std::string settings_text(const Finding::Help& help);
 /// Its sentence and what to do: "SENTENCE Use the longest still stretch (`still` auto)."
 std::string with_help(const Finding& finding);
 /// At most `most`, the worst first, one for each line, and how many more there are.
-std::string findings_text(std::span<const Finding> findings,
-                          std::size_t most = 5,
-                          bool colours = false);
+std::string findings_text(std::span<const Finding> findings, std::size_t most = 5, bool colours = false);
 /// "3 × SENTENCE (first: line 412, line 413, line 9001)", control characters escaped.
 std::string sentence_of(const Finding& finding);
 namespace detail {
@@ -128,10 +114,7 @@ std::string one_line(const Finding& finding, std::string_view file, bool colours
 class Findings {
  public:
   /// Counts `count` more cases of the kind `code`. The sentence of the first call for a code is kept.
-  Finding& add(std::string_view code,
-               std::string_view sentence,
-               std::string_view place = {},
-               std::uint64_t count = 1);
+  Finding& add(std::string_view code, std::string_view sentence, std::string_view place = {}, std::uint64_t count = 1);
   void merge(const Findings& other);
   /// What is no longer so.
   void remove(std::string_view code);

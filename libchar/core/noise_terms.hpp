@@ -15,11 +15,8 @@ struct TermName {
   std::string_view key;
   std::string_view letter;  ///< in texts, with the long name; of IEEE 952
 };
-inline constexpr std::array<TermName, kTerms> kTermNames = {{{"white_noise", "N"},
-                                                             {"bias_instability", "B"},
-                                                             {"random_walk", "K"},
-                                                             {"quantization", "Q"},
-                                                             {"rate_ramp", "R"}}};
+inline constexpr std::array<TermName, kTerms> kTermNames = {
+    {{"white_noise", "N"}, {"bias_instability", "B"}, {"random_walk", "K"}, {"quantization", "Q"}, {"rate_ramp", "R"}}};
 
 /// Squared coefficients theta = (N^2, B^2, K^2, Q^2, R^2), each >= 0; every curve is linear in them.
 using Mixture = std::array<double, kTerms>;

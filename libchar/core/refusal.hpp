@@ -20,13 +20,9 @@ class Refusal : public Error {
 
   /// "SUBJECT: " in front of what is said.
   Refusal& about(const std::string& subject) { return with(&Problem::what, subject + ": "); }
-  Refusal& says(std::string_view what) {
-    return with(&Problem::what, problem().what + std::string(what));
-  }
+  Refusal& says(std::string_view what) { return with(&Problem::what, problem().what + std::string(what)); }
   Refusal& got(std::string_view excerpt) { return with(&Problem::got, std::string(excerpt)); }
-  Refusal& hint(std::string_view what_to_do) {
-    return with(&Problem::hint, std::string(what_to_do));
-  }
+  Refusal& hint(std::string_view what_to_do) { return with(&Problem::hint, std::string(what_to_do)); }
 
   template <class First, class... Rest>
   Refusal& says(fmt::format_string<First, Rest...> what, First&& first, Rest&&... rest) {

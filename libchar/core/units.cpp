@@ -22,19 +22,13 @@ struct UnitRow {
 const std::array kUnits = {
     UnitRow{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
     UnitRow{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
-    UnitRow{"deg/s",
-            Quantity::angular_rate,
-            kDegree,
+    UnitRow{"deg/s", Quantity::angular_rate, kDegree,
             "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
     UnitRow{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
-    UnitRow{
-        "deg/h",
-        Quantity::angular_rate,
-        kDegree / 3600,
-        "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
+    UnitRow{"deg/h", Quantity::angular_rate, kDegree / 3600,
+            "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},
     UnitRow{"rpm", Quantity::angular_rate, std::numbers::pi / 30, "rpm|r/min"},
-    UnitRow{
-        "m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/ss|m/sec2|m/sec^2|mps2"},
+    UnitRow{"m/s²", Quantity::acceleration, 1, "m/s2|m/s^2|ms-2|ms^-2|m/s/s|m/ss|m/sec2|m/sec^2|mps2"},
     UnitRow{"mm/s²", Quantity::acceleration, 1e-3, "mm/s2|mm/s^2"},
     UnitRow{"g", Quantity::acceleration, kGravity, "g|g0|gn|gee"},
     UnitRow{"mg", Quantity::acceleration, 1e-3 * kGravity, "mg|mgee"},
@@ -106,8 +100,7 @@ std::string normal(std::string_view text) {
 // "MT" is no millitesla and "mHz" no megahertz: a factor of 1e9 is not guessed.
 bool mistakes_prefix(std::string_view text, std::string_view symbol) {
   const bool word = symbol == "min" || symbol.starts_with("m/") || text.starts_with("Milli");
-  return !word && ((text.front() == 'M' && symbol.front() == 'm') ||
-                   (text.front() == 'm' && symbol.front() == 'M'));
+  return !word && ((text.front() == 'M' && symbol.front() == 'm') || (text.front() == 'm' && symbol.front() == 'M'));
 }
 
 bool listed(std::string_view spellings, std::string_view wanted) {
@@ -139,8 +132,7 @@ std::optional<Unit> find_unit(std::string_view text) {
   // capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
   for (const UnitRow& row : kUnits)
-    if (listed(row.spellings, wanted) &&
-        !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
+    if (listed(row.spellings, wanted) && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
       return Unit{row.symbol, row.quantity, row.to_si};
   return with_factor(text);
 }
@@ -148,8 +140,7 @@ std::optional<Unit> find_unit(std::string_view text) {
 std::optional<double> parse_factor(std::string_view text) {
   const std::size_t slash = text.find('/');
   const auto numerator = parse_double(text.substr(0, slash));
-  const auto denominator =
-      slash == std::string_view::npos ? std::optional(1.0) : parse_double(text.substr(slash + 1));
+  const auto denominator = slash == std::string_view::npos ? std::optional(1.0) : parse_double(text.substr(slash + 1));
   if (!numerator || !denominator || *denominator == 0 || *numerator == 0) return std::nullopt;
   const double factor = *numerator / *denominator;
   return std::isfinite(factor) && factor != 0 ? std::optional(factor) : std::nullopt;
@@ -160,8 +151,7 @@ std::optional<CountUnit> count_unit(std::string_view text) {
   if (blank == std::string_view::npos || blank == 0) return std::nullopt;
   const auto factor = parse_factor(text.substr(0, blank));
   const std::size_t unit = text.find_first_not_of(' ', blank);
-  if (!factor || unit == std::string_view::npos || !find_unit(text.substr(unit)))
-    return std::nullopt;
+  if (!factor || unit == std::string_view::npos || !find_unit(text.substr(unit))) return std::nullopt;
   if (count_unit(text.substr(unit))) return std::nullopt;  // two numbers are a slip
   return CountUnit{*factor, std::string(text.substr(unit))};
 }
@@ -199,16 +189,14 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
               {g * 1e6 * root2, "µg/√Hz", "noise density", Reading::one_sided},
               {si, "m/s²/√Hz", "noise density of Kalibr and kin", Reading::two_sided}};
     if (term == "bias_instability")
-      return {{g * 1e6, "µg", "bias instability B"},
-              {g * 1e6 * floor_of_b, "µg", "0.664·B", Reading::floor}};
+      return {{g * 1e6, "µg", "bias instability B"}, {g * 1e6 * floor_of_b, "µg", "0.664·B", Reading::floor}};
     if (term == "random_walk")
       return {{g * 1e6 * root_hour, "µg/√h", "acceleration random walk"},
               {si, "m/s³/√Hz", "bias random walk of Kalibr and kin", Reading::two_sided}};
     if (term == "quantization") return {{si, "m/s", "quantization (velocity)"}};
     if (term == "rate_ramp") return {{g * 1e6 * hour, "µg/h", "acceleration ramp"}};
   }
-  if (term == "white_noise")
-    return {{root2, unit->symbol + "/√Hz", "noise density", Reading::one_sided}};
+  if (term == "white_noise") return {{root2, unit->symbol + "/√Hz", "noise density", Reading::one_sided}};
   if (term == "bias_instability") return {{floor_of_b, unit->symbol, "0.664·B", Reading::floor}};
   return {};
 }
@@ -216,8 +204,7 @@ std::vector<HabitualValue> habitual_units(std::string_view term, std::string_vie
 std::string term_unit(std::string_view term, std::string_view unit) {
   std::string u(unit.empty() ? "U" : unit);
   // "1/16.4 deg/s·√s" would read as something else.
-  if (u.find(' ') != std::string::npos && u.front() != '(' && term != "bias_instability")
-    u = "(" + u + ")";
+  if (u.find(' ') != std::string::npos && u.front() != '(' && term != "bias_instability") u = "(" + u + ")";
   if (term == "white_noise") return u + "·√s";
   if (term == "random_walk") return u + "/√s";
   if (term == "quantization") return u + "·s";
@@ -253,9 +240,7 @@ std::string without_count(std::string_view text, const Unit& unit) {
   return plain ? plain->symbol : unit.symbol;
 }
 
-bool is_share(std::string_view symbol) {
-  return symbol == "ppm" || symbol == "ppb";
-}
+bool is_share(std::string_view symbol) { return symbol == "ppm" || symbol == "ppb"; }
 
 }  // namespace
 

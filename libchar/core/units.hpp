@@ -52,11 +52,10 @@ std::optional<double> unit_factor(std::string_view from, std::string_view to);
 /// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of it.
 enum class Reading { plain, one_sided, two_sided, floor };
 template <>
-inline constexpr auto enum_table<Reading> =
-    std::to_array<EnumWord<Reading>>({{Reading::plain, ""},
-                                      {Reading::one_sided, "one-sided"},
-                                      {Reading::two_sided, "two-sided"},
-                                      {Reading::floor, "floor"}});
+inline constexpr auto enum_table<Reading> = std::to_array<EnumWord<Reading>>({{Reading::plain, ""},
+                                                                              {Reading::one_sided, "one-sided"},
+                                                                              {Reading::two_sided, "two-sided"},
+                                                                              {Reading::floor, "floor"}});
 
 /// One way in which the field says a noise term.
 struct HabitualValue {

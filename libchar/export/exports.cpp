@@ -20,8 +20,7 @@ using enum ExportNeeds;
 std::string channels_of(const SensorGroup& group) {
   std::string text;
   for (const SensorModel* m : group.all)
-    text +=
-        fmt::format("{}{} ({})", text.empty() ? "" : ", ", printable(m->channel, 40), kind_of(*m));
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", printable(m->channel, 40), kind_of(*m));
   return text;
 }
 
@@ -34,10 +33,8 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
   if (met) return;
   const bool both = target.needs == gyroscope_and_accelerometer;
   throw input_error("E0590")
-      .says("{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}",
-            target.title,
-            both ? "and" : "or",
-            both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
+      .says("{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}", target.title,
+            both ? "and" : "or", both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
             group.all.empty() ? "no models" : channels_of(group))
       .hint(
           "give all files of the device; where name and unit do not say what a channel is: `axis` "
@@ -46,8 +43,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
 
 void check_options(const ExportOptions& options) {
   const auto positive = [](const char* name, double value) {
-    if (!(value > 0))
-      throw usage_error("E0591", name).says("expected a number > 0").got(shortest(value));
+    if (!(value > 0)) throw usage_error("E0591", name).says("expected a number > 0").got(shortest(value));
   };
   positive("`inflate`", options.inflate);
   positive("`filter_step_s`", options.filter_step_s);
@@ -60,10 +56,8 @@ void check_options(const ExportOptions& options) {
 void note_left_out(const ExportTarget& target, const SensorGroup& group, Export& out) {
   if (target.needs == any_sensor) return;
   const auto leave = [&](const SensorModel& m) {
-    out.notes.push_back(fmt::format("{}: a {} has no place in a file for {}; left out",
-                                    printable(m.channel, 40),
-                                    kind_of(m),
-                                    target.title));
+    out.notes.push_back(fmt::format("{}: a {} has no place in a file for {}; left out", printable(m.channel, 40),
+                                    kind_of(m), target.title));
   };
   for (const SensorModel* m : group.others) leave(*m);
   if (!group.magnetometer || target.takes.magnetometer) return;
@@ -83,27 +77,21 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
   };
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (target.terms.find(kTermNames[t].letter) != std::string_view::npos) continue;
-    const std::string channels =
-        among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
-    if (!channels.empty())
-      out.push_back(fmt::format("not in this file: {} of {}", kTermNames[t].key, channels));
+    const std::string channels = among([&](const SensorModel& m) { return m.noise[t].value.value_or(0) > 0; });
+    if (!channels.empty()) out.push_back(fmt::format("not in this file: {} of {}", kTermNames[t].key, channels));
   }
   const std::string process = among([](const SensorModel& m) { return m.gauss_markov.sigma > 0; });
   if (!process.empty() && !target.takes.gauss_markov && !target.takes.status)
-    out.push_back(fmt::format(
-        "not in this file: the correlation time of the Gauss-Markov process of {}{}",
-        process,
-        target.terms.find('K') == std::string_view::npos
-            ? ""
-            : "; as a random walk of its driving density it holds for times well below that"));
-  const std::string filtered = among(
-      [](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
+    out.push_back(fmt::format("not in this file: the correlation time of the Gauss-Markov process of {}{}", process,
+                              target.terms.find('K') == std::string_view::npos
+                                  ? ""
+                                  : "; as a random walk of its driving density it holds for times well below that"));
+  const std::string filtered =
+      among([](const SensorModel& m) { return m.bandwidth_hz && *m.bandwidth_hz <= m.rate_hz / 2; });
   if (!filtered.empty() && !target.takes.low_pass)
-    out.push_back(fmt::format(
-        "not in this file: the low-pass of {}; densities are kept, single samples scatter less",
-        filtered));
-  const std::string shaped =
-      among([](const SensorModel& m) { return m.noise_shape.kind != NoiseShape::Kind::none; });
+    out.push_back(
+        fmt::format("not in this file: the low-pass of {}; densities are kept, single samples scatter less", filtered));
+  const std::string shaped = among([](const SensorModel& m) { return m.noise_shape.kind != NoiseShape::Kind::none; });
   if (!shaped.empty() && !target.takes.status)
     out.push_back(
         fmt::format("not in this file: the shape of the noise of {} over frequency; "
@@ -117,11 +105,9 @@ std::vector<Finding> findings_of(const SensorModel& m) {
   std::vector<Finding> out = m.findings;
   std::string terms;
   for (std::size_t t = 0; t < kTerms; ++t)
-    if (m.noise[t].status == Status::misfit)
-      terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
+    if (m.noise[t].status == Status::misfit) terms += fmt::format("{}{}", terms.empty() ? "" : ", ", kTermNames[t].key);
   if (!terms.empty() && worst_of(out) != Severity::bad)
-    out.push_back(
-        finding("misfit", terms + ": misfit, the noise terms do not describe the recording"));
+    out.push_back(finding("misfit", terms + ": misfit, the noise terms do not describe the recording"));
   return out;
 }
 
@@ -138,16 +124,13 @@ std::string remedy_of(const Finding& one) {
 
 // A consumer takes what the file says for known: numbers that are not to be relied on are refused, what asks for a look
 // goes with a sentence.
-void answer_findings(const ExportTarget& target,
-                     const SensorGroup& group,
-                     const ExportOptions& options,
+void answer_findings(const ExportTarget& target, const SensorGroup& group, const ExportOptions& options,
                      std::vector<std::string>& notes) {
   if (target.takes.status) return;
   for (const SensorModel* m : group.all)
     for (const Finding& one : findings_of(*m)) {
       if (one.severity == Severity::note) continue;
-      const std::string what =
-          fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
+      const std::string what = fmt::format("{}: {}", printable(m->channel, 40), printable(one.sentence));
       if (one.severity == Severity::bad && !options.anyway)
         throw input_error("E0594")
             .says(what.ends_with('.') ? what.substr(0, what.size() - 1) : what)
@@ -167,8 +150,7 @@ void drop_repeated(std::vector<std::string>& notes) {
 
 std::string needs_text(ExportNeeds needs) {
   if (needs == any_sensor) return "any sensor";
-  return needs == gyroscope_and_accelerometer ? "gyroscope and accelerometer"
-                                              : "gyroscope or accelerometer";
+  return needs == gyroscope_and_accelerometer ? "gyroscope and accelerometer" : "gyroscope or accelerometer";
 }
 
 std::string targets_that_take(bool ExportTakes::*option) {
@@ -185,16 +167,10 @@ struct Alike {
   std::string_view program, target, keys;
 };
 constexpr Alike kAlike[] = {
-    {"lio-sam",
-     "gtsam",
-     "imuAccNoise, imuGyrNoise, imuAccBiasN, imuGyrBiasN are the roots of its covariances"},
-    {"lvi-sam",
-     "gtsam",
-     "acc_n, gyr_n, acc_w, gyr_w of its LIO part are the roots of its covariances"},
+    {"lio-sam", "gtsam", "imuAccNoise, imuGyrNoise, imuAccBiasN, imuGyrBiasN are the roots of its covariances"},
+    {"lvi-sam", "gtsam", "acc_n, gyr_n, acc_w, gyr_w of its LIO part are the roots of its covariances"},
     {"okvis", "kalibr", "sigma_a_c, sigma_g_c, sigma_aw_c, sigma_gw_c are its four densities"},
-    {"msckf",
-     "kalibr",
-     "noise/acc, noise/gyro, noise/acc_bias, noise/gyro_bias are its four densities"},
+    {"msckf", "kalibr", "noise/acc, noise/gyro, noise/acc_bias, noise/gyro_bias are its four densities"},
     {"maplab", "kalibr", "its sigmas are the same four densities"},
     {"rovio", "gtsam", "PredictionNoise takes its covariances"},
     {"fast-lio", "ros", "acc_cov and gyr_cov are variances of a sample"},
@@ -206,8 +182,7 @@ constexpr Alike kAlike[] = {
 
 std::string alike_hint(std::string_view name) {
   for (const Alike& one : kAlike)
-    if (one.program == name)
-      return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
+    if (one.program == name) return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
   return "";
 }
 
@@ -226,9 +201,7 @@ const ExportTarget& find_export_target(std::string_view name) {
       .hint(hint.empty() ? did_you_mean(near, "`export_targets` lists them") : hint);
 }
 
-Export export_models(const ExportTarget& target,
-                     const std::vector<SensorModel>& models,
-                     const ExportOptions& options) {
+Export export_models(const ExportTarget& target, const std::vector<SensorModel>& models, const ExportOptions& options) {
   check_options(options);
   SensorGroup group = group_sensors(models, options.axis);
   check_needs(target, group);
@@ -237,8 +210,7 @@ Export export_models(const ExportTarget& target,
   Export out = target.write(group, options);
   out.notes.insert(out.notes.begin(), group.unexpressed.begin(), group.unexpressed.end());
   if (options.inflate != 1 && target.takes.inflate)
-    out.notes.push_back(
-        fmt::format("every noise number is multiplied by {}", shortest(options.inflate)));
+    out.notes.push_back(fmt::format("every noise number is multiplied by {}", shortest(options.inflate)));
   note_left_out(target, group, out);
   drop_repeated(out.notes);
   return out;
@@ -268,8 +240,7 @@ std::string unit_of(const ConsumerRow& row, const std::string& own) {
 
 }  // namespace
 
-std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients,
-                                             const std::string& unit,
+std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients, const std::string& unit,
                                              double rate_hz) {
   const auto known = find_unit(unit);
   const std::string_view sensor = sensor_in(known);
@@ -281,11 +252,8 @@ std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients,
     if (!row.in_report || (!any && row.sensor != sensor) || (!c.value && !c.upper95)) continue;
     const double si = any || sensor == "other" ? 1 : known->to_si;
     const double factor = (row.power == 2 ? si * si : si) * row.factor(times);
-    out.push_back({std::string(row.consumer),
-                   std::string(row.key),
-                   std::string(row.formula),
-                   converted(c, factor, row.power),
-                   unit_of(row, unit)});
+    out.push_back({std::string(row.consumer), std::string(row.key), std::string(row.formula),
+                   converted(c, factor, row.power), unit_of(row, unit)});
   }
   return out;
 }

@@ -37,8 +37,7 @@ struct SensorGroup {
   std::optional<SensorTriad> gyroscope, accelerometer, magnetometer;
   std::vector<const SensorModel*> others;  ///< barometers, thermometers, unknown ones
   std::vector<const SensorModel*> all;     ///< in the order given
-  std::vector<std::string>
-      unexpressed;  ///< what the models hold and the file they go to cannot say
+  std::vector<std::string> unexpressed;    ///< what the models hold and the file they go to cannot say
 };
 
 /// What the user says of a channel that neither its name nor its unit says: ("imu_3", "gx"). Places
@@ -68,17 +67,16 @@ inline constexpr auto enum_table<AxisChoice> = enum_words<AxisChoice, "auto max 
 
 struct ExportOptions {
   AxisChoice axes = AxisChoice::automatic;
-  double inflate = 1;  ///< every noise number is multiplied by this (before squaring)
+  double inflate = 1;                   ///< every noise number is multiplied by this (before squaring)
   std::optional<double> correlation_s;  ///< of a Gauss-Markov bias; else by `floor_tau_s`
-  std::optional<double> floor_tau_s;  ///< averaging time of the flat part of the Allan curve; else
-                                      ///< from the coefficients and the valid range of the model
-  std::optional<double> bias_tau_s;   ///< of AirSim's bias stability; else its own 500 s and 800 s
-  double filter_step_s = 0.01;        ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
-  std::optional<double> gravity;      ///< m/s^2, for the consumers that have a key for it
-  std::string topic;                  ///< ROS; else that of the recording, else "/imu0"
-  bool older = false;  ///< for releases before the current file formats (Basalt, ORB-SLAM3)
-  bool anyway =
-      false;  ///< also numbers of models whose noise terms do not describe their recording
+  std::optional<double> floor_tau_s;    ///< averaging time of the flat part of the Allan curve; else
+                                        ///< from the coefficients and the valid range of the model
+  std::optional<double> bias_tau_s;     ///< of AirSim's bias stability; else its own 500 s and 800 s
+  double filter_step_s = 0.01;          ///< PX4 EKF2 and ArduPilot EK3 predict at about this step
+  std::optional<double> gravity;        ///< m/s^2, for the consumers that have a key for it
+  std::string topic;                    ///< ROS; else that of the recording, else "/imu0"
+  bool older = false;                   ///< for releases before the current file formats (Basalt, ORB-SLAM3)
+  bool anyway = false;                  ///< also numbers of models whose noise terms do not describe their recording
   AxisOverrides axis;
 };
 
@@ -131,8 +129,7 @@ std::string targets_that_take(bool ExportTakes::*option);
 const ExportTarget& find_export_target(std::string_view name);
 
 /// Throws Error(input) when models are missing or lack a number or a unit that the consumer needs.
-Export export_models(const ExportTarget& target,
-                     const std::vector<SensorModel>& models,
+Export export_models(const ExportTarget& target, const std::vector<SensorModel>& models,
                      const ExportOptions& options = {});
 
 // Which number goes where: the same coefficients in the units and under the names of the programs
@@ -149,8 +146,6 @@ struct ConsumerNumber {
 
 /// Rows for a channel of known quantity; for other channels those that need no convention. Empty
 /// without white noise.
-std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients,
-                                             const std::string& unit,
-                                             double rate_hz);
+std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients, const std::string& unit, double rate_hz);
 
 }  // namespace libchar

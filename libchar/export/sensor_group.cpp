@@ -86,38 +86,25 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
   if (unit && unit->quantity == kind.quantity) return unit->to_si;
   throw input_error("E0583", model.channel)
       .says(model.unit.empty()
-                ? fmt::format("its model names no unit, a {} needs one of {}",
-                              kind.name,
-                              kind.quantity_name)
-                : fmt::format(
-                      "its unit is none of {}, which a {} needs", kind.quantity_name, kind.name))
+                ? fmt::format("its model names no unit, a {} needs one of {}", kind.name, kind.quantity_name)
+                : fmt::format("its unit is none of {}, which a {} needs", kind.quantity_name, kind.name))
       .got(model.unit)
       .hint("write unit: {} into the model file", kind.example);
 }
 
-[[noreturn]] void refuse_duplicate(const Kind& kind,
-                                   std::size_t axis,
-                                   const SensorModel& first,
+[[noreturn]] void refuse_duplicate(const Kind& kind, std::size_t axis, const SensorModel& first,
                                    const SensorModel& second) {
-  const std::string place = axis < 3 ? fmt::format("the {} axis of the {}", kAxes[axis], kind.name)
-                                     : fmt::format("the {}", kind.name);
+  const std::string place =
+      axis < 3 ? fmt::format("the {} axis of the {}", kAxes[axis], kind.name) : fmt::format("the {}", kind.name);
   throw input_error("E0584", second.channel)
-      .says("two models claim {}: {} and {}",
-            place,
-            printable(first.channel, 40),
-            printable(second.channel, 40))
+      .says("two models claim {}: {} and {}", place, printable(first.channel, 40), printable(second.channel, 40))
       .hint(first.channel == second.channel
                 ? "leave one of the two files out"
-                : fmt::format("leave one out, or say which it is: `axis` {}={}{}",
-                              printable(second.channel, 40),
-                              kind.letter,
-                              axis < 3 ? kAxes[(axis + 1) % 3] : 'x'));
+                : fmt::format("leave one out, or say which it is: `axis` {}={}{}", printable(second.channel, 40),
+                              kind.letter, axis < 3 ? kAxes[(axis + 1) % 3] : 'x'));
 }
 
-void put(std::optional<SensorTriad>& triad,
-         const Kind& kind,
-         std::size_t axis,
-         PlacedModel placed) {
+void put(std::optional<SensorTriad>& triad, const Kind& kind, std::size_t axis, PlacedModel placed) {
   if (!triad) triad = SensorTriad{kind.name, kind.si_unit, {}, false};
   for (std::size_t i = 0; i < 3; ++i) {
     if (axis < 3 && i != axis) continue;
@@ -140,16 +127,13 @@ SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOver
     else
       group.others.push_back(&model);
   }
-  std::optional<SensorTriad>* triads[] = {
-      &group.gyroscope, &group.accelerometer, &group.magnetometer};
+  std::optional<SensorTriad>* triads[] = {&group.gyroscope, &group.accelerometer, &group.magnetometer};
   for (std::size_t k = 0; k < kKinds.size(); ++k) {
     for (const auto& [axis, model] : members[k]) {
       if (axis == 3 && members[k].size() > 1)
         throw input_error("E0585", model->channel)
             .says("is one of {} {} models and names no axis", members[k].size(), kKinds[k].name)
-            .hint("say which axis it is: `axis` {}={}x",
-                  printable(model->channel, 40),
-                  kKinds[k].letter);
+            .hint("say which axis it is: `axis` {}={}x", printable(model->channel, 40), kKinds[k].letter);
       put(*triads[k], kKinds[k], axis, {model, factor_to_si(*model, kKinds[k])});
     }
   }
@@ -166,12 +150,10 @@ void require_axes(const SensorTriad& triad, std::optional<std::size_t> only) {
       missing += fmt::format("{}{}", missing.empty() ? "" : " and ", kAxes[i]);
   }
   if (missing.empty()) return;
-  std::string hint =
-      fmt::format("give its file, or take one axis alone: `axes` {}", kAxes[present[0]]);
+  std::string hint = fmt::format("give its file, or take one axis alone: `axes` {}", kAxes[present[0]]);
   if (present.size() == 1)
     hint += fmt::format(", or let it stand for all three: `axis` {}={}",
-                        printable(triad.axis[present[0]]->model->channel, 40),
-                        triad.kind[0]);
+                        printable(triad.axis[present[0]]->model->channel, 40), triad.kind[0]);
   throw input_error("E0586").says("the {} has no model for {}", triad.kind, missing).hint(hint);
 }
 

@@ -11,14 +11,9 @@
 
 namespace libchar {
 
-bool draws_with_cairo() {
-  return has_cairo();
-}
+bool draws_with_cairo() { return has_cairo(); }
 
-std::string draw_figure(const Chart& figure,
-                        FigureFormat format,
-                        const DrawingOptions& options,
-                        Findings& warnings) {
+std::string draw_figure(const Chart& figure, FigureFormat format, const DrawingOptions& options, Findings& warnings) {
   if (format != FigureFormat::svg && !has_cairo())
     throw usage_error("E0980")
         .says("{} is drawn by Cairo, which this program was built without", name_of(format))

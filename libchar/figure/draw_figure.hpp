@@ -41,10 +41,7 @@ bool draws_with_cairo();
 /// Sans, which has the widths of Arial and Helvetica; a PDF embeds what it uses of it. Where the
 /// font is not installed, PDF and PNG take another one and `warnings` says so (SVG names both).
 /// Throws Error(usage) for a PDF or PNG without Cairo and for sizes that nothing can be drawn in.
-std::string draw_figure(const Chart& figure,
-                        FigureFormat format,
-                        const DrawingOptions& options,
-                        Findings& warnings);
+std::string draw_figure(const Chart& figure, FigureFormat format, const DrawingOptions& options, Findings& warnings);
 
 /// As part of a page, on which no other figure says the same of itself: without a size of its own;
 /// where the pointer rests, it says what a curve or a mark is.

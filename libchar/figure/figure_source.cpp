@@ -18,19 +18,16 @@ constexpr const char* kReadable =
     "curves.csv, and sensor models";
 
 std::string format_in(const Document& document) {
-  const DocumentEntry* entry =
-      document.kind == Document::Kind::map ? document.find("format") : nullptr;
+  const DocumentEntry* entry = document.kind == Document::Kind::map ? document.find("format") : nullptr;
   return entry != nullptr && entry->value.kind == Document::Kind::text ? entry->value.text : "";
 }
 
 [[noreturn]] void refuse_document(const std::string& file, const std::string& format) {
   const bool scene = format == "scene" || format == "fusion-scene";
   throw input_error("E0975", file)
-      .says(format.empty() ? "a document that names no format"
-                           : "a document of a format that is not drawn")
+      .says(format.empty() ? "a document that names no format" : "a document of a format that is not drawn")
       .got(format)
-      .hint(scene ? fmt::format("sensorchar replay {} -o DIR makes a report, which is drawn", file)
-                  : kReadable);
+      .hint(scene ? fmt::format("sensorchar replay {} -o DIR makes a report, which is drawn", file) : kReadable);
 }
 
 [[noreturn]] void refuse_log(const std::string& file) {
@@ -72,12 +69,8 @@ bool ends_like_a_document(const std::string& path) {
 }
 
 void refuse_empty(const FigureSource& source) {
-  if (source.replay || !source.curves.empty() || !source.residuals.empty() ||
-      !source.traces.empty())
-    return;
-  throw input_error("E0975", source.file)
-      .says("holds no curve that could be drawn")
-      .hint(kReadable);
+  if (source.replay || !source.curves.empty() || !source.residuals.empty() || !source.traces.empty()) return;
+  throw input_error("E0975", source.file).says("holds no curve that could be drawn").hint(kReadable);
 }
 
 void read_table(FigureSource& out, const std::string& file) {

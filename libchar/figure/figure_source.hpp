@@ -69,7 +69,7 @@ struct FigureSource {
   std::vector<SourceCurve> curves;
   std::vector<SourceResiduals> residuals;
   std::vector<SourceTrace> traces;
-  std::vector<Finding> findings;  ///< of the channels (subject), the worst first; no notes
+  std::vector<Finding> findings;               ///< of the channels (subject), the worst first; no notes
   std::shared_ptr<const ReplayReport> replay;  ///< the report of a replay; null: another document
 };
 
@@ -82,11 +82,7 @@ FigureSource read_figure_source(const std::string& path);
 FigureSource parse_figure_source(std::string_view text, const std::string& path);
 
 /// Curves of a run that is still in memory.
-SourceCurve source_curve(const std::string& channel,
-                         const std::string& unit,
-                         const AllanCurve& curve);
-SourceCurve source_curve(const std::string& channel,
-                         const std::string& unit,
-                         const Spectrum& spectrum);
+SourceCurve source_curve(const std::string& channel, const std::string& unit, const AllanCurve& curve);
+SourceCurve source_curve(const std::string& channel, const std::string& unit, const Spectrum& spectrum);
 
 }  // namespace libchar

@@ -43,15 +43,13 @@ const FigureKind& kind_of(const std::string& word) {
   throw usage_error("E0978", "`kind`")
       .says("no such figure")
       .got(word)
-      .hint(
-          did_you_mean(nearest(word, figure_words()), "there are " + first_names(figure_words())));
+      .hint(did_you_mean(nearest(word, figure_words()), "there are " + first_names(figure_words())));
 }
 
 void refuse_mixed(std::span<const FigureSource> sources, const FigureKind& kind) {
   for (const FigureSource& source : sources) {
     if (kind.of_replay && !source.replay)
-      throw kind_refusal(source, kind.word)
-          .says("it is of replays, and this is the report of none");
+      throw kind_refusal(source, kind.word).says("it is of replays, and this is the report of none");
     if (!kind.of_replay && source.replay)
       throw kind_refusal(source, kind.word)
           .says("this is the report of a replay, which has front, ranking, timeline and others");
@@ -79,17 +77,10 @@ void scale(std::vector<double>& values, double factor) {
 /// A density and a power go with the square of the unit.
 void convert(SourceCurve& curve, const std::string& unit, double factor) {
   const std::string before = curve.unit;
-  const bool squared =
-      !curve.is_allan && (curve.statistic.ends_with(" PSD") || curve.statistic.ends_with(" PS"));
+  const bool squared = !curve.is_allan && (curve.statistic.ends_with(" PSD") || curve.statistic.ends_with(" PS"));
   const double of_value = squared ? factor * factor : factor;
-  for (auto* values : {&curve.y,
-                       &curve.low68,
-                       &curve.high68,
-                       &curve.low95,
-                       &curve.high95,
-                       &curve.model,
-                       &curve.data_sheet,
-                       &curve.simulated_y})
+  for (auto* values : {&curve.y, &curve.low68, &curve.high68, &curve.low95, &curve.high95, &curve.model,
+                       &curve.data_sheet, &curve.simulated_y})
     scale(*values, of_value);
   for (Asymptote& line : curve.lines)
     for (double& y : line.y) y *= of_value;
@@ -148,9 +139,7 @@ std::vector<FigureSource> with_names_apart(std::span<const FigureSource> sources
 
 }  // namespace
 
-std::span<const FigureKind> figure_kinds() {
-  return kKinds;
-}
+std::span<const FigureKind> figure_kinds() { return kKinds; }
 
 std::vector<std::string> figure_words() {
   std::vector<std::string> out;
@@ -185,9 +174,7 @@ namespace {
 // More bands than these hide each other.
 constexpr std::size_t kMostCandidateBands = 5;
 
-FigureSeries candidate_series(const ComparedGroup::Candidate& candidate,
-                              std::size_t k,
-                              bool with_band) {
+FigureSeries candidate_series(const ComparedGroup::Candidate& candidate, std::size_t k, bool with_band) {
   FigureSeries out;
   out.name = out.tip = candidate.name + (candidate.takes_part ? "" : " (left out)");
   out.look = series_look(k);
@@ -211,8 +198,7 @@ Chart detail::compared_chart(const ComparedGroup& group) {
   Extent x(true), y(true), ends(true);
   for (std::size_t k = 0; k < group.candidates.size(); ++k) {
     if (group.candidates[k].curve.empty()) continue;
-    FigureSeries series =
-        candidate_series(group.candidates[k], k, group.candidates.size() <= kMostCandidateBands);
+    FigureSeries series = candidate_series(group.candidates[k], k, group.candidates.size() <= kMostCandidateBands);
     x.take(series.x);
     y.take(series.y);
     out.series.push_back(std::move(series));
@@ -224,10 +210,8 @@ Chart detail::compared_chart(const ComparedGroup& group) {
   for (const double v : {ends.low(), ends.high()}) y.take(v);
   if (!out.series.back().low.empty()) out.series.back().band = "95 % interval";
   if (!group.limit_tau_s.empty()) {
-    out.series.push_back(line_series("data sheet",
-                                     group.limit_tau_s,
-                                     group.limit_curve,
-                                     {.ink = Ink::black, .dash = 3, .width = 1.2}));
+    out.series.push_back(
+        line_series("data sheet", group.limit_tau_s, group.limit_curve, {.ink = Ink::black, .dash = 3, .width = 1.2}));
     for (const double v : group.limit_curve) y.take_near(v, y, 10);
   }
   x.pad(1.3);
@@ -235,9 +219,8 @@ Chart detail::compared_chart(const ComparedGroup& group) {
   out.kind = "allan";
   out.about = "Allan deviation of " + group.name;
   out.x = {.title = "Averaging time τ [s]", .log = true, .rows = {}};
-  out.y = {.title = axis_title("Allan deviation, " + group.name, usual_figure_unit(group.unit)),
-           .log = true,
-           .rows = {}};
+  out.y = {
+      .title = axis_title("Allan deviation, " + group.name, usual_figure_unit(group.unit)), .log = true, .rows = {}};
   set_ends(out.x, x, {});
   set_ends(out.y, y, {});
   return out;

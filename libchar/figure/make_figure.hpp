@@ -19,12 +19,11 @@ inline constexpr std::size_t kMostCurves = 35;
 }  // namespace detail
 
 struct FigureOptions {
-  std::string kind;  ///< a word of figure_kinds(); empty: the first that the source has
-  std::vector<std::string>
-      channels;  ///< names or patterns: channels, of a replay sensors or algorithms; empty: all
-  std::string algorithm;  ///< whose weights, variances and findings; empty: the best that has them
-  std::string input;      ///< of a replay with several: whose figure; empty: the first
-  std::vector<std::string> labels;  ///< one per file, in place of names made of theirs
+  std::string kind;                   ///< a word of figure_kinds(); empty: the first that the source has
+  std::vector<std::string> channels;  ///< names or patterns: channels, of a replay sensors or algorithms; empty: all
+  std::string algorithm;              ///< whose weights, variances and findings; empty: the best that has them
+  std::string input;                  ///< of a replay with several: whose figure; empty: the first
+  std::vector<std::string> labels;    ///< one per file, in place of names made of theirs
   std::string title;
   std::optional<Interval> x_range, y_range;  ///< in the units of the axes
 };

@@ -20,8 +20,7 @@ constexpr std::size_t kLeastColumns = 40, kLeastRows = 4, kMostRows = 200, kMost
 constexpr std::array<int, 6> kTerminalInks = {34, 31, 32, 35, 33, 36};
 
 std::string utf8(char32_t c) {
-  return {static_cast<char>(0xE0U | (c >> 12U)),
-          static_cast<char>(0x80U | ((c >> 6U) & 0x3FU)),
+  return {static_cast<char>(0xE0U | (c >> 12U)), static_cast<char>(0x80U | ((c >> 6U) & 0x3FU)),
           static_cast<char>(0x80U | (c & 0x3FU))};
 }
 
@@ -34,8 +33,7 @@ struct Cell {
 
 class BrailleCanvas {
  public:
-  BrailleCanvas(std::size_t columns, std::size_t rows)
-      : columns_(columns), rows_(rows), cells_(columns * rows) {}
+  BrailleCanvas(std::size_t columns, std::size_t rows) : columns_(columns), rows_(rows), cells_(columns * rows) {}
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
@@ -44,8 +42,7 @@ class BrailleCanvas {
 
   void dot(double x, double y, int series) {
     const auto column = std::llround(x), row = std::llround(y);
-    if (column < 0 || row < 0 || std::cmp_greater_equal(column, 2 * columns_) ||
-        std::cmp_greater_equal(row, 4 * rows_))
+    if (column < 0 || row < 0 || std::cmp_greater_equal(column, 2 * columns_) || std::cmp_greater_equal(row, 4 * rows_))
       return;
     Cell& c = cell(static_cast<std::size_t>(column) / 2, static_cast<std::size_t>(row) / 4);
     constexpr unsigned kBits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
@@ -57,14 +54,12 @@ class BrailleCanvas {
     const double longest = std::max(std::fabs(x1 - x0), std::fabs(y1 - y0));
     // What leads far out of the picture is cut by the number of its steps.
     const int steps = std::max(1, static_cast<int>(std::min(longest, 4.0 * (width() + height()))));
-    for (int k = 0; k <= steps; ++k)
-      dot(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, series);
+    for (int k = 0; k <= steps; ++k) dot(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, series);
   }
 
   void letter(double x, double y, char c, int series) {
     const auto column = std::llround(x) / 2, row = std::llround(y) / 4;
-    if (column < 0 || row < 0 || column >= static_cast<long long>(columns_) ||
-        row >= static_cast<long long>(rows_))
+    if (column < 0 || row < 0 || column >= static_cast<long long>(columns_) || row >= static_cast<long long>(rows_))
       return;
     Cell& at = cell(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
     if (at.letter != 0) return;
@@ -83,10 +78,7 @@ struct TerminalScales {
   PageScale x, y;
 };
 
-void draw_terminal_series(BrailleCanvas& canvas,
-                          const TerminalScales& scales,
-                          const FigureSeries& s,
-                          int number) {
+void draw_terminal_series(BrailleCanvas& canvas, const TerminalScales& scales, const FigureSeries& s, int number) {
   double x0 = NAN, y0 = NAN;
   for (std::size_t i = 0; i < s.x.size(); ++i) {
     const double x = scales.x.at(s.x[i]), y = scales.y.at(s.y[i]);
@@ -102,10 +94,7 @@ void draw_terminal_series(BrailleCanvas& canvas,
 }
 
 /// At a few places along the curve, each series at others, so that two that lie together still show both.
-void letter_terminal_series(BrailleCanvas& canvas,
-                            const TerminalScales& scales,
-                            const FigureSeries& s,
-                            int number) {
+void letter_terminal_series(BrailleCanvas& canvas, const TerminalScales& scales, const FigureSeries& s, int number) {
   constexpr double kApart = 24;
   const char letter = static_cast<char>('a' + number % 26);
   double next = 2.0 + 6.0 * (number % 4);
@@ -119,9 +108,7 @@ void letter_terminal_series(BrailleCanvas& canvas,
 
 std::string coloured(const std::string& text, int series, bool colour) {
   if (!colour || series < 0) return text;
-  return fmt::format("\x1b[{}m{}\x1b[0m",
-                     kTerminalInks[static_cast<std::size_t>(series) % kTerminalInks.size()],
-                     text);
+  return fmt::format("\x1b[{}m{}\x1b[0m", kTerminalInks[static_cast<std::size_t>(series) % kTerminalInks.size()], text);
 }
 
 std::string canvas_row(BrailleCanvas& canvas, std::size_t row, bool colour) {
@@ -140,15 +127,13 @@ std::string canvas_row(BrailleCanvas& canvas, std::size_t row, bool colour) {
     }
     out += std::string(blanks, ' ');
     blanks = 0;
-    out += coloured(
-        c.letter != 0 ? std::string(1, c.letter) : utf8(0x2800U + c.dots), c.series, colour);
+    out += coloured(c.letter != 0 ? std::string(1, c.letter) : utf8(0x2800U + c.dots), c.series, colour);
   }
   return out;
 }
 
 /// Words in one line, each around its place, those that do not fit left out.
-std::string word_line(const std::vector<std::pair<double, std::string>>& words,
-                      std::size_t columns) {
+std::string word_line(const std::vector<std::pair<double, std::string>>& words, std::size_t columns) {
   std::string out;
   std::size_t used = 0;
   for (const auto& [at, word] : words) {
@@ -177,14 +162,12 @@ TerminalAxes terminal_axes(const Chart& figure, std::size_t columns, std::size_t
   return out;
 }
 
-std::string legend_lines(const Chart& figure,
-                         const TerminalFigureOptions& options,
-                         std::size_t columns) {
+std::string legend_lines(const Chart& figure, const TerminalFigureOptions& options, std::size_t columns) {
   std::string out, line;
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
     if (figure.series[k].name.empty()) continue;
-    const std::string words = fmt::format(
-        "{} {}", static_cast<char>('a' + k % 26), printable(figure.series[k].name, columns - 4));
+    const std::string words =
+        fmt::format("{} {}", static_cast<char>('a' + k % 26), printable(figure.series[k].name, columns - 4));
     if (!line.empty() && width_of(line) + 3 + width_of(words) > columns) {
       out += line + "\n";
       line.clear();
@@ -195,11 +178,10 @@ std::string legend_lines(const Chart& figure,
   if (!line.empty()) out += line + "\n";
   if (!options.colour) return out;
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
-    const std::string key = fmt::format(
-        " {} {}", static_cast<char>('a' + k % 26), printable(figure.series[k].name, columns - 4));
+    const std::string key =
+        fmt::format(" {} {}", static_cast<char>('a' + k % 26), printable(figure.series[k].name, columns - 4));
     const std::size_t at = out.find(key);
-    if (at != std::string::npos)
-      out.replace(at, key.size(), " " + coloured(key.substr(1), static_cast<int>(k), true));
+    if (at != std::string::npos) out.replace(at, key.size(), " " + coloured(key.substr(1), static_cast<int>(k), true));
   }
   return out;
 }
@@ -221,8 +203,7 @@ std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& op
                     rows = std::clamp(options.rows, kLeastRows, kMostRows);
   const TerminalAxes axes = terminal_axes(figure, columns, rows);
   BrailleCanvas canvas(columns - axes.left - 1, rows);
-  const TerminalScales scales{page_scale(figure.x, 0, canvas.width()),
-                              page_scale(figure.y, canvas.height(), 0)};
+  const TerminalScales scales{page_scale(figure.x, 0, canvas.width()), page_scale(figure.y, canvas.height(), 0)};
   mark_decades(canvas, axes, scales);
   const bool many = figure.series.size() > 1;
   for (std::size_t k = 0; k < figure.series.size(); ++k)
@@ -233,31 +214,24 @@ std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& op
   for (std::size_t row = 0; row < rows; ++row) {
     std::string label;
     for (const Tick& t : axes.y)
-      if (!t.label.empty() &&
-          static_cast<std::size_t>(std::llround(scales.y.at(t.value))) / 4 == row)
-        label = t.label;
+      if (!t.label.empty() && static_cast<std::size_t>(std::llround(scales.y.at(t.value))) / 4 == row) label = t.label;
     const std::size_t width = width_of(label);
-    out += std::string(axes.left - 1 - std::min(width, axes.left - 1), ' ') + label +
-           (label.empty() ? " │" : " ┤") + canvas_row(canvas, row, options.colour) + "\n";
+    out += std::string(axes.left - 1 - std::min(width, axes.left - 1), ' ') + label + (label.empty() ? " │" : " ┤") +
+           canvas_row(canvas, row, options.colour) + "\n";
   }
   out += std::string(axes.left, ' ') + "└";
   for (std::size_t c = 0; c < canvas.columns(); ++c) {
     const bool tick = std::any_of(axes.x.begin(), axes.x.end(), [&](const Tick& t) {
-      return !t.label.empty() &&
-             static_cast<std::size_t>(std::llround(scales.x.at(t.value))) / 2 == c;
+      return !t.label.empty() && static_cast<std::size_t>(std::llround(scales.x.at(t.value))) / 2 == c;
     });
     out += tick ? "┬" : "─";
   }
   std::vector<std::pair<double, std::string>> words;
   for (const Tick& t : axes.x)
-    if (!t.label.empty())
-      words.emplace_back(static_cast<double>(axes.left + 1) + scales.x.at(t.value) / 2, t.label);
+    if (!t.label.empty()) words.emplace_back(static_cast<double>(axes.left + 1) + scales.x.at(t.value) / 2, t.label);
   out += "\n" + word_line(words, columns) + "\n";
-  out +=
-      word_line(
-          {{static_cast<double>(columns + axes.left) / 2, printable(figure.x.title, columns - 2)}},
-          columns) +
-      "\n";
+  out += word_line({{static_cast<double>(columns + axes.left) / 2, printable(figure.x.title, columns - 2)}}, columns) +
+         "\n";
   return out + (many ? legend_lines(figure, options, columns) : "");
 }
 

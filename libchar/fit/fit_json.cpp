@@ -23,21 +23,15 @@ Row<NoiseFit> term_row() {
   const Fields<Coefficient>& all = coefficient_fields();
   Fields<Coefficient> rows = selected(all, {"value", "ci95", "status", "upper95"}, Written::always);
   rows = joined(rows, {constant<Coefficient>("unit", fmt::format("{{{}}}", kTermNames[I].key))});
-  rows = joined(rows,
-                selected(all,
-                         {"relative_sd",
-                          "ci95_by",
-                          "likelihood_ratio",
-                          "bound_relative_sd",
-                          "seconds_for_10_percent"},
-                         Written::always));
+  rows = joined(
+      rows, selected(all, {"relative_sd", "ci95_by", "likelihood_ratio", "bound_relative_sd", "seconds_for_10_percent"},
+                     Written::always));
   for (Field& row : rows.rows) row.text.required = row.key == "status";
-  return {
-      {kTermNames[I].key,
-       [](void* fit) -> Slot { return static_cast<void*>(&static_cast<NoiseFit*>(fit)->term[I]); },
-       {.written = Written::always, .required = true},
-       "",
-       std::move(rows.rows)}};
+  return {{kTermNames[I].key,
+           [](void* fit) -> Slot { return static_cast<void*>(&static_cast<NoiseFit*>(fit)->term[I]); },
+           {.written = Written::always, .required = true},
+           "",
+           std::move(rows.rows)}};
 }
 
 template <std::size_t... I>
@@ -48,10 +42,9 @@ Fields<NoiseFit> term_rows(std::index_sequence<I...>) {
 const Fields<Coefficient>& figure_fields() {
   static const Fields<Coefficient> rows = always(Fields<Coefficient>{
       field<&Coefficient::value>("value"),
-      field<&Coefficient::ci95>(
-          "ci95", {.known = when<[](const Coefficient& c) { return 0 < c.ci95.high; }>}),
-      field<&Coefficient::relative_sd>(
-          "relative_sd", {.known = when<[](const Coefficient& c) { return 0 < c.relative_sd; }>}),
+      field<&Coefficient::ci95>("ci95", {.known = when<[](const Coefficient& c) { return 0 < c.ci95.high; }>}),
+      field<&Coefficient::relative_sd>("relative_sd",
+                                       {.known = when<[](const Coefficient& c) { return 0 < c.relative_sd; }>}),
   });
   return rows;
 }
@@ -99,8 +92,7 @@ const Fields<NoiseShape>& shape_fields() {
   static const Fields<NoiseShape> rows = {
       field<&NoiseShape::kind>("kind", {.written = Written::always}),
       field<&NoiseShape::taps>("taps"),
-      field<&NoiseShape::frequency_hz>("frequency_hz",
-                                       {.written = Written::if_known, .known = kMeasured}),
+      field<&NoiseShape::frequency_hz>("frequency_hz", {.written = Written::if_known, .known = kMeasured}),
       field<&NoiseShape::ratio>("ratio", {.written = Written::if_known, .known = kMeasured}),
   };
   return rows;
@@ -119,24 +111,21 @@ Row<SecondOpinion> opinion_row() {
         {.written = Written::always},
         "number"}},
   };
-  return level<T>(kTermNames[I].key,
-                  rows,
-                  {.written = Written::if_known,
-                   .known = when<[](const T& second) { return second.value[I].has_value(); }>});
+  return level<T>(
+      kTermNames[I].key, rows,
+      {.written = Written::if_known, .known = when<[](const T& second) { return second.value[I].has_value(); }>});
 }
 
 template <std::size_t... I>
 Fields<SecondOpinion> opinion_rows(std::index_sequence<I...>) {
-  return {constant<SecondOpinion>("method", "generalised least squares on the Allan variances"),
-          opinion_row<I>()...};
+  return {constant<SecondOpinion>("method", "generalised least squares on the Allan variances"), opinion_row<I>()...};
 }
 
 const Fields<SecondOpinion>& second_fields() {
   using T = SecondOpinion;
-  static const Fields<T> rows = always(joined(opinion_rows(ForTerms()),
-                                              {part<&T::goodness>("goodness", goodness_fields()),
-                                               field<&T::agrees>("agrees"),
-                                               field<&T::sentence>("sentence")}));
+  static const Fields<T> rows =
+      always(joined(opinion_rows(ForTerms()), {part<&T::goodness>("goodness", goodness_fields()),
+                                               field<&T::agrees>("agrees"), field<&T::sentence>("sentence")}));
   return rows;
 }
 
@@ -169,9 +158,8 @@ std::vector<std::string> not_told_from(const Event& event) {
 }
 
 const Fields<Event>& event_fields() {
-  static const Word kKinds[] = {{event_name(EventKind::step), 0},
-                                {event_name(EventKind::warm_up), 1},
-                                {event_name(EventKind::ramp), 2}};
+  static const Word kKinds[] = {
+      {event_name(EventKind::step), 0}, {event_name(EventKind::warm_up), 1}, {event_name(EventKind::ramp), 2}};
   static const Fields<Event> rows = always(Fields<Event>{
       field<&Event::kind>("kind", {.words = kKinds}),
       field<&Event::size>("size"),
@@ -182,11 +170,10 @@ const Fields<Event>& event_fields() {
       field<&Event::at_ci95>("at_ci95", of_kind<EventKind::step>()),
       field<&Event::in_gap>("in_gap", of_kind<EventKind::step>()),
       field<&Event::tau_s>("tau_s", of_kind<EventKind::warm_up>()),
-      computed<[](const Event& event) { return open_above(event.tau_ci95); }>(
-          "tau_ci95", of_kind<EventKind::warm_up>()),
+      computed<[](const Event& event) { return open_above(event.tau_ci95); }>("tau_ci95",
+                                                                              of_kind<EventKind::warm_up>()),
       field<&Event::slope>("slope_per_s", of_kind<EventKind::ramp>()),
-      computed<not_told_from>("not_told_from",
-                              {.meaning = "kinds that explain the record nearly as well"}),
+      computed<not_told_from>("not_told_from", {.meaning = "kinds that explain the record nearly as well"}),
   });
   return rows;
 }
@@ -194,15 +181,10 @@ const Fields<Event>& event_fields() {
 template <std::size_t I>
 Row<TemperatureEffect> without_row() {
   using T = TemperatureEffect;
-  Fields<Coefficient> rows =
-      selected(coefficient_fields(), {"value", "ci95", "upper95", "status"}, Written::always);
-  const auto fitted = [](const T& effect) {
-    return effect.without[I].status != Status::not_fitted;
-  };
+  Fields<Coefficient> rows = selected(coefficient_fields(), {"value", "ci95", "upper95", "status"}, Written::always);
+  const auto fitted = [](const T& effect) { return effect.without[I].status != Status::not_fitted; };
   return {{kTermNames[I].key,
-           [](void* effect) -> Slot {
-             return static_cast<void*>(&static_cast<T*>(effect)->without[I]);
-           },
+           [](void* effect) -> Slot { return static_cast<void*>(&static_cast<T*>(effect)->without[I]); },
            {.written = Written::if_known, .known = when<fitted>},
            "",
            std::move(rows.rows)}};
@@ -224,10 +206,8 @@ std::vector<double> coefficients_of(const TemperatureEffect& effect) {
 }
 
 bool has_without(const TemperatureEffect& effect) {
-  return effect.order > 0 &&
-         std::any_of(effect.without.begin(), effect.without.end(), [](const Coefficient& c) {
-           return c.status != Status::not_fitted;
-         });
+  return effect.order > 0 && std::any_of(effect.without.begin(), effect.without.end(),
+                                         [](const Coefficient& c) { return c.status != Status::not_fitted; });
 }
 
 const Fields<TemperatureEffect>& temperature_fields() {
@@ -245,10 +225,8 @@ const Fields<TemperatureEffect>& temperature_fields() {
       computed<[](const T& effect) { return open_above(effect.lag_ci95); }>("lag_ci95", if_moved()),
       field<&T::gain>("likelihood_ratio", if_moved()),
       field<&T::rms>("rms", if_moved("of what was taken out")),
-      field<&T::like_drift>("like_drift",
-                            if_moved("a drift or a warm-up explains the record nearly as well")),
-      level<T>("without",
-               without_rows(ForTerms()),
+      field<&T::like_drift>("like_drift", if_moved("a drift or a warm-up explains the record nearly as well")),
+      level<T>("without", without_rows(ForTerms()),
                {.meaning = "of the noise when temperature is left in",
                 .written = Written::if_known,
                 .known = when<has_without>}),
@@ -276,11 +254,8 @@ const Fields<Stationarity>& stationarity_fields() {
       list_of<&T::spread>("spread", spread_fields()),
       field<&T::clearest_tau_s>("clearest_tau_s", unsteady),
       field<&T::stretch_s>("stretch_s", unsteady),
-      level<T>("largest",
-               always(Fields<T>{field<&T::largest>("ratio"), field<&T::largest_s>("from_to_s")}),
-               unsteady),
-      level<T>("smallest",
-               always(Fields<T>{field<&T::smallest>("ratio"), field<&T::smallest_s>("from_to_s")}),
+      level<T>("largest", always(Fields<T>{field<&T::largest>("ratio"), field<&T::largest_s>("from_to_s")}), unsteady),
+      level<T>("smallest", always(Fields<T>{field<&T::smallest>("ratio"), field<&T::smallest_s>("from_to_s")}),
                unsteady),
   });
   return rows;
@@ -300,9 +275,7 @@ const Fields<FitResidual>& residual_fields() {
   return rows;
 }
 
-bool is_clock(const NoiseFit& fit) {
-  return fit.flicker_phase.has_value();
-}
+bool is_clock(const NoiseFit& fit) { return fit.flicker_phase.has_value(); }
 
 }  // namespace
 
@@ -317,20 +290,16 @@ const Fields<NoiseFit>& noise_fit_fields() {
        field<&T::bandwidth_hz>("bandwidth_hz", {.meaning = "corner of a first-order low-pass"}),
        field<&T::bandwidth_ci95>("bandwidth_ci95"),
        maybe_part<&T::gauss_markov>("gauss_markov", gauss_markov_fields()),
-       computed_list<power_laws>(
-           "power_laws",
-           power_law_fields(),
-           {.meaning = "of a clock", .written = Written::if_known, .known = when<is_clock>}),
+       computed_list<power_laws>("power_laws", power_law_fields(),
+                                 {.meaning = "of a clock", .written = Written::if_known, .known = when<is_clock>}),
        maybe_part<&T::second_opinion>("second_opinion", second_fields()),
        goodness,
        list_of<&T::remedies>("remedies", remedy_fields()),
        list_of<&T::events>("events", event_fields()),
        field<&T::moving_s>("moving_s"),
        maybe_part<&T::temperature>("temperature", temperature_fields()),
-       part<&T::stationarity>(
-           "stationarity",
-           stationarity_fields(),
-           {.known = when<[](const T& fit) { return fit.stationarity.tested; }>}),
+       part<&T::stationarity>("stationarity", stationarity_fields(),
+                              {.known = when<[](const T& fit) { return fit.stationarity.tested; }>}),
        list_of<&T::findings>("findings", finding_fields()),
        field<&T::method>("method"),
        field<&T::converged>("converged"),
@@ -342,27 +311,20 @@ const Fields<NoiseFit>& noise_fit_fields() {
 }
 
 const Fields<NoiseFit>& fit_residual_fields() {
-  static const Fields<NoiseFit> rows = {
-      columns_of<&NoiseFit::residuals>("residuals", residual_fields())};
+  static const Fields<NoiseFit> rows = {columns_of<&NoiseFit::residuals>("residuals", residual_fields())};
   return rows;
 }
 
-Json noise_fit_json(const std::string& name,
-                    const std::string& unit,
-                    const NoiseFit& fit,
-                    bool with_residuals) {
+Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals) {
   Substitutions units = {{"unit", unit}};
   for (const TermName& term : kTermNames) units.emplace_back(term.key, term_unit(term.key, unit));
   std::vector<Entry> entries = {{"name", name}, {"unit", unit}};
   std::ranges::move(entries_of(noise_fit_fields(), fit, units), std::back_inserter(entries));
-  if (with_residuals)
-    std::ranges::move(entries_of(always(fit_residual_fields()), fit), std::back_inserter(entries));
+  if (with_residuals) std::ranges::move(entries_of(always(fit_residual_fields()), fit), std::back_inserter(entries));
   return json_of(entries);
 }
 
-Json no_fit_json(const std::string& name,
-                 const std::string& unit,
-                 const std::vector<Finding>& why) {
+Json no_fit_json(const std::string& name, const std::string& unit, const std::vector<Finding>& why) {
   NoiseFit none;
   none.findings = why;
   Json json = noise_fit_json(name, unit, none);
@@ -371,10 +333,7 @@ Json no_fit_json(const std::string& name,
 }
 
 Json noise_fit_document(Json channels) {
-  return {{"format", "noise-fit"},
-          {"version", 1},
-          {"density_sides", "two"},
-          {"channels", std::move(channels)}};
+  return {{"format", "noise-fit"}, {"version", 1}, {"density_sides", "two"}, {"channels", std::move(channels)}};
 }
 
 }  // namespace libchar

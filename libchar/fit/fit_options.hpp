@@ -10,12 +10,8 @@
 namespace libchar {
 
 struct FitOptions {
-  std::array<bool, kTerms> terms = {
-      true,
-      true,
-      true,
-      false,
-      false};  ///< offered from the start; quantization and ramp are added on alarm
+  std::array<bool, kTerms> terms = {true, true, true, false,
+                                    false};  ///< offered from the start; quantization and ramp are added on alarm
   /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
   bool remedies = true;
   /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
@@ -31,8 +27,8 @@ struct FitOptions {
   bool stationarity = true;
   /// of the record's first differences, where it is known: spikes are looked for above an alarm
   std::optional<double> difference_kurtosis;
-  std::string unit;         ///< of the samples, in sentences
-  double threshold = 5.41;  ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
+  std::string unit;             ///< of the samples, in sentences
+  double threshold = 5.41;      ///< likelihood-ratio threshold of presence (1 % under ½χ²₀+½χ²₁)
   double profile_above = 0.15;  ///< profile-likelihood interval when the relative sd exceeds this
   bool second_opinion = true;   ///< covariance-weighted Allan fit next to the first
   int threads = 1;

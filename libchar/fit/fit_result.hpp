@@ -39,8 +39,7 @@ struct SecondOpinion {
 
 /// What was done to the data before the fit, because an alarm asked for it.
 struct Remedy {
-  std::string
-      kind;  ///< "spikes", "lines", "ramp", "lowest_bins", "band", "shape", "bandwidth", "quantization"
+  std::string kind;    ///< "spikes", "lines", "ramp", "lowest_bins", "band", "shape", "bandwidth", "quantization"
   std::string alarm;   ///< the figure that asked ("kurtosis of differences 29.8 > 3.2")
   std::string action;  ///< what was done ("212 samples replaced by the mean of their neighbours")
   std::uint64_t count = 0;
@@ -48,11 +47,10 @@ struct Remedy {
 
 /// Over which frequencies the noise terms, times the shape, describe the record: all coefficients come from there.
 struct FitBand {
-  double top_hz = 0;  ///< upper end; half the rate unless something is left out above
-  bool whole = true;  ///< every bin is inside
-  int orders = 0;     ///< of the polynomial of the shape inside (docs/theory/fit.md)
-  std::vector<Interval>
-      left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
+  double top_hz = 0;                  ///< upper end; half the rate unless something is left out above
+  bool whole = true;                  ///< every bin is inside
+  int orders = 0;                     ///< of the polynomial of the shape inside (docs/theory/fit.md)
+  std::vector<Interval> left_out_hz;  ///< below the upper end: broad peaks, the slowest coefficients
 };
 
 /// A first-order Gauss-Markov process (model/sensor_model.hpp) in the record.
@@ -79,15 +77,12 @@ struct NoiseFit {
   Goodness goodness;
   std::optional<SecondOpinion> second_opinion;
   std::vector<Remedy> remedies;
-  std::vector<Event>
-      events;  ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
-  std::vector<Interval>
-      moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
+  std::vector<Event> events;       ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
+  std::vector<Interval> moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
-  Stationarity stationarity;  ///< of a record that is kept; not tested of one that streams
+  Stationarity stationarity;                     ///< of a record that is kept; not tested of one that streams
   std::vector<FitResidual> residuals;
-  std::vector<PowerBin>
-      bins;  ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
+  std::vector<PowerBin> bins;     ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
   std::vector<Finding> findings;  ///< of the fit, apart from the coefficients
   std::string method;             ///< "DCT-II Whittle likelihood, 128 bins" …
   bool converged = true;

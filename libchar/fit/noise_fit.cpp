@@ -35,12 +35,10 @@ namespace libchar {
 
 namespace {
 
-constexpr double kMisfit =
-    1e-3;  ///< probability of the residuals below which the terms do not describe them
+constexpr double kMisfit = 1e-3;     ///< probability of the residuals below which the terms do not describe them
 constexpr double kRampRatio = 5.41;  ///< the same for a ramp: passed by 0.5 % of clean records
-constexpr double kProcessWorth =
-    6;  ///< of 2 lnL that a Gauss-Markov process must have before a power law
-constexpr std::size_t kLowest = 5;  ///< coefficients that a warm-up or a drift falls into
+constexpr double kProcessWorth = 6;  ///< of 2 lnL that a Gauss-Markov process must have before a power law
+constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift falls into
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
@@ -59,9 +57,7 @@ struct Attempt {
 void require_enough(std::size_t bins, const TermSet& terms) {
   const std::size_t wanted = count_of(terms);
   if (wanted == 0) {
-    throw usage_error("E0201")
-        .says("no noise term was asked for")
-        .hint("offer at least white noise");
+    throw usage_error("E0201").says("no noise term was asked for").hint("offer at least white noise");
   }
   if (bins >= wanted) return;
   throw numeric_error("E0401")
@@ -73,10 +69,7 @@ BinProblem problem_of(const std::vector<PowerBin>& bins, const Band& band, doubl
   return band_problem(bins, band, rate_hz);
 }
 
-Attempt attempt(const std::vector<PowerBin>& bins,
-                Band band,
-                double rate_hz,
-                std::uint64_t samples,
+Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, std::uint64_t samples,
                 const FitOptions& options) {
   Attempt out{&bins, std::move(band), options, {}, 0};
   if (out.band.bottom_hz > 0) out.options.terms = {true, false, false, false, false};
@@ -93,9 +86,8 @@ Attempt attempt(const std::vector<PowerBin>& bins,
   const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
   if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
   describe_band(bins, out.band, problem, best, rate_hz, fit);
-  fit.goodness =
-      goodness_of(inside_of(fit.residuals),
-                  count_of(only_positive(fit.theta)) + static_cast<std::size_t>(out.band.orders));
+  fit.goodness = goodness_of(inside_of(fit.residuals),
+                             count_of(only_positive(fit.theta)) + static_cast<std::size_t>(out.band.orders));
   out.half_deviance = half_deviance(problem, best);
   out.best = best;
   return out;
@@ -124,8 +116,7 @@ Band without_lowest(const Attempt& now) {
 double rejection(const Attempt& other, const NoiseFit& fit) {
   const BinProblem problem = problem_of(*other.bins, other.band, fit.rate_hz);
   const ModelPoint at{fit.theta, {}};
-  const double value =
-      problem.shapes() == 0 ? half_deviance(problem, at) : score(problem, {}, &at).half_deviance;
+  const double value = problem.shapes() == 0 ? half_deviance(problem, at) : score(problem, {}, &at).half_deviance;
   return 2 * (value - other.half_deviance);
 }
 
@@ -141,8 +132,7 @@ double rejection_limit(const Attempt& now, const Attempt& dropped) {
     return fisher_information(problem, at, terms);
   };
   const TermMatrix all = information(now.band), rest = information(dropped.band);
-  const double lost =
-      static_cast<double>(count_of(terms)) - (rest * inverse_of(all, terms)).trace();
+  const double lost = static_cast<double>(count_of(terms)) - (rest * inverse_of(all, terms)).trace();
   return std::clamp(16 * lost, 1.0, 16.0);
 }
 
@@ -163,45 +153,37 @@ void answer_low_frequencies(Attempt& now) {
   FitOptions with = now.options;
   with.terms[kRamp] = true;
   std::optional<Attempt> ramp;
-  if (!now.options.terms[kRamp])
-    ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
+  if (!now.options.terms[kRamp]) ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
   const double gain = ramp ? 2 * (now.half_deviance - ramp->half_deviance) : 0;
   if (std::isnan(rejects)) return;  // there is no likelihood to hold them against
   if (rejects < limit && low.p > 1e-3 && gain < kRampRatio) return;
 
   const std::string alarm =
-      fmt::format("the slowest {} coefficients do not follow the rest (2 ln L {}; with a ramp {})",
-                  kLowest - 1,
-                  ratio_text(rejects),
-                  ratio_text(gain));
-  const bool ramp_explains =
-      ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
-      goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
+      fmt::format("the slowest {} coefficients do not follow the rest (2 ln L {}; with a ramp {})", kLowest - 1,
+                  ratio_text(rejects), ratio_text(gain));
+  const bool ramp_explains = ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
+                             goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
   if (ramp_explains) {
     ramp->fit.remedies = now.fit.remedies;
     now = std::move(*ramp);
     now.fit.remedies.push_back(
-        {"ramp",
-         alarm,
-         fmt::format("rate ramp added to the model; 2 ln L rises by {:.0f}", gain),
-         1});
+        {"ramp", alarm, fmt::format("rate ramp added to the model; 2 ln L rises by {:.0f}", gain), 1});
     now.fit.findings.push_back(
         finding("drift", "The record drifts; a straight line was taken out of the random walk."));
     return;
   }
-  const auto count = static_cast<std::uint64_t>(
-      std::count(now.band.inside.begin(), now.band.inside.end(), 1) -
-      std::count(dropped.band.inside.begin(), dropped.band.inside.end(), 1));
+  const auto count = static_cast<std::uint64_t>(std::count(now.band.inside.begin(), now.band.inside.end(), 1) -
+                                                std::count(dropped.band.inside.begin(), dropped.band.inside.end(), 1));
   const std::vector<Remedy> before = now.fit.remedies;
   now = dropped;
   now.fit.remedies = before;
   now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  now.fit.findings.push_back(finding(
-      "lowest_left_out",
-      "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
-      "was left out of the fit.",
-      "the slowest part does not look like noise and was left out"));
+  now.fit.findings.push_back(
+      finding("lowest_left_out",
+              "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
+              "was left out of the fit.",
+              "the slowest part does not look like noise and was left out"));
 }
 
 /// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
@@ -210,8 +192,7 @@ double largest_possible(Term term, const AllanCurve& allan) {
   double largest = std::numeric_limits<double>::infinity();
   for (const AllanPoint& point : allan.points) {
     if (!(point.deviation > 0) || !(point.ci95.high > 0)) continue;
-    const double unit =
-        std::sqrt(unit_allan_variance(term, static_cast<double>(point.m), allan.dt_s));
+    const double unit = std::sqrt(unit_allan_variance(term, static_cast<double>(point.m), allan.dt_s));
     if (unit > 0) largest = std::min(largest, point.ci95.high / unit);
   }
   return largest;
@@ -225,8 +206,7 @@ void admit_misfit(NoiseFit& fit, const AllanCurve* allan) {
     add_fit_intervals(curve, fit);
   else
     curve.points.clear();
-  const double wider =
-      std::sqrt(std::max(1.0, fit.goodness.chi2 / std::max(1.0, fit.goodness.dof)));
+  const double wider = std::sqrt(std::max(1.0, fit.goodness.chi2 / std::max(1.0, fit.goodness.dof)));
   widen_as_misfit(wider, fit);
   for (std::size_t i = 0; i < kTerms; ++i) {
     Coefficient& term = fit.term[i];
@@ -250,10 +230,7 @@ double largest_beneath(Term term, const std::vector<PowerBin>& bins) {
   return largest;
 }
 
-void answer_hump(const std::vector<PowerBin>& bins,
-                 double bottom_hz,
-                 const TermSet& asked,
-                 NoiseFit& fit) {
+void answer_hump(const std::vector<PowerBin>& bins, double bottom_hz, const TermSet& asked, NoiseFit& fit) {
   for (const Term slow : {Term::flicker, Term::walk}) {
     const double largest = largest_beneath(slow, bins);
     if (!asked[static_cast<std::size_t>(slow)] || !std::isfinite(largest)) continue;
@@ -262,12 +239,11 @@ void answer_hump(const std::vector<PowerBin>& bins,
     term.upper95 = largest;
     term.ci95 = {0, largest};
   }
-  Finding hump = finding(
-      "hump",
-      fmt::format("Below {} Hz no noise term describes the record (a cycle, a movement, the "
-                  "temperature): N is from above; B and K have limits only.",
-                  brief_text(bottom_hz)),
-      "its slow part is not noise");
+  Finding hump = finding("hump",
+                         fmt::format("Below {} Hz no noise term describes the record (a cycle, a movement, the "
+                                     "temperature): N is from above; B and K have limits only.",
+                                     brief_text(bottom_hz)),
+                         "its slow part is not noise");
   hump.where.frequency_hz.push_back({0, bottom_hz});
   fit.findings.push_back(std::move(hump));
 }
@@ -290,28 +266,22 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
   raise_white_limit(fit);
   if (passes && !(fit.goodness.p < kMisfit)) return;
   admit_misfit(fit, allan);
-  const auto worst = std::max_element(
-      fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
+  const auto worst =
+      std::max_element(fit.residuals.begin(), fit.residuals.end(), [](const FitResidual& a, const FitResidual& b) {
         return (a.inside ? std::abs(a.z) : 0) < (b.inside ? std::abs(b.z) : 0);
       });
-  fit.findings.push_back(finding(
-      "misfit",
-      fmt::format(
-          "The model does not describe the record within its statistical accuracy "
-          "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
-          "the intervals are widened by its scatter, and no coefficient is borne out.",
-          fit.goodness.chi2,
-          fit.goodness.dof,
-          brief_text(worst->frequency_hz)),
-      "the noise terms do not describe the recording"));
+  fit.findings.push_back(
+      finding("misfit",
+              fmt::format("The model does not describe the record within its statistical accuracy "
+                          "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
+                          "the intervals are widened by its scatter, and no coefficient is borne out.",
+                          fit.goodness.chi2, fit.goodness.dof, brief_text(worst->frequency_hz)),
+              "the noise terms do not describe the recording"));
 }
 
 /// After the decisions: the process that was needed gets its intervals, one that is as likely a
 /// sentence.
-void answer_process(const std::vector<PowerBin>& bins,
-                    const Band& band,
-                    GaussMarkovChoice& process,
-                    NoiseFit& fit) {
+void answer_process(const std::vector<PowerBin>& bins, const Band& band, GaussMarkovChoice& process, NoiseFit& fit) {
   if (!process.needed) return report_not_needed(process, fit);
   process.band = band;
   settle_gauss_markov(bins, process, fit);
@@ -328,12 +298,8 @@ void settle_flicker_phase(NoiseFit& fit) {
   for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][kRamp] = fit.covariance[kRamp][i] = 0;
 }
 
-NoiseFit fit_offered(const std::vector<PowerBin>& bins,
-                     double rate_hz,
-                     std::uint64_t samples,
-                     const AllanCurve* allan,
-                     const FitOptions& options,
-                     FitWorkspace* workspace) {
+NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
+                     const FitOptions& options, FitWorkspace* workspace) {
   Band band;
   BandOptions band_options;
   band_options.small_shapes = !options.clock && !options.white_top;
@@ -345,13 +311,11 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
   std::optional<GaussMarkovChoice> process;
   const bool hump = band.bottom_hz > 0;
   if (options.remedies && options.gauss_markov && !options.clock && !hump)
-    process = choose_gauss_markov(
-        bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
+    process = choose_gauss_markov(bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   std::optional<PowerLawChoice> law;
   if (process) law = choose_power_law(bins, band, rate_hz, options.terms);
   // The process has two parameters where the law has none beside its exponent.
-  if (law && process->needed && process->likelihood_ratio > law->likelihood_ratio + kProcessWorth)
-    law.reset();
+  if (law && process->needed && process->likelihood_ratio > law->likelihood_ratio + kProcessWorth) law.reset();
   if (law) process.reset();
   if (process && process->needed) band = process->band;
   Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
@@ -366,20 +330,17 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins,
     report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
     if (band_options.small_shapes && now.band.passes)
-      average_over_small_shapes(
-          bins, now.band, problem_of(bins, now.band, rate_hz), now.best, now.fit);
+      average_over_small_shapes(bins, now.band, problem_of(bins, now.band, rate_hz), now.best, now.fit);
   }
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);
   if (options.clock) settle_flicker_phase(now.fit);
   // An Allan curve has no way of saying what lies behind a high-pass.
   const bool behind = now.band.named.family == NamedShape::Family::high_pass;
-  const bool terms_alone = !behind && !hump &&
-                           !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
+  const bool terms_alone = !behind && !hump && !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
                            !(now.fit.flicker_phase && now.fit.flicker_phase->value);
   if (options.second_opinion && allan != nullptr && terms_alone)
-    now.fit.second_opinion =
-        second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
+    now.fit.second_opinion = second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr && !behind && !hump) answer_contradictions(now.fit, *allan);
   now.fit.bins = bins;
   return std::move(now.fit);
@@ -403,12 +364,8 @@ void widen_as_misfit(double wider, NoiseFit& fit) {
   }
 }
 
-NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
-                        double rate_hz,
-                        std::uint64_t samples,
-                        const AllanCurve* allan,
-                        const FitOptions& options,
-                        FitWorkspace* workspace) {
+NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples,
+                        const AllanCurve* allan, const FitOptions& options, FitWorkspace* workspace) {
   if (!options.clock) return fit_offered(bins, rate_hz, samples, allan, options, workspace);
   std::vector<PowerBin> lent = bins;
   lend_flicker_phase(rate_hz, lent);
@@ -417,12 +374,8 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
   return fit_offered(lent, rate_hz, samples, allan, offered, workspace);
 }
 
-NoiseFit fit_powers(std::span<const PooledPower> powers,
-                    double rate_hz,
-                    std::uint64_t samples,
-                    const AllanCurve* allan,
-                    const FitOptions& options,
-                    FitWorkspace* workspace,
+NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
+                    const FitOptions& options, FitWorkspace* workspace,
                     const std::optional<TemperatureEffect>& temperature) {
   ClippedBins lines;
   if (options.remedies)

@@ -25,21 +25,13 @@ void widen_as_misfit(double wider, NoiseFit& fit);
 /// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is
 /// what the second opinion is made of (may be null). Throws Error(numeric) when there are fewer
 /// bins than terms.
-NoiseFit fit_power_bins(const std::vector<PowerBin>& bins,
-                        double rate_hz,
-                        std::uint64_t samples,
-                        const AllanCurve* allan,
-                        const FitOptions& options = {},
-                        FitWorkspace* workspace = nullptr);
+NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples,
+                        const AllanCurve* allan, const FitOptions& options = {}, FitWorkspace* workspace = nullptr);
 
 /// The same on the powers of a record, spectral lines clipped when remedies are on, and temperature
 /// has taken degrees of freedom. `samples` without the missing ones.
-NoiseFit fit_powers(std::span<const PooledPower> powers,
-                    double rate_hz,
-                    std::uint64_t samples,
-                    const AllanCurve* allan,
-                    const FitOptions& options = {},
-                    FitWorkspace* workspace = nullptr,
+NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
+                    const FitOptions& options = {}, FitWorkspace* workspace = nullptr,
                     const std::optional<TemperatureEffect>& temperature = {});
 
 /// What the caller of `fit_record` knows of its record; none of it is needed.
@@ -52,18 +44,12 @@ struct RecordKnowledge {
 
 /// Alarms, remedies, bins, fit, second opinion, of samples in memory. A record of more than a leaf
 /// (2^20 samples) is fitted by its sums, unless a temperature is given.
-NoiseFit fit_record(std::span<const double> record,
-                    double rate_hz,
-                    const AllanCurve* allan,
-                    const FitOptions& options = {},
-                    FitWorkspace* workspace = nullptr,
+NoiseFit fit_record(std::span<const double> record, double rate_hz, const AllanCurve* allan,
+                    const FitOptions& options = {}, FitWorkspace* workspace = nullptr,
                     const RecordKnowledge& known = {});
 
 /// The same of a record of more than a leaf, whoever has the samples. `allan`: of `sums`.
-NoiseFit fit_sums(RecordSums sums,
-                  double rate_hz,
-                  const AllanCurve* allan,
-                  const FitOptions& options = {},
+NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, const FitOptions& options = {},
                   FitWorkspace* workspace = nullptr);
 
 }  // namespace libchar

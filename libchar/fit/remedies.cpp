@@ -15,8 +15,7 @@ namespace libchar {
 double spike_alarm(std::uint64_t samples) {
   // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation
   // of -1/2.
-  return std::max(
-      3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
+  return std::max(3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
 }
 
 double kurtosis_of_differences(std::span<const double> record) {
@@ -40,11 +39,8 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
     if (verdict == SpikeVerdict::too_many) answer.kept->severity = Severity::caution;
   }
   if (verdict == SpikeVerdict::spikes)
-    answer.remedy = {
-        "spikes",
-        fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
-        plural(count.left_out, "sample") + " left out",
-        count.left_out};
+    answer.remedy = {"spikes", fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
+                     plural(count.left_out, "sample") + " left out", count.left_out};
   answer.outliers = outlier_variance(answer.remedy ? count.without : count.with);
   return answer;
 }
@@ -67,35 +63,30 @@ void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit) {
 }
 
 Remedy lines_remedy(std::uint64_t clipped) {
-  return {"lines",
-          "coefficients of the spectrum above 32 times the floor around them",
-          fmt::format("{} coefficients in and beside spectral lines left out", clipped),
-          clipped};
+  return {"lines", "coefficients of the spectrum above 32 times the floor around them",
+          fmt::format("{} coefficients in and beside spectral lines left out", clipped), clipped};
 }
 
 Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
   const ClippedBins::Cycle& strongest = *std::max_element(
-      cycles.begin(), cycles.end(), [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) {
-        return a.amplitude < b.amplitude;
-      });
+      cycles.begin(), cycles.end(),
+      [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) { return a.amplitude < b.amplitude; });
   const std::size_t further = cycles.size() - 1;
-  Finding found = finding(
-      "cycle",
-      fmt::format(
-          "The record holds a cycle of {} (amplitude {}{}): it was taken out before the "
-          "noise was fitted, and stays in the Allan curve.",
-          duration_text(1 / strongest.frequency_hz),
-          brief_text(strongest.amplitude, 3),
-          further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
-      "a cycle was taken out");
+  Finding found =
+      finding("cycle",
+              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the "
+                          "noise was fitted, and stays in the Allan curve.",
+                          duration_text(1 / strongest.frequency_hz), brief_text(strongest.amplitude, 3),
+                          further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
+              "a cycle was taken out");
   for (const ClippedBins::Cycle& cycle : cycles)
     found.where.frequency_hz.push_back({cycle.frequency_hz, cycle.frequency_hz});
   return found;
 }
 
 const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind) {
-  const auto found = std::find_if(
-      fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
+  const auto found =
+      std::find_if(fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
   return found == fit.remedies.end() ? nullptr : &*found;
 }
 

@@ -24,8 +24,8 @@ double kurtosis_of_differences(std::span<const double> record);
 
 /// Treatment of outliers of a record: left out, or kept with a sentence that says why.
 struct SpikeAnswer {
-  std::optional<Remedy> remedy;  ///< the spikes are to be left out
-  std::optional<Finding> kept;   ///< or the reason for keeping them; none without outliers
+  std::optional<Remedy> remedy;             ///< the spikes are to be left out
+  std::optional<Finding> kept;              ///< or the reason for keeping them; none without outliers
   std::optional<OutlierVariance> outliers;  ///< that are left in what is fitted
 };
 SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count);

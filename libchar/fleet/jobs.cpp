@@ -15,8 +15,7 @@ enum class Found { nothing, result, no_result };
 
 Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
   if (unit.kind == UnitKind::stretch)
-    return !stored_states(folder, unit.id).empty() && result_counts(folder, unit) ? Found::result
-                                                                                  : Found::nothing;
+    return !stored_states(folder, unit.id).empty() && result_counts(folder, unit) ? Found::result : Found::nothing;
   const auto record = stored_record(folder, unit.id);
   if (!record || !result_counts(folder, unit)) return Found::nothing;
   const bool any = record->problem.empty() && why_nothing_fitted(*record).empty();
@@ -25,8 +24,7 @@ Found look_at(const FleetUnit& unit, const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
-                                                 const std::filesystem::path& folder) {
+std::unordered_set<std::string> joined_stretches(const FleetPlan& plan, const std::filesystem::path& folder) {
   std::unordered_set<std::string> out;
   for (const FleetUnit& unit : plan.units)
     if (unit.kind == UnitKind::join && has_result(folder, unit.id, false))
@@ -34,17 +32,13 @@ std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
   return out;
 }
 
-FleetStatus fleet_status(const FleetPlan& plan,
-                         const std::filesystem::path& folder,
-                         Progress& progress) {
+FleetStatus fleet_status(const FleetPlan& plan, const std::filesystem::path& folder, Progress& progress) {
   FleetStatus out;
   out.devices = plan.devices.size();
   out.units = plan.units.size();
   const std::unordered_set<std::string> joined = joined_stretches(plan, folder);
   for (std::size_t k = 0; k < plan.units.size(); ++k) {
-    if (k % 256 == 0)
-      progress.update(static_cast<double>(k) / static_cast<double>(out.units),
-                      "looking at results");
+    if (k % 256 == 0) progress.update(static_cast<double>(k) / static_cast<double>(out.units), "looking at results");
     const FleetUnit& unit = plan.units[k];
     Found found = Found::nothing;
     try {
@@ -105,22 +99,17 @@ class JobMaker {
 };
 
 /// Which job makes the parts of the joins in `job`.
-void add_after(const FleetPlan& plan,
-               const std::map<std::string, std::size_t>& job_of_id,
-               FleetJob& job) {
+void add_after(const FleetPlan& plan, const std::map<std::string, std::size_t>& job_of_id, FleetJob& job) {
   for (const std::size_t k : job.units)
     for (const std::string& part : plan.units[k].parts)
-      if (const auto at = job_of_id.find(part); at != job_of_id.end())
-        job.after.push_back(at->second);
+      if (const auto at = job_of_id.find(part); at != job_of_id.end()) job.after.push_back(at->second);
   std::sort(job.after.begin(), job.after.end());
   job.after.erase(std::unique(job.after.begin(), job.after.end()), job.after.end());
 }
 
 }  // namespace
 
-std::vector<FleetJob> jobs_of(const FleetPlan& plan,
-                              const FleetStatus& status,
-                              const JobOptions& options) {
+std::vector<FleetJob> jobs_of(const FleetPlan& plan, const FleetStatus& status, const JobOptions& options) {
   std::vector<FleetJob> jobs;
   for (const bool joins : {false, true}) {
     JobMaker maker(plan, options, jobs);
@@ -134,9 +123,7 @@ std::vector<FleetJob> jobs_of(const FleetPlan& plan,
   return jobs;
 }
 
-void export_jobs(const std::vector<FleetJob>& jobs,
-                 const Engine& engine,
-                 const fs::path& folder,
+void export_jobs(const std::vector<FleetJob>& jobs, const Engine& engine, const fs::path& folder,
                  const JobOptions& options) {
   make_fleet_folder(folder / "jobs");
   for (const FleetJob& job : jobs) {
@@ -147,8 +134,7 @@ void export_jobs(const std::vector<FleetJob>& jobs,
     std::error_code ignored;
     fs::remove(folder / "jobs" / (job.name + ".done"), ignored);
   }
-  for (const OutputFile& file : engine.files(jobs, folder, options))
-    write_whole_file(file.path, file.text, true);
+  for (const OutputFile& file : engine.files(jobs, folder, options)) write_whole_file(file.path, file.text, true);
 }
 
 }  // namespace libchar

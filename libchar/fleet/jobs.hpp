@@ -25,21 +25,19 @@ struct FleetStatus {
   double seconds_left = 0;                 ///< of one core, as planned
 };
 
-FleetStatus fleet_status(const FleetPlan& plan,
-                         const std::filesystem::path& folder,
+FleetStatus fleet_status(const FleetPlan& plan, const std::filesystem::path& folder,
                          Progress& progress = no_progress());
 
 /// Ids of stretches whose log has been joined: their partial states are not needed any more,
 /// whether they are there, count, or not.
-std::unordered_set<std::string> joined_stretches(const FleetPlan& plan,
-                                                 const std::filesystem::path& folder);
+std::unordered_set<std::string> joined_stretches(const FleetPlan& plan, const std::filesystem::path& folder);
 
 struct JobOptions {
-  double job_s = 60;  ///< expected length of a job, at least; a longer unit is a job of its own
+  double job_s = 60;                   ///< expected length of a job, at least; a longer unit is a job of its own
   std::uint64_t at_once = 0;           ///< jobs at a time; 0 = as the engine likes
   int retries = 3;                     ///< of a job that fails
   std::string program = "sensorchar";  ///< as a worker is to call it
-  double slower = 3;  ///< a worker may be this much slower than the machine that planned
+  double slower = 3;                   ///< a worker may be this much slower than the machine that planned
 };
 
 struct FleetJob {
@@ -50,17 +48,14 @@ struct FleetJob {
 };
 
 /// In the order of the plan; joins come behind all other units.
-std::vector<FleetJob> jobs_of(const FleetPlan& plan,
-                              const FleetStatus& status,
-                              const JobOptions& options);
+std::vector<FleetJob> jobs_of(const FleetPlan& plan, const FleetStatus& status, const JobOptions& options);
 
 /// What an engine is given, in DIR: jobs/NAME.txt with one task file per line, and its own files.
 struct Engine {
   std::string name, what;  ///< "slurm"
   std::string file;        ///< that its own command takes, in DIR
   std::string start;       ///< what to type in DIR, "{}" stands for the file
-  std::vector<OutputFile> (*files)(const std::vector<FleetJob>& jobs,
-                                   const std::filesystem::path& folder,
+  std::vector<OutputFile> (*files)(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                    const JobOptions& options);
 };
 
@@ -68,9 +63,7 @@ struct Engine {
 const std::vector<Engine>& engines();
 
 /// Writes the jobs and the engine's files; those of an earlier export are replaced. Throws Error(output).
-void export_jobs(const std::vector<FleetJob>& jobs,
-                 const Engine& engine,
-                 const std::filesystem::path& folder,
+void export_jobs(const std::vector<FleetJob>& jobs, const Engine& engine, const std::filesystem::path& folder,
                  const JobOptions& options);
 
 }  // namespace libchar

@@ -49,10 +49,7 @@ std::string trimmed(const std::string& cell) {
 
 /// A cell that begins with a quotation mark ends with one, and has two for each of its own (RFC
 /// 4180). No other character escapes: a path may hold backslashes.
-std::vector<std::string> cells_of(const std::string& line,
-                                  char separator,
-                                  const std::string& path,
-                                  int number) {
+std::vector<std::string> cells_of(const std::string& line, char separator, const std::string& path, int number) {
   std::vector<std::string> cells;
   std::string cell;
   bool quoted = false;
@@ -83,9 +80,7 @@ char separator_of(const std::string& head) {
 // Separated by commas, or where the head has none by semicolons, or by tabs; cells may be quoted;
 // empty lines and those that begin with # are left out. Throws Error(input) for a row of another
 // number of cells, a quote that is never closed. Nothing behind `most_rows` rows is looked at.
-TableText parse_table_text(std::string_view text,
-                           const std::string& path,
-                           std::size_t most_rows = SIZE_MAX) {
+TableText parse_table_text(std::string_view text, const std::string& path, std::size_t most_rows = SIZE_MAX) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   TableText table;
   char separator = ',';
@@ -105,8 +100,7 @@ TableText parse_table_text(std::string_view text,
       continue;
     }
     if (cells.size() != table.heads.size())
-      refuse(
-          path, number, fmt::format("{} cells under {} heads", cells.size(), table.heads.size()));
+      refuse(path, number, fmt::format("{} cells under {} heads", cells.size(), table.heads.size()));
     table.rows.push_back({number, std::move(cells)});
   }
   return table;
@@ -115,8 +109,7 @@ TableText parse_table_text(std::string_view text,
 namespace fs = std::filesystem;
 
 constexpr std::string_view kManifestFormat = "fleet-manifest";
-const std::vector<std::string> kDeviceKeys = {
-    "device", "log", "type", "batch", "temperature_c", "limits", "sha256"};
+const std::vector<std::string> kDeviceKeys = {"device", "log", "type", "batch", "temperature_c", "limits", "sha256"};
 constexpr std::size_t kMostManifest = std::size_t{256} << 20U;
 
 std::vector<std::string> keys_with(std::vector<std::string> more) {
@@ -163,9 +156,7 @@ void read_device(const MapReader& at, const fs::path& folder, FleetDevice& devic
   if (at.has("sha256")) device.sha256 = digest_at(at);
 }
 
-Manifest parse_tree(std::string_view text,
-                    const std::string& path,
-                    const CharacterizeOptions& options) {
+Manifest parse_tree(std::string_view text, const std::string& path, const CharacterizeOptions& options) {
   const Document document = parse_document(text, path);
   check_format(document, path, kManifestFormat, 1);
   const MapReader top(document, path, "", {"format", "version", "defaults", "devices"});
@@ -175,8 +166,7 @@ Manifest parse_tree(std::string_view text,
   FleetDevice defaults;
   CharacterizeOptions common = options;
   if (top.has("defaults")) {
-    const MapReader at =
-        top.map("defaults", {"type", "batch", "temperature_c", "limits", "options"});
+    const MapReader at = top.map("defaults", {"type", "batch", "temperature_c", "limits", "options"});
     read_device(at, folder, defaults);
     common = options_at(at, options);
   }
@@ -204,9 +194,7 @@ void check_heads(const TableText& table, const std::string& path) {
   head.column = 1;
   for (const std::string& one : table.heads) {
     if (std::count(table.heads.begin(), table.heads.end(), one) > 1)
-      throw input_error("E0781", fmt::format("{}:{}:1", path, table.head_line))
-          .says("a column stands twice")
-          .got(one);
+      throw input_error("E0781", fmt::format("{}:{}:1", path, table.head_line)).says("a column stands twice").got(one);
     Document value;
     value.kind = Document::Kind::text;
     head.map.push_back({one, head.line, 1, value});
@@ -229,9 +217,7 @@ Document cell_document(const std::string& key, const std::string& cell, int line
   return value;
 }
 
-Manifest parse_table(std::string_view text,
-                     const std::string& path,
-                     const CharacterizeOptions& options) {
+Manifest parse_table(std::string_view text, const std::string& path, const CharacterizeOptions& options) {
   const TableText table = parse_table_text(text, path);
   check_heads(table, path);
   const fs::path folder = folder_of_file(path);
@@ -244,10 +230,7 @@ Manifest parse_table(std::string_view text,
     one.column = 1;
     for (std::size_t c = 0; c < table.heads.size(); ++c)
       if (!row.cells[c].empty())
-        one.map.push_back({table.heads[c],
-                           row.line,
-                           1,
-                           cell_document(table.heads[c], row.cells[c], row.line, 1)});
+        one.map.push_back({table.heads[c], row.line, 1, cell_document(table.heads[c], row.cells[c], row.line, 1)});
     const MapReader at(one, path, "", kDeviceKeys);
     FleetDevice device;
     at.require("log");
@@ -259,13 +242,9 @@ Manifest parse_table(std::string_view text,
   return manifest;
 }
 
-std::string ending_of(const std::string& path) {
-  return ascii_lower(fs::path(path).extension().string());
-}
+std::string ending_of(const std::string& path) { return ascii_lower(fs::path(path).extension().string()); }
 
-bool is_table(const std::string& path) {
-  return ending_of(path) == ".csv" || ending_of(path) == ".tsv";
-}
+bool is_table(const std::string& path) { return ending_of(path) == ".csv" || ending_of(path) == ".tsv"; }
 
 /// No log is YAML, but what rosbag2 says of its own.
 bool is_yaml(const std::string& path) {
@@ -275,22 +254,17 @@ bool is_yaml(const std::string& path) {
 /// In any case, and as slips are: that such a table is a manifest must not hang on a letter. "log"
 /// is too short for slips: lat, lon.
 bool is_head_of_log(const std::string& head) {
-  return head == "log" || head == "logs" || head == "logfile" || head == "log_file" ||
-         head == "log file";
+  return head == "log" || head == "logs" || head == "logfile" || head == "log_file" || head == "log file";
 }
 
-bool is_head(const std::string& head, std::string_view key) {
-  return edit_distance(head, key) <= key.size() / 3;
-}
+bool is_head(const std::string& head, std::string_view key) { return edit_distance(head, key) <= key.size() / 3; }
 
 /// Samples, and no paths.
 bool has_numbers_only(const std::string& text, const std::string& path) {
   try {
     const TableText table = parse_table_text(text, path, 1);
-    return !table.rows.empty() &&
-           std::all_of(table.rows[0].cells.begin(),
-                       table.rows[0].cells.end(),
-                       [](const std::string& cell) { return parse_double(cell).has_value(); });
+    return !table.rows.empty() && std::all_of(table.rows[0].cells.begin(), table.rows[0].cells.end(),
+                                              [](const std::string& cell) { return parse_double(cell).has_value(); });
   } catch (const Error&) {
     return false;
   }
@@ -309,8 +283,7 @@ bool has_manifest_heads(const std::string& text, const std::string& path) {
     const std::string one = ascii_lower(head);
     logs += is_head_of_log(one);
     devices += is_head(one, "device");
-    known += is_head_of_log(one) ||
-             std::any_of(kDeviceKeys.begin(), kDeviceKeys.end(), [&](const std::string& key) {
+    known += is_head_of_log(one) || std::any_of(kDeviceKeys.begin(), kDeviceKeys.end(), [&](const std::string& key) {
                return key != "log" && is_head(one, key);
              });
   }
@@ -324,8 +297,7 @@ std::vector<std::string> files_of_pattern(const std::string& word) {
   if (word.find_first_of("*?[") == std::string::npos || fs::exists(word, ignored)) return {word};
   glob_t found{};
   std::vector<std::string> out;
-  if (::glob(word.c_str(), 0, nullptr, &found) == 0)
-    out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  if (::glob(word.c_str(), 0, nullptr, &found) == 0) out.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   ::globfree(&found);
   if (out.empty())
     throw input_error("E0780")
@@ -363,11 +335,8 @@ void check_devices(const Manifest& manifest, const std::string& path) {
 
 }  // namespace
 
-Manifest parse_manifest(std::string_view text,
-                        const std::string& path,
-                        const CharacterizeOptions& options) {
-  Manifest manifest =
-      is_table(path) ? parse_table(text, path, options) : parse_tree(text, path, options);
+Manifest parse_manifest(std::string_view text, const std::string& path, const CharacterizeOptions& options) {
+  Manifest manifest = is_table(path) ? parse_table(text, path, options) : parse_tree(text, path, options);
   manifest.file = path;
   check_devices(manifest, path);
   return manifest;
@@ -377,8 +346,7 @@ Manifest read_manifest(const std::string& path, const CharacterizeOptions& optio
   return parse_manifest(file_text(path, kMostManifest), path, options);
 }
 
-Manifest manifest_of_logs(const std::vector<std::string>& words,
-                          const CharacterizeOptions& options) {
+Manifest manifest_of_logs(const std::vector<std::string>& words, const CharacterizeOptions& options) {
   std::vector<std::string> logs;
   for (const std::string& word : words) {
     const std::vector<std::string> found = files_of_pattern(word);
@@ -405,8 +373,7 @@ bool is_manifest(const std::string& path) {
   if (!fs::is_regular_file(path, ignored)) return false;
   if (is_yaml(path)) return true;
   const std::string head = file_text(path, 4096);
-  return is_table(path) ? has_manifest_heads(head, path)
-                        : head.find(kManifestFormat) != std::string::npos;
+  return is_table(path) ? has_manifest_heads(head, path) : head.find(kManifestFormat) != std::string::npos;
 }
 
 namespace {
@@ -441,8 +408,7 @@ std::optional<SumLine> digest_first(std::string_view line) {
 
 std::optional<SumLine> path_first(std::string_view line) {
   constexpr std::string_view kBegin = "SHA256 (", kMiddle = ") = ";
-  if (!line.starts_with(kBegin) || line.size() < kBegin.size() + kMiddle.size() + kDigitsOfSum + 1)
-    return std::nullopt;
+  if (!line.starts_with(kBegin) || line.size() < kBegin.size() + kMiddle.size() + kDigitsOfSum + 1) return std::nullopt;
   const auto digest = sha256_digits(line.substr(line.size() - kDigitsOfSum));
   line.remove_suffix(kDigitsOfSum);
   line.remove_prefix(kBegin.size());
@@ -476,8 +442,7 @@ void state(const std::string& log, const StatedDigest& one, StatedDigests& out) 
 
 std::optional<std::string> sha256_digits(std::string_view text) {
   std::string digits = ascii_lower(text);
-  if (digits.size() != kDigitsOfSum ||
-      digits.find_first_not_of("0123456789abcdef") != std::string::npos)
+  if (digits.size() != kDigitsOfSum || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
     return std::nullopt;
   return digits;
 }
@@ -507,8 +472,7 @@ StatedDigests parse_sums(std::string_view text, const std::string& path) {
 StatedDigests read_sums(const std::vector<std::string>& paths) {
   StatedDigests out;
   for (const std::string& path : paths)
-    for (const auto& [log, one] : parse_sums(file_text(path, kMostSums), path))
-      state(log, one, out);
+    for (const auto& [log, one] : parse_sums(file_text(path, kMostSums), path)) state(log, one, out);
   return out;
 }
 
@@ -520,8 +484,7 @@ std::size_t state_digests(const StatedDigests& digests, Manifest& manifest) {
       without += device.sha256.empty() ? 1 : 0;
       continue;
     }
-    if (!device.sha256.empty())
-      refuse_another({device.sha256, device.where}, at->second, device.log);
+    if (!device.sha256.empty()) refuse_another({device.sha256, device.where}, at->second, device.log);
     device.sha256 = at->second.sha256;
   }
   return without;

@@ -18,9 +18,9 @@ struct FleetDevice {
   std::string batch;
   std::string limits;                   ///< what the data sheet allows, absolute path; "": nothing
   std::optional<double> temperature_c;  ///< of the surroundings while it was recorded
-  std::string sha256;       ///< of the log, as somebody states it, in lower case; "": not stated
-  std::size_t options = 0;  ///< index in `Manifest::options`
-  std::string where;        ///< "FILE:LINE:COL" of the entry, for refusals
+  std::string sha256;                   ///< of the log, as somebody states it, in lower case; "": not stated
+  std::size_t options = 0;              ///< index in `Manifest::options`
+  std::string where;                    ///< "FILE:LINE:COL" of the entry, for refusals
 };
 
 struct Manifest {
@@ -34,15 +34,12 @@ struct Manifest {
 Manifest read_manifest(const std::string& path, const CharacterizeOptions& options = {});
 
 /// The same from text that stands for a file at `path`; a table where the path ends in .csv or .tsv.
-Manifest parse_manifest(std::string_view text,
-                        const std::string& path,
-                        const CharacterizeOptions& options = {});
+Manifest parse_manifest(std::string_view text, const std::string& path, const CharacterizeOptions& options = {});
 
 /// Each log is a device of its own, called as its file is; by their folders too where two are
 /// alike. A word with * ? [ that is not a file stands for the matching files. Throws Error(input)
 /// where none does, Error(usage) for a manifest among them.
-Manifest manifest_of_logs(const std::vector<std::string>& words,
-                          const CharacterizeOptions& options = {});
+Manifest manifest_of_logs(const std::vector<std::string>& words, const CharacterizeOptions& options = {});
 
 /// What is meant as a manifest, right or not: YAML, a file that says `fleet-manifest`, a table with
 /// a column `log` or `device` in any case and spelling nearby that holds no samples.

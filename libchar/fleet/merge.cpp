@@ -27,14 +27,10 @@ void refuse_missing(const FleetPlan& plan, const Missing& missing, const fs::pat
   if (missing.units.empty()) return;
   const FleetUnit& first = plan.units[missing.units[0]];
   throw input_error("E0789", folder.string())
-      .says("{} of {} units have no result, the first is {} of {}{}",
-            missing.units.size(),
-            plan.units.size(),
-            task_file(missing.units[0]),
-            plan.devices[first.device].device,
+      .says("{} of {} units have no result, the first is {} of {}{}", missing.units.size(), plan.units.size(),
+            task_file(missing.units[0]), plan.devices[first.device].device,
             missing.damaged.empty() ? "" : "; " + missing.damaged[0])
-      .hint("run them with: sensorchar fleet run {}, or merge what there is with `partial`",
-            folder.string());
+      .hint("run them with: sensorchar fleet run {}, or merge what there is with `partial`", folder.string());
 }
 
 /// What the plan says of the device, over what its log said.
@@ -52,10 +48,9 @@ std::string report_of(const FleetUnit& unit, const fs::path& folder, const fs::p
   const fs::path report = fs::absolute(folder) / "results" / result_folder(unit.id);
   std::error_code ignored;
   if (!fs::exists(report / "report.html", ignored)) return "";  // no link that leads nowhere
-  return relative_to.empty() ? report.lexically_normal().string()
-                             : report.lexically_normal()
-                                   .lexically_relative(fs::absolute(relative_to).lexically_normal())
-                                   .string();
+  return relative_to.empty()
+             ? report.lexically_normal().string()
+             : report.lexically_normal().lexically_relative(fs::absolute(relative_to).lexically_normal()).string();
 }
 
 /// An id of each options that a plan has: units share them. Those of one channel may come from
@@ -97,18 +92,13 @@ struct LogPart {
 };
 
 bool overlap(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  return a.empty() || b.empty() ||
-         std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+  return a.empty() || b.empty() || std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-[[noreturn]] void refuse_common(const std::vector<PlannedFleet>& fleets,
-                                const LogPart& one,
-                                const LogPart& other) {
+[[noreturn]] void refuse_common(const std::vector<PlannedFleet>& fleets, const LogPart& one, const LogPart& other) {
   const auto name = [&](const LogPart& part) {
     const PlannedFleet& fleet = fleets[part.fleet];
-    return fmt::format("{} in {}",
-                       printable(fleet.plan.devices[part.device].device),
-                       printable(fleet.folder.string()));
+    return fmt::format("{} in {}", printable(fleet.plan.devices[part.device].device), printable(fleet.folder.string()));
   };
   const PlannedFleet& fleet = fleets[other.fleet];
   throw input_error("E0783", fleet.folder.string())
@@ -126,9 +116,8 @@ std::vector<PlannedFleet> read_fleets(const std::vector<std::string>& folders) {
     const fs::path path = fs::weakly_canonical(folder, ignored);
     return path.has_filename() ? path : path.parent_path();
   };
-  std::sort(sorted.begin(), sorted.end(), [&](const std::string& a, const std::string& b) {
-    return whole(a) < whole(b);
-  });
+  std::sort(sorted.begin(), sorted.end(),
+            [&](const std::string& a, const std::string& b) { return whole(a) < whole(b); });
   std::vector<PlannedFleet> out;
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     if (k > 0 && whole(sorted[k]) == whole(sorted[k - 1]))
@@ -168,9 +157,7 @@ std::string merge_command(const std::vector<std::string>& folders) {
   return out + (here ? " -o ../report" : " -o report");
 }
 
-std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
-                                         const fs::path& folder,
-                                         const MergeOptions& options,
+std::vector<DeviceRecord> merged_records(const FleetPlan& plan, const fs::path& folder, const MergeOptions& options,
                                          Progress& progress) {
   std::vector<DeviceRecord> out(plan.devices.size());
   for (std::size_t d = 0; d < out.size(); ++d) {
@@ -182,8 +169,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
   for (std::size_t k = 0; k < plan.units.size(); ++k) {
     const FleetUnit& unit = plan.units[k];
     if (unit.kind == UnitKind::stretch) continue;
-    if (k % 256 == 0)
-      progress.update(static_cast<double>(k) / static_cast<double>(plan.units.size()), "merging");
+    if (k % 256 == 0) progress.update(static_cast<double>(k) / static_cast<double>(plan.units.size()), "merging");
     DeviceRecord& record = out[unit.device];
     std::optional<DeviceRecord> found;
     try {
@@ -200,8 +186,7 @@ std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
       }
       continue;
     }
-    if (record.channels.empty() && found->problem.empty())
-      record.report = report_of(unit, folder, options.relative_to);
+    if (record.channels.empty() && found->problem.empty()) record.report = report_of(unit, folder, options.relative_to);
     add_result(plan.devices[unit.device], *found, record);
     record.analysis = analyses.of(unit);
   }

@@ -38,8 +38,7 @@ struct LookedAt {
   LogInfo head;
   std::vector<std::string> in_log;  ///< what the log calls the channels, where they are to be units
   std::string sha256, problem;
-  std::optional<Problem> wrong_option =
-      {};  ///< why it cannot be read, where that is no fault of the log
+  std::optional<Problem> wrong_option = {};  ///< why it cannot be read, where that is no fault of the log
 };
 
 /// Other formats know it only once they are read.
@@ -49,9 +48,7 @@ bool is_without_rate(const LogInfo& head, const ReadOptions& options) {
 }
 
 /// What the log calls its channels, by which they are chosen; it is asked again only where they have new names.
-std::vector<std::string> own_names(const LogInfo& head,
-                                   const FleetDevice& device,
-                                   const ReadOptions& reading) {
+std::vector<std::string> own_names(const LogInfo& head, const FleetDevice& device, const ReadOptions& reading) {
   if (!reading.names.empty()) return names_in_log(device.log, reading);
   std::vector<std::string> names;
   for (const Channel& channel : head.channels) names.push_back(channel.name);
@@ -74,8 +71,7 @@ LookedAt look_at(const FleetDevice& device, const CharacterizeOptions& options, 
     Problem problem = error.problem();
     if (problem.kind == ErrorKind::usage) out.wrong_option = problem;
     // The sentence that holds these has a hint of its own.
-    if (!problem.hint.empty())
-      problem.what += fmt::format(" ({})", std::exchange(problem.hint, ""));
+    if (!problem.hint.empty()) problem.what += fmt::format(" ({})", std::exchange(problem.hint, ""));
     out.problem = one_line(problem);
   }
   return out;
@@ -85,8 +81,7 @@ std::vector<LookedAt> look_at_all(const Manifest& manifest, bool by_channel, Pro
   constexpr std::size_t kAtOnce = 64;
   std::vector<LookedAt> out(manifest.devices.size());
   for (std::size_t first = 0; first < out.size(); first += kAtOnce) {
-    progress.update(static_cast<double>(first) / static_cast<double>(out.size()),
-                    "looking into the logs");
+    progress.update(static_cast<double>(first) / static_cast<double>(out.size()), "looking into the logs");
     parallel::for_each(first, std::min(out.size(), first + kAtOnce), [&](std::size_t d) {
       const FleetDevice& device = manifest.devices[d];
       out[d] = look_at(device, manifest.options[device.options], by_channel);
@@ -96,8 +91,7 @@ std::vector<LookedAt> look_at_all(const Manifest& manifest, bool by_channel, Pro
 }
 
 std::string hint_of_unreadable(const Manifest& manifest, bool any_left) {
-  const std::string mend =
-      manifest.file.empty() ? "name logs that can be read" : "mend the manifest";
+  const std::string mend = manifest.file.empty() ? "name logs that can be read" : "mend the manifest";
   return any_left ? mend + ", or plan the others with `skip_unreadable`" : mend;
 }
 
@@ -110,8 +104,7 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
     if (logs[d].problem.empty()) continue;
     if (count++ >= kNamed) continue;
     const std::string& where = manifest.devices[d].where;
-    said.push_back(manifest.file.empty() ? logs[d].problem
-                                         : fmt::format("{}: {}", where, logs[d].problem));
+    said.push_back(manifest.file.empty() ? logs[d].problem : fmt::format("{}: {}", where, logs[d].problem));
   }
   const bool any_left = count < logs.size();
   if (count == 0 || (skip && any_left)) return;
@@ -120,10 +113,7 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
     for (const LookedAt& log : logs)
       if (log.wrong_option) throw Error(*log.wrong_option);
   throw input_error("E0782", manifest.file)
-      .says("{} of {} logs cannot be read: {}{}",
-            count,
-            logs.size(),
-            fmt::join(said, "; "),
+      .says("{} of {} logs cannot be read: {}{}", count, logs.size(), fmt::join(said, "; "),
             count > kNamed ? "; …" : "")
       .hint(hint_of_unreadable(manifest, any_left));
 }
@@ -131,9 +121,7 @@ void refuse_unreadable(const Manifest& manifest, const std::vector<LookedAt>& lo
 /// What a file of limits refuses, with the entry that names it.
 [[noreturn]] void refuse_limits(const FleetDevice& device, Problem problem) {
   const std::string hint = std::exchange(problem.hint, "");
-  throw Refusal(problem.kind, problem.code, device.where)
-      .says("limits: " + one_line(problem))
-      .hint(hint);
+  throw Refusal(problem.kind, problem.code, device.where).says("limits: " + one_line(problem)).hint(hint);
 }
 
 /// Before hours of work, not behind them. By path.
@@ -152,8 +140,7 @@ std::map<std::string, NoiseLimits> read_limits(const Manifest& manifest) {
 
 /// Limits are those of a type, and name channels that any of its devices may have: as they are held
 /// against the lot in the end.
-void check_limits(const Manifest& manifest,
-                  const std::vector<LookedAt>& logs,
+void check_limits(const Manifest& manifest, const std::vector<LookedAt>& logs,
                   const std::map<std::string, NoiseLimits>& limits) {
   std::map<std::string, std::vector<NamedChannel>> channels;
   std::map<std::string, std::size_t> first;  // entry that names the limits of a type
@@ -165,8 +152,7 @@ void check_limits(const Manifest& manifest,
     // Of increments and phases the values have other units than the samples.
     if (manifest.options[one.options].data != SampleKind::rate) unsure.insert(one.type);
     for (const Channel& channel : logs[d].head.channels)
-      if (known.emplace(one.type, channel.name).second)
-        channels[one.type].push_back({channel.name, channel.unit});
+      if (known.emplace(one.type, channel.name).second) channels[one.type].push_back({channel.name, channel.unit});
   }
   for (const auto& [type, of_type] : channels) {
     // Limits of devices without a type are those of all types that have none.
@@ -192,9 +178,7 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
     const FleetDevice &one = manifest.devices[at->second], &other = manifest.devices[d];
     const bool taken = one.sha256.empty() && other.sha256.empty();
     throw input_error("E0783", manifest.devices[d].where)
-        .says("the logs of {} and {} {}",
-              printable(one.device),
-              printable(other.device),
+        .says("the logs of {} and {} {}", printable(one.device), printable(other.device),
               taken ? "are the same, byte by byte" : "have one digest, as it is stated")
         .got(manifest.devices[d].log)
         .hint("leave one of them out: it would count twice");
@@ -213,8 +197,7 @@ void check_by_channel(const Manifest& manifest) {
 
 /// Which channels are a unit: each alone; the thermometer, which all of them read, with the one
 /// beside it, so that it is there once.
-std::vector<std::vector<std::size_t>> channel_groups(std::size_t channels,
-                                                     std::optional<std::size_t> thermometer) {
+std::vector<std::vector<std::size_t>> channel_groups(std::size_t channels, std::optional<std::size_t> thermometer) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t c = 0; c < channels; ++c) {
     const bool with_last = !groups.empty() && (c == thermometer || (c == 1 && thermometer == 0U));
@@ -267,8 +250,7 @@ class UnitMaker {
 
   void add_stretches(const LookedAt& log, const FleetUnit& unit) {
     const std::uint64_t leaves = leaves_of(log.head.rows);
-    const std::uint64_t stretches =
-        std::clamp<std::uint64_t>(unit.bytes / options_.stretch_bytes, 1, leaves);
+    const std::uint64_t stretches = std::clamp<std::uint64_t>(unit.bytes / options_.stretch_bytes, 1, leaves);
     FleetUnit join = unit;
     join.kind = UnitKind::join;
     for (std::uint64_t k = 0; k < stretches; ++k) {
@@ -299,11 +281,8 @@ Json device_json(const PlannedDevice& one) {
 }
 
 PlannedDevice parse_device(const Document& document, const std::string& path) {
-  const MapReader at(
-      document,
-      path,
-      "",
-      {"device", "log", "type", "batch", "temperature_c", "limits", "sha256", "problem"});
+  const MapReader at(document, path, "",
+                     {"device", "log", "type", "batch", "temperature_c", "limits", "sha256", "problem"});
   PlannedDevice out;
   out.device = at.text("device");
   out.log = at.text("log");
@@ -317,8 +296,7 @@ PlannedDevice parse_device(const Document& document, const std::string& path) {
 }
 
 Refusal plan_refusal(const fs::path& file) {
-  return input_error("E0784", file.string())
-      .hint("make a plan with: sensorchar fleet plan MANIFEST -o DIR");
+  return input_error("E0784", file.string()).hint("make a plan with: sensorchar fleet plan MANIFEST -o DIR");
 }
 
 /// One after the other: the text of a plan of a hundred thousand units is larger than the plan.
@@ -327,8 +305,7 @@ void for_lines_of(const std::string& path, const std::function<void(std::string_
   constexpr std::size_t kPieceOfPlan = std::size_t{1} << 20U;
   std::string begun;
   for_pieces_of_file(path, kPieceOfPlan, [&](std::string_view piece) {
-    for (std::size_t end = piece.find('\n'); end != std::string_view::npos;
-         end = piece.find('\n')) {
+    for (std::size_t end = piece.find('\n'); end != std::string_view::npos; end = piece.find('\n')) {
       begun.append(piece.substr(0, end));
       take(begun);
       begun.clear();
@@ -361,12 +338,10 @@ class PlanReader {
     if (!head_ || (!all && !wrong_)) throw plan_refusal(file_).says("the plan is cut");
     // Which device a unit is of stands nowhere else.
     if (digest_.finish() != sha256_)
-      throw plan_refusal(file_).says(
-          "the plan was changed after it was made: its digest is another one");
+      throw plan_refusal(file_).says("the plan was changed after it was made: its digest is another one");
     if (wrong_) throw Error(*wrong_);  // as it was written: by another version of the program
     for (const FleetUnit& unit : plan_.units)
-      if (unit.device >= devices_)
-        throw plan_refusal(file_).says("a unit is of no device of the plan");
+      if (unit.device >= devices_) throw plan_refusal(file_).says("a unit is of no device of the plan");
     return std::move(plan_);
   }
 
@@ -435,9 +410,7 @@ std::optional<FleetUnit> unit_of_plan(const std::string& file) {
 
 }  // namespace
 
-FleetPlan plan_fleet(const Manifest& manifest,
-                     const FleetPlanOptions& options,
-                     Progress& progress) {
+FleetPlan plan_fleet(const Manifest& manifest, const FleetPlanOptions& options, Progress& progress) {
   const auto limits = read_limits(manifest);
   if (options.by_channel) check_by_channel(manifest);
   const std::vector<LookedAt> logs = look_at_all(manifest, options.by_channel, progress);
@@ -453,14 +426,8 @@ FleetPlan plan_fleet(const Manifest& manifest,
   for (const CharacterizeOptions& one : manifest.options) settings.push_back(shared.of(one));
   for (std::size_t d = 0; d < logs.size(); ++d) {
     const FleetDevice& one = manifest.devices[d];
-    plan.devices.push_back({one.device,
-                            one.type,
-                            one.batch,
-                            one.limits,
-                            one.log,
-                            logs[d].sha256,
-                            one.temperature_c,
-                            logs[d].problem});
+    plan.devices.push_back(
+        {one.device, one.type, one.batch, one.limits, one.log, logs[d].sha256, one.temperature_c, logs[d].problem});
     if (!logs[d].problem.empty()) continue;
     if (!logs[d].head.warnings.empty()) plan.warned.emplace_back(one.log, logs[d].head.warnings);
     FleetUnit unit;
@@ -476,9 +443,7 @@ FleetPlan plan_fleet(const Manifest& manifest,
   return plan;
 }
 
-std::string task_file(std::size_t unit) {
-  return fmt::format("tasks/{:06}.json", unit + 1);
-}
+std::string task_file(std::size_t unit) { return fmt::format("tasks/{:06}.json", unit + 1); }
 
 std::optional<ReplacedPlan> plan_in(const fs::path& folder) {
   const fs::path file = folder / kPlanFile;
@@ -507,8 +472,8 @@ std::size_t results_of_others(const FleetPlan& plan, const fs::path& folder) {
   std::set<std::string_view> ids;
   for (const FleetUnit& unit : plan.units) ids.insert(unit.id);
   const std::vector<std::string> there = published(folder);
-  return static_cast<std::size_t>(std::count_if(
-      there.begin(), there.end(), [&](const std::string& id) { return !ids.contains(id); }));
+  return static_cast<std::size_t>(
+      std::count_if(there.begin(), there.end(), [&](const std::string& id) { return !ids.contains(id); }));
 }
 
 void write_plan(const FleetPlan& plan, const fs::path& folder) {
@@ -517,8 +482,7 @@ void write_plan(const FleetPlan& plan, const fs::path& folder) {
   // One plan at a time: no tasks of one beside the plan of another.
   const detail::FolderLock lock(folder / "tasks");
   std::string text;
-  for (const PlannedDevice& one : plan.devices)
-    text += with_valid_text(device_json(one)).dump() + "\n";
+  for (const PlannedDevice& one : plan.devices) text += with_valid_text(device_json(one)).dump() + "\n";
   std::vector<std::string> lines(plan.units.size());
   parallel::for_each(0, lines.size(), [&](std::size_t k) {
     lines[k] = unit_text(plan.units[k]) + "\n";
@@ -555,8 +519,7 @@ fs::path fleet_of_task(const std::string& file) {
   const fs::path folder = fs::absolute(file).parent_path().parent_path();
   std::error_code ignored;
   if (!fs::exists(folder / kPlanFile, ignored))
-    throw plan_refusal(file).says(
-        "this task is in the folder of no fleet: there is no plan beside it");
+    throw plan_refusal(file).says("this task is in the folder of no fleet: there is no plan beside it");
   return folder;
 }
 

@@ -25,11 +25,10 @@ namespace libchar {
 struct FleetPlanOptions {
   bool by_channel = false;  ///< a unit for each channel of a log
   bool reports = true;      ///< each device's page and tables as well as its record
-  std::uint64_t split_bytes =
-      std::uint64_t{4}
-      << 30U;  ///< logs larger than this are divided in stretches where their format allows
+  std::uint64_t split_bytes = std::uint64_t{4}
+                              << 30U;  ///< logs larger than this are divided in stretches where their format allows
   std::uint64_t stretch_bytes = std::uint64_t{1} << 30U;  ///< about, of a stretch
-  bool skip_unreadable = false;  ///< plan the others; the report lists the unreadable ones
+  bool skip_unreadable = false;                           ///< plan the others; the report lists the unreadable ones
 };
 
 /// A device of the plan: statements of the report in addition to the result.
@@ -41,7 +40,7 @@ struct PlannedDevice {
 
 struct FleetPlan {
   std::vector<PlannedDevice> devices;  ///< in the order of the manifest
-  std::vector<FleetUnit> units;  ///< of the devices in their order; a join behind its stretches
+  std::vector<FleetUnit> units;        ///< of the devices in their order; a join behind its stretches
   /// Why logs above `split_bytes` are not divided, and whose; not in the file.
   std::map<std::string, std::set<std::size_t>> undivided;
   /// Logs that have warnings in front of their samples (an option that fits none of their channels); not in the file.
@@ -51,9 +50,7 @@ struct FleetPlan {
 /// Looks into every log, takes its digest where none is stated, and reads the limits. Throws
 /// Error(input) for limits that cannot be read, for logs that cannot be read or have no sampling
 /// rate (all of them named, the first few with the reason), and for one log twice.
-FleetPlan plan_fleet(const Manifest& manifest,
-                     const FleetPlanOptions& options,
-                     Progress& progress = no_progress());
+FleetPlan plan_fleet(const Manifest& manifest, const FleetPlanOptions& options, Progress& progress = no_progress());
 
 /// What a new plan in a folder takes the place of.
 struct ReplacedPlan {
@@ -112,10 +109,8 @@ std::string merge_command(const std::vector<std::string>& folders);
 
 /// A record for each device of the plan. Throws Error(input) where results are missing or damaged,
 /// by name, unless `partial`.
-std::vector<DeviceRecord> merged_records(const FleetPlan& plan,
-                                         const std::filesystem::path& folder,
-                                         const MergeOptions& options = {},
-                                         Progress& progress = no_progress());
+std::vector<DeviceRecord> merged_records(const FleetPlan& plan, const std::filesystem::path& folder,
+                                         const MergeOptions& options = {}, Progress& progress = no_progress());
 
 // One unit of a fleet, by one worker.
 
@@ -125,8 +120,7 @@ enum class UnitOutcome {
   no_result,      ///< its result is there, and says why the log could not be characterized
 };
 template <>
-inline constexpr auto enum_table<UnitOutcome> =
-    enum_words<UnitOutcome, "done already_there no_result">;
+inline constexpr auto enum_table<UnitOutcome> = enum_words<UnitOutcome, "done already_there no_result">;
 
 struct UnitRun {
   UnitOutcome outcome = UnitOutcome::done;
@@ -138,8 +132,6 @@ struct UnitRun {
 /// What the log's content does not allow is a result too. Throws Error(input) where the log was
 /// changed after it was planned, Error(again) for what may be otherwise the next time: a log that
 /// cannot be opened, parts of a join that are not there yet, a full disk.
-UnitRun run_unit(const FleetUnit& unit,
-                 const std::filesystem::path& fleet,
-                 Progress& progress = no_progress());
+UnitRun run_unit(const FleetUnit& unit, const std::filesystem::path& fleet, Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -89,10 +89,7 @@ std::vector<NamedState> states_of(const FleetUnit& unit, const fs::path& fleet) 
   }
   if (!missing.empty())
     throw Refusal(ErrorKind::again, "E0787", unit.log)
-        .says("{} of {} stretches of this log are not there yet: {}{}",
-              missing.size(),
-              unit.parts.size(),
-              missing[0],
+        .says("{} of {} stretches of this log are not there yet: {}{}", missing.size(), unit.parts.size(), missing[0],
               missing.size() > 1 ? " …" : "")
         .hint("run them first");
   return states;
@@ -120,16 +117,12 @@ bool is_of_machine(const Problem& problem) {
 /// What the content may not allow, so that no other try will do.
 bool is_of_content(const Problem& problem) {
   return !is_of_machine(problem) && problem.code != "E0785" &&
-         (problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric ||
-          problem.kind == ErrorKind::usage);
+         (problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric || problem.kind == ErrorKind::usage);
 }
 
-DeviceRecord write_results(const FleetUnit& unit,
-                           Characterization& result,
-                           const fs::path& folder) {
+DeviceRecord write_results(const FleetUnit& unit, Characterization& result, const fs::path& folder) {
   finish_characterization(unit, result);
-  if (unit.reports)
-    write_outputs(report_files(characterization_view(result), folder), folder, {}, false);
+  if (unit.reports) write_outputs(report_files(characterization_view(result), folder), folder, {}, false);
   return record_of(result, unit.options->data);
 }
 
@@ -142,8 +135,7 @@ struct Attempt {
 Attempt attempt(const FleetUnit& unit, const fs::path& fleet, Progress& progress) {
   Attempt out;
   try {
-    out.result =
-        unit.kind == UnitKind::join ? of_parts(unit, fleet, progress) : of_log(unit, progress);
+    out.result = unit.kind == UnitKind::join ? of_parts(unit, fleet, progress) : of_log(unit, progress);
   } catch (const Error& error) {
     out.problem = error.problem();
     if (!is_of_content(out.problem)) throw;

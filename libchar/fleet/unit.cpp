@@ -28,8 +28,7 @@ Json content_of(const FleetUnit& unit) {
               {"config", json_of(settings_of(*unit.options))},
               {"reports", unit.reports}};
   if (!unit.settings.empty()) out["settings"] = unit.settings;
-  if (unit.kind == UnitKind::stretch)
-    out["leaves"] = {unit.stretch.first_leaf, unit.stretch.end_leaf};
+  if (unit.kind == UnitKind::stretch) out["leaves"] = {unit.stretch.first_leaf, unit.stretch.end_leaf};
   if (unit.kind == UnitKind::join) out["parts"] = unit.parts;
   return out;
 }
@@ -40,16 +39,12 @@ std::string id_of(const std::string& what, const Json& content) {
   return hash.finish().substr(0, kIdDigits);
 }
 
-UnitKind kind_at(const MapReader& at) {
-  return *find_enum<UnitKind>(at.word("kind", words_of<UnitKind>()));
-}
+UnitKind kind_at(const MapReader& at) { return *find_enum<UnitKind>(at.word("kind", words_of<UnitKind>())); }
 
 StretchRange stretch_at(const MapReader& at) {
   const std::vector<double> ends = at.numbers("leaves");
   constexpr double kMost = 0x1p53;  // numbers of a document are whole up to here
-  const auto is_leaf = [&](double end) {
-    return end >= 0 && end <= kMost && end == std::floor(end);
-  };
+  const auto is_leaf = [&](double end) { return end >= 0 && end <= kMost && end == std::floor(end); };
   if (ends.size() != 2 || !is_leaf(ends[0]) || !is_leaf(ends[1]) || !(ends[1] > ends[0]))
     at.refuse("leaves", "expected the first leaf and the one behind the last");
   return {static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])};
@@ -69,9 +64,7 @@ std::vector<std::string> parts_at(const MapReader& at) {
 
 }  // namespace
 
-std::string unit_id(const FleetUnit& unit) {
-  return id_of("fleet-unit 1\n", content_of(unit));
-}
+std::string unit_id(const FleetUnit& unit) { return id_of("fleet-unit 1\n", content_of(unit)); }
 
 std::string settings_id(const CharacterizeOptions& options) {
   // Which channel of a log a unit is of is no way to characterize it.
@@ -115,25 +108,9 @@ FleetUnit parse_unit(std::string_view text, const std::string& path) {
 FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTable& shared) {
   const Document document = parse_json_document(text, path);
   check_format(document, path, kTaskFormat, 1);
-  const MapReader at(document,
-                     path,
-                     "",
-                     {"format",
-                      "version",
-                      "id",
-                      "version_of_program",
-                      "kind",
-                      "device",
-                      "log",
-                      "sha256",
-                      "stated",
-                      "bytes",
-                      "leaves",
-                      "parts",
-                      "reports",
-                      "config",
-                      "settings",
-                      "cost"});
+  const MapReader at(document, path, "",
+                     {"format", "version", "id", "version_of_program", "kind", "device", "log", "sha256", "stated",
+                      "bytes", "leaves", "parts", "reports", "config", "settings", "cost"});
   FleetUnit unit;
   unit.id = at.text("id");
   unit.kind = kind_at(at);
@@ -152,12 +129,10 @@ FleetUnit parse_unit(std::string_view text, const std::string& path, OptionsTabl
   const MapReader cost = at.map("cost", {"seconds", "memory_bytes"});
   unit.cost = {cost.number("seconds", kNotNegative), cost.count("memory_bytes")};
   if (at.text("version_of_program") != version())
-    at.refuse(
-        "version_of_program",
-        fmt::format("the task was planned by another version of the program than {}", version()),
-        "plan the fleet again with this one; results of the other version stay");
-  if (unit_id(unit) != unit.id)
-    at.refuse("id", "the task was changed after it was planned", "plan the fleet again");
+    at.refuse("version_of_program",
+              fmt::format("the task was planned by another version of the program than {}", version()),
+              "plan the fleet again with this one; results of the other version stay");
+  if (unit_id(unit) != unit.id) at.refuse("id", "the task was changed after it was planned", "plan the fleet again");
   return unit;
 }
 

@@ -49,10 +49,10 @@ struct FleetUnit {
   bool stated = false;     ///< the digest is a claim of the manifest's: the plan did not take it
   std::uint64_t bytes = 0;
   SharedOptions options = std::make_shared<const CharacterizeOptions>();
-  std::string settings;  ///< settings_id of the whole log, where lists of its channels were divided
-  StretchRange stretch;  ///< of a stretch
+  std::string settings;            ///< settings_id of the whole log, where lists of its channels were divided
+  StretchRange stretch;            ///< of a stretch
   std::vector<std::string> parts;  ///< of a join: the ids of its stretches
-  bool reports = true;  ///< report.html, report.json, curves.csv and models as well as the record
+  bool reports = true;             ///< report.html, report.json, curves.csv and models as well as the record
   UnitCost cost;
 };
 

@@ -63,9 +63,7 @@ inline std::span<double> span_of(Eigen::VectorXd& values) {
 
 using libchar::kLargestSample;
 /// A sample that carries a value: NaN marks a missing one.
-inline bool usable(double sample) {
-  return std::abs(sample) <= kLargestSample;
-}
+inline bool usable(double sample) { return std::abs(sample) <= kLargestSample; }
 inline bool complete(const Sample& y) {
   for (Eigen::Index i = 0; i < y.size(); ++i)
     if (!usable(y[i])) return false;
@@ -76,9 +74,7 @@ struct Estimate {
   State x;         ///< r values; NaN: no estimate at this instant
   State variance;  ///< of x as the algorithm believes it; NaN: it has no opinion
 
-  static Estimate scalar(double x, double variance) {
-    return {State::Constant(1, x), State::Constant(1, variance)};
-  }
+  static Estimate scalar(double x, double variance) { return {State::Constant(1, x), State::Constant(1, variance)}; }
   static Estimate none(Eigen::Index inputs) {
     return {State::Constant(inputs, std::numeric_limits<double>::quiet_NaN()),
             State::Constant(inputs, std::numeric_limits<double>::quiet_NaN())};

@@ -6,9 +6,7 @@
 #include <cmath>
 
 namespace libchar::fusion {
-void cross_means(const Alignment& alignment,
-                 const Eigen::Ref<const Eigen::VectorXd>& column,
-                 Eigen::VectorXd& means) {
+void cross_means(const Alignment& alignment, const Eigen::Ref<const Eigen::VectorXd>& column, Eigen::VectorXd& means) {
   const auto n = static_cast<Eigen::Index>(alignment.channels.size());
   means.resize(column.size() / n - 1);
   for (Eigen::Index k = 0; k < means.size(); ++k) {
@@ -23,23 +21,19 @@ void cross_means(const Alignment& alignment,
   }
 }
 
-Eigen::VectorXd in_time(const Alignment& alignment,
-                        const Eigen::VectorXd& aligned,
-                        const Eigen::VectorXd& cross) {
+Eigen::VectorXd in_time(const Alignment& alignment, const Eigen::VectorXd& aligned, const Eigen::VectorXd& cross) {
   Eigen::VectorXd out(aligned.size());
   for (Eigen::Index i = 0; i < aligned.size(); ++i) {
     const ChannelAlignment& channel = alignment.channels[static_cast<std::size_t>(i)];
     out(i) = channel.bias + (1 + channel.gain) * aligned(i);
     for (Eigen::Index k = 0; k < cross.size(); ++k)
-      if (const double m = channel.cross[static_cast<std::size_t>(k)]; m != 0)
-        out(i) += m * cross(k);
+      if (const double m = channel.cross[static_cast<std::size_t>(k)]; m != 0) out(i) += m * cross(k);
   }
   return out;
 }
 
 Aligner::Aligner(const Alignment& alignment) : alignment_(&alignment) {
-  for (const ChannelAlignment& channel : alignment.channels)
-    taps_.emplace_back(channel.delay, alignment.interpolation);
+  for (const ChannelAlignment& channel : alignment.channels) taps_.emplace_back(channel.delay, alignment.interpolation);
 }
 
 void Aligner::clip(Eigen::MatrixXd& samples) const {
@@ -58,8 +52,7 @@ void Aligner::column(const Eigen::MatrixXd& samples, Eigen::Index t, Eigen::Vect
   cross_means(*alignment_, samples.col(t), cross);
   for (Eigen::Index i = 0; i < n; ++i) {
     const ChannelAlignment& channel = alignment_->channels[static_cast<std::size_t>(i)];
-    double y = taps_[static_cast<std::size_t>(i)].at(
-        samples.data() + i, samples.rows(), samples.cols(), t);
+    double y = taps_[static_cast<std::size_t>(i)].at(samples.data() + i, samples.rows(), samples.cols(), t);
     y -= channel.bias;
     for (Eigen::Index k = 0; k < cross.size(); ++k)
       if (const double m = channel.cross[static_cast<std::size_t>(k)]; m != 0) y -= m * cross(k);

@@ -10,14 +10,10 @@
 namespace libchar::fusion {
 
 /// The mean over the sensors of each further axis at one instant, saturated samples left out.
-void cross_means(const Alignment& alignment,
-                 const Eigen::Ref<const Eigen::VectorXd>& column,
-                 Eigen::VectorXd& means);
+void cross_means(const Alignment& alignment, const Eigen::Ref<const Eigen::VectorXd>& column, Eigen::VectorXd& means);
 
 /// Aligned samples with their biases, gains and other axes put back: what the delays alone do.
-Eigen::VectorXd in_time(const Alignment& alignment,
-                        const Eigen::VectorXd& aligned,
-                        const Eigen::VectorXd& cross);
+Eigen::VectorXd in_time(const Alignment& alignment, const Eigen::VectorXd& aligned, const Eigen::VectorXd& cross);
 
 /// Column t of `samples` (as in AlignmentData) aligned: n values. Saturated samples are missing.
 class Aligner {

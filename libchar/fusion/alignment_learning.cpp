@@ -42,11 +42,9 @@ constexpr double kSeen = 4;             // power of x over that of its own noise
 constexpr double kLikeEnough = 0.5;     // correlation of the slow parts, at least
 constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
 constexpr double kResolved = 3;         // standard errors that a delay is from zero, at least
-constexpr double kBound =
-    2;  // standard errors beyond what was found, of a delay that is not resolved
-constexpr double kEndOfSearch = 0.5;  // samples: nearer to it a delay is an end, no estimate
-constexpr double kQuarter =
-    0.25;  // samples: where the slope of the interpolator's noise is largest
+constexpr double kBound = 2;            // standard errors beyond what was found, of a delay that is not resolved
+constexpr double kEndOfSearch = 0.5;    // samples: nearer to it a delay is an end, no estimate
+constexpr double kQuarter = 0.25;       // samples: where the slope of the interpolator's noise is largest
 constexpr double kMostShared = 0.1;
 constexpr double kVibrates = -0.15;  // correlation of neighbours
 constexpr double kSixth[] = {1, -6, 15, -20, 15, -6, 1};
@@ -147,8 +145,7 @@ class Learner {
       const auto column = raw_.col(i).array();
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (Index t = 0; t < m_; ++t)
-        if (std::isfinite(column(t)))
-          low = std::min(low, column(t)), high = std::max(high, column(t));
+        if (std::isfinite(column(t))) low = std::min(low, column(t)), high = std::max(high, column(t));
       if (2 * column.isFinite().count() > m_ && high > low)
         used_.push_back(i);
       else
@@ -174,8 +171,7 @@ class Learner {
   // Correlations of the slow parts, where aliased vibration and noise say little.
   void start_delays() {
     Eigen::MatrixXd slow(m_, static_cast<Index>(used_.size()));
-    for (std::size_t k = 0; k < used_.size(); ++k)
-      slow.col(static_cast<Index>(k)) = low_passed(raw_.col(used_[k]));
+    for (std::size_t k = 0; k < used_.size(); ++k) slow.col(static_cast<Index>(k)) = low_passed(raw_.col(used_[k]));
     Eigen::VectorXd truth;
     if (!blind()) truth = low_passed(data_.truth.transpose());
     Eigen::MatrixXd moved = slow;
@@ -184,12 +180,9 @@ class Learner {
       for (std::size_t k = 0; k < used_.size(); ++k) {
         const auto column = static_cast<Index>(k);
         Eigen::VectorXd others = truth;
-        if (blind())
-          others =
-              (moved.rowwise().sum() - moved.col(column)) / static_cast<double>(moved.cols() - 1);
+        if (blind()) others = (moved.rowwise().sum() - moved.col(column)) / static_cast<double>(moved.cols() - 1);
         Eigen::VectorXd like(2 * kLags + 1);
-        for (Index lag = -kLags; lag <= kLags; ++lag)
-          like(lag + kLags) = correlation(slow.col(column), others, lag);
+        for (Index lag = -kLags; lag <= kLags; ++lag) like(lag + kLags) = correlation(slow.col(column), others, lag);
         Index best = 0;
         can_delay_[k] = like.maxCoeff(&best) > kLikeEnough;
         if (!can_delay_[k]) continue;
@@ -204,8 +197,7 @@ class Learner {
       for (std::size_t k = 0; k < used_.size(); ++k) {
         const DelayTaps taps(of(k).delay, Interpolation::cubic);
         const auto column = static_cast<Index>(k);
-        for (Index t = 0; t < m_; ++t)
-          moved(t, column) = taps.at(slow.col(column).data(), 1, m_, t);
+        for (Index t = 0; t < m_; ++t) moved(t, column) = taps.at(slow.col(column).data(), 1, m_, t);
       }
     }
   }
@@ -243,15 +235,13 @@ class Learner {
         const double now = at.at(y, 1, m_, t, strict_);
         double value = now - channel.bias;
         for (Index a = 0; a < further_; ++a)
-          if (const double c = channel.cross[static_cast<std::size_t>(a)]; c != 0)
-            value -= c * cross_(t, a);
+          if (const double c = channel.cross[static_cast<std::size_t>(a)]; c != 0) value -= c * cross_(t, a);
         z_(t, k) = value / (1 + channel.gain);
         if (!moves) continue;
         const double up = later.at(y, 1, m_, t, strict_), down = earlier.at(y, 1, m_, t, strict_);
         slope_(t, k) = (up - down) / (2 * kDelayStep) / (1 + channel.gain);
         if (delays_.vibrates)
-          delays_.bend(t, k) =
-              (up - 2 * now + down) / (kDelayStep * kDelayStep) / (1 + channel.gain);
+          delays_.bend(t, k) = (up - 2 * now + down) / (kDelayStep * kDelayStep) / (1 + channel.gain);
         if (!std::isfinite(slope_(t, k))) z_(t, k) = kUnknownValue;
       }
     }
@@ -262,15 +252,13 @@ class Learner {
     delays_.truth_slope.resize(0);
     if (blind() || !options_.delay) return;
     const Eigen::VectorXd truth = data_.truth.transpose();
-    const DelayTaps later(kDelayStep, options_.interpolation),
-        earlier(-kDelayStep, options_.interpolation);
+    const DelayTaps later(kDelayStep, options_.interpolation), earlier(-kDelayStep, options_.interpolation);
     Eigen::VectorXd out = Eigen::VectorXd::Constant(m_, kUnknownValue);
     Index known = 0, there = 0;
     for (Index t = 0; t < m_; ++t) {
       if (!interior_[static_cast<std::size_t>(t)] || !std::isfinite(truth(t))) continue;
       ++there;
-      out(t) = (later.at(truth.data(), 1, m_, t, true) - earlier.at(truth.data(), 1, m_, t, true)) /
-               (2 * kDelayStep);
+      out(t) = (later.at(truth.data(), 1, m_, t, true) - earlier.at(truth.data(), 1, m_, t, true)) / (2 * kDelayStep);
       known += std::isfinite(out(t)) ? 1 : 0;
     }
     if (2 * known > there) delays_.truth_slope = out;
@@ -286,8 +274,7 @@ class Learner {
         rows_.push_back(t);
     const auto rows = static_cast<Index>(rows_.size());
     if (rows < kFewestInstants)
-      throw refusal("too few instants have samples of all sensors")
-          .got("{}; {} are needed", rows, kFewestInstants);
+      throw refusal("too few instants have samples of all sensors").got("{}; {} are needed", rows, kFewestInstants);
     out_.instants = rows;
     batches_ = static_cast<std::size_t>(std::clamp<Index>(rows / 40, 4, 30));
     x0_ = x_(rows_).mean();
@@ -314,8 +301,7 @@ class Learner {
       double spread = 0, count = 0;
       for (Index i = 0; i < n_; ++i)
         for (const Index t : rows_)
-          if (const double d = raw_(t, (a + 1) * n_ + i) - cross_(t, a); std::isfinite(d))
-            spread += d * d, count += 1;
+          if (const double d = raw_(t, (a + 1) * n_ + i) - cross_(t, a); std::isfinite(d)) spread += d * d, count += 1;
       const auto all = static_cast<double>(n_);
       if (c.squaredNorm() / rows > kSeen * spread / (count * all)) axes_.push_back(a);
     }
@@ -332,13 +318,11 @@ class Learner {
     for (std::size_t k = 0; k < used_.size(); ++k) {
       const Equations system = equations(k);
       changes.push_back(system.solve(system.all()));
-      power(static_cast<Index>(k)) =
-          linear_residual(k).squaredNorm() / static_cast<double>(rows_.size());
+      power(static_cast<Index>(k)) = linear_residual(k).squaredNorm() / static_cast<double>(rows_.size());
     }
     residual_power_ = power;
     double largest = 0;
-    for (std::size_t k = 0; k < used_.size(); ++k)
-      largest = std::max(largest, update(k, changes[k]));
+    for (std::size_t k = 0; k < used_.size(); ++k) largest = std::max(largest, update(k, changes[k]));
     settle_gauge();
     return largest;
   }
@@ -391,8 +375,7 @@ class Learner {
       for (std::size_t a = 0; a < mean.cross.size(); ++a) mean.cross[a] += of(k).cross[a] / n;
     }
     for (std::size_t k = 0; k < used_.size(); ++k) {
-      if (can_delay_[k])
-        of(k).delay = std::clamp(of(k).delay - mean.delay / late, -kMostDelay, kMostDelay);
+      if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -kMostDelay, kMostDelay);
       of(k).bias -= mean.bias;
       of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
@@ -409,16 +392,13 @@ class Learner {
       const Equations system = equations(k);
       const auto count = static_cast<double>(system.all());
       Eigen::MatrixXd without(system.left[0].rows(), static_cast<Index>(system.all()));
-      for (std::size_t b = 0; b < system.all(); ++b)
-        without.col(static_cast<Index>(b)) = system.solve(b);
+      for (std::size_t b = 0; b < system.all(); ++b) without.col(static_cast<Index>(b)) = system.solve(b);
       // The bias is the one at x = 0, not at the middle of the stretch.
       if (gain_) without.row(0) -= x0_ * without.row(1);
       for (std::size_t a = 0; a < axes_.size(); ++a)
         without.row(0) -= c0_(axes_[a]) * without.row(static_cast<Index>(a) + (gain_ ? 2 : 1));
       const Eigen::VectorXd se =
-          ((without.colwise() - without.rowwise().mean()).rowwise().squaredNorm() * (count - 1) /
-           count)
-              .cwiseSqrt();
+          ((without.colwise() - without.rowwise().mean()).rowwise().squaredNorm() * (count - 1) / count).cwiseSqrt();
       ChannelAlignment& to = of(k);
       const double scale = 1 + to.gain;
       Index next = 1;
@@ -441,24 +421,21 @@ class Learner {
     const ChannelAlignment& channel = out_.channels[static_cast<std::size_t>(used_[k])];
     if (std::abs(channel.delay) > kMostDelay - kEndOfSearch) return Delay::end;
     if (!(channel.delay_se > 0 && channel.delay_se < kDoubtfulDelay)) return Delay::unknown;
-    return std::abs(channel.delay) > kResolved * channel.delay_se ? Delay::resolved
-                                                                  : Delay::within_its_error;
+    return std::abs(channel.delay) > kResolved * channel.delay_se ? Delay::resolved : Delay::within_its_error;
   }
 
   // A delay that is known to no better than half a sample is none, nor one that is not resolved from zero, nor the end
   // of the search. Blind, delays are differences: those that are within their errors go together, or stay.
   bool doubt_delays() {
     bool doubted = false, any = false;
-    for (std::size_t k = 0; k < used_.size(); ++k)
-      any = any || (can_delay_[k] && delay_of(k) == Delay::resolved);
+    for (std::size_t k = 0; k < used_.size(); ++k) any = any || (can_delay_[k] && delay_of(k) == Delay::resolved);
     for (std::size_t k = 0; k < used_.size(); ++k) {
       if (!can_delay_[k]) continue;
       ChannelAlignment& channel = of(k);
       const Delay is = delay_of(k);
       if (is == Delay::resolved || (is == Delay::within_its_error && blind() && any)) continue;
       if (is == Delay::end) ++delays_.ends;
-      if (is == Delay::within_its_error)
-        delays_.bounds.push_back(std::abs(channel.delay) + kBound * channel.delay_se);
+      if (is == Delay::within_its_error) delays_.bounds.push_back(std::abs(channel.delay) + kBound * channel.delay_se);
       can_delay_[k] = false;
       channel.delay = 0;
       doubted = true;
@@ -472,37 +449,29 @@ class Learner {
     for (std::size_t k = 0; k < used_.size(); ++k) still += can_delay_[k] ? 0 : 1;
     still -= std::min(still, delays_.bounds.size() + delays_.ends);
     if (options_.delay && still > 0)
-      note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero",
-                       still,
-                       used_.size()));
+      note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero", still, used_.size()));
     if (!delays_.bounds.empty())
-      note(fmt::format(
-          "the delay of {} of {} sensors is not resolved from zero, and is at most "
-          "{} samples (95 %)",
-          delays_.bounds.size(),
-          used_.size(),
-          brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
+      note(
+          fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most "
+                      "{} samples (95 %)",
+                      delays_.bounds.size(), used_.size(),
+                      brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)
       note(
           fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are "
                       "searched: left at zero",
-                      delays_.ends,
-                      used_.size(),
-                      kMostDelay));
-    if (options_.gain && !gain_)
-      note("the input hardly moves within the stretch: gains are left at one");
+                      delays_.ends, used_.size(), kMostDelay));
+    if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
       note(
           fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with "
                       "them is told",
-                      static_cast<std::size_t>(further_) - axes_.size(),
-                      further_));
+                      static_cast<std::size_t>(further_) - axes_.size(), further_));
     if (used_.size() < static_cast<std::size_t>(n_))
       note(
           fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as "
                       "they are",
-                      static_cast<std::size_t>(n_) - used_.size(),
-                      n_));
+                      static_cast<std::size_t>(n_) - used_.size(), n_));
   }
 
   Equations equations(std::size_t k) {
@@ -561,16 +530,14 @@ class Learner {
 
   // Where vibration is damped by interpolation the best delay is that of the smallest rest: Newton, by its curvature.
   void bend_delay(std::size_t k, const Eigen::VectorXd& slope, Equations& to) const {
-    const Eigen::VectorXd left_over = linear_residual(k),
-                          bend = delays_.bend(rows_, static_cast<Index>(k));
+    const Eigen::VectorXd left_over = linear_residual(k), bend = delays_.bend(rows_, static_cast<Index>(k));
     const double steep = slope.squaredNorm();
     if (!(steep + left_over.dot(bend) > 0.05 * steep)) return;
     const auto rows = static_cast<Index>(rows_.size());
     for (std::size_t b = 0; b < batches_; ++b) {
       const Index from = rows * static_cast<Index>(b) / static_cast<Index>(batches_);
       const Index size = rows * static_cast<Index>(b + 1) / static_cast<Index>(batches_) - from;
-      to.left[b].bottomRightCorner(1, 1).array() +=
-          left_over.segment(from, size).dot(bend.segment(from, size));
+      to.left[b].bottomRightCorner(1, 1).array() += left_over.segment(from, size).dot(bend.segment(from, size));
     }
   }
 
@@ -602,8 +569,7 @@ class Learner {
       says += left(left.rows() - 1, left.cols() - 1);
       rows += left(0, 0);
     }
-    const double shared =
-        delays_.white.sum() * std::abs(noise_gain(kQuarter).along) / (n * (n - 1));
+    const double shared = delays_.white.sum() * std::abs(noise_gain(kQuarter).along) / (n * (n - 1));
     return says > 0 && rows * shared < kMostShared * says;
   }
 
@@ -614,8 +580,7 @@ class Learner {
   };
 
   NoiseGain noise_gain(Index k) const {
-    return noise_gain(
-        out_.channels[static_cast<std::size_t>(used_[static_cast<std::size_t>(k)])].delay);
+    return noise_gain(out_.channels[static_cast<std::size_t>(used_[static_cast<std::size_t>(k)])].delay);
   }
 
   NoiseGain noise_gain(double delay) const {
@@ -628,8 +593,7 @@ class Learner {
       return out;
     };
     const Eigen::VectorXd now = spread(delay);
-    const Eigen::VectorXd slope =
-        (spread(delay + kDelayStep) - spread(delay - kDelayStep)) / (2 * kDelayStep);
+    const Eigen::VectorXd slope = (spread(delay + kDelayStep) - spread(delay - kDelayStep)) / (2 * kDelayStep);
     NoiseGain out{now.dot(slope), slope.squaredNorm(), 0};
     for (Index at = -6; at < now.size(); ++at) {
       double sum = 0;
@@ -648,8 +612,7 @@ class Learner {
       const Eigen::VectorXd e = z_.col(k) - x_;
       double count = 0;
       for (Index t = 0; t + 6 < m_; ++t) {
-        if (!interior_[static_cast<std::size_t>(t)] || !interior_[static_cast<std::size_t>(t + 6)])
-          continue;
+        if (!interior_[static_cast<std::size_t>(t)] || !interior_[static_cast<std::size_t>(t + 6)]) continue;
         double d = 0;
         for (Index j = 0; j < 7; ++j) d += kSixth[j] * e(t + j);
         if (std::isfinite(d)) power(k) += d * d, count += 1;
@@ -659,9 +622,8 @@ class Learner {
     const auto all = static_cast<double>(n);
     if (blind()) {
       const double sum = power.sum() * all / (all - 1);
-      power = n > 2
-                  ? Eigen::VectorXd(((power.array() - sum / (all * all)) / (1 - 2 / all)).max(0.0))
-                  : Eigen::VectorXd::Constant(n, sum / all);
+      power = n > 2 ? Eigen::VectorXd(((power.array() - sum / (all * all)) / (1 - 2 / all)).max(0.0))
+                    : Eigen::VectorXd::Constant(n, sum / all);
     }
     delays_.white.resize(n);
     for (Index k = 0; k < n; ++k) delays_.white(k) = power(k) / noise_gain(k).sixth;
@@ -673,8 +635,7 @@ class Learner {
     const double sum = residual_power_.sum() * n / (n - 1);
     const double mean = sum / n;
     double own = mean;
-    if (used_.size() > 2)
-      own = std::max(0.0, (residual_power_(static_cast<Index>(k)) - sum / (n * n)) / (1 - 2 / n));
+    if (used_.size() > 2) own = std::max(0.0, (residual_power_(static_cast<Index>(k)) - sum / (n * n)) / (1 - 2 / n));
     for (std::size_t b = 0; b < to.left.size(); ++b) {
       const double rows = to.left[b](0, 0);
       to.left[b](1, 1) -= std::min(rows * mean / n, 0.5 * to.left[b](1, 1));

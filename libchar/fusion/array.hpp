@@ -49,13 +49,10 @@ struct Array {
   std::vector<std::int64_t> section_starts;
   std::optional<TiltChannels> tilt;
 
-  Eigen::Index inputs() const {
-    return observation_matrix.size() == 0 ? 1 : observation_matrix.cols();
-  }  ///< r
+  Eigen::Index inputs() const { return observation_matrix.size() == 0 ? 1 : observation_matrix.cols(); }  ///< r
   /// H as a matrix in any case.
   Eigen::MatrixXd h() const {
-    return observation_matrix.size() == 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Ones(channels, 1))
-                                          : observation_matrix;
+    return observation_matrix.size() == 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Ones(channels, 1)) : observation_matrix;
   }
   /// One input, seen by every channel with gain one: means need no matrix.
   bool one_common_input() const {

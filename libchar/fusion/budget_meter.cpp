@@ -26,20 +26,15 @@ BudgetMeter::BudgetMeter(Index channels, Index axes, std::int64_t instants, bool
       with_truth_(with_truth),
       c0_(Eigen::VectorXd::Zero(axes)) {}
 
-void BudgetMeter::push(const Eigen::VectorXd& recorded,
-                       const Eigen::VectorXd& undelayed,
-                       const Eigen::VectorXd& aligned,
-                       const Eigen::VectorXd& cross,
-                       double truth) {
+void BudgetMeter::push(const Eigen::VectorXd& recorded, const Eigen::VectorXd& undelayed,
+                       const Eigen::VectorXd& aligned, const Eigen::VectorXd& cross, double truth) {
   Instant now{recorded, undelayed, aligned, cross, with_truth_ ? truth : aligned.mean(), false};
-  now.complete =
-      recorded.allFinite() && aligned.allFinite() && cross.allFinite() && std::isfinite(now.x);
+  now.complete = recorded.allFinite() && aligned.allFinite() && cross.allFinite() && std::isfinite(now.x);
   if (std::isnan(x0_) && now.complete) {
     x0_ = now.x;
     c0_ = cross;
   }
-  if (seen_ >= 2 && last_[0].complete && last_[1].complete && now.complete)
-    add(last_[0], last_[1], now);
+  if (seen_ >= 2 && last_[0].complete && last_[1].complete && now.complete) add(last_[0], last_[1], now);
   last_[0] = std::move(last_[1]);
   last_[1] = std::move(now);
   ++seen_;
@@ -49,12 +44,8 @@ void BudgetMeter::add(const Instant& before, const Instant& now, const Instant& 
   const auto b = static_cast<std::size_t>((seen_ - 1) / batch_);
   const Index p = 3 + axes_;
   while (batches_.size() <= b)
-    batches_.push_back({Eigen::MatrixXd::Zero(p, p),
-                        Eigen::MatrixXd::Zero(p, n_ + 1),
-                        Eigen::VectorXd::Zero(n_ + 1),
-                        Eigen::VectorXd::Zero(n_ + 1),
-                        Eigen::VectorXd::Zero(n_ + 1),
-                        Eigen::VectorXd::Zero(n_ + 1)});
+    batches_.push_back({Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Zero(p, n_ + 1), Eigen::VectorXd::Zero(n_ + 1),
+                        Eigen::VectorXd::Zero(n_ + 1), Eigen::VectorXd::Zero(n_ + 1), Eigen::VectorXd::Zero(n_ + 1)});
   Sums& s = batches_[b];
   const double slope = 0.5 * (after.x - before.x), slope2 = slope * slope;
   Eigen::VectorXd row(p), u(n_ + 1), d(n_ + 1), r(n_ + 1);
@@ -76,10 +67,8 @@ void BudgetMeter::add(const Instant& before, const Instant& now, const Instant& 
   s.count += 1;
   const auto n = static_cast<double>(n_);
   const double others = (n / (n - 1)) * (n / (n - 1)) / n;
-  s.before += with_truth_ ? u(n_) * u(n_)
-                          : others * (now.recorded.array() - now.recorded.mean()).square().sum();
-  s.after += with_truth_ ? r(n_) * r(n_)
-                         : others * (now.aligned.array() - now.aligned.mean()).square().sum();
+  s.before += with_truth_ ? u(n_) * u(n_) : others * (now.recorded.array() - now.recorded.mean()).square().sum();
+  s.after += with_truth_ ? r(n_) * r(n_) : others * (now.aligned.array() - now.aligned.mean()).square().sum();
 }
 
 BudgetMeter::Sums BudgetMeter::total(std::size_t without) const {
@@ -117,13 +106,11 @@ Eigen::MatrixXd BudgetMeter::powers(const Sums& s, Eigen::MatrixXd* loadings) co
     if (!(d > 1e-12 * s.regressors(j, j))) continue;
     lower(j, j) = std::sqrt(d);
     for (Index i = j + 1; i < p; ++i)
-      lower(i, j) =
-          (s.regressors(i, j) - lower.row(i).head(j).dot(lower.row(j).head(j))) / lower(j, j);
+      lower(i, j) = (s.regressors(i, j) - lower.row(i).head(j).dot(lower.row(j).head(j))) / lower(j, j);
   }
   Eigen::MatrixXd q = Eigen::MatrixXd::Zero(p, n_ + 1);
   for (Index j = 0; j < p; ++j)
-    if (lower(j, j) > 0)
-      q.row(j) = (s.errors.row(j) - lower.row(j).head(j) * q.topRows(j)) / lower(j, j);
+    if (lower(j, j) > 0) q.row(j) = (s.errors.row(j) - lower.row(j).head(j) * q.topRows(j)) / lower(j, j);
   q /= std::sqrt(s.count);
   Eigen::MatrixXd out(static_cast<Index>(kErrorParts), n_ + 1);
   const double mean = s.slope2 / s.count, spread = s.slope4 / s.count - mean * mean;
@@ -136,8 +123,7 @@ Eigen::MatrixXd BudgetMeter::powers(const Sums& s, Eigen::MatrixXd* loadings) co
     const double removed = (s.squares(i) - s.undelayed(i)) / s.count;
     out(3, i) = std::clamp(q(p - 1, i) * q(p - 1, i) + removed, 0.0, behind);
     const double left = behind - out(3, i);
-    const double follows =
-        spread > 0 ? (s.rest_slope(i) / s.count - mean * s.rest(i) / s.count) / spread : 0;
+    const double follows = spread > 0 ? (s.rest_slope(i) / s.count - mean * s.rest(i) / s.count) / spread : 0;
     out(4, i) = std::clamp(follows * mean, 0.0, left);
     out(5, i) = left - out(4, i);
   }
@@ -162,8 +148,7 @@ ErrorBudget BudgetMeter::result() const {
   const Eigen::MatrixXd power = powers(all, &loadings);
   std::vector<Eigen::MatrixXd> without;
   for (std::size_t b = 0; b < batches_.size(); ++b)
-    if (batches_[b].count > 0 && batches_[b].count < all.count)
-      without.push_back(powers(total(b), nullptr));
+    if (batches_[b].count > 0 && batches_[b].count < all.count) without.push_back(powers(total(b), nullptr));
   const auto parts = static_cast<Index>(kErrorParts);
   // Blind: the channels' own errors, taken together, are what leaving one out shows.
   const double everything = with_truth_ ? power.col(n_).sum() : power.leftCols(n_).sum();
@@ -175,8 +160,7 @@ ErrorBudget BudgetMeter::result() const {
     if (!with_truth_) return power(part, i);
     if (part >= 4) return std::min(power(part, i) / (n * n), power(part, n_));
     const Index from = part < 3 ? part : loadings.rows() - 1, size = part == 2 ? axes_ : 1;
-    const auto own = loadings.col(i).segment(from, size),
-               mean = loadings.col(n_).segment(from, size);
+    const auto own = loadings.col(i).segment(from, size), mean = loadings.col(n_).segment(from, size);
     return 2 / n * own.dot(mean) - own.squaredNorm() / (n * n);
   };
   for (Index i = 0; i < n_; ++i) {
@@ -190,8 +174,7 @@ ErrorBudget BudgetMeter::result() const {
         double sum = 0, squares = 0;
         const auto count = static_cast<double>(without.size());
         for (const Eigen::MatrixXd& w : without) sum += w(part, i) / w.col(i).sum();
-        for (const Eigen::MatrixXd& w : without)
-          squares += std::pow(w(part, i) / w.col(i).sum() - sum / count, 2);
+        for (const Eigen::MatrixXd& w : without) squares += std::pow(w(part, i) / w.col(i).sum() - sum / count, 2);
         const double half = kNormal95 * std::sqrt(squares * (count - 1) / count);
         share.ci95 = {std::max(0.0, share.share - half), std::min(1.0, share.share + half)};
       }

@@ -18,11 +18,8 @@ class BudgetMeter {
   /// One instant: samples as recorded, with their delays alone taken out (`in_time`), aligned, the
   /// mean of each further axis, the truth (NaN when blind). An instant at which anything is missing
   /// is left out.
-  void push(const Eigen::VectorXd& recorded,
-            const Eigen::VectorXd& undelayed,
-            const Eigen::VectorXd& aligned,
-            const Eigen::VectorXd& cross,
-            double truth);
+  void push(const Eigen::VectorXd& recorded, const Eigen::VectorXd& undelayed, const Eigen::VectorXd& aligned,
+            const Eigen::VectorXd& cross, double truth);
   ErrorBudget result() const;
 
  private:

@@ -38,9 +38,7 @@ std::vector<double> sinc_taps(double f) {
 }
 
 std::vector<double> cubic_taps(double f) {
-  return {-f * (f - 1) * (f - 2) / 6,
-          (f + 1) * (f - 1) * (f - 2) / 2,
-          -(f + 1) * f * (f - 2) / 2,
+  return {-f * (f - 1) * (f - 2) / 6, (f + 1) * (f - 1) * (f - 2) / 2, -(f + 1) * f * (f - 2) / 2,
           (f + 1) * f * (f - 1) / 6};
 }
 
@@ -59,17 +57,12 @@ DelayTaps::DelayTaps(double delay, Interpolation interpolation)
   }
 }
 
-double DelayTaps::at(const double* y,
-                     std::ptrdiff_t stride,
-                     std::ptrdiff_t size,
-                     std::ptrdiff_t t,
-                     bool strict) const {
+double DelayTaps::at(const double* y, std::ptrdiff_t stride, std::ptrdiff_t size, std::ptrdiff_t t, bool strict) const {
   const std::ptrdiff_t place = t + floor, from = place + first;
   const auto taps = static_cast<std::ptrdiff_t>(weights.size());
   if (from >= 0 && from + taps <= size) {
     double sum = 0;
-    for (std::ptrdiff_t k = 0; k < taps; ++k)
-      sum += weights[static_cast<std::size_t>(k)] * y[(from + k) * stride];
+    for (std::ptrdiff_t k = 0; k < taps; ++k) sum += weights[static_cast<std::size_t>(k)] * y[(from + k) * stride];
     if (std::isfinite(sum)) return sum;
   }
   if (strict || place < 0 || place + 1 >= size) return std::numeric_limits<double>::quiet_NaN();

@@ -16,11 +16,7 @@ struct DelayTaps {
   DelayTaps(double delay, Interpolation interpolation);
   /// y(t + delay), of `size` values. Where a tap is missing: linear between its neighbours, NaN
   /// where one of these is missing; `strict`: NaN.
-  double at(const double* y,
-            std::ptrdiff_t stride,
-            std::ptrdiff_t size,
-            std::ptrdiff_t t,
-            bool strict = false) const;
+  double at(const double* y, std::ptrdiff_t stride, std::ptrdiff_t size, std::ptrdiff_t t, bool strict = false) const;
   std::vector<double> weights;
   std::ptrdiff_t first = 0, floor = 0;
   double fraction = 0;

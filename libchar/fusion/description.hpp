@@ -14,9 +14,9 @@ struct Needs {
   std::ptrdiff_t min_channels = 1;
   std::ptrdiff_t max_channels = 0;      ///< 0: any number; else memory that grows with their square
   std::ptrdiff_t more_than_inputs = 0;  ///< n must exceed this many times r (MINQUE: 2)
-  std::int64_t learning_samples = 0;  ///< at least so many instants with a reference before the run
-  bool reference = false;             ///< learns from a reference, in the learning window
-  bool reference_helps = false;       ///< learns from it where there is one, and runs without
+  std::int64_t learning_samples = 0;    ///< at least so many instants with a reference before the run
+  bool reference = false;               ///< learns from a reference, in the learning window
+  bool reference_helps = false;         ///< learns from it where there is one, and runs without
   /// looks at the reference of the run itself: a bound, not a method
   bool reference_throughout = false;
   bool noise_levels = false;  ///< a noise variance for each channel

@@ -21,8 +21,8 @@ enum class FaultRule {
   saturated,        ///< it is at the end of its range
 };
 constexpr std::string_view name(FaultRule rule) {
-  constexpr std::string_view names[] = {
-      "variance", "residual_moment", "bias", "gain", "noise", "dead", "stuck", "saturated"};
+  constexpr std::string_view names[] = {"variance", "residual_moment", "bias",     "gain", "noise",
+                                        "dead",     "stuck",           "saturated"};
   return names[static_cast<int>(rule)];
 }
 
@@ -38,8 +38,7 @@ struct FaultDoubt {
 struct FaultEvent {
   std::int64_t sample = 0;  ///< instant of the run, 0 = first
   int channel = 0;
-  bool faulty =
-      false;  ///< true: faulty from here on (taken out, noise: re-weighted); false: healthy again
+  bool faulty = false;  ///< true: faulty from here on (taken out, noise: re-weighted); false: healthy again
   FaultRule rule = FaultRule::variance;
 };
 
@@ -101,8 +100,7 @@ enum class HandOverReason : char {
   no_gain,       ///< it is no better than the baseline any more
 };
 constexpr std::string_view name(HandOverReason reason) {
-  constexpr std::string_view names[] = {
-      "right", "missing", "outside", "apart", "inconsistent", "no_gain"};
+  constexpr std::string_view names[] = {"right", "missing", "outside", "apart", "inconsistent", "no_gain"};
   return names[static_cast<int>(reason)];
 }
 

@@ -28,8 +28,7 @@ const std::vector<double>& LearntExchange::find(std::string_view name) {
 
 void LearntExchange::check(std::string_view name, std::size_t wanted, std::size_t found) const {
   if (wanted == found) return;
-  throw learnt_refusal(
-      name, "expected " + std::to_string(wanted) + " numbers, found " + std::to_string(found))
+  throw learnt_refusal(name, "expected " + std::to_string(wanted) + " numbers, found " + std::to_string(found))
       .hint("the file must name as many sensors as it was learnt from");
 }
 
@@ -64,16 +63,14 @@ void LearntExchange::needs_same_rate(std::string_view what) const {
   if (!taking_in_ || std::abs(rate_ratio_ - 1) <= kSameRate) return;
   throw input_error("E0867")
       .says("the log's rate is " + brief_text(rate_ratio_, 4) +
-            " times that of the log where this was learnt: " + std::string(what) +
-            " would mean something else")
+            " times that of the log where this was learnt: " + std::string(what) + " would mean something else")
       .hint("learn on a log of this rate, or choose another algorithm");
 }
 
 void LearntExchange::finish() const {
   for (std::size_t i = 0; i < learnt_.size(); ++i)
     if (taking_in_ && taken_[i] == 0)
-      throw learnt_refusal(learnt_[i].name, "this algorithm learns nothing of this name")
-          .hint(kHint);
+      throw learnt_refusal(learnt_[i].name, "this algorithm learns nothing of this name").hint(kHint);
 }
 
 }  // namespace libchar::fusion

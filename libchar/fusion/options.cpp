@@ -27,8 +27,7 @@ std::string range_of(const Option& option) {
       .says("no such option")
       .got(std::string(name))
       .hint(did_you_mean(nearest(name, names),
-                         names.empty() ? "this algorithm has no options"
-                                       : "its options are " + first_names(names)));
+                         names.empty() ? "this algorithm has no options" : "its options are " + first_names(names)));
 }
 
 }  // namespace
@@ -44,10 +43,7 @@ void Settings::set(std::string_view name, double value) {
     // Written so that NaN fails.
     const bool fits = value >= option.low && value <= option.high && std::isfinite(value) &&
                       (!option.whole || value == std::floor(value));
-    if (!fits)
-      throw usage_error("E0851")
-          .says(std::string(name) + " takes " + range_of(option))
-          .got(shortest(value));
+    if (!fits) throw usage_error("E0851").says(std::string(name) + " takes " + range_of(option)).got(shortest(value));
     values_[i] = value;
     return;
   }

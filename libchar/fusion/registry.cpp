@@ -34,25 +34,13 @@ constexpr Eigen::Index kWatchedAtOnce = 256;
 
 /// What the algorithms that can be watched have behind their own options.
 inline constexpr std::array kWatchOptions{
-    Option{"fault_detection",
-           "",
-           0,
-           0,
-           1,
+    Option{"fault_detection", "", 0, 0, 1,
            "1: sensors that fail are left out, found by cumulative sums as minque does; 0: all "
            "are used",
            true},
-    Option{"false_alarm_s",
-           "s",
-           1e5,
-           1,
-           1e15,
+    Option{"false_alarm_s", "s", 1e5, 1, 1e15,
            "mean time between two false alarms of the array (without a rate: per 2e7 samples)"},
-    Option{"recovery_window",
-           "samples",
-           0,
-           0,
-           1e9,
+    Option{"recovery_window", "samples", 0, 0, 1e9,
            "own samples that must agree with the others before a channel comes in again (0: 200, "
            "or those of 2 s "
            "where they are fewer)",
@@ -66,8 +54,7 @@ class WatchedRunner final : public Runner {
         options_{settings["false_alarm_s"], static_cast<std::int64_t>(settings["recovery_window"])},
         watched_(std::move(watched)),
         used_(array.channels, kWatchedAtOnce) {
-    if (array.channels > 2 * array.inputs() && array.channels <= kMostPaired)
-      detector_.emplace(array_, options_);
+    if (array.channels > 2 * array.inputs() && array.channels <= kMostPaired) detector_.emplace(array_, options_);
   }
 
   const Description& description() const override { return watched_->description(); }
@@ -89,8 +76,7 @@ class WatchedRunner final : public Runner {
     for (Eigen::Index begin = 0; begin < samples.cols(); begin += kWatchedAtOnce) {
       const Eigen::Index count = std::min(kWatchedAtOnce, samples.cols() - begin);
       leave_out(*detector_, samples.middleCols(begin, count));
-      watched_->run(
-          used_.leftCols(count), x.middleCols(begin, count), variance.middleCols(begin, count));
+      watched_->run(used_.leftCols(count), x.middleCols(begin, count), variance.middleCols(begin, count));
     }
   }
   std::optional<Eigen::MatrixXd> weights() const override { return watched_->weights(); }
@@ -100,12 +86,11 @@ class WatchedRunner final : public Runner {
     watched_->remarks(warnings);
     const std::string_view name = description().name;
     if (detector_) return detector_->remarks(name, warnings);
-    warnings.add(
-        "faults_not_watched",
-        std::string(name) +
-            " looks for no faults: the search takes more than two sensors an input, and at "
-            "most " +
-            std::to_string(kMostPaired));
+    warnings.add("faults_not_watched",
+                 std::string(name) +
+                     " looks for no faults: the search takes more than two sensors an input, and at "
+                     "most " +
+                     std::to_string(kMostPaired));
   }
 
  private:
@@ -134,13 +119,11 @@ void WatchedRunner::leave_out(FaultDetector& detector, const Block& samples) {
 
 /// Estimates with weights that go on without a missing sample, and look for no faults themselves.
 template <Algorithm A>
-constexpr bool kWatchable =
-    A::description.needs.accepts_missing&& HasWeights<A> && !HasFaults<A> &&
-    !A::description.needs.reference_throughout && !A::description.needs.tilt;
+constexpr bool kWatchable = A::description.needs.accepts_missing&& HasWeights<A> && !HasFaults<A> &&
+                            !A::description.needs.reference_throughout && !A::description.needs.tilt;
 
 template <std::size_t n, std::size_t m>
-constexpr std::array<Option, n + m> joined(const std::array<Option, n>& a,
-                                           const std::array<Option, m>& b) {
+constexpr std::array<Option, n + m> joined(const std::array<Option, n>& a, const std::array<Option, m>& b) {
   std::array<Option, n + m> out{};
   std::copy(a.begin(), a.end(), out.begin());
   std::copy(b.begin(), b.end(), out.begin() + n);
@@ -172,8 +155,7 @@ std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
     throw usage_error("E0852").says(std::move(sentence));
   auto runner = std::make_unique<RunnerOf<A>>(array, settings);
   if constexpr (kWatchable<A>)
-    if (settings["fault_detection"] == 1)
-      return std::make_unique<WatchedRunner>(array, settings, std::move(runner));
+    if (settings["fault_detection"] == 1) return std::make_unique<WatchedRunner>(array, settings, std::move(runner));
   return runner;
 }
 
@@ -194,12 +176,7 @@ bool looks_ahead([[maybe_unused]] const Settings& settings) {
 
 template <Algorithm A>
 constexpr Entry entry() {
-  return {&A::description,
-          kOptions<A>,
-          own_options<A>().size(),
-          &make<A>,
-          &cost_ns<A>,
-          &looks_ahead<A>};
+  return {&A::description, kOptions<A>, own_options<A>().size(), &make<A>, &cost_ns<A>, &looks_ahead<A>};
 }
 
 // The order of reports: baselines, blind methods, methods that learn from a reference, bounds.
@@ -239,9 +216,7 @@ constexpr std::array kAlgorithms{
 
 }  // namespace
 
-std::span<const Entry> algorithms() {
-  return kAlgorithms;
-}
+std::span<const Entry> algorithms() { return kAlgorithms; }
 
 const Entry* find_algorithm(std::string_view name) {
   for (const Entry& candidate : kAlgorithms)

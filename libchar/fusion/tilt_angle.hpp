@@ -40,8 +40,7 @@ inline TiltSample tilt_sample(const TiltChannels& channels, const Sample& y) {
   return sample;
 }
 
-inline constexpr Needs kTiltNeeds{
-    .min_channels = 3, .accepts_missing = true, .rate = true, .tilt = true};
+inline constexpr Needs kTiltNeeds{.min_channels = 3, .accepts_missing = true, .rate = true, .tilt = true};
 inline constexpr Option kStartAtZero{
     "start_at_zero",
     "",

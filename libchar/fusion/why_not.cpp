@@ -14,8 +14,7 @@ std::string count(Eigen::Index n, const char* one, const char* many) {
 
 /// How many channels an algorithm wants for the inputs of this scene.
 Eigen::Index wanted_channels(const Needs& needs, const Array& array) {
-  return std::max(needs.min_channels,
-                  needs.more_than_inputs > 0 ? needs.more_than_inputs * array.inputs() + 1 : 1);
+  return std::max(needs.min_channels, needs.more_than_inputs > 0 ? needs.more_than_inputs * array.inputs() + 1 : 1);
 }
 
 bool known(const Eigen::VectorXd& levels, Eigen::Index channels) {
@@ -28,8 +27,7 @@ bool tells_inputs_apart(const Array& array) {
   if (array.observation_matrix.size() == 0 || array.channels < array.inputs()) return true;
   const Eigen::VectorXd length = array.observation_matrix.colwise().norm();
   if (!(length.minCoeff() > 0)) return false;
-  const Eigen::VectorXd r =
-      thin_qr(array.observation_matrix * length.cwiseInverse().asDiagonal()).r_diagonal;
+  const Eigen::VectorXd r = thin_qr(array.observation_matrix * length.cwiseInverse().asDiagonal()).r_diagonal;
   return r.cwiseAbs().minCoeff() > kRounding;
 }
 
@@ -48,17 +46,15 @@ std::string why_not(const Description& description, const Array& array) {
     return name + " estimates at most " + std::to_string(kMaxStates) + " inputs; this scene has " +
            std::to_string(array.inputs());
   if (!needs.tilt && !needs.observation_matrix && !array.one_common_input())
-    return array.inputs() > 1
-               ? name + " estimates one input; this scene has " + std::to_string(array.inputs())
-               : name +
-                     " needs channels that see the input with gain one; this scene's observation "
-                     "matrix says otherwise";
+    return array.inputs() > 1 ? name + " estimates one input; this scene has " + std::to_string(array.inputs())
+                              : name +
+                                    " needs channels that see the input with gain one; this scene's observation "
+                                    "matrix says otherwise";
   if (!needs.tilt && !tells_inputs_apart(array))
     return name + " needs sensors that tell the inputs apart; by this scene's observation matrix " +
            count(array.inputs(), "input leaves", "inputs leave") + " the same in all of them";
   if (array.channels < wanted_channels(needs, array)) {
-    std::string sentence =
-        name + " needs at least " + count(wanted_channels(needs, array), "channel", "channels");
+    std::string sentence = name + " needs at least " + count(wanted_channels(needs, array), "channel", "channels");
     if (needs.more_than_inputs > 0) sentence += " for " + count(array.inputs(), "input", "inputs");
     sentence += "; this scene has " + std::to_string(array.channels);
     if (needs.more_than_inputs == 2 && array.inputs() == 1 && array.channels == 2)
@@ -69,15 +65,13 @@ std::string why_not(const Description& description, const Array& array) {
   }
   if (needs.max_channels > 0 && array.channels > needs.max_channels)
     return name + " takes at most " + std::to_string(needs.max_channels) +
-           " channels (its memory grows with their square); this scene has " +
-           std::to_string(array.channels);
+           " channels (its memory grows with their square); this scene has " + std::to_string(array.channels);
   if (needs.noise_levels && !known(array.noise_levels, array.channels))
     return name +
            " needs a noise level (above zero) for each channel; give a sensor model, noise or a "
            "rest";
   if (needs.noise_models && static_cast<Eigen::Index>(array.noise_models.size()) != array.channels)
-    return name +
-           " needs a noise model of each channel, and its noise level; give each sensor its model";
+    return name + " needs a noise model of each channel, and its noise level; give each sensor its model";
   if (needs.reference_throughout && !array.reference_throughout)
     return name + " looks at the reference all along; this scene has none over the run";
   if (needs.reference && array.learning_samples == 0)
@@ -92,8 +86,7 @@ std::string why_not(const Description& description, const Array& array) {
     return name +
            " needs a stretch at the start that is known to hold no fault; say in the scene how "
            "long it is";
-  if (needs.rate && !(array.rate_hz > 0))
-    return name + " needs the sampling rate; the recording has no time axis";
+  if (needs.rate && !(array.rate_hz > 0)) return name + " needs the sampling rate; the recording has no time axis";
   return "";
 }
 

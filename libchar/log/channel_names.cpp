@@ -12,15 +12,12 @@ namespace {
 
 std::vector<std::string> names_in_head(const std::string& path, const ReadOptions& options) {
   std::vector<std::string> names;
-  for (const Channel& channel : read_log_head(path, options).channels)
-    names.push_back(channel.name);
+  for (const Channel& channel : read_log_head(path, options).channels) names.push_back(channel.name);
   return names;
 }
 
 // New names stand for all columns; else the reader chooses as for `channels`.
-std::vector<std::string> chosen_by(const std::string& word,
-                                   const std::string& path,
-                                   ReadOptions options,
+std::vector<std::string> chosen_by(const std::string& word, const std::string& path, ReadOptions options,
                                    const std::vector<std::string>& all) {
   if (std::find(all.begin(), all.end(), word) != all.end()) return {word};
   if (options.names.empty()) {
@@ -28,9 +25,8 @@ std::vector<std::string> chosen_by(const std::string& word,
     return names_in_head(path, options);
   }
   std::vector<std::string> out;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(out), [&](const std::string& name) {
-    return is_pattern(word) && matches(word, name);
-  });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+               [&](const std::string& name) { return is_pattern(word) && matches(word, name); });
   if (const auto k = position_in(word, all.size()); out.empty() && k) return {all[*k]};
   if (out.empty()) refuse_channel(word, all, options, path);
   return out;
@@ -47,10 +43,8 @@ std::vector<std::string> names_in_log(const std::string& path, const ReadOptions
   return names_in_head(path, plain);
 }
 
-ReadOptions options_of_channels(const ReadOptions& options,
-                                const std::vector<Channel>& all,
-                                const std::vector<std::string>& in_log,
-                                const std::vector<std::size_t>& some) {
+ReadOptions options_of_channels(const ReadOptions& options, const std::vector<Channel>& all,
+                                const std::vector<std::string>& in_log, const std::vector<std::size_t>& some) {
   ReadOptions out = options;
   const auto fits = [&](const std::string& word, std::size_t c) {
     return matches(word.substr(0, word.rfind('=')), all[c].name);
@@ -59,8 +53,7 @@ ReadOptions options_of_channels(const ReadOptions& options,
   const auto is_of_others = [&](const std::string& word) {
     bool any = false;
     for (std::size_t c = 0; c < all.size(); ++c) any |= fits(word, c);
-    return any &&
-           std::none_of(some.begin(), some.end(), [&](std::size_t c) { return fits(word, c); });
+    return any && std::none_of(some.begin(), some.end(), [&](std::size_t c) { return fits(word, c); });
   };
   std::erase_if(out.channel_scale, is_of_others);
   std::erase_if(out.channel_unit, is_of_others);
@@ -75,8 +68,7 @@ ReadOptions options_of_channels(const ReadOptions& options,
   return out;
 }
 
-std::vector<std::vector<std::string>> channel_names(const std::string& path,
-                                                    const ReadOptions& options,
+std::vector<std::vector<std::string>> channel_names(const std::string& path, const ReadOptions& options,
                                                     const std::vector<std::string>& words,
                                                     const std::vector<std::string>& except) {
   ReadOptions head = options;
@@ -85,8 +77,7 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path,
   head.channel_unit.clear();
   head.units.clear();  // one a channel that is chosen: not known yet
   head.hash = false;
-  const std::vector<std::string> all =
-      options.names.empty() ? names_in_head(path, head) : options.names;
+  const std::vector<std::string> all = options.names.empty() ? names_in_head(path, head) : options.names;
   std::vector<std::vector<std::string>> out;
   out.reserve(words.size());
   std::set<std::string> taken(except.begin(), except.end());

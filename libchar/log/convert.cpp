@@ -61,9 +61,7 @@ void check_paths(const std::string& from, const std::string& to, const WriteOpti
 
 }  // namespace
 
-Conversion convert_log(const std::string& from,
-                       const std::string& to,
-                       const ConvertOptions& options,
+Conversion convert_log(const std::string& from, const std::string& to, const ConvertOptions& options,
                        Progress& progress) {
   check_paths(from, to, options.writing);
   // Stamps want the rate before the first row, and the rate is best known after the last.

@@ -43,8 +43,7 @@ LIBCHAR_LOG_FORMATS(LIBCHAR_DECLARE)
 
 const std::vector<Format>& formats() {
 #define LIBCHAR_ROW(name) name##_format(),
-  static const std::vector<Format> table = {LIBCHAR_MORE_LOG_FORMATS(LIBCHAR_ROW)
-                                                LIBCHAR_LOG_FORMATS(LIBCHAR_ROW)};
+  static const std::vector<Format> table = {LIBCHAR_MORE_LOG_FORMATS(LIBCHAR_ROW) LIBCHAR_LOG_FORMATS(LIBCHAR_ROW)};
 #undef LIBCHAR_ROW
   return table;
 }
@@ -53,8 +52,7 @@ namespace {
 
 bool ends_in(std::string_view path, const std::vector<std::string_view>& suffixes) {
   return std::any_of(suffixes.begin(), suffixes.end(), [&](std::string_view suffix) {
-    return path.size() > suffix.size() &&
-           ascii_lower(path.substr(path.size() - suffix.size())) == suffix;
+    return path.size() > suffix.size() && ascii_lower(path.substr(path.size() - suffix.size())) == suffix;
   });
 }
 
@@ -62,23 +60,18 @@ bool ends_in(std::string_view path, const std::vector<std::string_view>& suffixe
 std::vector<const Format*> by_name() {
   std::vector<const Format*> rows;
   for (const Format& format : formats()) rows.push_back(&format);
-  std::sort(rows.begin(), rows.end(), [](const Format* a, const Format* b) {
-    return a->about.name < b->about.name;
-  });
+  std::sort(rows.begin(), rows.end(), [](const Format* a, const Format* b) { return a->about.name < b->about.name; });
   return rows;
 }
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_rows(const Format& format,
-                                     const std::string& path,
-                                     const ReadOptions& options) {
+std::unique_ptr<RowSource> open_rows(const Format& format, const std::string& path, const ReadOptions& options) {
   if (format.topics == nullptr) return format.open(path, options);
   auto reader = format.topics(path, options);
   const auto several = choose_topics(reader->topics(), options, path);
   if (!several.empty())
-    return open_joined_topics(
-        several, reader->topics(), format.topics, path, format.about.name, options);
+    return open_joined_topics(several, reader->topics(), format.topics, path, format.about.name, options);
   return open_topic_rows(std::move(reader), path, format.about.name, options);
 }
 
@@ -127,9 +120,7 @@ std::string written_suffixes() {
   std::vector<std::string_view> suffixes;
   for (const Format* format : by_name())
     if (format->write)
-      suffixes.insert(suffixes.end(),
-                      format->about.written_suffixes.begin(),
-                      format->about.written_suffixes.end());
+      suffixes.insert(suffixes.end(), format->about.written_suffixes.begin(), format->about.written_suffixes.end());
   return fmt::format("{}", fmt::join(suffixes, ", "));
 }
 

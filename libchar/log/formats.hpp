@@ -24,9 +24,9 @@ struct LogFormat {
   bool writes_rate = false;  ///< … and its sampling rate
   /// … and has a column of stamps, unless `WriteOptions::time_column` is off.
   bool writes_stamps = false;
-  bool topics = false;        ///< may hold several streams, each with a clock of its own
-  bool time_sources = false;  ///< its messages may have several stamps (`ReadOptions::time_source`)
-  bool text = false;          ///< a table of text, which has a dialect
+  bool topics = false;          ///< may hold several streams, each with a clock of its own
+  bool time_sources = false;    ///< its messages may have several stamps (`ReadOptions::time_source`)
+  bool text = false;            ///< a table of text, which has a dialect
   bool rows_at_places = false;  ///< a row can be read without those in front of it
   bool from_pipes = false;      ///< can be read from standard input and named pipes
 };

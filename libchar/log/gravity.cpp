@@ -16,9 +16,8 @@ namespace libchar {
 namespace {
 
 constexpr double kGravity = 9.80665;  // m/s^2
-constexpr double kTolerance = 0.15;  // biases and scale errors of cheap sensors, and where on Earth
-constexpr double kAtRest =
-    0.05;  // standard deviation of all axes together, in g or of the mean's length
+constexpr double kTolerance = 0.15;   // biases and scale errors of cheap sensors, and where on Earth
+constexpr double kAtRest = 0.05;      // standard deviation of all axes together, in g or of the mean's length
 
 using Triad = std::array<std::size_t, 3>;
 
@@ -26,9 +25,7 @@ using Triad = std::array<std::size_t, 3>;
 AxisName axis_or_number(const std::string& channel) {
   AxisName name = axis_name(channel);
   const std::size_t n = channel.size();
-  if (name.axis != 0 || n < 3 || channel[n - 2] != '_' || channel[n - 1] < '0' ||
-      channel[n - 1] > '2')
-    return name;
+  if (name.axis != 0 || n < 3 || channel[n - 2] != '_' || channel[n - 1] < '0' || channel[n - 1] > '2') return name;
   name.front = channel.substr(0, n - 2);
   name.axis = static_cast<char>('x' + (channel[n - 1] - '0'));
   return name;
@@ -42,9 +39,7 @@ std::vector<Triad> triads_of(std::span<const Channel> channels) {
     if (!unit || unit->quantity != Quantity::acceleration) continue;
     const AxisName name = axis_or_number(channels[c].name);
     if (name.axis == 0) continue;
-    auto& triad =
-        found.try_emplace({name.front, channels[c].unit}, Triad{kAbsent, kAbsent, kAbsent})
-            .first->second;
+    auto& triad = found.try_emplace({name.front, channels[c].unit}, Triad{kAbsent, kAbsent, kAbsent}).first->second;
     triad[static_cast<std::size_t>(name.axis - 'x')] = c;
   }
   std::vector<Triad> out;
@@ -53,9 +48,7 @@ std::vector<Triad> triads_of(std::span<const Channel> channels) {
   return out;
 }
 
-bool is_near(double ratio, double wanted) {
-  return std::fabs(ratio / wanted - 1) < kTolerance;
-}
+bool is_near(double ratio, double wanted) { return std::fabs(ratio / wanted - 1) < kTolerance; }
 
 /// What the length of the mean, in g, speaks for, and the factor that mends it; "" for the factor: none is known.
 struct Suspicion {
@@ -76,14 +69,10 @@ Suspicion suspicion_of(double ratio, const std::string& stated, bool steady) {
     times = wanted;
   }
   if (!real.empty())
-    return {fmt::format(
-                "this looks like {} under the name of {}", shown_unit(real), shown_unit(stated)),
-            times > 1 ? "1/" + shortest(times)
-                      : shortest(rounded(find_unit(real)->to_si / stated_si, 9))};
-  for (const auto& [wanted, name, factor] : {std::tuple{0.5, "half", "2"},
-                                             {2.0, "twice", "1/2"},
-                                             {0.25, "a quarter of", "4"},
-                                             {4.0, "four times", "1/4"}})
+    return {fmt::format("this looks like {} under the name of {}", shown_unit(real), shown_unit(stated)),
+            times > 1 ? "1/" + shortest(times) : shortest(rounded(find_unit(real)->to_si / stated_si, 9))};
+  for (const auto& [wanted, name, factor] :
+       {std::tuple{0.5, "half", "2"}, {2.0, "twice", "1/2"}, {0.25, "a quarter of", "4"}, {4.0, "four times", "1/4"}})
     if (is_near(ratio, wanted)) return {fmt::format("this looks like {} the scale", name), factor};
   if (ratio < kTolerance) return {"gravity was taken out, or the sensor does not rest", ""};
   return {"unit or scale are another, or the sensor does not rest", ""};
@@ -91,8 +80,7 @@ Suspicion suspicion_of(double ratio, const std::string& stated, bool steady) {
 
 }  // namespace
 
-void judge_gravity(std::span<const Channel> channels,
-                   const std::function<ChannelQuality&(std::size_t)>& quality) {
+void judge_gravity(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
   for (const Triad& triad : triads_of(channels)) {
     const std::string unit = shown_unit(channels[triad[0]].unit);
     const double in_g = find_unit(channels[triad[0]].unit)->to_si / kGravity;
@@ -103,29 +91,21 @@ void judge_gravity(std::span<const Channel> channels,
     }
     const double ratio = std::sqrt(mean);
     const bool steady = std::sqrt(scatter) < kAtRest * ratio;
-    if (!(steady || std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1))
-      continue;
+    if (!(steady || std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
     const Suspicion suspicion = suspicion_of(ratio, channels[triad[0]].unit, steady);
-    Finding found = finding(
-        "not_gravity",
-        fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads "
-                    "{}: {}.",
-                    brief_text(ratio / in_g, 4),
-                    unit,
-                    brief_text(1 / in_g, 4),
-                    suspicion.says),
-        fmt::format("the mean acceleration is {} {}: {}",
-                    brief_text(ratio / in_g, 4),
-                    unit,
-                    suspicion.says));
+    Finding found =
+        finding("not_gravity",
+                fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads "
+                            "{}: {}.",
+                            brief_text(ratio / in_g, 4), unit, brief_text(1 / in_g, 4), suspicion.says),
+                fmt::format("the mean acceleration is {} {}: {}", brief_text(ratio / in_g, 4), unit, suspicion.says));
     if (ratio < kTolerance && suspicion.factor.empty()) found.severity = Severity::caution;
     if (!suspicion.factor.empty()) {
       Finding::Help help{"Scale the axes."};
       for (const std::size_t c : triad)
         help.options.push_back({"channel_scale", channels[c].name + "=" + suspicion.factor});
       found.help.push_back(std::move(help));
-      found.effects = {
-          {Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
+      found.effects = {{Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
     }
     for (const std::size_t c : triad) quality(c).findings.push_back(found);
   }

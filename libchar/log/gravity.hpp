@@ -12,7 +12,6 @@ namespace libchar {
 
 /// Adds a finding to each axis of a triad of accelerometers that rests and does not read gravity within 15 %.
 /// `quality`: of each channel.
-void judge_gravity(std::span<const Channel> channels,
-                   const std::function<ChannelQuality&(std::size_t)>& quality);
+void judge_gravity(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality);
 
 }  // namespace libchar

@@ -31,9 +31,7 @@ class Meters final : public BlockSink {
       });
     });
   }
-  ChannelQuality quality(std::size_t channel, double rate_hz) const {
-    return meters_[channel].finish(rate_hz);
-  }
+  ChannelQuality quality(std::size_t channel, double rate_hz) const { return meters_[channel].finish(rate_hz); }
 
  private:
   int threads_;
@@ -47,8 +45,7 @@ Inspection inspect_rows(const std::string& path, const ReadOptions& options, Pro
   inspection.info = read_log(path, options, meters, progress);
   for (std::size_t c = 0; c < inspection.info.channels.size(); ++c)
     inspection.quality.push_back(meters.quality(c, inspection.info.time.rate_hz));
-  judge_gravity(inspection.info.channels,
-                [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
+  judge_gravity(inspection.info.channels, [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
   return inspection;
 }
 
@@ -70,29 +67,23 @@ Inspection inspect(const std::string& path, const ReadOptions& options, Progress
   return list_topics(path, options);
 }
 
-bool is_listing(const LogInfo& info) {
-  return !info.topics.empty() && info.channels.empty();
-}
+bool is_listing(const LogInfo& info) { return !info.topics.empty() && info.channels.empty(); }
 
 std::string summary_line(const LogInfo& info) {
   const TimeBase& time = info.time;
   if (is_listing(info))
-    return fmt::format("{}: {}, one of which has to be chosen",
-                       printable(info.file),
+    return fmt::format("{}: {}, one of which has to be chosen", printable(info.file),
                        plural(info.topics.size(), "topic"));
-  std::string line =
-      fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
+  std::string line = fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {
     line += brief_text(time.rate_hz, 6) + " Hz";
-    line += time.from_stamps ? fmt::format(" (jitter {})", duration_text(time.jitter_s, 2))
-                             : " (given)";
+    line += time.from_stamps ? fmt::format(" (jitter {})", duration_text(time.jitter_s, 2)) : " (given)";
     line += ", " + duration_text(static_cast<double>(info.samples) / time.rate_hz);
   } else {
     line += plural(info.samples, "sample") + ", rate unknown";
   }
   line += ", " + plural(time.gaps, "gap");
-  if (time.missing_samples > 0)
-    line += fmt::format(" ({})", plural(time.missing_samples, "missing sample"));
+  if (time.missing_samples > 0) line += fmt::format(" ({})", plural(time.missing_samples, "missing sample"));
   return line;
 }
 

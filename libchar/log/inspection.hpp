@@ -18,9 +18,7 @@ struct Inspection {
 
 /// Reads a log once, in constant memory. Of a log with several topics, without a choice, it
 /// lists them (`is_listing`).
-Inspection inspect(const std::string& path,
-                   const ReadOptions& options = {},
-                   Progress& progress = no_progress());
+Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
 
 /// Are these topics of a log, to be chosen before it is read?
 bool is_listing(const LogInfo& info);

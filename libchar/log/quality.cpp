@@ -59,8 +59,7 @@ class DistinctValues {
   static constexpr int kLeastBits = 4;
 
   double& slot_of(double value) {
-    std::size_t slot = detail::in_memory(
-        (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
+    std::size_t slot = detail::in_memory((std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
     while (slots_[slot] != value && !std::isnan(slots_[slot])) slot = (slot + 1) % slots_.size();
     return slots_[slot];
   }
@@ -129,9 +128,7 @@ struct Extreme {
   /// `lead`: so many samples at the front of the later part are its extreme; `all`: it has no others.
   void join(const Extreme& later, std::uint64_t lead, bool all) {
     const Extreme before = *this;
-    const auto of = [](const Extreme& e, double v) {
-      return v == e.value ? e.count : v == e.next ? e.at_next : 0;
-    };
+    const auto of = [](const Extreme& e, double v) { return v == e.value ? e.count : v == e.next ? e.at_next : 0; };
     value = std::max(before.value, later.value);
     const auto largest_below = [&](double limit) {
       double found = -__builtin_inf();
@@ -158,9 +155,7 @@ struct Extreme {
   }
 };
 
-double fold(const Four& lane) {
-  return (lane[0] + lane[2]) + (lane[1] + lane[3]);
-}
+double fold(const Four& lane) { return (lane[0] + lane[2]) + (lane[1] + lane[3]); }
 
 /// What one look at a block gives.
 struct BlockSums {
@@ -175,10 +170,7 @@ struct BlockSums {
 
 /// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
 /// vector width.
-LIBCHAR_LANES BlockSums sums_of_lanes(const double* x,
-                                      const double* before,
-                                      std::size_t n,
-                                      double shift) {
+LIBCHAR_LANES BlockSums sums_of_lanes(const double* x, const double* before, std::size_t n, double shift) {
   Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
   auto repeats = low != low;  // none yet
@@ -252,8 +244,7 @@ constexpr InLanes<any_missing_lanes> any_missing;
 // (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
 // sample need not pay).
 struct MeanAndSpread {
-  double origin =
-      0;  // the first value: the mean is kept less that, so that an offset costs no digits
+  double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
 
   // The first value is one of the block, so that its own deviation is at least 1/count of what cancels here.
@@ -337,16 +328,15 @@ class WrapWatch {
     constexpr double kMost = 0.9;      // of the sum of squares of the differences
     constexpr double kFewSteps = 1.5;  // a heading about north wraps with every second sample
     const auto count = static_cast<double>(count_);
-    if (count_ < kFewest || !(least_ >= kJump * range) ||
-        !(count * least_ * least_ > kMost * all.s2) || !(all.n > kFewSteps * count))
+    if (count_ < kFewest || !(least_ >= kJump * range) || !(count * least_ * least_ > kMost * all.s2) ||
+        !(all.n > kFewSteps * count))
       return;
     const double usual = (all.s1 - sum_) / (all.n - count);
     // Jumps back over the end count against those over it.
     const double period = (size_ - usual * sum_ / size_ * count) / count;
     // A step of noise across the end is larger than others by up to their deviation.
     const double rest = std::max(0.0, all.s2 - size_ * size_ / count) / all.n;
-    const double found =
-        with_digits(period, (1 + 3 / std::sqrt(count)) * std::sqrt(rest) + 1e-9 * period);
+    const double found = with_digits(period, (1 + 3 / std::sqrt(count)) * std::sqrt(rest) + 1e-9 * period);
     // A signal of two levels jumps as often, but not by a turn.
     const bool turn = found == 360 || found == 2 * std::numbers::pi;
     if (!turn && !(all.n > 10 * count)) return;
@@ -366,8 +356,7 @@ class WrapWatch {
     for (const double natural : {kTurn, kTurn / 2, 360.0, std::exp2(std::round(std::log2(value)))})
       if (std::fabs(natural - value) <= 3 * off) return natural;
     for (int digits = 1; digits < 17; ++digits)
-      if (const double short_one = rounded(value, digits); std::fabs(short_one - value) <= off)
-        return short_one;
+      if (const double short_one = rounded(value, digits); std::fabs(short_one - value) <= off) return short_one;
     return value;
   }
 
@@ -432,29 +421,24 @@ class CounterWatch {
 
   /// Nearly all steps are one.
   bool is_even() const {
-    return possible_ && steps_ >= kLeastSteps && usual_ != 0 &&
-           static_cast<double>(same_) >= kMost * steps();
+    return possible_ && steps_ >= kLeastSteps && usual_ != 0 && static_cast<double>(same_) >= kMost * steps();
   }
   std::string sentence() const {
     if (!possible_ || steps_ < kLeastSteps) return "";
     if (is_even())
       return fmt::format("{} by {} with {} sample: a counter or a clock, not a measurement",
-                         usual_ > 0 ? "rises" : "falls",
-                         brief_text(std::fabs(usual_), 4),
+                         usual_ > 0 ? "rises" : "falls", brief_text(std::fabs(usual_), 4),
                          same_ == steps_ ? "every" : "nearly every");
     const bool rises = up_.count > down_.count;
     const Direction &there = rises ? up_ : down_, &back = rises ? down_ : up_;
     if (static_cast<double>(there.count) < 0.5 * steps()) return "";
     if (back.count == 0)
-      return fmt::format("never {}: a clock, a counter or a drift, not noise",
-                         rises ? "falls" : "rises");
-    const bool saw =
-        back.least > 2 * there.largest && static_cast<double>(back.count) <= 0.125 * steps();
+      return fmt::format("never {}: a clock, a counter or a drift, not noise", rises ? "falls" : "rises");
+    const bool saw = back.least > 2 * there.largest && static_cast<double>(back.count) <= 0.125 * steps();
     return saw ? fmt::format(
                      "{} step by step and falls back {} times: a sawtooth, such as a counter "
                      "that runs over, not noise",
-                     rises ? "rises" : "sinks",
-                     back.count)
+                     rises ? "rises" : "sinks", back.count)
                : "";
   }
 
@@ -511,8 +495,7 @@ std::optional<double> grid_step(std::vector<double> values) {
   const double range = values.back() - values.front();
   const double largest = std::max(std::fabs(values.front()), std::fabs(values.back()));
   double least = range;
-  for (std::size_t i = 1; i < values.size(); ++i)
-    least = std::min(least, values[i] - values[i - 1]);
+  for (std::size_t i = 1; i < values.size(); ++i) least = std::min(least, values[i] - values[i - 1]);
   // Values printed with few decimals stand up to a few percent of a step off their grid.
   const double tolerance = std::max(0.04 * least, 8 * largest * 0x1p-52);
   if (least <= 16 * largest * 0x1p-52) return std::nullopt;
@@ -628,16 +611,8 @@ struct QualityMeter::State {
   void make_room(std::size_t n);
   void hold(const double* x, std::size_t n);
   void process_held();
-  void process(const double* x,
-               const double* before,
-               const BlockSums& sums,
-               std::size_t n,
-               std::size_t breaks);
-  void runs(const double* x,
-            const double* before,
-            std::size_t n,
-            bool repeats,
-            const unsigned char* begins,
+  void process(const double* x, const double* before, const BlockSums& sums, std::size_t n, std::size_t breaks);
+  void runs(const double* x, const double* before, std::size_t n, bool repeats, const unsigned char* begins,
             std::uint64_t at);
   bool may_saturate(std::uint64_t levels) const;
   void join(const State& later);
@@ -752,10 +727,7 @@ void QualityMeter::State::process_held() {
   any_start = false;
 }
 
-void QualityMeter::State::process(const double* x,
-                                  const double* before,
-                                  const BlockSums& sums,
-                                  std::size_t n,
+void QualityMeter::State::process(const double* x, const double* before, const BlockSums& sums, std::size_t n,
                                   std::size_t breaks) {
   values.block(x[0], n, sums);
   minimum = std::min(minimum, sums.low);
@@ -769,8 +741,7 @@ void QualityMeter::State::process(const double* x,
   bottom.block(x, n, sums.low);
   if (float32) {
     int wide = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
+    for (std::size_t i = 0; i < n; ++i) wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
     float32 = wide == 0;
   }
   for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(x[i]);
@@ -778,19 +749,13 @@ void QualityMeter::State::process(const double* x,
 }
 
 // Differences of exactly zero in a row; a missing sample ends a run.
-void QualityMeter::State::runs(const double* x,
-                               const double* before,
-                               std::size_t n,
-                               bool repeats,
-                               const unsigned char* begins,
-                               std::uint64_t at) {
+void QualityMeter::State::runs(const double* x, const double* before, std::size_t n, bool repeats,
+                               const unsigned char* begins, std::uint64_t at) {
   odd.lines.block({x, n}, begins, at);
   const std::size_t first = values.n == 0 ? 1 : 0;
   if (!repeats) return odd.same.push_without(n - first);
   if (first == 1) odd.resting.look(x[0], 1);
-  const auto equals = [&](std::size_t i) {
-    return x[i] - before[i] == 0 && (begins == nullptr || begins[i] == 0);
-  };
+  const auto equals = [&](std::size_t i) { return x[i] - before[i] == 0 && (begins == nullptr || begins[i] == 0); };
   for (std::size_t i = first, from = first; i < n; from = i) {
     for (; i < n && !equals(i); ++i) odd.resting.look(x[i], 1);
     odd.same.push_without(i - from);
@@ -809,8 +774,7 @@ void QualityMeter::State::runs(const double* x,
 static double held_times(const detail::FlagRuns& same) {
   constexpr double kFewest = 64, kUneven = 0.35;
   const double runs = static_cast<double>(same.pauses()) - 1;  // between pauses, with both ends
-  if (runs < kFewest || static_cast<double>(same.set()) < kFewest || same.closed().empty())
-    return 1;
+  if (runs < kFewest || static_cast<double>(same.set()) < kFewest || same.closed().empty()) return 1;
   double longer = 0, samples = runs;
   for (std::size_t flags = 1; flags < same.closed().size(); ++flags) {
     longer += same.closed()[flags];
@@ -830,49 +794,38 @@ static double held_times(const detail::FlagRuns& same) {
 
 QualityMeter::QualityMeter() : state_(detail::hidden<State>()) {}
 
-void QualityMeter::push(std::span<const double> samples) {
-  state_->push(samples);
-}
+void QualityMeter::push(std::span<const double> samples) { state_->push(samples); }
 
 namespace {
 
 void judge_values(const ChannelQuality& q, std::vector<Finding>& out) {
-  if (!q.signs.counter.empty() && q.signs.wraps == 0)
-    out.push_back(finding("counter", q.signs.counter));
+  if (!q.signs.counter.empty() && q.signs.wraps == 0) out.push_back(finding("counter", q.signs.counter));
   if (q.signs.wraps > 0) {
-    Finding wraps = finding(
-        "phase_wraps",
-        fmt::format("jumps by its whole range, {}, {} times: a phase or an angle that wraps",
-                    brief_text(q.signs.period, 6),
-                    q.signs.wraps));
+    Finding wraps =
+        finding("phase_wraps", fmt::format("jumps by its whole range, {}, {} times: a phase or an angle that wraps",
+                                           brief_text(q.signs.period, 6), q.signs.wraps));
     wraps.count = q.signs.wraps;
     wraps.help.push_back({"Unwrap it, as the phase or the angle that it is.",
                           {{"data", "phase"}, {"unwrap", shortest(q.signs.period)}}});
     out.push_back(std::move(wraps));
   }
   if (q.samples < 16) return;
-  if (q.distinct_values == 1)
-    out.push_back(finding("constant", "constant: nothing to characterize"));
+  if (q.distinct_values == 1) out.push_back(finding("constant", "constant: nothing to characterize"));
   if (q.distinct_values <= 1) return;
   if (q.distinct_values <= 3)
-    out.push_back(finding(
-        "quantization_limited",
-        fmt::format("{} distinct values: quantization-limited, record with more gain or resolution",
-                    q.distinct_values)));
+    out.push_back(finding("quantization_limited",
+                          fmt::format("{} distinct values: quantization-limited, record with more gain or resolution",
+                                      q.distinct_values)));
   else if (q.resolution && q.standard_deviation < 0.5 * *q.resolution)
+    out.push_back(finding("coarse_resolution",
+                          fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
+                                      "record with more gain",
+                                      brief_text(q.standard_deviation / *q.resolution, 2))));
+  if (q.float32 && q.distinct_values > 16 && q.standard_deviation > 0 && q.float32_step > 0.5 * q.standard_deviation)
     out.push_back(finding(
-        "coarse_resolution",
-        fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
-                    "record with more gain",
-                    brief_text(q.standard_deviation / *q.resolution, 2))));
-  if (q.float32 && q.distinct_values > 16 && q.standard_deviation > 0 &&
-      q.float32_step > 0.5 * q.standard_deviation)
-    out.push_back(
-        finding("float_step",
-                fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
-                            "subtract the offset before storing",
-                            brief_text(q.float32_step),
-                            brief_text(q.float32_step / q.standard_deviation, 2))));
+        "float_step", fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
+                                  "subtract the offset before storing",
+                                  brief_text(q.float32_step), brief_text(q.float32_step / q.standard_deviation, 2))));
 }
 
 /// A noise of which a hundredth does not fit into the range is not the one that was recorded.
@@ -881,12 +834,10 @@ constexpr double kMostSaturated = 0.01;
 /// Share of samples at one value inside the range that no rounding of a noise gives.
 constexpr double kDeadBand = 0.3;
 
-std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& places,
-                               double rate_hz) {
+std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& places, double rate_hz) {
   std::vector<Interval> out;
   for (const auto& [from, to] : places)
-    if (rate_hz > 0)
-      out.push_back({static_cast<double>(from) / rate_hz, static_cast<double>(to) / rate_hz});
+    if (rate_hz > 0) out.push_back({static_cast<double>(from) / rate_hz, static_cast<double>(to) / rate_hz});
   return out;
 }
 
@@ -909,18 +860,15 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   // What values repeat by anyway: of any density, a value comes at most about so often.
   const double by_chance = kTimes * static_cast<double>(q.signs.other_repeats) / n;
   if (share < kLeastShare + std::max(kTimes * step * density, by_chance)) return false;
-  const bool band =
-      share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
-  Finding found = finding(
-      band ? "dead_band" : "missing_mark",
-      band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than "
-                         "{}: a dead band, and "
-                         "noise at rest cannot be measured from this",
-                         percent_text(share),
-                         brief_text(q.signs.nearest_to_zero, 3))
-           : fmt::format(
-                 "0 occurs {} times among values that hardly repeat: a mark for missing values?",
-                 q.signs.zeros));
+  const bool band = share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
+  Finding found =
+      finding(band ? "dead_band" : "missing_mark",
+              band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than "
+                                 "{}: a dead band, and "
+                                 "noise at rest cannot be measured from this",
+                                 percent_text(share), brief_text(q.signs.nearest_to_zero, 3))
+                   : fmt::format("0 occurs {} times among values that hardly repeat: a mark for missing values?",
+                                 q.signs.zeros));
   found.count = q.signs.zeros;
   if (!band) found.help.push_back({"Say that it means missing.", {{"missing", "0"}}});
   out.push_back(std::move(found));
@@ -934,32 +882,23 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5;
   if (q.distinct_values <= 16) return;
   const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
-  const double repeats =
-      (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
-  const bool held =
-      q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
+  const double repeats = (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
+  const bool held = q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
   const bool noisy = is_restless(q);
-  const bool rare =
-      q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
+  const bool rare = q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
   if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
   Finding stuck = finding(
-      "stuck",
-      q.signs.frozen_runs < 2 || !rare
-          ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
-          : fmt::format("one value {} to {} times in a row in {} stretches, {} of the samples: the "
-                        "sensor or the "
-                        "link hung",
-                        kFrozenRun,
-                        q.longest_stuck,
-                        q.signs.frozen_runs,
-                        percent_text(frozen / samples)));
-  if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples)
-    stuck.severity = Severity::bad;
+      "stuck", q.signs.frozen_runs < 2 || !rare
+                   ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
+                   : fmt::format("one value {} to {} times in a row in {} stretches, {} of the samples: the "
+                                 "sensor or the "
+                                 "link hung",
+                                 kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
+  if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
   // Where values repeat anyway, as between coarse steps, runs of them are no sign.
   const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
   if (!held && samples * std::pow(repeats, run - 1) < kChance)
-    stuck.help.push_back(
-        {"Take what stands still as missing.", {{"frozen", fmt::format("{}", run)}}});
+    stuck.help.push_back({"Take what stands still as missing.", {{"frozen", fmt::format("{}", run)}}});
   stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
   out.push_back(std::move(stuck));
 }
@@ -968,11 +907,9 @@ void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   if (!(q.signs.held_times > 1)) return;
   const double times = q.signs.held_times;
   out.push_back(finding("held_values",
-                        fmt::format("Each value is recorded {} times on average: the sensor {}.",
-                                    number_text(times, 3),
+                        fmt::format("Each value is recorded {} times on average: the sensor {}.", number_text(times, 3),
                                     rate_hz > 0 ? fmt::format("gives {} Hz where the log has {} Hz",
-                                                              number_text(rate_hz / times, 4),
-                                                              number_text(rate_hz, 4))
+                                                              number_text(rate_hz / times, 4), number_text(rate_hz, 4))
                                                 : "is slower than the log")));
 }
 
@@ -983,18 +920,17 @@ void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& 
   if (q.signs.lines == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
   if (!q.signs.counter.empty() || !is_restless(q)) return;
   const double share = static_cast<double>(q.signs.on_lines) / static_cast<double>(q.samples);
-  Finding lines = finding(
-      "interpolated",
-      fmt::format("{} lie on straight lines between two others, in {}: filled or interpolated",
-                  share < kMuch ? plural(q.signs.on_lines, "sample")
-                                : percent_text(share) + " of the samples",
-                  plural(q.signs.lines, "place")));
+  Finding lines =
+      finding("interpolated",
+              fmt::format("{} lie on straight lines between two others, in {}: filled or interpolated",
+                          share < kMuch ? plural(q.signs.on_lines, "sample") : percent_text(share) + " of the samples",
+                          plural(q.signs.lines, "place")));
   lines.count = q.signs.lines;
   lines.where.time_s = times_of(q.signs.lines_at, rate_hz);
   if (share > kMuch) lines.severity = Severity::bad;
   if (share < kAll)
-    lines.help.push_back({"Take what lies on lines as missing.",
-                          {{"interpolated", fmt::format("{}", q.signs.line_run + 2)}}});
+    lines.help.push_back(
+        {"Take what lies on lines as missing.", {{"interpolated", fmt::format("{}", q.signs.line_run + 2)}}});
   out.push_back(std::move(lines));
 }
 
@@ -1002,26 +938,21 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   if (!q.signs.marks.empty()) {  // what else is odd about the ends is these
     std::vector<std::string> texts;
     for (const double mark : q.signs.marks) texts.push_back(shortest(mark));
-    Finding marked = finding(
-        "missing_mark",
-        fmt::format("{} stands {} times, far from all other values: a mark for missing values?",
-                    fmt::join(texts, " or "),
-                    q.signs.marked));
+    Finding marked =
+        finding("missing_mark", fmt::format("{} stands {} times, far from all other values: a mark for missing values?",
+                                            fmt::join(texts, " or "), q.signs.marked));
     marked.count = q.signs.marked;
-    marked.help.push_back(
-        {"Say that it means missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
+    marked.help.push_back({"Say that it means missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
     out.push_back(std::move(marked));
     return;
   }
   if (q.saturated > 0 && q.distinct_values > 3) {
     const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
-    Finding cut = finding(share > kMostSaturated ? "much_saturated" : "saturated",
-                          fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
-                                      "saturated, use a larger full scale",
-                                      q.saturated,
-                                      percent_text(share),
-                                      brief_text(q.minimum, 6),
-                                      brief_text(q.maximum, 6)));
+    Finding cut =
+        finding(share > kMostSaturated ? "much_saturated" : "saturated",
+                fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
+                            "saturated, use a larger full scale",
+                            q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
     cut.count = q.saturated;
     if (q.minimum == 0 || q.maximum == 0)
       cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
@@ -1032,45 +963,37 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   const double rests = static_cast<double>(again) / static_cast<double>(q.samples);
   if (rests > kDeadBand && q.distinct_values > 16 && q.minimum < q.signs.resting_value &&
       q.signs.resting_value < q.maximum) {
-    Finding dead = finding(
-        "dead_band",
-        fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be "
-                    "measured from this",
-                    percent_text(rests),
-                    brief_text(q.signs.resting_value, 6)));
+    Finding dead =
+        finding("dead_band", fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be "
+                                         "measured from this",
+                                         percent_text(rests), brief_text(q.signs.resting_value, 6)));
     dead.count = q.signs.at_rest;
     out.push_back(std::move(dead));
     return;
   }
   judge_held(q, rate_hz, out);
   if (judge_zeros(q, out)) return;
-  if (!has(out, "much_saturated"))
-    judge_runs(q, rate_hz, out);  // it stands at the end of the range
+  if (!has(out, "much_saturated")) judge_runs(q, rate_hz, out);  // it stands at the end of the range
   judge_lines(q, rate_hz, out);
 }
 
 std::vector<Finding> findings_of(const ChannelQuality& q, double rate_hz) {
   std::vector<Finding> out;
   if (q.beyond > 0) {
-    out.push_back(finding("beyond_range",
-                          fmt::format("{} beyond {} in magnitude: no measurement, taken as missing",
-                                      plural(q.beyond, "sample"),
-                                      brief_text(kLargestSample))));
+    out.push_back(finding("beyond_range", fmt::format("{} beyond {} in magnitude: no measurement, taken as missing",
+                                                      plural(q.beyond, "sample"), brief_text(kLargestSample))));
     out.back().count = q.beyond;
   }
   if (q.samples == 0) {
-    if (q.beyond == 0)
-      out.push_back(finding("no_value", "no value at all: check that the channel is switched on"));
+    if (q.beyond == 0) out.push_back(finding("no_value", "no value at all: check that the channel is switched on"));
     return out;
   }
   judge_values(q, out);
   judge_ends(q, rate_hz, out);
   if (q.samples >= 1000 && q.difference_kurtosis > 10 && !(q.signs.held_times > 1))
-    out.push_back(finding(
-        "spiky",
-        fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
-                    "look for outliers",
-                    brief_text(q.difference_kurtosis))));
+    out.push_back(finding("spiky", fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
+                                               "look for outliers",
+                                               brief_text(q.difference_kurtosis))));
   return out;
 }
 
@@ -1090,8 +1013,7 @@ bool QualityMeter::State::may_saturate(std::uint64_t levels) const {
 // Neither part has samples on hold.
 void QualityMeter::State::join(const State& later) {
   const bool direct = joined && later.beginning.at_once;
-  const std::optional<double> step =
-      direct ? std::optional(later.beginning.value - previous) : std::nullopt;
+  const std::optional<double> step = direct ? std::optional(later.beginning.value - previous) : std::nullopt;
   if (values.n == 0) values.origin = later.values.origin;
   join_runs(later, direct);
   values.join(later.values);
@@ -1211,8 +1133,7 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
                       : mark == q.maximum          ? state.top.count
                                                    : state.top.at_next;
   std::tie(q.signs.frozen_runs, q.signs.frozen) = state.odd.same.from_length(kFrozenRun - 1);
-  for (const auto& [from, to] : state.odd.same.places())
-    q.signs.frozen_at.push_back({from - 1, to});
+  for (const auto& [from, to] : state.odd.same.places()) q.signs.frozen_at.push_back({from - 1, to});
   q.signs.held_times = held_times(state.odd.same);
   const detail::LineWatch::Found lines = state.odd.lines.found();
   q.signs.line_run = lines.least_run;
@@ -1238,8 +1159,7 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.float32 = q.samples > 0 && state.float32;
   const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
   if (std::isfinite(largest))
-    q.float32_step =
-        static_cast<double>(std::nextafter(largest, HUGE_VALF)) - static_cast<double>(largest);
+    q.float32_step = static_cast<double>(std::nextafter(largest, HUGE_VALF)) - static_cast<double>(largest);
   if (const auto step = grid_step(state.distinct.values()); step && q.samples >= 4) {
     const bool format_only = q.float32 && *step <= 1.01 * q.float32_step && q.distinct_values > 16;
     if (!format_only) q.resolution = tidy(*step);

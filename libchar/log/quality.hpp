@@ -32,8 +32,7 @@ struct ChannelQuality {
     /// runs on straight lines of `line_run` steps and more, as chance does not give them, and the samples inside
     std::uint64_t lines = 0, on_lines = 0, line_run = 0;
     std::vector<Place> lines_at;
-    double held_times =
-        1;  ///< each value is recorded, on average, where a slower sensor was polled
+    double held_times = 1;            ///< each value is recorded, on average, where a slower sensor was polled
     std::uint64_t marked = 0;         ///< samples at `marks`
     std::uint64_t other_repeats = 0;  ///< samples that equal the one before and are not 0
     std::uint64_t zeros = 0;          ///< samples that are exactly 0
@@ -44,8 +43,7 @@ struct ChannelQuality {
   std::uint64_t beyond = 0;  ///< of the missing ones: larger than `kLargestSample`, no measurement
   /// the deviation is NaN where its square does not fit into a double
   double mean = 0, standard_deviation = 0, minimum = 0, maximum = 0;
-  std::optional<double>
-      resolution;  ///< least step between distinct values (LSB), when the values lie on a grid
+  std::optional<double> resolution;   ///< least step between distinct values (LSB), when the values lie on a grid
   std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
   /// samples at the minimum or maximum, if three are consecutive and the value next to it has
   /// less than half as many

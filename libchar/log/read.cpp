@@ -39,8 +39,7 @@ namespace {
 
 std::string front_of(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0)
-    throw input_error("E0101", path).says(std::string("cannot open: ") + std::strerror(errno));
+  if (descriptor < 0) throw input_error("E0101", path).says(std::string("cannot open: ") + std::strerror(errno));
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
     ::close(descriptor);
@@ -52,8 +51,7 @@ std::string front_of(const std::string& path) {
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
-  const ssize_t n =
-      S_ISREG(status.st_mode) ? ::pread(descriptor, bytes.data(), bytes.size(), 0) : 0;
+  const ssize_t n = S_ISREG(status.st_mode) ? ::pread(descriptor, bytes.data(), bytes.size(), 0) : 0;
   ::close(descriptor);
   bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
   return bytes;
@@ -99,8 +97,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   const auto words = format_words();
   throw input_error("E0102", path)
       .says("neither text nor an array file, and no sidecar describes it")
-      .hint("`format` {}, or write FILE.json (docs: raw binary)",
-            fmt::join(words.begin() + 1, words.end(), "|"));
+      .hint("`format` {}, or write FILE.json (docs: raw binary)", fmt::join(words.begin() + 1, words.end(), "|"));
 }
 
 std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
@@ -116,18 +113,12 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
     for (std::size_t c = 0; c < std::min<std::size_t>(channels.size(), 12); ++c)
       read += (c == 0 ? "" : ", ") + channels[c].name;
     throw usage_error("E0205", flag)
-        .says("{} given, and {} channel{} read: {}{}",
-              count,
-              channels.size(),
-              channels.size() == 1 ? " is" : "s are",
-              read,
-              channels.size() > 12 ? ", …" : "")
+        .says("{} given, and {} channel{} read: {}{}", count, channels.size(), channels.size() == 1 ? " is" : "s are",
+              read, channels.size() > 12 ? ", …" : "")
         .hint("one for each channel that is read, in that order");
   };
-  if (!options.names.empty() && options.names.size() != channels.size())
-    refuse("`names`", options.names.size());
-  if (options.units.size() > 1 && options.units.size() != channels.size())
-    refuse("`units`", options.units.size());
+  if (!options.names.empty() && options.names.size() != channels.size()) refuse("`names`", options.names.size());
+  if (options.units.size() > 1 && options.units.size() != channels.size()) refuse("`units`", options.units.size());
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (!options.names.empty()) channels[c].name = options.names[c];
     if (!options.units.empty()) channels[c].unit = options.units[options.units.size() == 1 ? 0 : c];
@@ -135,8 +126,7 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
 }
 
 // "NAME=VALUE" of `channel_scale` and `channel_unit`: the value of the last word that fits the channel.
-std::optional<std::string> value_for(const std::vector<std::string>& words,
-                                     const std::string& channel) {
+std::optional<std::string> value_for(const std::vector<std::string>& words, const std::string& channel) {
   std::optional<std::string> found;
   for (const std::string& word : words) {
     const std::size_t sign = word.rfind('=');
@@ -150,8 +140,7 @@ std::optional<std::string> value_for(const std::vector<std::string>& words,
   return found;
 }
 
-using ScaleNotes =
-    std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
+using ScaleNotes = std::map<std::string, std::vector<std::string>>;  // what was done, to which channels
 
 // What makes values in the unit that a log states values in the one that is asked for; 1 where one of
 // them is not known.
@@ -163,20 +152,15 @@ double conversion(const std::string& stated, const Channel& channel) {
   if (alike && from->quantity != Quantity::temperature && from->quantity != Quantity::concentration)
     return from->to_si / to->to_si;
   throw usage_error("E0331")
-      .says("values of {} in {} are not converted to {}{}",
-            printable(channel.name),
-            printable(stated, 20),
-            printable(channel.unit, 20),
-            alike ? "" : ", a unit of another quantity")
+      .says("values of {} in {} are not converted to {}{}", printable(channel.name), printable(stated, 20),
+            printable(channel.unit, 20), alike ? "" : ", a unit of another quantity")
       .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 
 // Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
 // in the unit, and values in another unit of the log are converted. Returns the factors, and says in
 // `notes` what was done.
-std::vector<double> dress_channels(std::vector<Channel>& channels,
-                                   const ReadOptions& options,
-                                   ScaleNotes* notes) {
+std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOptions& options, ScaleNotes* notes) {
   std::vector<double> factors(channels.size(), 1);
   const std::vector<Channel> stated = channels;
   name_channels(channels, options);
@@ -206,47 +190,35 @@ std::vector<double> dress_channels(std::vector<Channel>& channels,
     if (factors[c] == 1) continue;
     channel.integer = false;
     if (notes != nullptr)
-      (*notes)[fmt::format("{} is {}{}{}",
-                           count.empty() ? "one count" : count,
-                           brief_text(factors[c], 6),
-                           channel.unit.empty() ? "" : " ",
-                           printable(channel.unit))]
+      (*notes)[fmt::format("{} is {}{}{}", count.empty() ? "one count" : count, brief_text(factors[c], 6),
+                           channel.unit.empty() ? "" : " ", printable(channel.unit))]
           .push_back(printable(channel.name));
   }
   return factors;
 }
 
 // A slip in the name of a channel must not pass.
-void warn_of_unused(const std::vector<Channel>& channels,
-                    const ReadOptions& options,
-                    Findings& warnings) {
+void warn_of_unused(const std::vector<Channel>& channels, const ReadOptions& options, Findings& warnings) {
   for (const auto* words : {&options.channel_scale, &options.channel_unit})
     for (const std::string& word : *words)
-      if (std::none_of(channels.begin(), channels.end(), [&](const Channel& channel) {
-            return matches(word.substr(0, word.rfind('=')), channel.name);
-          }))
-        warnings.add("unused_option",
-                     "`channel_scale` and `channel_unit` for channels that are not read",
-                     word);
+      if (std::none_of(channels.begin(), channels.end(),
+                       [&](const Channel& channel) { return matches(word.substr(0, word.rfind('=')), channel.name); }))
+        warnings.add("unused_option", "`channel_scale` and `channel_unit` for channels that are not read", word);
 }
 
 // Some quantities have units that no list has; a slip must not look like one of them.
 void warn_of_units(const ReadOptions& options, Findings& warnings) {
   std::vector<std::string> units = options.units;
-  for (const std::string& word : options.channel_unit)
-    units.push_back(word.substr(word.rfind('=') + 1));
+  for (const std::string& word : options.channel_unit) units.push_back(word.substr(word.rfind('=') + 1));
   for (const std::string& unit : units)
     if (!find_unit(unit))
-      warnings.add("unknown_unit",
-                   "units in `units` that are not known: kept as written, nothing is converted",
-                   unit);
+      warnings.add("unknown_unit", "units in `units` that are not known: kept as written, nothing is converted", unit);
 }
 
 [[noreturn]] void refuse_empty(const LogInfo& info) {
   throw input_error("E0318", info.file)
-      .says(info.channels.size() == 1
-                ? fmt::format("column {} has no finite value", info.channels[0].name)
-                : fmt::format("none of {} columns has a finite value", info.channels.size()))
+      .says(info.channels.size() == 1 ? fmt::format("column {} has no finite value", info.channels[0].name)
+                                      : fmt::format("none of {} columns has a finite value", info.channels.size()))
       .hint("`channels` chooses others");
 }
 
@@ -263,8 +235,7 @@ struct Watch final : BlockSink {
   }
   void block(const SampleBlock& samples) override {
     for (std::size_t c = 0; c < seen.size(); ++c) {
-      for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i)
-        seen[c] = !std::isnan(samples.channels[c][i]);
+      for (std::size_t i = 0; i < samples.rows && !seen[c]; ++i) seen[c] = !std::isnan(samples.channels[c][i]);
     }
     if (scales)
       next.block(scaled_block(samples));
@@ -276,8 +247,7 @@ struct Watch final : BlockSink {
     for (std::size_t c = 0; c < factors.size(); ++c) {
       if (factors[c] == 1) continue;
       scaled[c].resize(std::max(scaled[c].size(), samples.rows));
-      for (std::size_t i = 0; i < samples.rows; ++i)
-        scaled[c][i] = samples.channels[c][i] * factors[c];
+      for (std::size_t i = 0; i < samples.rows; ++i) scaled[c][i] = samples.channels[c][i] * factors[c];
       out.channels[c] = scaled[c].data();
     }
     return out;
@@ -296,8 +266,7 @@ void check_numbers(const ReadOptions& options) {
         .says("the rate must be a positive number of hertz, from 1e-9 to 1e12")
         .got(shortest(*options.rate_hz));
   if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
-    throw usage_error("E0201", "`to_s`")
-        .says("the window is empty: `to_s` does not lie after `from_s`");
+    throw usage_error("E0201", "`to_s`").says("the window is empty: `to_s` does not lie after `from_s`");
 }
 
 }  // namespace
@@ -357,30 +326,22 @@ void refuse_without_samples(const LogInfo& info, const ReadOptions& options) {
 }
 
 /// Refuses a whole log without a finite value; warns of channels without one.
-void judge_values(const Watch& watch,
-                  LogInfo& info,
-                  const ReadOptions& options,
-                  Findings& warnings) {
+void judge_values(const Watch& watch, LogInfo& info, const ReadOptions& options, Findings& warnings) {
   if (info.samples == 0) return;
   const bool whole = !options.from_s && !options.to_s;
-  if (whole && std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{}))
-    refuse_empty(info);
+  if (whole && std::none_of(watch.seen.begin(), watch.seen.end(), std::identity{})) refuse_empty(info);
   for (std::size_t c = 0; c < watch.seen.size(); ++c)
     if (!watch.seen[c])
-      warnings.add("no_finite_value",
-                   "channels without any finite value",
-                   "channel " + info.channels[c].name);
+      warnings.add("no_finite_value", "channels without any finite value", "channel " + info.channels[c].name);
   for (std::size_t c = 0; c < watch.seen.size(); ++c) {
     if (!(info.channels[c].every > 1)) continue;
-    Finding& slow = warnings.add("slow_channel",
-                                 "channels with a clock of their own among the rows of others: in "
-                                 "the grid of the table samples are missing",
-                                 fmt::format("channel {}, every {} rows",
-                                             info.channels[c].name,
-                                             brief_text(info.channels[c].every, 3)));
+    Finding& slow = warnings.add(
+        "slow_channel",
+        "channels with a clock of their own among the rows of others: in "
+        "the grid of the table samples are missing",
+        fmt::format("channel {}, every {} rows", info.channels[c].name, brief_text(info.channels[c].every, 3)));
     if (slow.help.empty())
-      slow.help.push_back(
-          {"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
+      slow.help.push_back({"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
   }
 }
 
@@ -400,10 +361,7 @@ bool next_rows(RowSource& source, const ReadOptions& options, RowBlock& block, F
         ++count;
       }
       if (count == 0) continue;
-      warnings.add("missing_value",
-                   "values that mean \"no reading\", as was said: missing",
-                   channels[c].name,
-                   count);
+      warnings.add("missing_value", "values that mean \"no reading\", as was said: missing", channels[c].name, count);
     }
   return true;
 }
@@ -413,8 +371,7 @@ LogInfo named_info(const RowSource& source, const ReadOptions& options) {
   LogInfo info = source.info();
   ScaleNotes scaled;
   dress_channels(info.channels, options, &scaled);
-  for (const auto& [count, names] : scaled)
-    info.dialect.push_back(count + ": " + first_names(names));
+  for (const auto& [count, names] : scaled) info.dialect.push_back(count + ": " + first_names(names));
   return info;
 }
 
@@ -432,12 +389,8 @@ std::string why_no_rows(const LogInfo& log) {
   return "";
 }
 
-LogInfo read_rows(const std::string& path,
-                  const ReadOptions& options,
-                  std::uint64_t first,
-                  std::uint64_t end,
-                  BlockSink& sink,
-                  ChannelRange channels) {
+LogInfo read_rows(const std::string& path, const ReadOptions& options, std::uint64_t first, std::uint64_t end,
+                  BlockSink& sink, ChannelRange channels) {
   check_numbers(options);
   ReadOptions whole = options;
   whole.from_s = whole.to_s = std::nullopt;
@@ -447,9 +400,7 @@ LogInfo read_rows(const std::string& path,
   if (why_not.empty() && !source->restrict_rows(first, end, channels))
     why_not = fmt::format("its rows have no fixed places ({})", source->info().format);
   if (!why_not.empty())
-    throw usage_error("E0726", path)
-        .says("cannot be read in stretches: " + why_not)
-        .hint("convert it to .npy first");
+    throw usage_error("E0726", path).says("cannot be read in stretches: " + why_not).hint("convert it to .npy first");
   Findings warnings;
   Watch watch(sink, whole);
   TimeGrid grid(*source, whole, watch, warnings);
@@ -468,10 +419,7 @@ LogInfo read_rows(const std::string& path,
   return info;
 }
 
-LogInfo read_log(const std::string& log,
-                 const ReadOptions& options,
-                 BlockSink& sink,
-                 Progress& progress) {
+LogInfo read_log(const std::string& log, const ReadOptions& options, BlockSink& sink, Progress& progress) {
   check_numbers(options);
   const std::string path = named_log_file(log);
   const auto source = open_log(path, options);
@@ -484,9 +432,7 @@ LogInfo read_log(const std::string& log,
   while (more && next_rows(*source, options, block, warnings)) {
     more = grid.push(block);
     const std::uint64_t total = source->bytes_total();
-    progress.update(
-        total > 0 ? static_cast<double>(source->bytes_read()) / static_cast<double>(total) : -1,
-        what);
+    progress.update(total > 0 ? static_cast<double>(source->bytes_read()) / static_cast<double>(total) : -1, what);
   }
   LogInfo known;
   grid.finish(known);
@@ -540,9 +486,7 @@ Recording read_recording(const std::string& path, const ReadOptions& options, Pr
   return recording;
 }
 
-StampedRows read_stamped_rows(const std::string& log,
-                              const ReadOptions& options,
-                              Progress& progress) {
+StampedRows read_stamped_rows(const std::string& log, const ReadOptions& options, Progress& progress) {
   const std::string path = named_log_file(log);
   const auto source = open_log(path, options);
   StampedRows out;
@@ -552,8 +496,7 @@ StampedRows read_stamped_rows(const std::string& log,
     const auto rows = static_cast<std::ptrdiff_t>(block.rows);
     out.samples.resize(block.columns.size());
     for (std::size_t c = 0; c < block.columns.size(); ++c)
-      out.samples[c].insert(
-          out.samples[c].end(), block.columns[c].begin(), block.columns[c].begin() + rows);
+      out.samples[c].insert(out.samples[c].end(), block.columns[c].begin(), block.columns[c].begin() + rows);
     if (!block.time_ns.empty())
       out.time_ns.insert(out.time_ns.end(), block.time_ns.begin(), block.time_ns.begin() + rows);
     out.info.rows += block.rows;
@@ -574,8 +517,7 @@ StampedRows read_stamped_rows(const std::string& log,
 bool read_once(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
-  return path == "-" || std::filesystem::is_fifo(status) ||
-         std::filesystem::is_character_file(status);
+  return path == "-" || std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
 }
 
 int threads_beside_reading(const LogInfo& log, int threads) {

@@ -17,47 +17,41 @@ namespace libchar {
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 struct Channel {
-  std::string
-      name;  ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
-  std::string unit;      ///< as written in the log, "" when it says nothing
-  bool integer = false;  ///< every value is an integer written as one (counts)
-  double every =
-      1;  ///< rows for one of its values, where it has a clock of its own in a table of others
-  double rate_hz = 0;  ///< of its own, where it was read on a grid of its own; 0: that of the log
+  std::string name;         ///< never empty; "c0", "c1"… when the log has no names (c0 is the first non-time column)
+  std::string unit;         ///< as written in the log, "" when it says nothing
+  bool integer = false;     ///< every value is an integer written as one (counts)
+  double every = 1;         ///< rows for one of its values, where it has a clock of its own in a table of others
+  double rate_hz = 0;       ///< of its own, where it was read on a grid of its own; 0: that of the log
   std::string stated = {};  ///< unit that the log says
   double factor = 1;        ///< that the numbers of the log were multiplied with
 };
 
 /// One stream of messages, or one table, of a log that holds several: each has a clock of its own.
 struct LogTopic {
-  std::string name;        ///< "/imu0", "sensor_gyro_fifo 0", "run1/gyro"
-  std::string type;        ///< "sensor_msgs/msg/Imu"; "" when the log says none
-  std::uint64_t rows = 0;  ///< messages or rows, as far as the log says without being read whole
-  double rate_hz = 0;      ///< rows over their time, roughly; 0 when not known
+  std::string name;             ///< "/imu0", "sensor_gyro_fifo 0", "run1/gyro"
+  std::string type;             ///< "sensor_msgs/msg/Imu"; "" when the log says none
+  std::uint64_t rows = 0;       ///< messages or rows, as far as the log says without being read whole
+  double rate_hz = 0;           ///< rows over their time, roughly; 0 when not known
   std::vector<Channel> fields;  ///< the numbers of a row, among which channels are chosen
   bool sensor = false;          ///< of a type that sensors write: taken when it is the only one
-  std::string
-      why_not;  ///< why no field can be read ("images", "encoding protobuf"); "" when they can
+  std::string why_not;          ///< why no field can be read ("images", "encoding protobuf"); "" when they can
 };
 
 /// The time axis: sample k of the grid is at t0 + k / rate.
 struct TimeBase {
-  double rate_hz = 0;  ///< 0 when unknown (no stamps and no `rate_hz`)
-  bool from_stamps =
-      false;  ///< rate found by robust slope of the stamps; else given by the user or the file
-  std::string column;  ///< name of the time column, "" when there is none
-  std::string
-      candidate;     ///< without one: a channel that `time_column` could name, as it rises evenly
-  std::string unit;  ///< "s", "ms", "us", "ns", "min", "h", "100000 ns"…, "" when there is none
+  double rate_hz = 0;         ///< 0 when unknown (no stamps and no `rate_hz`)
+  bool from_stamps = false;   ///< rate found by robust slope of the stamps; else given by the user or the file
+  std::string column;         ///< name of the time column, "" when there is none
+  std::string candidate;      ///< without one: a channel that `time_column` could name, as it rises evenly
+  std::string unit;           ///< "s", "ms", "us", "ns", "min", "h", "100000 ns"…, "" when there is none
   std::int64_t unit_ns = 0;   ///< the same in nanoseconds; 0 when there is none
   bool unit_guessed = false;  ///< the unit was inferred from the magnitude of the stamps, not read
   bool local = false;         ///< dates without a zone: an hour may be repeated or missing
-  std::optional<std::int64_t>
-      start_ns;                ///< stamp of the first sample in ns, when the log has stamps
-  double jitter_s = 0;         ///< robust standard deviation (1.4826 MAD) of stamp minus grid
-  double max_deviation_s = 0;  ///< largest |stamp minus grid|
-  std::uint64_t gaps = 0;      ///< stretches of missing grid points
-  std::uint64_t missing_samples = 0;  ///< grid points without a row
+  std::optional<std::int64_t> start_ns;  ///< stamp of the first sample in ns, when the log has stamps
+  double jitter_s = 0;                   ///< robust standard deviation (1.4826 MAD) of stamp minus grid
+  double max_deviation_s = 0;            ///< largest |stamp minus grid|
+  std::uint64_t gaps = 0;                ///< stretches of missing grid points
+  std::uint64_t missing_samples = 0;     ///< grid points without a row
 };
 
 /// Everything about a log but its samples.
@@ -74,7 +68,7 @@ struct LogInfo {
   std::uint64_t rows_outside = 0;  ///< before `from_s` or from `to_s` on
   std::uint64_t samples = 0;       ///< grid points delivered (rows used + missing)
   bool read_ahead = false;         ///< other threads read and parse while the caller works
-  std::uint64_t first_line = 0;  ///< CSV: physical line of the first data row; 0 for other formats
+  std::uint64_t first_line = 0;    ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
   std::vector<LogTopic> topics;  ///< of a log that holds several streams; empty for one table
   std::string topic;             ///< the one that was read; "" when there are none
@@ -87,9 +81,7 @@ struct LogInfo {
   std::vector<std::string>
       dialect;  ///< what was understood of the file ("delimiter ;", "decimal comma", "header in line 3")
 
-  double rate_hz_of(const Channel& channel) const {
-    return channel.rate_hz > 0 ? channel.rate_hz : time.rate_hz;
-  }
+  double rate_hz_of(const Channel& channel) const { return channel.rate_hz > 0 ? channel.rate_hz : time.rate_hz; }
 };
 
 /// A whole recording in memory, each channel contiguous.

@@ -84,13 +84,9 @@ void write_repairs(const Field& row, const DescribedRecording& recording, std::v
   out.push_back(std::move(counts));
 }
 
-bool has_rate(const DescribedRecording& recording) {
-  return recording.info.time.rate_hz > 0;
-}
+bool has_rate(const DescribedRecording& recording) { return recording.info.time.rate_hz > 0; }
 
-bool has_topics(const DescribedRecording& recording) {
-  return !recording.info.topics.empty();
-}
+bool has_topics(const DescribedRecording& recording) { return !recording.info.topics.empty(); }
 
 }  // namespace
 
@@ -98,8 +94,7 @@ const Fields<DescribedChannel>& described_channel_fields() {
   using T = DescribedChannel;
   using Q = ChannelQuality;
   static const auto kSampled = when<[](const T& c) { return 0 < c.quality.samples; }>;
-  static const auto kVaries =
-      when<[](const T& c) { return c.quality.minimum < c.quality.maximum; }>;
+  static const auto kVaries = when<[](const T& c) { return c.quality.minimum < c.quality.maximum; }>;
   static const Fields<T> own = {field<&T::channel, &Channel::rate_hz>(
       "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
   static const Fields<T> rows = joined(
@@ -107,8 +102,7 @@ const Fields<DescribedChannel>& described_channel_fields() {
           field<&T::channel, &Channel::name>("name"),
           field<&T::channel, &Channel::unit>("unit"),
           field<&T::quality, &Q::missing>("missing"),
-          field<&T::quality, &Q::beyond>(
-              "beyond_range", {.meaning = "of the missing ones: too large to be measured"}),
+          field<&T::quality, &Q::beyond>("beyond_range", {.meaning = "of the missing ones: too large to be measured"}),
           field<&T::quality, &Q::samples>("samples"),
           field<&T::channel, &Channel::integer>("integer"),
           field<&T::quality, &Q::mean>("mean"),
@@ -159,24 +153,19 @@ const Fields<DescribedRecording>& recording_fields() {
       written<T, write_repairs>("repairs", "counts", {.meaning = "counts by kind"}),
       field<&T::info, &L::guesses>("guesses"),
       field<&T::info, &L::dialect>("dialect"),
-      field<&T::info, &L::topic>(
-          "topic",
-          {.meaning = "that was read", .written = Written::if_known, .known = when<has_topics>}),
-      list_of<&T::info, &L::topics>("topics",
-                                    topic_fields(),
-                                    {.meaning = "of a log with several streams",
-                                     .written = Written::if_known,
-                                     .known = when<has_topics>}),
+      field<&T::info, &L::topic>("topic",
+                                 {.meaning = "that was read", .written = Written::if_known, .known = when<has_topics>}),
+      list_of<&T::info, &L::topics>(
+          "topics", topic_fields(),
+          {.meaning = "of a log with several streams", .written = Written::if_known, .known = when<has_topics>}),
   });
   return rows;
 }
 
 }  // namespace
 
-Json document_head(std::string_view format,
-                   const std::vector<std::string>& command,
-                   const std::vector<const LogInfo*>& logs,
-                   const Findings& of_result) {
+Json document_head(std::string_view format, const std::vector<std::string>& command,
+                   const std::vector<const LogInfo*>& logs, const Findings& of_result) {
   DocumentHead head{std::string(format), std::string(version()), command, {}, {}};
   for (const LogInfo* log : logs) {
     head.input.push_back({log->file, log->sha256, log->bytes});
@@ -186,13 +175,9 @@ Json document_head(std::string_view format,
   return document_of(document_head_fields(), head);
 }
 
-std::span<const Field> recording_rows() {
-  return recording_fields().rows;
-}
+std::span<const Field> recording_rows() { return recording_fields().rows; }
 
-std::span<const Field> sidecar_rows() {
-  return sidecar_fields().rows;
-}
+std::span<const Field> sidecar_rows() { return sidecar_fields().rows; }
 
 LogInfo document_info(const std::string& path) {
   const std::string text = read_document_text(path);

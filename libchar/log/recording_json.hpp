@@ -33,10 +33,8 @@ const Fields<DocumentHead>& document_head_fields();
 
 /// {"format":FORMAT,"version":1,"tool":{name,version},"command":[…],"input":[{path,sha256,bytes}…],
 /// "findings":[{file,code,severity,sentence,count,…}]}: the head of every document that is made from logs.
-Json document_head(std::string_view format,
-                   const std::vector<std::string>& command,
-                   const std::vector<const LogInfo*>& logs,
-                   const Findings& of_result = {});
+Json document_head(std::string_view format, const std::vector<std::string>& command,
+                   const std::vector<const LogInfo*>& logs, const Findings& of_result = {});
 
 /// What `input` says of a small file that was read whole, a model or a report: its path, digest and size. Throws
 /// Error(input) where it cannot be read.

@@ -50,8 +50,7 @@ std::optional<TextTable> read_text_table(const std::string& path, std::size_t ma
   const std::vector<csv::Line> lines = lines_of(*text, text->size());
   if (lines.empty()) return table;
   const std::vector<csv::Line> sample(
-      lines.begin(),
-      lines.begin() + static_cast<std::ptrdiff_t>(std::min(lines.size(), csv::kSample)));
+      lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(std::min(lines.size(), csv::kSample)));
   const csv::Candidate best = csv::candidates(sample).front();
   const char delimiter = best.delimiter;
   table.decimal = best.decimal;

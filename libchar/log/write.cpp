@@ -19,8 +19,7 @@ void check_word(const char* option, const std::string& got, const std::vector<st
 // "a, b or c".
 std::string listed(const std::vector<std::string>& words, const char* last) {
   std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
   return text;
 }
 
@@ -60,9 +59,7 @@ void check_log_output(const std::string& path, const WriteOptions& options) {
     open_log_writer(path, any, options);  // discarded: nothing appears under its names
 }
 
-std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
-                                           const LogInfo& info,
-                                           const WriteOptions& options) {
+std::unique_ptr<LogWriter> open_log_writer(const std::string& path, const LogInfo& info, const WriteOptions& options) {
   check_word("`dtype`", options.dtype, {"f64", "f32"});
   check_word("`order`", options.order, {"interleaved", "planar"});
   if (info.channels.empty()) throw usage_error("E0508", path).says("there is no channel to write");

@@ -13,10 +13,9 @@
 namespace libchar {
 
 struct WriteOptions {
-  std::string format = "auto";  ///< "auto" (by suffix) or a name of formats.hpp
-  std::string dtype = "f64";    ///< npy, raw: "f64" or "f32"
-  std::string order =
-      "interleaved";  ///< raw: "interleaved" or "planar" (npy: C order or Fortran order)
+  std::string format = "auto";        ///< "auto" (by suffix) or a name of formats.hpp
+  std::string dtype = "f64";          ///< npy, raw: "f64" or "f32"
+  std::string order = "interleaved";  ///< raw: "interleaved" or "planar" (npy: C order or Fortran order)
   bool big_endian = false;
   bool time_column = true;  ///< csv: write a first column t[s] (t[ns] when the log starts at an
                             ///< absolute stamp), npy: none
@@ -47,8 +46,7 @@ class LogWriter {
 
 /// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format
 /// or suffix.
-std::unique_ptr<LogWriter> open_log_writer(const std::string& path,
-                                           const LogInfo& info,
+std::unique_ptr<LogWriter> open_log_writer(const std::string& path, const LogInfo& info,
                                            const WriteOptions& options = {});
 
 /// Throws what opening the writer would for the name, the options and the files that are there,

@@ -31,8 +31,7 @@ struct RuleShape {
   std::size_t need = 1, window = 1;
   double beyond = 3;  ///< sigma
 };
-constexpr std::array<RuleShape, kZoneRules> kShapes = {
-    {{1, 1, 3}, {2, 3, 2}, {4, 5, 1}, {8, 8, 0}}};
+constexpr std::array<RuleShape, kZoneRules> kShapes = {{{1, 1, 3}, {2, 3, 2}, {4, 5, 1}, {8, 8, 0}}};
 
 /// Is the pattern's newest value (bit 0) beyond, and enough of the window with it?
 bool holds_rule(unsigned pattern, const RuleShape& shape) {
@@ -49,17 +48,13 @@ double rate_of(const RuleShape& shape) {
   for (unsigned pattern = 0; pattern < (1U << (shape.window + 1)); ++pattern) {
     if (!holds_rule(pattern, shape) || holds_rule(pattern >> 1U, shape)) continue;
     double p = 1;
-    for (std::size_t k = 0; k <= shape.window; ++k)
-      p *= (pattern >> k & 1U) != 0 ? beyond : 1 - beyond;
+    for (std::size_t k = 0; k <= shape.window; ++k) p *= (pattern >> k & 1U) != 0 ? beyond : 1 - beyond;
     rate += p;
   }
   return 2 * rate;
 }
 
-std::size_t count_signals(std::span<const double> values,
-                          double centre,
-                          double sigma,
-                          const RuleShape& shape) {
+std::size_t count_signals(std::span<const double> values, double centre, double sigma, const RuleShape& shape) {
   std::size_t signals = 0;
   unsigned above = 0, below = 0;
   bool before = false;
@@ -106,13 +101,10 @@ ZoneFindings zone_findings(std::span<const double> values, double centre, double
   for (std::size_t r = 0; r < kZoneRules; ++r) {
     const RuleShape& shape = kShapes[r];
     ZoneFinding& found = out.rule[r];
-    const double rate = rate_of(shape),
-                 windows = std::max(0.0, n - static_cast<double>(shape.need) + 1);
+    const double rate = rate_of(shape), windows = std::max(0.0, n - static_cast<double>(shape.need) + 1);
     found.signals = count_signals(values, centre, sigma, shape);
     found.by_chance = windows * rate;
-    found.p = found.signals == 0
-                  ? 1
-                  : binomial_tail(static_cast<double>(found.signals) - 1, windows, rate);
+    found.p = found.signals == 0 ? 1 : binomial_tail(static_cast<double>(found.signals) - 1, windows, rate);
   }
   // Two ways to be improbable: twice the smaller.
   const auto either = [](double p, double other) { return std::min(1.0, 2 * std::min(p, other)); };
@@ -159,8 +151,7 @@ ControlChart control_chart(std::span<const double> values) {
   out.limits = {out.centre - 3 * out.sigma, out.centre + 3 * out.sigma};
   out.points = chart_points(values);
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (values[i] < out.limits.low || values[i] > out.limits.high)
-      out.beyond.push_back({i, values[i]});
+    if (values[i] < out.limits.low || values[i] > out.limits.high) out.beyond.push_back({i, values[i]});
   if (out.sigma > 0) out.zones = zone_findings(values, out.centre, out.sigma);
   return out;
 }
@@ -177,9 +168,7 @@ void add_ppk(const RandomEffects& effects, double limit, Capability& out) {
   const Interval& mean = effects.mean_ci95;
   const Interval& spread = effects.spread_ci95;
   const double room = limit - effects.mean;
-  const double ppk = effects.spread > 0 ? room / (3 * effects.spread)
-                     : room >= 0        ? kInfinity
-                                        : -kInfinity;
+  const double ppk = effects.spread > 0 ? room / (3 * effects.spread) : room >= 0 ? kInfinity : -kInfinity;
   out.ppk = ppk;
   out.above = std::erfc(3 * ppk / std::sqrt(2.0)) / 2;
   if (spread.low > 0) {

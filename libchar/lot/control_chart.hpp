@@ -90,8 +90,7 @@ struct Capability {
   Interval ppk_ci95;
   /// The same with the deviation from one device to the next of the control chart, which holds the uncertainty of each as well.
   std::optional<double> cpk;
-  double above =
-      0;  ///< share of devices above the limit that a normal distribution with that ppk has
+  double above = 0;  ///< share of devices above the limit that a normal distribution with that ppk has
 };
 
 /// Fills ppk, its interval and `above`. `limit` as what `effects` is of.

@@ -25,14 +25,10 @@ std::string note_of(const std::map<std::string, Words, NaturalOrder>& several) {
     for (const std::string& batch : batches) titles.push_back(batch_title(batch));
     named.push_back(fmt::format("{} ({})", device, fmt::join(titles, ", ")));
   }
-  const std::string more =
-      several.size() > kNamed ? fmt::format(" and {} more", several.size() - kNamed) : "";
-  return fmt::format(
-      "{} recordings in several batches, and {} in the first of them: {}{}.",
-      several.size() == 1 ? "1 device has" : fmt::format("{} devices have", several.size()),
-      several.size() == 1 ? "counts" : "count",
-      fmt::join(named, ", "),
-      more);
+  const std::string more = several.size() > kNamed ? fmt::format(" and {} more", several.size() - kNamed) : "";
+  return fmt::format("{} recordings in several batches, and {} in the first of them: {}{}.",
+                     several.size() == 1 ? "1 device has" : fmt::format("{} devices have", several.size()),
+                     several.size() == 1 ? "counts" : "count", fmt::join(named, ", "), more);
 }
 
 }  // namespace
@@ -64,8 +60,6 @@ DeviceBatches device_batches(std::span<const DeviceRecord> records) {
   return out;
 }
 
-std::string batch_title(const std::string& batch) {
-  return batch.empty() ? "no batch" : "batch " + batch;
-}
+std::string batch_title(const std::string& batch) { return batch.empty() ? "no batch" : "batch " + batch; }
 
 }  // namespace libchar

@@ -16,18 +16,14 @@
 
 namespace libchar {
 
-DeviceQuantity quantity_of(Term term) {
-  return static_cast<DeviceQuantity>(term);
-}
+DeviceQuantity quantity_of(Term term) { return static_cast<DeviceQuantity>(term); }
 
 std::optional<Term> term_of(DeviceQuantity quantity) {
   const auto at = static_cast<std::size_t>(quantity);
   return at < kTerms ? std::optional(static_cast<Term>(at)) : std::nullopt;
 }
 
-bool in_logarithm(DeviceQuantity quantity) {
-  return quantity < DeviceQuantity::turn_on_bias;
-}
+bool in_logarithm(DeviceQuantity quantity) { return quantity < DeviceQuantity::turn_on_bias; }
 
 std::string title_of(DeviceQuantity quantity) {
   if (const auto term = term_of(quantity)) return term_title(*term);
@@ -52,16 +48,14 @@ std::string unit_of(DeviceQuantity quantity, std::string_view channel_unit) {
 
 namespace {
 
-bool same_number(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
+bool same_number(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 /// Where the model that is reported has all terms and the term is well known, its square is that of
 /// the value, and hardly skew.
 bool says_more(const Coefficient& c) {
   constexpr double kSame = 1e-6, kWellKnown = 0.05;
-  if (!c.in_all || !(c.in_all->sd > 0) || !std::isfinite(c.in_all->sd) ||
-      !std::isfinite(c.in_all->square) || !std::isfinite(c.in_all->skewness))
+  if (!c.in_all || !(c.in_all->sd > 0) || !std::isfinite(c.in_all->sd) || !std::isfinite(c.in_all->square) ||
+      !std::isfinite(c.in_all->skewness))
     return false;
   const double square = c.value.value_or(0) * c.value.value_or(0);
   return c.status != Status::detected || c.relative_sd > kWellKnown ||
@@ -136,8 +130,7 @@ RecordedChannel channel_record(const ChannelResult& channel, SampleKind data) {
 /// What moves a thermometer is what it measures.
 void drop_own_effects(RecordedChannel& thermometer) {
   std::erase_if(thermometer.values, [](const RecordedValue& v) {
-    return v.quantity == DeviceQuantity::turn_on_bias ||
-           v.quantity == DeviceQuantity::temperature_coefficient;
+    return v.quantity == DeviceQuantity::turn_on_bias || v.quantity == DeviceQuantity::temperature_coefficient;
   });
 }
 
@@ -156,22 +149,21 @@ void use_thermometer(DeviceRecord& record) {
   }
   if (thermometer == nullptr || record.channels.size() < 2) return;
   drop_own_effects(*thermometer);
-  if (!record.temperature_c && std::isfinite(thermometer->mean))
-    record.temperature_c = thermometer->mean;
+  if (!record.temperature_c && std::isfinite(thermometer->mean)) record.temperature_c = thermometer->mean;
 }
 
 }  // namespace
 
 bool RecordedValue::operator==(const RecordedValue& o) const {
   return quantity == o.quantity && status == o.status && same_number(value, o.value) &&
-         same_number(ci95.low, o.ci95.low) && same_number(ci95.high, o.ci95.high) &&
-         same_number(sd, o.sd) && same_number(upper95, o.upper95) && in_all == o.in_all;
+         same_number(ci95.low, o.ci95.low) && same_number(ci95.high, o.ci95.high) && same_number(sd, o.sd) &&
+         same_number(upper95, o.upper95) && in_all == o.in_all;
 }
 
 bool RecordedChannel::operator==(const RecordedChannel& o) const {
   return name == o.name && unit == o.unit && rate_hz == o.rate_hz && duration_s == o.duration_s &&
-         samples == o.samples && missing == o.missing && same_number(mean, o.mean) &&
-         fitted == o.fitted && same_number(p, o.p) && values == o.values && findings == o.findings;
+         samples == o.samples && missing == o.missing && same_number(mean, o.mean) && fitted == o.fitted &&
+         same_number(p, o.p) && values == o.values && findings == o.findings;
 }
 
 const RecordedValue* RecordedChannel::find(DeviceQuantity quantity) const {
@@ -186,12 +178,10 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
   out.sha256 = result.log.sha256;
   out.program = version();
   if (result.limits) out.limits = result.limits->verdict;
-  for (const Finding& warning : result.log.warnings.list())
-    out.warnings.push_back(sentence_of(warning));
+  for (const Finding& warning : result.log.warnings.list()) out.warnings.push_back(sentence_of(warning));
   for (const ChannelResult& channel : result.channels) {
     out.channels.push_back(channel_record(channel, data));
-    if (result.temperature && channel.channel.name == result.temperature->name)
-      drop_own_effects(out.channels.back());
+    if (result.temperature && channel.channel.name == result.temperature->name) drop_own_effects(out.channels.back());
     if (channel.fit && channel.fit->temperature && is_in_celsius(channel.fit->temperature->unit))
       out.temperature_c = channel.fit->temperature->mean;
   }
@@ -218,8 +208,7 @@ void finish_record(DeviceRecord& record) {
   if (std::string why = why_nothing_fitted(record); !why.empty()) {
     record.problem = std::move(why);
     for (const RecordedChannel& channel : record.channels)
-      record.findings.insert(
-          record.findings.end(), channel.findings.begin(), channel.findings.end());
+      record.findings.insert(record.findings.end(), channel.findings.begin(), channel.findings.end());
     record.channels.clear();
   }
 }
@@ -230,8 +219,7 @@ std::string why_nothing_fitted(const DeviceRecord& record) {
     if (channel.fitted) return "";
   Problem problem{ErrorKind::numeric, "E0711", record.log, "no channel could be fitted"};
   if (!record.channels.empty() && !record.channels[0].findings.empty())
-    problem.what +=
-        fmt::format("; {}: {}", record.channels[0].name, record.channels[0].findings[0].sentence);
+    problem.what += fmt::format("; {}: {}", record.channels[0].name, record.channels[0].findings[0].sentence);
   return one_line(problem);
 }
 
@@ -243,9 +231,7 @@ Coefficient coefficient_of(const RecordedValue& v, double factor) {
     out.ci95 = {factor * v.ci95.low, factor * v.ci95.high};
     out.relative_sd = v.sd;
   }
-  if (v.in_all)
-    out.in_all = {
-        factor * factor * v.in_all->square, factor * factor * v.in_all->sd, v.in_all->skewness};
+  if (v.in_all) out.in_all = {factor * factor * v.in_all->square, factor * factor * v.in_all->sd, v.in_all->skewness};
   if (!std::isnan(v.upper95)) out.upper95 = factor * v.upper95;
   return out;
 }

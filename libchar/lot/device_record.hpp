@@ -54,13 +54,11 @@ std::string unit_of(DeviceQuantity quantity, std::string_view channel_unit);
 struct RecordedValue {
   DeviceQuantity quantity = DeviceQuantity::white_noise;
   Status status = Status::detected;
-  double value = kNone;            ///< none where it is not detected
-  Interval ci95 = {kNone, kNone};  ///< high infinite: no upper end
-  double sd =
-      kNone;  ///< of ln(value) where the quantity is compared as logarithm, else of the value
-  double upper95 = kNone;  ///< of what is not detected
-  std::optional<SquareInAll>
-      in_all;  ///< of a noise term, where it says more than value and sd (core/coefficient.hpp)
+  double value = kNone;               ///< none where it is not detected
+  Interval ci95 = {kNone, kNone};     ///< high infinite: no upper end
+  double sd = kNone;                  ///< of ln(value) where the quantity is compared as logarithm, else of the value
+  double upper95 = kNone;             ///< of what is not detected
+  std::optional<SquareInAll> in_all;  ///< of a noise term, where it says more than value and sd (core/coefficient.hpp)
   bool operator==(const RecordedValue&) const;
 };
 
@@ -70,10 +68,9 @@ struct RecordedChannel {
   std::uint64_t samples = 0, missing = 0;
   double mean = kNone;  ///< of the samples
   bool fitted = false;
-  double p = kNone;  ///< goodness of fit
-  std::vector<RecordedValue>
-      values;  ///< in the order of the enum, none twice; a term that was not fitted has none
-  std::vector<Finding> findings;  ///< the worst first
+  double p = kNone;                   ///< goodness of fit
+  std::vector<RecordedValue> values;  ///< in the order of the enum, none twice; a term that was not fitted has none
+  std::vector<Finding> findings;      ///< the worst first
   const RecordedValue* find(DeviceQuantity quantity) const;
   bool operator==(const RecordedChannel&) const;
 };
@@ -82,15 +79,15 @@ struct DeviceRecord {
   std::string device, type, batch;
   std::optional<double> temperature_c;  ///< at which it was recorded
   std::string log, sha256;              ///< the file, and its digest
-  std::string settings;  ///< what it was characterized with, by a name of the caller's
+  std::string settings;                 ///< what it was characterized with, by a name of the caller's
   /// What of the settings can make results differ; "": all of them. Not in the text: who has the settings knows it.
   std::string analysis;
-  std::string program;  ///< version that characterized it
-  std::string report;   ///< folder of its own report, relative to the page of the lot; "": none
-  std::string limits;   ///< verdict on its data sheet; "": none was held against it
-  std::string problem;  ///< why its log could not be characterized; "": it was
+  std::string program;                ///< version that characterized it
+  std::string report;                 ///< folder of its own report, relative to the page of the lot; "": none
+  std::string limits;                 ///< verdict on its data sheet; "": none was held against it
+  std::string problem;                ///< why its log could not be characterized; "": it was
   std::vector<std::string> warnings;  ///< what was dirty in its log and what was done, in sentences
-  bool awaited = false;  ///< `problem` is that the result is not there yet; not in the text
+  bool awaited = false;               ///< `problem` is that the result is not there yet; not in the text
   std::vector<RecordedChannel> channels;
   std::vector<Finding> findings;  ///< of the channels, where none could be fitted; not in the text
   bool operator==(const DeviceRecord&) const = default;
@@ -100,8 +97,7 @@ struct DeviceRecord {
 DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
 
 /// Of logs side by side: each is a device that is called as its file is (names_of_logs). Throws Error(input) for one recording twice.
-std::vector<DeviceRecord> records_of(std::span<const Characterization> results,
-                                     SampleKind data = SampleKind::rate);
+std::vector<DeviceRecord> records_of(std::span<const Characterization> results, SampleKind data = SampleKind::rate);
 
 /// Once all channels of a recording are in its record. A single channel in °C among others is a thermometer: its mean is the temperature of
 /// a recording that says none, and it has no turn-on bias and no temperature coefficient itself. Where nothing was fitted, `problem` says why.

@@ -13,21 +13,17 @@
 namespace libchar {
 namespace {
 
-bool has_value(const RecordedValue& v) {
-  return !std::isnan(v.value);
-}
+bool has_value(const RecordedValue& v) { return !std::isnan(v.value); }
 
 void write_in_all(const Field& row, const RecordedValue& v, std::vector<Entry>& out) {
   if (v.in_all)
-    out.push_back({std::string(row.key),
-                   std::vector<double>{v.in_all->square, v.in_all->sd, v.in_all->skewness}});
+    out.push_back({std::string(row.key), std::vector<double>{v.in_all->square, v.in_all->sd, v.in_all->skewness}});
 }
 
 void read_in_all(const MapReader& at, std::string_view key, RecordedValue& v) {
   if (!at.has(key)) return;
   const std::vector<double> of = at.numbers(key);
-  if (of.size() != 3 || !(of[1] > 0))
-    at.refuse(key, "expected a square, its standard deviation and its skewness");
+  if (of.size() != 3 || !(of[1] > 0)) at.refuse(key, "expected a square, its standard deviation and its skewness");
   v.in_all = SquareInAll{of[0], of[1], of[2]};
 }
 
@@ -51,33 +47,27 @@ const Fields<RecordedValue>& value_fields() {
       field<&T::status>("status", {.written = Written::always, .required = true}),
       field<&T::value>("value", valued),
       custom<T, read_ends, write_ends>("ci95", "[low, high]", valued),
-      field<&T::sd>("sd",
-                    {.range = kNotNegative,
-                     .meaning = "relative, but of turn_on_bias and temperature_coefficient",
-                     .written = Written::if_known,
-                     .known = when<has_value>}),
+      field<&T::sd>("sd", {.range = kNotNegative,
+                           .meaning = "relative, but of turn_on_bias and temperature_coefficient",
+                           .written = Written::if_known,
+                           .known = when<has_value>}),
       custom<T, read_in_all, write_in_all>(
-          "square_in_all",
-          "list of numbers",
+          "square_in_all", "list of numbers",
           {.meaning = "square, its standard deviation and skewness in the model of all terms, none "
                       "held at zero, where they say more than value and sd"}),
-      field<&T::upper95>("upper95",
-                         {.range = kNotNegative,
-                          .written = Written::if_known,
-                          .known = when<[](const T& v) { return !std::isnan(v.upper95); }>}),
+      field<&T::upper95>("upper95", {.range = kNotNegative,
+                                     .written = Written::if_known,
+                                     .known = when<[](const T& v) { return !std::isnan(v.upper95); }>}),
   };
   return rows;
 }
 
-bool is_fitted(const RecordedChannel& c) {
-  return c.fitted;
-}
+bool is_fitted(const RecordedChannel& c) { return c.fitted; }
 
 void write_values(const Field& row, const RecordedChannel& c, std::vector<Entry>& out) {
   Entry values = part_entry(std::string(row.key), {});
   for (const RecordedValue& v : c.values)
-    values.below.push_back(
-        part_entry(std::string(name_of(v.quantity)), entries_of(value_fields(), v)));
+    values.below.push_back(part_entry(std::string(name_of(v.quantity)), entries_of(value_fields(), v)));
   out.push_back(std::move(values));
 }
 
@@ -95,35 +85,28 @@ void read_values(const MapReader& at, std::string_view key, RecordedChannel& c) 
     read_fields(value_fields(), value, v);
     if (in_logarithm(*quantity)) value.number_or("value", kNone, kNotNegative);
   }
-  std::sort(c.values.begin(), c.values.end(), [](const RecordedValue& a, const RecordedValue& b) {
-    return a.quantity < b.quantity;
-  });
+  std::sort(c.values.begin(), c.values.end(),
+            [](const RecordedValue& a, const RecordedValue& b) { return a.quantity < b.quantity; });
 }
 
 const Fields<RecordedChannel>& channel_fields() {
   using T = RecordedChannel;
   static const Fields<T> rows = [] {
     auto values = custom<T, read_values, write_values>(
-        "values",
-        "map",
-        {.meaning = "by quantity", .written = Written::if_known, .known = when<is_fitted>});
+        "values", "map", {.meaning = "by quantity", .written = Written::if_known, .known = when<is_fitted>});
     values.field.below = value_fields().rows;
-    const FieldText of_fit = {
-        .range = kPositive, .written = Written::if_known, .known = when<is_fitted>};
+    const FieldText of_fit = {.range = kPositive, .written = Written::if_known, .known = when<is_fitted>};
     return Fields<T>{
         field<&T::name>("name", {.written = Written::always, .required = true}),
         field<&T::unit>("unit", {.written = Written::always}),
         field<&T::samples>("samples", {.written = Written::always}),
         field<&T::missing>("missing", {.written = Written::always}),
-        field<&T::mean>("mean",
-                        {.meaning = "of the samples",
-                         .written = Written::if_known,
-                         .known = when<[](const T& c) { return !std::isnan(c.mean); }>}),
+        field<&T::mean>("mean", {.meaning = "of the samples",
+                                 .written = Written::if_known,
+                                 .known = when<[](const T& c) { return !std::isnan(c.mean); }>}),
         field<&T::rate_hz>("rate_hz", of_fit),
         field<&T::duration_s>("duration_s", of_fit),
-        field<&T::p>(
-            "p",
-            {.meaning = "goodness of fit", .written = Written::if_known, .known = when<is_fitted>}),
+        field<&T::p>("p", {.meaning = "goodness of fit", .written = Written::if_known, .known = when<is_fitted>}),
         std::move(values),
         list_of<&T::findings>("findings", finding_fields()),
     };
@@ -143,19 +126,15 @@ const Fields<DeviceRecord>& device_record_fields() {
       field<&T::batch>("batch", {.written = Written::always}),
       field<&T::log>("log", {.written = Written::always}),
       field<&T::sha256>("sha256", {.meaning = "of the log", .written = Written::always}),
-      field<&T::settings>(
-          "settings",
-          {.meaning = "name of what it was characterized with", .written = Written::always}),
-      field<&T::program>("program",
-                         {.meaning = "version that characterized it", .written = Written::always}),
+      field<&T::settings>("settings",
+                          {.meaning = "name of what it was characterized with", .written = Written::always}),
+      field<&T::program>("program", {.meaning = "version that characterized it", .written = Written::always}),
       field<&T::temperature_c>("temperature_c"),
       field<&T::report>("report", {.meaning = "folder of its own report"}),
       field<&T::limits>("limits", {.meaning = "verdict on its data sheet"}),
       field<&T::problem>("problem", {.meaning = "why its log could not be characterized"}),
-      field<&T::warnings>("warnings",
-                          {.meaning = "what was dirty in its log and what was done, in sentences"}),
-      list_of<&T::channels>(
-          "channels", channel_fields(), {.written = Written::always, .required = true}),
+      field<&T::warnings>("warnings", {.meaning = "what was dirty in its log and what was done, in sentences"}),
+      list_of<&T::channels>("channels", channel_fields(), {.written = Written::always, .required = true}),
   };
   return rows;
 }

@@ -25,10 +25,7 @@ namespace {
 // Every quantity of every channel is a search of its own (core/random_effects.hpp); with m of them
 // each has the share 1/m of the probability of a false alarm (Bonferroni).
 
-FleetOutlier outlier_of(const Fleet& fleet,
-                        const Statistic& s,
-                        const Outlier& found,
-                        double others) {
+FleetOutlier outlier_of(const Fleet& fleet, const Statistic& s, const Outlier& found, double others) {
   const LotPlace place = place_of(*s.group, s.values.member[found.index]);
   const RecordedChannel& channel = fleet.records[place.recording].channels[place.channel];
   FleetOutlier out;
@@ -39,22 +36,14 @@ FleetOutlier outlier_of(const Fleet& fleet,
   out.value = s.values.y[found.index];
   const std::string what = channel.name + ": " + title_of(s.lot.quantity);
   if (!in_logarithm(s.lot.quantity)) {
-    out.sentence = fmt::format("{} {} {}, {} standard deviations from the others ({}).",
-                               what,
-                               number_text(out.value),
-                               s.lot.unit,
-                               number_text(std::abs(found.deviation), 2),
-                               probability_text(found.p));
+    out.sentence = fmt::format("{} {} {}, {} standard deviations from the others ({}).", what, number_text(out.value),
+                               s.lot.unit, number_text(std::abs(found.deviation), 2), probability_text(found.p));
     return out;
   }
   out.ratio = std::exp(out.value - others);
   out.value = std::exp(out.value);
-  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).",
-                             what,
-                             number_text(out.value),
-                             s.lot.unit,
-                             number_text(out.ratio, 3),
-                             probability_text(found.p));
+  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value), s.lot.unit,
+                             number_text(out.ratio, 3), probability_text(found.p));
   return out;
 }
 
@@ -70,9 +59,8 @@ void add_outliers(const Fleet& fleet, double probability, Statistic& s) {
     v.push_back(s.values.v[i]);
   }
   const double others = random_effects(y, v).mean;
-  std::stable_sort(found.begin(), found.end(), [](const Outlier& a, const Outlier& b) {
-    return std::abs(a.deviation) > std::abs(b.deviation);
-  });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Outlier& a, const Outlier& b) { return std::abs(a.deviation) > std::abs(b.deviation); });
   for (const Outlier& one : found) s.lot.outliers.push_back(outlier_of(fleet, s, one, others));
 }
 
@@ -119,12 +107,10 @@ void add_devices(double probability, const DeviceTable& table, Statistic& s) {
   const std::size_t channels = table.channels.size();
   const std::vector<Outlier> found = find_device_outliers(table.y, table.v, channels, probability);
   std::vector<double> mean(table.member.size());
-  for (std::size_t i = 0; i < table.y.size(); ++i)
-    mean[i / channels] += table.y[i] / static_cast<double>(channels);
+  for (std::size_t i = 0; i < table.y.size(); ++i) mean[i / channels] += table.y[i] / static_cast<double>(channels);
   double others = 0, count = 0;
   for (std::size_t d = 0; d < mean.size(); ++d) {
-    const bool out =
-        std::any_of(found.begin(), found.end(), [&](const Outlier& one) { return one.index == d; });
+    const bool out = std::any_of(found.begin(), found.end(), [&](const Outlier& one) { return one.index == d; });
     others += out ? 0 : mean[d];
     count += !out;
   }
@@ -138,11 +124,8 @@ void add_devices(double probability, const DeviceTable& table, Statistic& s) {
     out.deviation = one.deviation;
     out.value = std::exp(mean[one.index]);
     out.ratio = std::exp(mean[one.index] - others / count);
-    out.sentence = fmt::format("{} together: {} {} times that of the others ({}).",
-                               first_names(table.channels),
-                               title_of(s.lot.quantity),
-                               number_text(out.ratio, 3),
-                               probability_text(out.p));
+    out.sentence = fmt::format("{} together: {} {} times that of the others ({}).", first_names(table.channels),
+                               title_of(s.lot.quantity), number_text(out.ratio, 3), probability_text(out.p));
   }
 }
 
@@ -155,8 +138,8 @@ void search_outliers(const Fleet& fleet, double probability, std::vector<Statist
     Statistic& s = statistics[i];
     const LotCounts& counts = s.lot.counts;
     if (shows_outliers(*s.group)) {
-      s.lot.searched = s.lot.effects && counts.counted >= kFewestForOutliers &&
-                       enough_count(counts.counted, counts.members);
+      s.lot.searched =
+          s.lot.effects && counts.counted >= kFewestForOutliers && enough_count(counts.counted, counts.members);
       channels += s.lot.searched;
       continue;
     }
@@ -202,15 +185,11 @@ bool worse(double p, double deviation, double other_p, double other_deviation) {
 }
 
 // Those that stand out or fail, the worst first, at most `most`.
-void add_worst(const Fleet& fleet,
-               const std::vector<Statistic>& statistics,
-               std::size_t most,
-               FleetLot& out) {
+void add_worst(const Fleet& fleet, const std::vector<Statistic>& statistics, std::size_t most, FleetLot& out) {
   Reasons reasons = reasons_of(fleet, statistics);
   for (auto& [device, all] : reasons) {
-    std::stable_sort(all.begin(), all.end(), [](const Reason& a, const Reason& b) {
-      return worse(a.p, a.deviation, b.p, b.deviation);
-    });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Reason& a, const Reason& b) { return worse(a.p, a.deviation, b.p, b.deviation); });
     WorstDevice one{fleet.sorted.first[device], all[0].p, all[0].deviation, {}};
     for (const Reason& reason : all) one.reasons.push_back(reason.sentence);
     out.worst.push_back(std::move(one));
@@ -226,8 +205,7 @@ void add_worst(const Fleet& fleet,
 
 // Counts and marks the devices that stand out, fail, keep their limits.
 void mark_devices(const Fleet& fleet, const std::vector<Statistic>& statistics, FleetLot& out) {
-  std::vector<bool> outlying(out.devices), failing(out.devices), open(out.devices),
-      held(out.devices);
+  std::vector<bool> outlying(out.devices), failing(out.devices), open(out.devices), held(out.devices);
   for (const Statistic& s : statistics) {
     for (const FleetOutlier& o : s.lot.outliers)
       if (!s.lot.of_kind || o.all_channels) outlying[fleet.sorted.device_of[o.recording]] = true;
@@ -271,8 +249,7 @@ std::string batch_sentence(const FleetLot& lot) {
   constexpr std::size_t kShown = 3;
   std::string list;
   for (std::size_t i = 0; i < std::min(kShown, found.size()); ++i)
-    list += fmt::format(
-        "{}{} of {}", i == 0 ? "" : ", ", title_of(found[i]->quantity), found[i]->group);
+    list += fmt::format("{}{} of {}", i == 0 ? "" : ", ", title_of(found[i]->quantity), found[i]->group);
   if (found.size() > kShown) list += fmt::format(" and {} more", found.size() - kShown);
   return fmt::format(" Batches differ: {}.", list);
 }
@@ -283,18 +260,15 @@ std::string without_result(const FleetLot& lot) {
   if (!lot.failed.empty())
     out += fmt::format(": {} could not be characterized", plural(lot.failed.size(), "recording"));
   if (!lot.awaited.empty())
-    out += fmt::format("{} of {} the result is not there yet",
-                       out.empty() ? ":" : ",",
+    out += fmt::format("{} of {} the result is not there yet", out.empty() ? ":" : ",",
                        plural(lot.awaited.size(), "recording"));
   return out;
 }
 
 std::string stand_out(const std::vector<std::string>& names, const char* what) {
-  return names.size() == 1 ? fmt::format(" 1 {} stands out from its kind: {}.", what, names[0])
-                           : fmt::format(" {} {}s stand out from their kind: {}.",
-                                         names.size(),
-                                         what,
-                                         first_names(names));
+  return names.size() == 1
+             ? fmt::format(" 1 {} stands out from its kind: {}.", what, names[0])
+             : fmt::format(" {} {}s stand out from their kind: {}.", names.size(), what, first_names(names));
 }
 
 /// That nobody stands out is a finding only where somebody could.
@@ -313,11 +287,9 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
   }
   if (!any) return " There is no result to judge.";
   if (!searched)
-    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.",
-                       kFewestForOutliers);
+    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.", kFewestForOutliers);
   std::vector<std::string> of_one;
-  for (const auto& [recording, channel] : channels)
-    of_one.push_back(fleet.records[recording].channels[channel].name);
+  for (const auto& [recording, channel] : channels) of_one.push_back(fleet.records[recording].channels[channel].name);
   std::string out = devices.empty() ? "" : stand_out(devices, "device");
   if (!of_one.empty()) out += stand_out(of_one, "channel");
   if (!out.empty()) return out;
@@ -339,12 +311,9 @@ std::string chart_sentence(const FleetLot& lot) {
         worst = &q;
       }
   }
-  const double share =
-      detail::kChartAlarm / static_cast<double>(kZoneRules * std::max<std::size_t>(1, charts));
+  const double share = detail::kChartAlarm / static_cast<double>(kZoneRules * std::max<std::size_t>(1, charts));
   if (worst == nullptr || p >= share) return "";
-  return fmt::format(" Values change along the lot: {} of {} ({} by chance).",
-                     title_of(worst->quantity),
-                     worst->group,
+  return fmt::format(" Values change along the lot: {} of {} ({} by chance).", title_of(worst->quantity), worst->group,
                      probability_text(p));
 }
 
@@ -352,23 +321,18 @@ std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   std::string out = plural(lot.devices, "device");
   if (lot.types.size() > 1) out += fmt::format(" of {} types", lot.types.size());
   if (lot.batches.size() > 1) out += fmt::format(" in {} batches", lot.batches.size());
-  if (lot.order.size() != lot.devices)
-    out += fmt::format(", {}", plural(lot.order.size(), "recording"));
+  if (lot.order.size() != lot.devices) out += fmt::format(", {}", plural(lot.order.size(), "recording"));
   out += without_result(lot) + "." + outlying_sentence(lot, fleet);
   const std::size_t held = lot.failing + lot.open + lot.keeping;
   if (held > 0)
-    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.",
-                       plural(held, "device"),
-                       lot.failing,
-                       lot.failing == 1 ? "fails one" : "fail one or more",
-                       lot.open,
+    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.", plural(held, "device"),
+                       lot.failing, lot.failing == 1 ? "fails one" : "fail one or more", lot.open,
                        lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
   return out + batch_sentence(lot) + chart_sentence(lot);
 }
 
 /// What was mended in the logs does not get lost in the number of them.
-std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
-                                       std::span<const std::size_t> order) {
+std::vector<std::string> warnings_note(std::span<const DeviceRecord> records, std::span<const std::size_t> order) {
   const DeviceRecord* first = nullptr;
   std::size_t count = 0;
   for (const std::size_t r : order) {
@@ -376,29 +340,23 @@ std::vector<std::string> warnings_note(std::span<const DeviceRecord> records,
     if (++count == 1) first = &records[r];
   }
   if (count == 0) return {};
-  return {fmt::format("{} of {} read with warnings, which their pages say; the first, of {}: {}",
-                      count,
-                      plural(records.size(), "recording"),
-                      first->device,
-                      first->warnings[0])};
+  return {fmt::format("{} of {} read with warnings, which their pages say; the first, of {}: {}", count,
+                      plural(records.size(), "recording"), first->device, first->warnings[0])};
 }
 
 /// One for each code, with the devices that have it, the worst first.
-std::vector<Finding> known_of(std::span<const DeviceRecord> records,
-                              std::span<const std::size_t> order) {
+std::vector<Finding> known_of(std::span<const DeviceRecord> records, std::span<const std::size_t> order) {
   std::map<std::string, std::pair<Finding, std::vector<std::string>>> kinds;
   const auto count = [&](const std::vector<Finding>& findings, const std::string& device) {
     for (const Finding& one : findings) {
       if (one.severity == Severity::note) continue;
-      auto& [kind, devices] =
-          kinds.try_emplace(one.code, one, std::vector<std::string>{}).first->second;
+      auto& [kind, devices] = kinds.try_emplace(one.code, one, std::vector<std::string>{}).first->second;
       kind.severity = std::max(kind.severity, one.severity);
       if (devices.empty() || devices.back() != device) devices.push_back(device);
     }
   };
   for (const std::size_t r : order) {
-    for (const RecordedChannel& channel : records[r].channels)
-      count(channel.findings, records[r].device);
+    for (const RecordedChannel& channel : records[r].channels) count(channel.findings, records[r].device);
     count(records[r].findings, records[r].device);
   }
   std::vector<Finding> out;
@@ -406,10 +364,8 @@ std::vector<Finding> known_of(std::span<const DeviceRecord> records,
     auto& [kind, devices] = found;
     const FindingKind* row = find_finding_kind(code);
     kind.count = devices.size();
-    kind.sentence = fmt::format("{} of {} ({})",
-                                row != nullptr ? row->title : std::string_view(code),
-                                plural(devices.size(), "device"),
-                                first_names(devices));
+    kind.sentence = fmt::format("{} of {} ({})", row != nullptr ? row->title : std::string_view(code),
+                                plural(devices.size(), "device"), first_names(devices));
     kind.phrase = kind.sentence;
     kind.where = {};
     kind.help.clear();
@@ -441,8 +397,7 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   add_worst(fleet, statistics, options.worst, out);
   for (Statistic& s : statistics) out.quantities.push_back(std::move(s.lot));
   out.notes = fleet.sorted.notes;
-  for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups))
-    out.notes.push_back(std::move(note));
+  for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups)) out.notes.push_back(std::move(note));
   for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.findings = known_of(records, out.order);
   out.verdict = fleet_verdict(out, fleet);

@@ -26,20 +26,16 @@ namespace libchar {
 struct LotCounts;
 
 struct LeftOut {
-  double share = 0;  ///< of the devices that have a result: not detected or doubtful
-  Interval
-      mean_ci95;  ///< of all of them, in the unit of the values: holds what is possible whichever they are
+  double share = 0;    ///< of the devices that have a result: not detected or doubtful
+  Interval mean_ci95;  ///< of all of them, in the unit of the values: holds what is possible whichever they are
   /// The mean of those counted is off by this factor at most: too large, of a temperature coefficient too far from zero.
   double factor = 1;
   double spread_high = 0;  ///< upper end of the spread of all; NaN of a temperature coefficient
 };
 
 /// Nothing where all count, and of quantities that are not left out for being small.
-std::optional<LeftOut> left_out(DeviceQuantity quantity,
-                                const LotCounts& counts,
-                                std::span<const double> value,
-                                std::span<const double> variance,
-                                const RandomEffects& effects);
+std::optional<LeftOut> left_out(DeviceQuantity quantity, const LotCounts& counts, std::span<const double> value,
+                                std::span<const double> variance, const RandomEffects& effects);
 
 // Which batch each device of a fleet is of. A batch is of a production lot: a device has one, whatever its recordings say.
 
@@ -79,8 +75,7 @@ struct LotCounts {
 struct LotFigures {
   double mean = 0;
   Interval mean_ci95;
-  double spread =
-      0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
+  double spread = 0;  ///< of coefficients relative (standard deviation of the logarithm), of others in their unit
   Interval spread_ci95;
 };
 
@@ -99,15 +94,13 @@ struct BatchLot {
   std::string batch;
   LotCounts counts;
   std::optional<LotFigures> figures;
-  std::size_t in_figures =
-      0;  ///< more than `counted` where those not detected or doubtful are in them
+  std::size_t in_figures = 0;  ///< more than `counted` where those not detected or doubtful are in them
   double median = kNone;
 };
 
 /// Do batches differ by more than their devices let expect?
 struct BatchDifference {
-  double between =
-      0;  ///< standard deviation from batch to batch; relative where the quantity is compared as logarithm
+  double between = 0;  ///< standard deviation from batch to batch; relative where the quantity is compared as logarithm
   Interval between_ci95;
   double within = 0;  ///< from device to device in a batch
   double p = 1;       ///< of as large differences of batches that are alike
@@ -141,27 +134,24 @@ struct DeviceSlope {
 struct TemperatureRuns {
   std::size_t devices = 0, recordings = 0;
   Interval range_c;
-  double reference_c = 0;  ///< the median of the recordings
-  std::size_t elsewhere =
-      0;  ///< devices whose recordings are all as far from it as that, at one temperature
+  double reference_c = 0;     ///< the median of the recordings
+  std::size_t elsewhere = 0;  ///< devices whose recordings are all as far from it as that, at one temperature
   double repeatability =
       kNone;  ///< of the bias about the lines: the error of the slopes; NaN: no temperature was there twice
   Interval repeatability_ci95;
-  double dof = 0;  ///< by which it is known
-  std::size_t in_one_recording =
-      0;  ///< devices whose coefficient was found in a recording as well: not mixed in
-  std::vector<DeviceSlope> slopes;  ///< of a temperature coefficient, in the order of the devices
+  double dof = 0;                    ///< by which it is known
+  std::size_t in_one_recording = 0;  ///< devices whose coefficient was found in a recording as well: not mixed in
+  std::vector<DeviceSlope> slopes;   ///< of a temperature coefficient, in the order of the devices
 };
 
 struct FleetOutlier {
   std::size_t recording = 0,
-              channel = 0;  ///< indices into the records: the device's first recording
-  bool all_channels =
-      false;         ///< of a kind: the device by all of its channels together, from `channel` on
-  double value = 0;  ///< of these the geometric mean
-  double ratio = 1;  ///< to the mean of the others, of what is compared as logarithm
-  double deviation = 0;  ///< from the others, in standard deviations of that difference
-  double p = 1;          ///< of so large a deviation of any device
+              channel = 0;    ///< indices into the records: the device's first recording
+  bool all_channels = false;  ///< of a kind: the device by all of its channels together, from `channel` on
+  double value = 0;           ///< of these the geometric mean
+  double ratio = 1;           ///< to the mean of the others, of what is compared as logarithm
+  double deviation = 0;       ///< from the others, in standard deviations of that difference
+  double p = 1;               ///< of so large a deviation of any device
   std::string sentence;
 };
 
@@ -176,11 +166,11 @@ struct QuantityLot {
   std::optional<RandomEffects> effects;  ///< of ln(value) or of the value, as effects_of says
   std::optional<LotFigures> figures;
   std::optional<ArithmeticFigures> arithmetic;  ///< of what is compared as logarithm
-  bool of_all = false;  ///< the figures are also of devices that are not detected or doubtful
-  std::optional<LeftOut> left_out;  ///< what figures of those counted say of all
+  bool of_all = false;                          ///< the figures are also of devices that are not detected or doubtful
+  std::optional<LeftOut> left_out;              ///< what figures of those counted say of all
   std::array<double, kLotQuantiles.size()> quantiles{};  ///< of those counted
   Histogram histogram;                                   ///< of ln(value) or of the value
-  std::vector<BatchLot> batches;  ///< in natural order; empty where there is one
+  std::vector<BatchLot> batches;                         ///< in natural order; empty where there is one
   std::optional<BatchDifference> batch_difference;
   std::optional<RepeatedDevices> repeats;
   std::optional<TemperatureRuns> temperatures;
@@ -204,15 +194,14 @@ struct WorstDevice {
 
 struct FleetLot {
   std::size_t devices = 0;
-  std::vector<std::size_t>
-      order;  ///< recordings by type, batch, device and log; copies of one log are left out
-  std::vector<std::size_t> failed;          ///< of these, those that could not be characterized
-  std::vector<std::size_t> awaited;         ///< and those whose result is not there yet
-  std::vector<std::string> types, batches;  ///< in natural order
-  std::vector<std::size_t> batch_of;        ///< of each record, that of its device
-  std::vector<QuantityLot> quantities;      ///< kinds first, channel by channel then
-  std::vector<WorstDevice> worst;           ///< the worst first, at most as many as asked for
-  std::size_t outlying = 0;                 ///< devices that are outliers
+  std::vector<std::size_t> order;    ///< recordings by type, batch, device and log; copies of one log are left out
+  std::vector<std::size_t> failed;   ///< of these, those that could not be characterized
+  std::vector<std::size_t> awaited;  ///< and those whose result is not there yet
+  std::vector<std::string> types, batches;         ///< in natural order
+  std::vector<std::size_t> batch_of;               ///< of each record, that of its device
+  std::vector<QuantityLot> quantities;             ///< kinds first, channel by channel then
+  std::vector<WorstDevice> worst;                  ///< the worst first, at most as many as asked for
+  std::size_t outlying = 0;                        ///< devices that are outliers
   std::size_t failing = 0, open = 0, keeping = 0;  ///< devices, by all limits that hold for them
   std::vector<bool> stands_out, fails;             ///< one per record, that of its device
   std::vector<std::string> notes;                  ///< what was not compared, and why
@@ -267,8 +256,7 @@ struct FleetComparison {
 };
 
 /// Throws Error(usage) where a lot has no record, and Error(input) where they have no channel in common.
-FleetComparison compare_lots(std::span<const DeviceRecord> a,
-                             std::span<const DeviceRecord> b,
+FleetComparison compare_lots(std::span<const DeviceRecord> a, std::span<const DeviceRecord> b,
                              const CompareLotsOptions& options = {});
 
 }  // namespace libchar

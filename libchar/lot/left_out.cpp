@@ -28,17 +28,14 @@ double largest_scatter(std::span<const double> value) {
   return std::sqrt(square / chi_square_quantile(0.025, dof));
 }
 
-LeftOut of_logarithms(double share,
-                      std::span<const double> value,
-                      std::span<const double> variance,
+LeftOut of_logarithms(double share, std::span<const double> value, std::span<const double> variance,
                       const RandomEffects& effects) {
   const double z = -std::sqrt(chi_square_upper_quantile(2 * share, 1));
   const double l = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi) / (1 - share);
   const double narrower = std::sqrt(1 - l * (l - z));
   double v = 0;
   for (const double one : variance) v += one / static_cast<double>(variance.size());
-  const double scatter =
-      (effects.spread_ci95.high * effects.spread_ci95.high + v) / (narrower * narrower);
+  const double scatter = (effects.spread_ci95.high * effects.spread_ci95.high + v) / (narrower * narrower);
   const double off = l * largest_scatter(value) / narrower;
   return {share,
           {std::exp(effects.mean_ci95.low - off), std::exp(effects.mean_ci95.high)},
@@ -56,19 +53,15 @@ LeftOut about_zero(double share, const RandomEffects& effects) {
 
 }  // namespace
 
-std::optional<LeftOut> left_out(DeviceQuantity quantity,
-                                const LotCounts& counts,
-                                std::span<const double> value,
-                                std::span<const double> variance,
-                                const RandomEffects& effects) {
+std::optional<LeftOut> left_out(DeviceQuantity quantity, const LotCounts& counts, std::span<const double> value,
+                                std::span<const double> variance, const RandomEffects& effects) {
   const std::size_t missing = counts.not_detected + counts.doubtful;
   // A bias is never too small to be found, and a time is not found for its process being small.
   if (missing == 0 || 2 * missing >= counts.counted + missing || value.size() < 2 ||
       quantity == DeviceQuantity::turn_on_bias || quantity == DeviceQuantity::gauss_markov_time)
     return std::nullopt;
   const double share = static_cast<double>(missing) / static_cast<double>(counts.counted + missing);
-  return in_logarithm(quantity) ? of_logarithms(share, value, variance, effects)
-                                : about_zero(share, effects);
+  return in_logarithm(quantity) ? of_logarithms(share, value, variance, effects) : about_zero(share, effects);
 }
 
 }  // namespace libchar

@@ -43,15 +43,11 @@ Powers powers_of(std::span<const double> y, std::span<const double> v, double me
   return out;
 }
 
-double degrees_of_freedom(double n, double kurtosis) {
-  return 2 * n / (kurtosis - (n - 3) / (n - 1));
-}
+double degrees_of_freedom(double n, double kurtosis) { return 2 * n / (kurtosis - (n - 3) / (n - 1)); }
 
 // Probability of spreads that differ as much where they are equal; 1 of fewer than four values on
 // a side.
-double equal_spread_p(std::span<const double> y_a,
-                      std::span<const double> v_a,
-                      std::span<const double> y_b,
+double equal_spread_p(std::span<const double> y_a, std::span<const double> v_a, std::span<const double> y_b,
                       std::span<const double> v_b) {
   if (std::min(y_a.size(), y_b.size()) < kLeast) return 1;
   std::vector<double> y(y_a.begin(), y_a.end()), v(v_a.begin(), v_a.end());
@@ -61,8 +57,7 @@ double equal_spread_p(std::span<const double> y_a,
   std::fill(lot.begin() + static_cast<std::ptrdiff_t>(y_a.size()), lot.end(), std::size_t{1});
   const GroupedEffects both = grouped_effects(y, v, lot, 2);
   const double square = both.within * both.within;
-  const Powers a = powers_of(y_a, v_a, both.mean[0], square),
-               b = powers_of(y_b, v_b, both.mean[1], square);
+  const Powers a = powers_of(y_a, v_a, both.mean[0], square), b = powers_of(y_b, v_b, both.mean[1], square);
   const double sum = a.second + b.second;
   if (!(a.second > 0) || !(b.second > 0)) return 1;
   const double kurtosis = std::max(3.0, (a.n + b.n) * (a.fourth + b.fourth) / (sum * sum));
@@ -97,8 +92,7 @@ struct SideValues {
 };
 
 SideValues values_of(const Fleet& side, const LotGroup& group, DeviceQuantity quantity) {
-  SideValues out{quantity_values(side.records, group, quantity, side.batch_of, side.batches.size()),
-                 {}};
+  SideValues out{quantity_values(side.records, group, quantity, side.batch_of, side.batches.size()), {}};
   out.effects = effects_of(out.values, in_logarithm(quantity));
   return out;
 }
@@ -108,10 +102,7 @@ double standard_error(const RandomEffects& effects) {
   return (effects.mean_ci95.high - effects.mean_ci95.low) / 2 / student_quantile(0.975, dof);
 }
 
-void compare_means(const RandomEffects& a,
-                   const RandomEffects& b,
-                   bool logarithm,
-                   LotDifference& out) {
+void compare_means(const RandomEffects& a, const RandomEffects& b, bool logarithm, LotDifference& out) {
   const double va = std::pow(standard_error(a), 2), vb = std::pow(standard_error(b), 2);
   out.change = logarithm ? std::exp(b.mean - a.mean) : b.mean - a.mean;
   if (!std::isfinite(va + vb)) {  // a mean that has no end differs from nothing
@@ -120,9 +111,8 @@ void compare_means(const RandomEffects& a,
     out.change_ci95 = {logarithm ? 0 : -kInfinity, kInfinity};
     return;
   }
-  const double dof =
-      (va + vb) * (va + vb) /
-      (va * va / (static_cast<double>(a.count) - 1) + vb * vb / (static_cast<double>(b.count) - 1));
+  const double dof = (va + vb) * (va + vb) /
+                     (va * va / (static_cast<double>(a.count) - 1) + vb * vb / (static_cast<double>(b.count) - 1));
   const double sd = std::sqrt(va + vb), difference = b.mean - a.mean;
   const double half = student_quantile(0.975, dof) * sd;
   out.p_mean = 2 * student_tail(std::abs(difference) / sd, dof);
@@ -131,10 +121,7 @@ void compare_means(const RandomEffects& a,
 }
 
 /// Both lots have a mean of it.
-LotDifference difference_of(const LotGroup& group,
-                            const SideValues& a,
-                            const SideValues& b,
-                            DeviceQuantity quantity) {
+LotDifference difference_of(const LotGroup& group, const SideValues& a, const SideValues& b, DeviceQuantity quantity) {
   const bool logarithm = in_logarithm(quantity);
   LotDifference out;
   out.type = group.type;
@@ -152,25 +139,17 @@ LotDifference difference_of(const LotGroup& group,
 }
 
 /// "2 of 20 devices of march": of all that have the channel, whatever the quantity is found of.
-std::string known_text(const QuantityValues& values,
-                       const LotGroup& group,
-                       const std::string& name) {
+std::string known_text(const QuantityValues& values, const LotGroup& group, const std::string& name) {
   return fmt::format("{} of {} devices of {}", values.counts.counted, group.devices.size(), name);
 }
 
 /// Counted in one and hardly in the other: no means to compare, which is a difference in itself.
-void note_detection(const LotGroup& group,
-                    const SideValues& a,
-                    const LotGroup& group_b,
-                    const SideValues& b,
-                    DeviceQuantity quantity,
-                    FleetComparison& out) {
+void note_detection(const LotGroup& group, const SideValues& a, const LotGroup& group_b, const SideValues& b,
+                    DeviceQuantity quantity, FleetComparison& out) {
   if (a.values.counts.counted + b.values.counts.counted == 0) return;
   const bool only_a = !a.effects && b.effects, only_b = a.effects && !b.effects;
-  out.not_compared.push_back(fmt::format("{} of {}: known of {} and of {}: too few{} for means.",
-                                         title_of(quantity),
-                                         channel_title(group.name, group.type),
-                                         known_text(a.values, group, out.name_a),
+  out.not_compared.push_back(fmt::format("{} of {}: known of {} and of {}: too few{} for means.", title_of(quantity),
+                                         channel_title(group.name, group.type), known_text(a.values, group, out.name_a),
                                          known_text(b.values, group_b, out.name_b),
                                          only_a   ? " of " + out.name_a
                                          : only_b ? " of " + out.name_b
@@ -180,10 +159,8 @@ void note_detection(const LotGroup& group,
 void note_only(const Fleet& here, Fleet& there, const std::string& name, FleetComparison& out) {
   for (const LotGroup& group : here.groups)
     if (!group.of_kind && same_channel(there, group) == nullptr)
-      out.not_compared.push_back(fmt::format("{} in {}: only in {}.",
-                                             channel_title(group.name, group.type),
-                                             unit_title(group.channel_unit),
-                                             name));
+      out.not_compared.push_back(fmt::format("{} in {}: only in {}.", channel_title(group.name, group.type),
+                                             unit_title(group.channel_unit), name));
 }
 
 void correct_for_all(FleetComparison& out) {
@@ -192,8 +169,7 @@ void correct_for_all(FleetComparison& out) {
     all.emplace_back(d.p_mean, &d.p_mean_of_all);
     all.emplace_back(d.p_spread, &d.p_spread_of_all);
   }
-  std::stable_sort(
-      all.begin(), all.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::stable_sort(all.begin(), all.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   out.tests = all.size();
   double before = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -206,47 +182,27 @@ void correct_for_all(FleetComparison& out) {
   }
 }
 
-std::string percent(double ratio) {
-  return number_text(100 * (ratio - 1), 3);
-}
+std::string percent(double ratio) { return number_text(100 * (ratio - 1), 3); }
 
 std::string mean_phrase(const LotDifference& d, const FleetComparison& c) {
   if (!in_logarithm(d.quantity))
-    return fmt::format("{} of {} is {} {} {} than of {} [{}, {}], {}",
-                       title_of(d.quantity),
-                       c.name_b,
-                       number_text(std::abs(d.change)),
-                       d.unit,
-                       d.change < 0 ? "lower" : "higher",
-                       c.name_a,
-                       number_text(d.change_ci95.low),
-                       number_text(d.change_ci95.high),
+    return fmt::format("{} of {} is {} {} {} than of {} [{}, {}], {}", title_of(d.quantity), c.name_b,
+                       number_text(std::abs(d.change)), d.unit, d.change < 0 ? "lower" : "higher", c.name_a,
+                       number_text(d.change_ci95.low), number_text(d.change_ci95.high),
                        probability_text(d.p_mean_of_all));
   // From 2 on, and from a half down, a factor says it better than per cent.
   const bool factor = d.change >= 2 || d.change <= 0.5;
   if (factor)
-    return fmt::format("{} of {} is {} times that of {} [{}, {}], {}",
-                       title_of(d.quantity),
-                       c.name_b,
-                       number_text(d.change, 3),
-                       c.name_a,
-                       number_text(d.change_ci95.low, 3),
-                       number_text(d.change_ci95.high, 3),
-                       probability_text(d.p_mean_of_all));
-  return fmt::format("{} of {} is {} % {} than of {} [{}, {}], {}",
-                     title_of(d.quantity),
-                     c.name_b,
-                     number_text(std::abs(100 * (d.change - 1)), 3),
-                     d.change < 1 ? "smaller" : "larger",
-                     c.name_a,
-                     percent(d.change_ci95.low),
-                     percent(d.change_ci95.high),
-                     probability_text(d.p_mean_of_all));
+    return fmt::format("{} of {} is {} times that of {} [{}, {}], {}", title_of(d.quantity), c.name_b,
+                       number_text(d.change, 3), c.name_a, number_text(d.change_ci95.low, 3),
+                       number_text(d.change_ci95.high, 3), probability_text(d.p_mean_of_all));
+  return fmt::format("{} of {} is {} % {} than of {} [{}, {}], {}", title_of(d.quantity), c.name_b,
+                     number_text(std::abs(100 * (d.change - 1)), 3), d.change < 1 ? "smaller" : "larger", c.name_a,
+                     percent(d.change_ci95.low), percent(d.change_ci95.high), probability_text(d.p_mean_of_all));
 }
 
 std::string spread_text(const LotDifference& d, const LotFigures& f) {
-  return in_logarithm(d.quantity) ? number_text(100 * f.spread, 3) + " %"
-                                  : number_text(f.spread, 3) + " " + d.unit;
+  return in_logarithm(d.quantity) ? number_text(100 * f.spread, 3) + " %" : number_text(f.spread, 3) + " " + d.unit;
 }
 
 std::string sentence_of(const LotDifference& d, const FleetComparison& c) {
@@ -254,37 +210,22 @@ std::string sentence_of(const LotDifference& d, const FleetComparison& c) {
   if (d.mean_differs) out += mean_phrase(d, c);
   if (d.spread_differs)
     out += fmt::format("{}devices of {} scatter by {}, those of {} by {}, {}",
-                       d.mean_differs ? "; " : title_of(d.quantity) + ": ",
-                       c.name_b,
-                       spread_text(d, d.b),
-                       c.name_a,
-                       spread_text(d, d.a),
-                       probability_text(d.p_spread_of_all));
-  if (!d.mean_differs && !d.spread_differs)
-    out += title_of(d.quantity) + ": no difference is resolved";
+                       d.mean_differs ? "; " : title_of(d.quantity) + ": ", c.name_b, spread_text(d, d.b), c.name_a,
+                       spread_text(d, d.a), probability_text(d.p_spread_of_all));
+  if (!d.mean_differs && !d.spread_differs) out += title_of(d.quantity) + ": no difference is resolved";
   return out + ".";
 }
 
 std::string comparison_verdict(const FleetComparison& c) {
-  const auto differs = std::count_if(c.differences.begin(), c.differences.end(), [](const auto& d) {
-    return d.mean_differs || d.spread_differs;
-  });
-  const std::string what = fmt::format("{} of {} and {} of {}, {}",
-                                       plural(c.devices_a, "device"),
-                                       c.name_a,
-                                       plural(c.devices_b, "device"),
-                                       c.name_b,
-                                       plural(c.tests, "test"));
-  const std::string chance =
-      fmt::format(" Lots that are alike give any difference in {} % of comparisons.",
-                  number_text(100 * c.false_alarm, 2));
+  const auto differs = std::count_if(c.differences.begin(), c.differences.end(),
+                                     [](const auto& d) { return d.mean_differs || d.spread_differs; });
+  const std::string what = fmt::format("{} of {} and {} of {}, {}", plural(c.devices_a, "device"), c.name_a,
+                                       plural(c.devices_b, "device"), c.name_b, plural(c.tests, "test"));
+  const std::string chance = fmt::format(" Lots that are alike give any difference in {} % of comparisons.",
+                                         number_text(100 * c.false_alarm, 2));
   if (differs == 0) return what + ": no difference is resolved." + chance;
-  return fmt::format("{}: {} of {} quantities differ{}.{}",
-                     what,
-                     differs,
-                     c.differences.size(),
-                     differs == 1 ? "s" : "",
-                     chance);
+  return fmt::format("{}: {} of {} quantities differ{}.{}", what, differs, c.differences.size(),
+                     differs == 1 ? "s" : "", chance);
 }
 
 }  // namespace
@@ -304,12 +245,8 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
     common = true;
     if (in_b->channel_unit != group.channel_unit) {
       out.notes.push_back(fmt::format("{} is in {} in {} and in {} in {}: compared in {}.",
-                                      channel_title(group.name, group.type),
-                                      group.channel_unit,
-                                      options.name_a,
-                                      in_b->channel_unit,
-                                      options.name_b,
-                                      group.channel_unit));
+                                      channel_title(group.name, group.type), group.channel_unit, options.name_a,
+                                      in_b->channel_unit, options.name_b, group.channel_unit));
       convert_group(group.channel_unit, *in_b);
     }
     for (const auto& row : enum_table<DeviceQuantity>) {
@@ -322,9 +259,7 @@ FleetComparison compare_lots(Records a, Records b, const CompareLotsOptions& opt
   }
   if (!common)
     throw input_error("E0753")
-        .says("{} and {} have no channel of one type, name and kind of unit in common",
-              options.name_a,
-              options.name_b)
+        .says("{} and {} have no channel of one type, name and kind of unit in common", options.name_a, options.name_b)
         .hint("compare lots of one type of device");
   note_only(sa, sb, options.name_a, out);
   note_only(sb, sa, options.name_b, out);

@@ -13,15 +13,14 @@ namespace libchar::detail {
 namespace {
 
 const Document* below(const Document& document, std::string_view key) {
-  const DocumentEntry* const entry =
-      document.kind == Document::Kind::map ? document.find(std::string(key)) : nullptr;
+  const DocumentEntry* const entry = document.kind == Document::Kind::map ? document.find(std::string(key)) : nullptr;
   return entry == nullptr ? nullptr : &entry->value;
 }
 
 const Document* kalibr_part(const Document& document) {
   for (const Document* part : {&document, below(document, "imu0")})
-    if (part != nullptr && (below(*part, "gyroscope_noise_density") != nullptr ||
-                            below(*part, "accelerometer_noise_density") != nullptr))
+    if (part != nullptr &&
+        (below(*part, "gyroscope_noise_density") != nullptr || below(*part, "accelerometer_noise_density") != nullptr))
       return part;
   return nullptr;
 }
@@ -39,10 +38,7 @@ Coefficient given(double value) {
   return out;
 }
 
-SensorModel stated(const std::string& channel,
-                   bool gyroscope,
-                   const std::string& program,
-                   const std::string& file) {
+SensorModel stated(const std::string& channel, bool gyroscope, const std::string& program, const std::string& file) {
   SensorModel out;
   out.channel = channel;
   out.unit = gyroscope ? "rad/s" : "m/s²";
@@ -67,9 +63,7 @@ std::vector<SensorModel> of_kalibr(const MapReader& at, const std::string& file)
 }
 
 /// The lowest Allan deviation of bias instability B is B sqrt(2 ln 2 / pi).
-double instability_of_floor(double floor) {
-  return floor / std::sqrt(2 * std::numbers::ln2 / std::numbers::pi);
-}
+double instability_of_floor(double floor) { return floor / std::sqrt(2 * std::numbers::ln2 / std::numbers::pi); }
 
 std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& file) {
   const bool densities = at.has("densities");
@@ -91,8 +85,7 @@ std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& fi
       const std::string name = std::string(axis) + "-axis";
       if (!sensor.has(name)) continue;
       const MapReader one = sensor.map(name);
-      SensorModel& model =
-          out.emplace_back(stated(std::string(key) + "_" + axis, *part == 'G', "imu_utils", file));
+      SensorModel& model = out.emplace_back(stated(std::string(key) + "_" + axis, *part == 'G', "imu_utils", file));
       model.axis = axis;
       model.rate_hz = rate_hz;
       model.noise[0] = given(one.number(std::string(key) + "_n") / root);
@@ -122,8 +115,7 @@ bool holds_models(const Document& document) {
 
 std::vector<SensorModel> foreign_models(const Document& document, const std::string& file) {
   if (below(document, "format") != nullptr) return {};
-  if (const Document* const part = kalibr_part(document))
-    return of_kalibr(MapReader(*part, file, ""), file);
+  if (const Document* const part = kalibr_part(document)) return of_kalibr(MapReader(*part, file, ""), file);
   if (is_of_imu_utils(document)) return of_imu_utils(MapReader(document, file, ""), file);
   return {};
 }

@@ -17,8 +17,7 @@
 namespace libchar {
 
 std::string model_yaml(const SensorModel& model) {
-  return "# Noise of one sensor channel. Keys name each term in full.\n" +
-         yaml_of(model_entries(model));
+  return "# Noise of one sensor channel. Keys name each term in full.\n" + yaml_of(model_entries(model));
 }
 
 namespace {
@@ -50,21 +49,17 @@ void check_shape(const SensorModel& model, const MapReader& at) {
 }
 
 void check_process(const GaussMarkovNoise& process, const MapReader& at) {
-  const MapReader part =
-      at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s", "status"});
+  const MapReader part = at.map("gauss_markov", {"sigma", "tau_s", "sigma_ci95", "tau_ci95_s", "status"});
   if (process.sigma > 0 && !(process.tau_s > 0))
     part.refuse("sigma", "a Gauss-Markov process needs `tau_s`, its correlation time, above 0");
-  if (!process.sigma_ci95.empty() && process.sigma_ci95.size() != 2)
-    part.refuse("sigma_ci95", "expected [low, high]");
+  if (!process.sigma_ci95.empty() && process.sigma_ci95.size() != 2) part.refuse("sigma_ci95", "expected [low, high]");
   if (process.tau_ci95_s.size() > 2)
     part.refuse("tau_ci95_s", "expected [low, high], or [low] where no upper end is known");
 }
 
 }  // namespace
 
-SensorModel sensor_model_of(const Document& node,
-                            const std::string& file,
-                            const std::string& path) {
+SensorModel sensor_model_of(const Document& node, const std::string& file, const std::string& path) {
   const MapReader at(node, file, path, keys_of(model_fields()));
   SensorModel model;
   model.obtained = "written by hand";
@@ -84,9 +79,7 @@ SensorModel parse_sensor_model(std::string_view text, const std::string& file) {
   return sensor_model_of(document, file, "");
 }
 
-SensorModel read_model_file(const std::string& path) {
-  return parse_sensor_model(read_document_text(path), path);
-}
+SensorModel read_model_file(const std::string& path) { return parse_sensor_model(read_document_text(path), path); }
 
 namespace {
 
@@ -94,14 +87,11 @@ constexpr const char* kListFormat = "sensor-models";
 
 }  // namespace
 
-Json model_json(const SensorModel& model) {
-  return json_of(model_entries(model));
-}
+Json model_json(const SensorModel& model) { return json_of(model_entries(model)); }
 
 Json models_json(const std::vector<const SensorModel*>& models) {
   if (models.size() == 1) return model_json(*models.front());
-  Json out =
-      json_of({{"format", std::string(kListFormat)}, {"version", std::uint64_t{1}}, tool_entry()});
+  Json out = json_of({{"format", std::string(kListFormat)}, {"version", std::uint64_t{1}}, tool_entry()});
   out["models"] = Json::array();
   for (const SensorModel* m : models) out["models"].push_back(model_json(*m));
   return out;
@@ -109,10 +99,8 @@ Json models_json(const std::vector<const SensorModel*>& models) {
 
 std::vector<SensorModel> read_model_list(const std::string& path) {
   const Document document = parse_document(read_document_text(path), path);
-  if (std::vector<SensorModel> foreign = detail::foreign_models(document, path); !foreign.empty())
-    return foreign;
-  const DocumentEntry* format =
-      document.kind == Document::Kind::map ? document.find("format") : nullptr;
+  if (std::vector<SensorModel> foreign = detail::foreign_models(document, path); !foreign.empty()) return foreign;
+  const DocumentEntry* format = document.kind == Document::Kind::map ? document.find("format") : nullptr;
   if (format == nullptr || format->value.text != kListFormat) {
     check_format(document, path, "sensor-model", 1);
     return {sensor_model_of(document, path, "")};
@@ -145,16 +133,14 @@ std::vector<std::string> named_by(const fs::path& report) {
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-    entries.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) entries.push_back(entry.path());
   std::sort(entries.begin(), entries.end());
   return entries;
 }
 
 std::vector<std::string> models_in(const fs::path& folder) {
   std::error_code ignored;
-  if (const fs::path report = folder / "report.json"; fs::is_regular_file(report, ignored))
-    return named_by(report);
+  if (const fs::path report = folder / "report.json"; fs::is_regular_file(report, ignored)) return named_by(report);
   std::vector<std::string> files;
   for (const fs::path& entry : entries_of(folder))
     if (entry.string().ends_with(kEnding)) files.push_back(entry.string());

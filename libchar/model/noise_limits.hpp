@@ -20,9 +20,9 @@ namespace libchar {
 /// Limits of some channels. Its values wait for the unit of a channel (limits_for).
 struct LimitBlock {
   std::vector<std::string> channels;  ///< by name; empty: by kind
-  std::string kind;     ///< a word of Quantity, by the channel's unit; empty: every channel
-  std::string density;  ///< "one-sided", "two-sided": of values per √Hz
-  Document node;        ///< the block as written in the file
+  std::string kind;                   ///< a word of Quantity, by the channel's unit; empty: every channel
+  std::string density;                ///< "one-sided", "two-sided": of values per √Hz
+  Document node;                      ///< the block as written in the file
 };
 
 struct NoiseLimits {
@@ -57,7 +57,6 @@ NoiseLimits read_limits_file(const std::string& path);
 /// The limits that hold for these channels, by channel and term. Throws Error(input) with its place
 /// for a name or a kind that none of the channels has, a unit that does not fit a channel's, and a
 /// term of a channel that is limited twice.
-std::vector<ChannelLimit> limits_for(const NoiseLimits& limits,
-                                     const std::vector<NamedChannel>& channels);
+std::vector<ChannelLimit> limits_for(const NoiseLimits& limits, const std::vector<NamedChannel>& channels);
 
 }  // namespace libchar

@@ -4,9 +4,7 @@
 #include "libchar/core/units.hpp"
 
 namespace libchar {
-double simulated_value(const Coefficient& coefficient) {
-  return coefficient.value.value_or(0);
-}
+double simulated_value(const Coefficient& coefficient) { return coefficient.value.value_or(0); }
 
 std::string kind_of(const SensorModel& model) {
   if (!model.kind.empty()) return model.kind;

@@ -26,12 +26,11 @@ namespace libchar {
 /// y_t = phi y_{t-1} + sigma sqrt(1 - phi²) w_t, phi = exp(-dt/tau).
 /// What a simulation needs of it, and what is known of it.
 struct GaussMarkovNoise {
-  double sigma = 0;                ///< U; 0: there is none
-  double tau_s = 0;                ///< correlation time
-  std::vector<double> sigma_ci95;  ///< [low, high]; empty: not from a fit
-  std::vector<double> tau_ci95_s;  ///< [low, high], [low] when the record gives no upper end
-  Status status =
-      Status::detected;  ///< undetermined: noise terms alone may explain the record as well
+  double sigma = 0;                  ///< U; 0: there is none
+  double tau_s = 0;                  ///< correlation time
+  std::vector<double> sigma_ci95;    ///< [low, high]; empty: not from a fit
+  std::vector<double> tau_ci95_s;    ///< [low, high], [low] when the record gives no upper end
+  Status status = Status::detected;  ///< undetermined: noise terms alone may explain the record as well
   bool operator==(const GaussMarkovNoise&) const = default;
 };
 
@@ -90,17 +89,15 @@ enum class NoiseStart {
 struct DeterministicTerm {
   enum class Kind { step, warm_up, ramp };
   Kind kind = Kind::step;
-  double at_s = 0;  ///< step: when, from the first sample
-  double size =
-      0;  ///< in U. step: after less before; warm-up: at the first sample; ramp: over the recording
+  double at_s = 0;   ///< step: when, from the first sample
+  double size = 0;   ///< in U. step: after less before; warm-up: at the first sample; ramp: over the recording
   double sd = 0;     ///< of `size`
   double tau_s = 0;  ///< warm-up: size exp(-t / tau)
   double per_s = 0;  ///< ramp: U/s
   bool operator==(const DeterministicTerm&) const = default;
 };
 template <>
-inline constexpr auto enum_table<DeterministicTerm::Kind> =
-    enum_words<DeterministicTerm::Kind, "step warm-up ramp">;
+inline constexpr auto enum_table<DeterministicTerm::Kind> = enum_words<DeterministicTerm::Kind, "step warm-up ramp">;
 
 struct SensorModel {
   struct Recorded {
@@ -117,22 +114,20 @@ struct SensorModel {
   Nonlinearity nonlinearity;
   Bias bias;
   double reference_temperature_degc = 25;
-  Coefficients noise;  ///< status, value, 95 % interval of the five terms, two-sided densities
+  Coefficients noise;             ///< status, value, 95 % interval of the five terms, two-sided densities
   GaussMarkovNoise gauss_markov;  ///< in U, in addition to the terms; sigma 0: none
-  double flicker_phase =
-      0;  ///< of a clock's frequency: differences of flicker over the sampling interval, times this
+  double flicker_phase = 0;  ///< of a clock's frequency: differences of flicker over the sampling interval, times this
   NoiseSampling noise_sampling = NoiseSampling::per_sample;
   NoiseStart noise_start = NoiseStart::stationary;
-  std::string flicker_method = "recursive";  ///< or "rv-truncated-iir"
-  std::optional<double> white_hold_s;        ///< white noise renewed this often and held, as a
-                                             ///< simulator's band-limited white noise block
-  std::optional<double> flicker_hold_s;      ///< flicker made at this step and held, as published
-  NoiseShape noise_shape;                    ///< multiplies the density of the noise
-  std::optional<double> bandwidth_hz;        ///< first-order low-pass behind the noise
+  std::string flicker_method = "recursive";               ///< or "rv-truncated-iir"
+  std::optional<double> white_hold_s;                     ///< white noise renewed this often and held, as a
+                                                          ///< simulator's band-limited white noise block
+  std::optional<double> flicker_hold_s;                   ///< flicker made at this step and held, as published
+  NoiseShape noise_shape;                                 ///< multiplies the density of the noise
+  std::optional<double> bandwidth_hz;                     ///< first-order low-pass behind the noise
   std::optional<double> saturation_low, saturation_high;  ///< in U
   Sensitivity sensitivity;
-  std::optional<double>
-      resolution;  ///< quantization step of the output (LSB), in the output's unit
+  std::optional<double> resolution;  ///< quantization step of the output (LSB), in the output's unit
 
   std::vector<DeterministicTerm> deterministic;  ///< of the recording
 
@@ -143,10 +138,9 @@ struct SensorModel {
   std::string method;
   Recorded recording;
   double duration_s = 0;
-  std::optional<Interval>
-      stretch_s;  ///< of the recording that was used, where that is not all of it
-  std::vector<std::string> remarks;  ///< conversions on reading, what a pooled model is of
-  std::vector<Finding> findings;     ///< about the recording and the numbers, the worst first
+  std::optional<Interval> stretch_s;  ///< of the recording that was used, where that is not all of it
+  std::vector<std::string> remarks;   ///< conversions on reading, what a pooled model is of
+  std::vector<Finding> findings;      ///< about the recording and the numbers, the worst first
 
   const Coefficient& operator[](Term t) const { return noise[static_cast<std::size_t>(t)]; }
 };

@@ -35,14 +35,11 @@ bool same_number(double a, double b) {
          std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
 }
 
-std::string or_nothing(const std::string& text) {
-  return text.empty() ? "nothing" : text;
-}
+std::string or_nothing(const std::string& text) { return text.empty() ? "nothing" : text; }
 
 std::string words(const TimeWindow& w) {
-  return std::isfinite(w.to_s)
-             ? fmt::format("{} s to {} s", brief_text(w.from_s, 7), brief_text(w.to_s, 7))
-             : fmt::format("{} s to the end", brief_text(w.from_s, 7));
+  return std::isfinite(w.to_s) ? fmt::format("{} s to {} s", brief_text(w.from_s, 7), brief_text(w.to_s, 7))
+                               : fmt::format("{} s to the end", brief_text(w.from_s, 7));
 }
 
 bool same_window(const TimeWindow& a, const TimeWindow& b) {
@@ -64,34 +61,29 @@ class Differences {
 
 void compare_sources(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   if (a.scene.simulated != b.scene.simulated)
-    return found.add("the scene is",
-                     a.scene.simulated ? "a simulation" : "a recording",
+    return found.add("the scene is", a.scene.simulated ? "a simulation" : "a recording",
                      b.scene.simulated ? "a simulation" : "a recording");
   if (a.scene.simulated && a.scene.seed != b.scene.seed)
-    return found.add(
-        "seed of the simulation", std::to_string(a.scene.seed), std::to_string(b.scene.seed));
+    return found.add("seed of the simulation", std::to_string(a.scene.seed), std::to_string(b.scene.seed));
   if (a.scene.simulated && a.scene.identity != b.scene.identity)
-    return found.say(
-        "the same seed, but another simulation: its sensors, models, truth or faults differ");
+    return found.say("the same seed, but another simulation: its sensors, models, truth or faults differ");
   const std::vector<DocumentHead::File>&in_a = a.head.input, &in_b = b.head.input;
   if (in_a.size() != in_b.size())
     return found.add("number of logs", std::to_string(in_a.size()), std::to_string(in_b.size()));
   for (std::size_t i = 0; i < in_a.size(); ++i) {
     const DocumentHead::File &left = in_a[i], &right = in_b[i];
     if (left.sha256.empty() || right.sha256.empty())
-      found.say(fmt::format("the sha256 of {} is not in both reports",
-                            left.sha256.empty() ? left.path : right.path));
+      found.say(fmt::format("the sha256 of {} is not in both reports", left.sha256.empty() ? left.path : right.path));
     else if (left.sha256 != right.sha256)
-      found.add("contents of the log",
-                fmt::format("{} (sha256 {}…)", left.path, left.sha256.substr(0, 12)),
+      found.add("contents of the log", fmt::format("{} (sha256 {}…)", left.path, left.sha256.substr(0, 12)),
                 fmt::format("{} (sha256 {}…)", right.path, right.sha256.substr(0, 12)));
   }
 }
 
 std::string named(const std::vector<std::string>& names) {
   const std::size_t shown = std::min(names.size(), kMostNamed);
-  std::string out = fmt::format(
-      "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  std::string out =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (names.size() > shown) out += fmt::format(" and {} more", names.size() - shown);
   return or_nothing(out);
 }
@@ -106,10 +98,7 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
 
 // Names that the other side does not have, in order; where both have all, the order differs.
 template <class Named>
-bool same_names(const std::string& what,
-                const std::vector<Named>& a,
-                const std::vector<Named>& b,
-                Differences& found) {
+bool same_names(const std::string& what, const std::vector<Named>& a, const std::vector<Named>& b, Differences& found) {
   const auto left = names_of(a), right = names_of(b);
   if (left == right) return true;
   const auto without = [](const auto& all, const auto& others) {
@@ -133,8 +122,7 @@ void compare_sensors(const ReplayReport& a, const ReplayReport& b, Differences& 
     if (left.unit != right.unit)
       found.add("unit of sensor " + left.name, or_nothing(left.unit), or_nothing(right.unit));
     if (left.h != right.h)
-      found.add(
-          "row h of sensor " + left.name, fmt::format("{}", left.h), fmt::format("{}", right.h));
+      found.add("row h of sensor " + left.name, fmt::format("{}", left.h), fmt::format("{}", right.h));
   }
 }
 
@@ -149,60 +137,48 @@ void compare_own_errors(const ReplayReport& a, const ReplayReport& b, Difference
       names.push_back(a.sensors[i].name);
     }
   if (names.empty()) return;
-  found.say(fmt::format(
-      "the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
-      "an RMSE of {} in A, {} in B{}",
-      names[0],
-      brief_text(a.sensors[first].error.rmse, 7),
-      brief_text(b.sensors[first].error.rmse, 7),
-      names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
+  found.say(
+      fmt::format("the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
+                  "an RMSE of {} in A, {} in B{}",
+                  names[0], brief_text(a.sensors[first].error.rmse, 7), brief_text(b.sensors[first].error.rmse, 7),
+                  names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
 }
 
 void compare_references(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   if (a.reference.has_value() != b.reference.has_value())
     return found.add("reference", a.reference ? "one" : "none", b.reference ? "one" : "none");
   if (!a.reference) return;
-  if (a.reference->use != b.reference->use)
-    found.add("use of the reference", a.reference->use, b.reference->use);
+  if (a.reference->use != b.reference->use) found.add("use of the reference", a.reference->use, b.reference->use);
   const double left = a.reference->lag_s, right = b.reference->lag_s;
   if (!same_number(left, right))
     found.add("lag behind the reference", brief_text(left, 6) + " s", brief_text(right, 6) + " s");
   if (!same_names("true input", a.inputs, b.inputs, found)) return;
   for (std::size_t j = 0; j < a.inputs.size(); ++j)
     if (a.inputs[j].unit != b.inputs[j].unit)
-      found.add("unit of the true input " + a.inputs[j].name,
-                or_nothing(a.inputs[j].unit),
+      found.add("unit of the true input " + a.inputs[j].name, or_nothing(a.inputs[j].unit),
                 or_nothing(b.inputs[j].unit));
 }
 
 std::string words(const ReplayReport::Fault& f) {
-  return fmt::format("{} {}{} from {} s",
-                     f.sensor,
-                     f.kind,
-                     std::isfinite(f.value) ? " " + brief_text(f.value, 6) : "",
+  return fmt::format("{} {}{} from {} s", f.sensor, f.kind, std::isfinite(f.value) ? " " + brief_text(f.value, 6) : "",
                      brief_text(f.from_s, 7));
 }
 
 void compare_faults(const ReplayReport& a, const ReplayReport& b, Differences& found) {
   if (a.faults.size() != b.faults.size())
-    return found.add(
-        "number of faults", std::to_string(a.faults.size()), std::to_string(b.faults.size()));
+    return found.add("number of faults", std::to_string(a.faults.size()), std::to_string(b.faults.size()));
   for (std::size_t i = 0; i < a.faults.size(); ++i) {
     const ReplayReport::Fault &left = a.faults[i], &right = b.faults[i];
-    if (left.sensor != right.sensor || left.kind != right.kind ||
-        !same_number(left.value, right.value) || !same_number(left.from_s, right.from_s) ||
-        !same_number(left.to_s, right.to_s))
+    if (left.sensor != right.sensor || left.kind != right.kind || !same_number(left.value, right.value) ||
+        !same_number(left.from_s, right.from_s) || !same_number(left.to_s, right.to_s))
       return found.add(fmt::format("fault {}", i + 1), words(left), words(right));
   }
 }
 
-void compare_options(const ReplayReport::Algorithm& a,
-                     const ReplayReport::Algorithm& b,
-                     Differences& found) {
+void compare_options(const ReplayReport::Algorithm& a, const ReplayReport::Algorithm& b, Differences& found) {
   for (const auto& [name, value] : a.options)
     for (const auto& [other, its] : b.options)
-      if (name == other && !same_number(value, its))
-        found.add(a.label + "." + name, shortest(value), shortest(its));
+      if (name == other && !same_number(value, its)) found.add(a.label + "." + name, shortest(value), shortest(its));
 }
 
 /// Why these are not two replays of one scene, a sentence each; empty: they are.
@@ -229,9 +205,7 @@ std::vector<std::string> remarks(const Comparison& c) {
   Differences found(out);
   if (c.a.head.program != c.b.head.program)
     found.add("program", or_nothing(c.a.head.program), or_nothing(c.b.head.program));
-  const auto learning = [](const ReplayReport& r) {
-    return r.learning ? words(*r.learning) : std::string("none");
-  };
+  const auto learning = [](const ReplayReport& r) { return r.learning ? words(*r.learning) : std::string("none"); };
   if (learning(c.a) != learning(c.b)) found.add("learning window", learning(c.a), learning(c.b));
   std::vector<std::string> names;
   for (const SensorResult& left : c.a.sensors)
@@ -254,9 +228,7 @@ Difference difference(const ReplayReport::Algorithm& a, const ReplayReport::Algo
   return Difference::not_resolved;
 }
 
-double change(double a, double b) {
-  return a > 0 ? b / a - 1 : a == b ? 0 : kNone;
-}
+double change(double a, double b) { return a > 0 ? b / a - 1 : a == b ? 0 : kNone; }
 
 ComparedAlgorithm row(const ReplayReport::Algorithm* a, const ReplayReport::Algorithm* b) {
   ComparedAlgorithm out;
@@ -274,9 +246,7 @@ ComparedAlgorithm row(const ReplayReport::Algorithm* a, const ReplayReport::Algo
 
 // Those without a number behind all others.
 double order(const ReplayReport::Algorithm* one) {
-  return one != nullptr && one->ran && !std::isnan(one->rmse)
-             ? one->rmse
-             : std::numeric_limits<double>::infinity();
+  return one != nullptr && one->ran && !std::isnan(one->rmse) ? one->rmse : std::numeric_limits<double>::infinity();
 }
 
 std::string best_of(const ReplayReport& r) {
@@ -297,11 +267,8 @@ std::string comparison_verdict(const Comparison& c) {
   if (both == 0) return "No algorithm ran in both.";
   std::string out = fmt::format("{} of {} algorithms that ran in both:", c.a.score_words(), both);
   const char* comma = " ";
-  for (const Difference d : {Difference::better,
-                             Difference::worse,
-                             Difference::not_resolved,
-                             Difference::equal,
-                             Difference::unknown})
+  for (const Difference d :
+       {Difference::better, Difference::worse, Difference::not_resolved, Difference::equal, Difference::unknown})
     if (const std::size_t count = counts[static_cast<std::size_t>(d)]; count > 0) {
       out += fmt::format("{}{} {}", comma, count, name_of(d));
       comma = ", ";
@@ -323,11 +290,9 @@ Comparison compare_replays(ReplayReport a, ReplayReport b) {
     out.algorithms.push_back(row(&one, out.b.find(one.label)));
   for (const ReplayReport::Algorithm& one : out.b.algorithms)
     if (out.a.find(one.label) == nullptr) out.algorithms.push_back(row(nullptr, &one));
-  std::stable_sort(out.algorithms.begin(),
-                   out.algorithms.end(),
+  std::stable_sort(out.algorithms.begin(), out.algorithms.end(),
                    [](const ComparedAlgorithm& left, const ComparedAlgorithm& right) {
-                     return std::pair(order(left.b), order(left.a)) <
-                            std::pair(order(right.b), order(right.a));
+                     return std::pair(order(left.b), order(left.a)) < std::pair(order(right.b), order(right.a));
                    });
   out.remarks = remarks(out);
   out.verdict = comparison_verdict(out);
@@ -360,9 +325,8 @@ constexpr Metric kMetrics[] = {{"rmse", [](const auto& a) { return a.rmse; }, 0}
                                {"peak_bytes", [](const auto& a) { return a.bytes(); }, 1024}};
 
 const Metric& metric_of(std::string_view name) {
-  return *std::find_if(std::begin(kMetrics), std::end(kMetrics), [&](const Metric& metric) {
-    return name == metric.name;
-  });
+  return *std::find_if(std::begin(kMetrics), std::end(kMetrics),
+                       [&](const Metric& metric) { return name == metric.name; });
 }
 
 double value_of(const ReplayReport::Algorithm* one, const Metric& metric) {
@@ -374,33 +338,20 @@ std::string number(double value, bool share) {
 }
 
 // Empty: it holds.
-std::string failure(const ComparedAlgorithm& row,
-                    const Metric& metric,
-                    const ComparisonCheck& check) {
+std::string failure(const ComparedAlgorithm& row, const Metric& metric, const ComparisonCheck& check) {
   const bool regret = check.metric == "regret";
   const double a = value_of(row.a, metric), b = value_of(row.b, metric);
   if (std::isnan(b))
-    return fmt::format("{}: {} is {} in A, and there is none in B{}",
-                       row.label,
-                       metric.name,
-                       number(a, regret),
+    return fmt::format("{}: {} is {} in A, and there is none in B{}", row.label, metric.name, number(a, regret),
                        row.b != nullptr && !row.b->why.empty() ? ": " + row.b->why : "");
   const double limit = regret ? a + check.share : a * (1 + check.share);
   if (b <= limit || b - a <= metric.slack) return "";
   const std::string allowed = shortest(100 * check.share);
-  return regret ? fmt::format("{}: regret {} in A, {} in B: {} points more, {} are allowed",
-                              row.label,
-                              number(a, true),
-                              number(b, true),
-                              brief_text(100 * (b - a), 3),
-                              allowed)
-                : fmt::format("{}: {} {} in A, {} in B: {} more, {} % is allowed",
-                              row.label,
-                              metric.name,
-                              number(a, false),
-                              number(b, false),
-                              a > 0 ? brief_text(100 * (b / a - 1), 3) + " %" : "from nothing",
-                              allowed);
+  return regret ? fmt::format("{}: regret {} in A, {} in B: {} points more, {} are allowed", row.label, number(a, true),
+                              number(b, true), brief_text(100 * (b - a), 3), allowed)
+                : fmt::format("{}: {} {} in A, {} in B: {} more, {} % is allowed", row.label, metric.name,
+                              number(a, false), number(b, false),
+                              a > 0 ? brief_text(100 * (b / a - 1), 3) + " %" : "from nothing", allowed);
 }
 
 }  // namespace
@@ -424,14 +375,11 @@ std::vector<std::string> failures(const Comparison& comparison, const Comparison
     // Not asked for in B, unless by name: nothing was lost.
     if (row.b == nullptr && check.label.empty()) continue;
     ++checked;
-    if (const std::string sentence = failure(row, metric, check); !sentence.empty())
-      out.push_back(sentence);
+    if (const std::string sentence = failure(row, metric, check); !sentence.empty()) out.push_back(sentence);
   }
   if (!found && !check.label.empty()) {
     const auto near = nearest(check.label, labels);
-    refuse_check(check.text,
-                 "neither report has this algorithm",
-                 did_you_mean(near, "labels are those of the table"));
+    refuse_check(check.text, "neither report has this algorithm", did_you_mean(near, "labels are those of the table"));
   }
   if (checked == 0)
     throw Refusal(ErrorKind::check, "E0923", "`check`")

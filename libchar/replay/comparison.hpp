@@ -22,12 +22,12 @@ enum class Difference {
 };
 
 template <>
-inline constexpr auto enum_table<Difference> =
-    std::to_array<EnumWord<Difference>>({{Difference::equal, "equal"},
-                                         {Difference::not_resolved, "not resolved"},
-                                         {Difference::better, "better"},
-                                         {Difference::worse, "worse"},
-                                         {Difference::unknown, "unknown"}});
+inline constexpr auto enum_table<Difference> = std::to_array<EnumWord<Difference>>({{Difference::equal, "equal"},
+                                                                                    {Difference::not_resolved,
+                                                                                     "not resolved"},
+                                                                                    {Difference::better, "better"},
+                                                                                    {Difference::worse, "worse"},
+                                                                                    {Difference::unknown, "unknown"}});
 
 /// One label; a side that does not have it is null.
 struct ComparedAlgorithm {
@@ -49,8 +49,7 @@ struct Comparison {
   std::vector<std::string> remarks;
   /// By RMSE of B; then those without one in B, by A's. Points into `a` and `b`.
   std::vector<ComparedAlgorithm> algorithms;
-  std::string
-      verdict;  ///< "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each
+  std::string verdict;  ///< "RMSE: 1 better, 2 worse, 14 not resolved, 3 equal; …", and the best of each
 
   Comparison() = default;
   Comparison(const Comparison&) = delete;

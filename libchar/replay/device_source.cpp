@@ -24,8 +24,8 @@ constexpr Cycles kM4Double{70, 450, 600, 3500, 4000}, kM33Double{60, 400, 550, 3
 constexpr double kCall = 40;  // of a step: its call, its branches
 
 double cycles(const fusion::CCost& cost, const Cycles& of) {
-  return kCall + cost.sums * of.sum + cost.divisions * of.division + cost.roots * of.root +
-         cost.tanhs * of.tanh + cost.arctangents * of.arctangent;
+  return kCall + cost.sums * of.sum + cost.divisions * of.division + cost.roots * of.root + cost.tanhs * of.tanh +
+         cost.arctangents * of.arctangent;
 }
 
 class Writer {
@@ -90,16 +90,12 @@ class Writer {
     std::string text = fmt::format(
         "/* {} with what a replay learnt, made by sensorchar {} from {}.\n"
         "   C99, no heap, no other file; {}.\n\n   Sensors, in the order of y:\n",
-        algorithm_.label,
-        version(),
-        learnt_.file.empty() ? "a replay" : comment_words(learnt_.file),
+        algorithm_.label, version(), learnt_.file.empty() ? "a replay" : comment_words(learnt_.file),
         options_.single ? "float" : "double");
     for (const LearntSensor* sensor : sensors_)
-      text += fmt::format("     {}{}\n",
-                          comment_words(sensor->name),
-                          sensor->recorded_unit.empty()
-                              ? std::string()
-                              : ", in " + comment_words(sensor->recorded_unit));
+      text +=
+          fmt::format("     {}{}\n", comment_words(sensor->name),
+                      sensor->recorded_unit.empty() ? std::string() : ", in " + comment_words(sensor->recorded_unit));
     text += fmt::format(
         "   Rate: {} Hz. A missing sample is NAN.\n\n"
         "   State: {} bytes. A step: {:.0f} additions and multiplications, {:.0f} divisions, "
@@ -107,32 +103,21 @@ class Writer {
         "   roots, {:.0f} tanh, {:.0f} atan2 at most. Cycles of a step, estimated from these "
         "counts and not\n"
         "   measured: Cortex-M4F {:.0f}, Cortex-M33 {:.0f}{}.\n",
-        brief_text(learnt_.rate_hz, 6),
-        out.state_bytes,
-        cost.sums,
-        cost.divisions,
-        cost.roots,
-        cost.tanhs,
-        cost.arctangents,
-        out.cycles_m4f,
-        out.cycles_m33,
+        brief_text(learnt_.rate_hz, 6), out.state_bytes, cost.sums, cost.divisions, cost.roots, cost.tanhs,
+        cost.arctangents, out.cycles_m4f, out.cycles_m33,
         options_.single ? "" : " (double is computed in software there)");
     for (const std::string& note : out.notes) text += "   Note: " + note + ".\n";
     for (const Finding& finding : learnt_.findings)
       if (finding.severity != Severity::note)
-        text += fmt::format("   {}: {}{}{}.\n",
-                            name_of(finding.severity),
-                            comment_words(finding.subject),
-                            finding.subject.empty() ? "" : ": ",
-                            comment_words(finding.sentence));
+        text += fmt::format("   {}: {}{}{}.\n", name_of(finding.severity), comment_words(finding.subject),
+                            finding.subject.empty() ? "" : ": ", comment_words(finding.sentence));
     return text + "*/\n";
   }
 
   // Nothing that ends a comment, nor a line break.
   static std::string comment_words(const std::string& words) {
     std::string out = printable(words, 80);
-    for (std::size_t at = out.find("*/"); at != std::string::npos; at = out.find("*/"))
-      out[at] = '.';
+    for (std::size_t at = out.find("*/"); at != std::string::npos; at = out.find("*/")) out[at] = '.';
     return out;
   }
 
@@ -149,17 +134,9 @@ class Writer {
         "int fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, fusion_real "
         "*sd);\n\n"
         "static int usable(fusion_real sample) {{ return FABS(sample) <= LARGEST; }}\n\n",
-        sensors_.size(),
-        f ? "constant##f" : "constant",
-        f ? "1e30f" : "1e100",
-        f ? "FLT_EPSILON" : "DBL_EPSILON",
-        f ? "fabsf" : "fabs",
-        f ? "roundf" : "round",
-        f ? "tanhf" : "tanh",
-        f ? "atan2f" : "atan2",
-        f ? "sqrtf" : "sqrt",
-        f ? "float" : "double",
-        form.state.empty() ? "  uint32_t none;\n" : form.state);
+        sensors_.size(), f ? "constant##f" : "constant", f ? "1e30f" : "1e100", f ? "FLT_EPSILON" : "DBL_EPSILON",
+        f ? "fabsf" : "fabs", f ? "roundf" : "round", f ? "tanhf" : "tanh", f ? "atan2f" : "atan2",
+        f ? "sqrtf" : "sqrt", f ? "float" : "double", form.state.empty() ? "  uint32_t none;\n" : form.state);
   }
 
   /// From the numbers of the log to those that are fused.
@@ -188,15 +165,11 @@ class Writer {
     for (std::size_t i = 0; aligned() && i < sensors_.size(); ++i) {
       const LearntAlignment& a = sensors_[i]->alignment;
       if (!a.low.empty() && a.low[0] > -kNoLimit)
-        out += fmt::format("  if (samples[{}] <= {}) samples[{}] = 2 * LARGEST;\n",
-                           i,
-                           fusion::c_number(a.low[0], options_.single),
-                           i);
+        out += fmt::format("  if (samples[{}] <= {}) samples[{}] = 2 * LARGEST;\n", i,
+                           fusion::c_number(a.low[0], options_.single), i);
       if (!a.high.empty() && a.high[0] < kNoLimit)
-        out += fmt::format("  if (samples[{}] >= {}) samples[{}] = 2 * LARGEST;\n",
-                           i,
-                           fusion::c_number(a.high[0], options_.single),
-                           i);
+        out += fmt::format("  if (samples[{}] >= {}) samples[{}] = 2 * LARGEST;\n", i,
+                           fusion::c_number(a.high[0], options_.single), i);
     }
     return out;
   }
@@ -217,8 +190,7 @@ class Writer {
            align + "  given = estimate(s, samples, x, &variance);\n" +
            fmt::format(
                "  *sd = given && variance >= 0 ? {} * SQRT(variance) : -1;\n  return given;\n}}\n",
-               fusion::c_number(algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1,
-                                options_.single));
+               fusion::c_number(algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1, options_.single));
   }
 
   const LearntFusion& learnt_;
@@ -250,8 +222,7 @@ const LearntAlgorithm& algorithm_to_apply(const LearntFusion& learnt, const std:
         .got(wanted)
         .hint(did_you_mean(near, "it ran " + first_names(learnt.labels())));
   }
-  if (!found->refused.empty())
-    throw usage_error("E0933", learnt.file).says(found->refused).got(wanted);
+  if (!found->refused.empty()) throw usage_error("E0933", learnt.file).says(found->refused).got(wanted);
   return *found;
 }
 

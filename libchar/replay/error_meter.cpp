@@ -17,11 +17,7 @@ namespace {
 constexpr std::size_t kMostCells = 4096;
 
 ErrorCell merged(const ErrorCell& a, const ErrorCell& b) {
-  return {a.n + b.n,
-          a.sum + b.sum,
-          a.squares + b.squares,
-          std::max(a.maximum, b.maximum),
-          a.missing + b.missing};
+  return {a.n + b.n, a.sum + b.sum, a.squares + b.squares, std::max(a.maximum, b.maximum), a.missing + b.missing};
 }
 
 ErrorCell total(const std::vector<ErrorCell>& cells) {
@@ -30,9 +26,7 @@ ErrorCell total(const std::vector<ErrorCell>& cells) {
   return all;
 }
 
-double rms(const ErrorCell& cell) {
-  return cell.n > 0 ? std::sqrt(cell.squares / cell.n) : kNone;
-}
+double rms(const ErrorCell& cell) { return cell.n > 0 ? std::sqrt(cell.squares / cell.n) : kNone; }
 
 // Sums before each cell.
 std::vector<ErrorCell> cumulated(const std::vector<ErrorCell>& cells) {
@@ -47,14 +41,12 @@ void add_influence(const std::vector<ErrorCell>& cells, double share, std::vecto
   const double mean_square = all.squares / all.n;
   if (!(mean_square > 0)) return;
   const double scale = share * static_cast<double>(cells.size()) / (2 * all.n * mean_square);
-  for (std::size_t k = 0; k < cells.size(); ++k)
-    z[k] += scale * (cells[k].squares - cells[k].n * mean_square);
+  for (std::size_t k = 0; k < cells.size(); ++k) z[k] += scale * (cells[k].squares - cells[k].n * mean_square);
 }
 
 std::vector<double> influence(const Meters& meters) {
   std::vector<double> z(meters.empty() ? 0 : meters[0]->cells().size(), 0.0);
-  for (const ErrorMeter* meter : meters)
-    add_influence(meter->cells(), 1 / static_cast<double>(meters.size()), z);
+  for (const ErrorMeter* meter : meters) add_influence(meter->cells(), 1 / static_cast<double>(meters.size()), z);
   return z;
 }
 
@@ -75,15 +67,14 @@ double log_geometric_mean(const Meters& meters) {
 void centre(const ErrorMeter& meter, const ScoreOptions& options, std::vector<double>& z) {
   std::vector<std::size_t> edges = {0};
   for (const std::int64_t start : options.sections) {
-    const auto cell = static_cast<std::size_t>(std::max<std::int64_t>(start, 0)) /
-                      static_cast<std::size_t>(meter.cell_samples());
+    const auto cell =
+        static_cast<std::size_t>(std::max<std::int64_t>(start, 0)) / static_cast<std::size_t>(meter.cell_samples());
     if (cell > edges.back() && cell < z.size()) edges.push_back(cell);
   }
   edges.push_back(z.size());
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     double mean = 0;
-    for (std::size_t k = edges[i]; k < edges[i + 1]; ++k)
-      mean += z[k] / static_cast<double>(edges[i + 1] - edges[i]);
+    for (std::size_t k = edges[i]; k < edges[i + 1]; ++k) mean += z[k] / static_cast<double>(edges[i + 1] - edges[i]);
     for (std::size_t k = edges[i]; k < edges[i + 1]; ++k) z[k] -= mean;
   }
 }
@@ -105,13 +96,11 @@ void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorSc
   if (!out.stationary) return;
   // The square of the record's own mean is one draw, with one degree of freedom, of what others
   // have: no batch of it shows that.
-  const double offset = bias.long_memory && slope > kNeverEnds
-                            ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse)
-                            : 0;
+  const double offset =
+      bias.long_memory && slope > kNeverEnds ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse) : 0;
   const double reach = std::hypot(spread.reach95, offset);
   out.rmse_ci95 = {out.rmse * std::exp(-reach), out.rmse * std::exp(reach)};
-  if (!(bias.long_memory && slope > kWalks))
-    out.bias_ci95 = {out.bias - bias.reach95, out.bias + bias.reach95};
+  if (!(bias.long_memory && slope > kWalks)) out.bias_ci95 = {out.bias - bias.reach95, out.bias + bias.reach95};
 }
 
 // The final level is the RMS of the second half; windows are a fiftieth of the record.
@@ -136,8 +125,7 @@ double convergence(const std::vector<ErrorCell>& cells, double cell_s) {
 void ErrorMeter::put(double error) {
   if (in_last_ == 0) {
     if (cells_.size() == kMostCells) {
-      for (std::size_t i = 0; i < kMostCells / 2; ++i)
-        cells_[i] = merged(cells_[2 * i], cells_[2 * i + 1]);
+      for (std::size_t i = 0; i < kMostCells / 2; ++i) cells_[i] = merged(cells_[2 * i], cells_[2 * i + 1]);
       cells_.resize(kMostCells / 2);
       cell_samples_ *= 2;
     }
@@ -168,14 +156,11 @@ std::uint64_t ErrorMeter::cell_samples_of(std::uint64_t samples) {
 ErrorMeter ErrorMeter::where_known(const ErrorMeter& other) const {
   ErrorMeter out = *this;
   for (std::size_t k = 0; k < std::min(out.cells_.size(), other.cells_.size()); ++k)
-    if (other.cells_[k].n == 0)
-      out.cells_[k] = {0, 0, 0, 0, out.cells_[k].n + out.cells_[k].missing};
+    if (other.cells_[k].n == 0) out.cells_[k] = {0, 0, 0, 0, out.cells_[k].n + out.cells_[k].missing};
   return out;
 }
 
-std::vector<ErrorCell> ErrorMeter::cells() const {
-  return cells_;
-}
+std::vector<ErrorCell> ErrorMeter::cells() const { return cells_; }
 
 ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& options) {
   const std::vector<ErrorCell> cells = meter.cells();
@@ -228,10 +213,7 @@ double larger_throughout(const Meters& a, const Meters& b) {
   return binomial_tail(larger - 1, unlike, 0.5);
 }
 
-Interval rms_ratio_interval(const Meters& a,
-                            const Meters& b,
-                            const ScoreOptions& options,
-                            double level) {
+Interval rms_ratio_interval(const Meters& a, const Meters& b, const ScoreOptions& options, double level) {
   std::vector<double> z = influence(a);
   const std::vector<double> other = influence(b);
   if (z.size() != other.size() || z.empty()) return {kNone, kNone};

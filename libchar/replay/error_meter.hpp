@@ -47,8 +47,7 @@ struct ErrorScore {
   double maximum = 0;
   double availability = 0;  ///< share of instants with an estimate
   std::uint64_t samples = 0;
-  double converged_s =
-      0;  ///< from here on the RMS of a window is within a tenth of its final level; NaN: never
+  double converged_s = 0;  ///< from here on the RMS of a window is within a tenth of its final level; NaN: never
   /// false: the error walks or drifts over the record, so that another stretch may have any other;
   /// then there are no intervals
   bool stationary = true;
@@ -79,10 +78,7 @@ GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options = {
 /// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both
 /// saw at the same time (equally long meters). `level`: share of such intervals that miss. Contains
 /// 1: the difference is not resolved.
-Interval rms_ratio_interval(const Meters& a,
-                            const Meters& b,
-                            const ScoreOptions& options = {},
-                            double level = 0.05);
+Interval rms_ratio_interval(const Meters& a, const Meters& b, const ScoreOptions& options = {}, double level = 0.05);
 
 /// Sign test: how probable it is by chance that a's errors are the larger ones in so many of
 /// sixteen equal stretches of the record. It says something where a few huge errors hide every

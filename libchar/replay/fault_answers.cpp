@@ -13,10 +13,8 @@ bool explains(const SensorFault& known, const FoundFault& found) {
 
 }  // namespace
 
-std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
-                                     const std::vector<std::size_t>& sensors,
-                                     double start_s,
-                                     double rate_hz) {
+std::vector<FoundFault> found_faults(const fusion::FaultLog& log, const std::vector<std::size_t>& sensors,
+                                     double start_s, double rate_hz) {
   std::vector<FoundFault> out;
   std::vector<std::ptrdiff_t> open;  // of each channel: its stretch that has not ended, -1: none
   for (const fusion::FaultEvent& event : log.events()) {
@@ -25,10 +23,7 @@ std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
     if (channel >= open.size()) open.resize(channel + 1, -1);
     if (event.faulty && open[channel] < 0) {
       open[channel] = std::ssize(out);
-      out.push_back({sensors.empty() ? channel : sensors[channel],
-                     std::string(fusion::name(event.rule)),
-                     time_s,
-                     {}});
+      out.push_back({sensors.empty() ? channel : sensors[channel], std::string(fusion::name(event.rule)), time_s, {}});
     } else if (!event.faulty && open[channel] >= 0) {
       out[static_cast<std::size_t>(open[channel])].to_s = time_s;
       open[channel] = -1;
@@ -37,8 +32,7 @@ std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
   return out;
 }
 
-std::vector<detail::FaultsFound::Lead> detail::lead_stretches(const fusion::HandOverLog& log,
-                                                              double start_s,
+std::vector<detail::FaultsFound::Lead> detail::lead_stretches(const fusion::HandOverLog& log, double start_s,
                                                               double rate_hz) {
   std::vector<FaultsFound::Lead> out;
   bool open = false;
@@ -54,10 +48,8 @@ std::vector<detail::FaultsFound::Lead> detail::lead_stretches(const fusion::Hand
   return out;
 }
 
-std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known,
-                                    const std::vector<FoundFault>& found,
-                                    double start_s,
-                                    double end_s) {
+std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known, const std::vector<FoundFault>& found,
+                                    double start_s, double end_s) {
   std::vector<FaultAnswer> out;
   for (std::size_t f = 0; f < known.size(); ++f) {
     const SensorFault& fault = known[f];
@@ -75,13 +67,10 @@ std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known,
   return out;
 }
 
-std::size_t alarms_without_fault(const std::vector<SensorFault>& known,
-                                 const std::vector<FoundFault>& found) {
-  return static_cast<std::size_t>(
-      std::count_if(found.begin(), found.end(), [&](const FoundFault& one) {
-        return std::none_of(
-            known.begin(), known.end(), [&](const auto& fault) { return explains(fault, one); });
-      }));
+std::size_t alarms_without_fault(const std::vector<SensorFault>& known, const std::vector<FoundFault>& found) {
+  return static_cast<std::size_t>(std::count_if(found.begin(), found.end(), [&](const FoundFault& one) {
+    return std::none_of(known.begin(), known.end(), [&](const auto& fault) { return explains(fault, one); });
+  }));
 }
 
 }  // namespace libchar

@@ -22,16 +22,14 @@ struct FoundFault {
 
 /// How an algorithm dealt with one of the faults that the scene knows.
 struct FaultAnswer {
-  std::uint64_t fault = 0;        ///< index into ReplayResult::faults
-  std::optional<double> found_s;  ///< delay from the fault's beginning; none: never while it lasted
+  std::uint64_t fault = 0;           ///< index into ReplayResult::faults
+  std::optional<double> found_s;     ///< delay from the fault's beginning; none: never while it lasted
   std::optional<double> returned_s;  ///< delay from the fault's end until the sensor was used again
 };
 
 /// The stretches of a log of events. `sensors`: the sensor of each channel; empty: they are the same.
-std::vector<FoundFault> found_faults(const fusion::FaultLog& log,
-                                     const std::vector<std::size_t>& sensors,
-                                     double start_s,
-                                     double rate_hz);
+std::vector<FoundFault> found_faults(const fusion::FaultLog& log, const std::vector<std::size_t>& sensors,
+                                     double start_s, double rate_hz);
 
 namespace detail {
 
@@ -42,7 +40,7 @@ struct FaultsFound {
     std::string lead;  ///< fusion::Lead
     double from_s = 0;
     std::optional<double> to_s;  ///< none: until the end
-    std::string ended;  ///< why it ended, fusion::HandOverReason; empty: at the end of the run
+    std::string ended;           ///< why it ended, fusion::HandOverReason; empty: at the end of the run
   };
 
   bool watches_faults = false;  ///< it takes sensors out; `faults` and `answers` mean something
@@ -54,20 +52,15 @@ struct FaultsFound {
 };
 
 /// The stretches of a log of hand-overs.
-std::vector<FaultsFound::Lead> lead_stretches(const fusion::HandOverLog& log,
-                                              double start_s,
-                                              double rate_hz);
+std::vector<FaultsFound::Lead> lead_stretches(const fusion::HandOverLog& log, double start_s, double rate_hz);
 
 }  // namespace detail
 
 /// One for each known fault that lies within [start_s, end_s).
-std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known,
-                                    const std::vector<FoundFault>& found,
-                                    double start_s,
-                                    double end_s);
+std::vector<FaultAnswer> answers_to(const std::vector<SensorFault>& known, const std::vector<FoundFault>& found,
+                                    double start_s, double end_s);
 
 /// How much was raised where no fault is known: a false alarm, as far as the scene knows.
-std::size_t alarms_without_fault(const std::vector<SensorFault>& known,
-                                 const std::vector<FoundFault>& found);
+std::size_t alarms_without_fault(const std::vector<SensorFault>& known, const std::vector<FoundFault>& found);
 
 }  // namespace libchar

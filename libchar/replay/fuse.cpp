@@ -50,10 +50,7 @@ std::vector<Channel> channels_of(const std::string& log, ReadOptions reading, Pr
 
 class Fusing {
  public:
-  Fusing(const std::string& log,
-         const LearntFusion& learnt,
-         const FuseOptions& options,
-         Progress& progress)
+  Fusing(const std::string& log, const LearntFusion& learnt, const FuseOptions& options, Progress& progress)
       : log_(log),
         learnt_(learnt),
         options_(options),
@@ -140,8 +137,7 @@ class Fusing {
 void Fusing::find_entry() {
   entry_ = fusion::find_algorithm(algorithm_.name);
   if (entry_ == nullptr)
-    throw input_error("E0930",
-                      fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column))
+    throw input_error("E0930", fmt::format("{}:{}:{}", learnt_.file, algorithm_.line, algorithm_.column))
         .says("this program has no algorithm of this name")
         .got(algorithm_.name)
         .hint("sensorchar replay lists what there is");
@@ -172,10 +168,8 @@ double Fusing::to_recorded(const LearntSensor& sensor, const Channel& channel) c
   const std::string& unit = as_read ? channel.unit : channel.stated;
   if (const auto factor = Unit::sample_factor(unit, sensor.recorded_unit)) return *factor;
   throw input_error("E0936", log_)
-      .says("channel {} is in another unit than that of sensor {}, {}",
-            printable(channel.name, 40),
-            printable(sensor.name, 40),
-            sensor.recorded_unit)
+      .says("channel {} is in another unit than that of sensor {}, {}", printable(channel.name, 40),
+            printable(sensor.name, 40), sensor.recorded_unit)
       .got(unit)
       .hint("convert the log, or say with `units` what the channels are in");
 }
@@ -184,19 +178,16 @@ double Fusing::to_recorded(const LearntSensor& sensor, const Channel& channel) c
 void Fusing::without(const std::string& sensor) {
   if (!entry_->description->needs.accepts_missing)
     throw input_error("E0937", log_)
-        .says("the log has no channel for this sensor, and {} cannot run without it",
-              algorithm_.label)
+        .says("the log has no channel for this sensor, and {} cannot run without it", algorithm_.label)
         .got(sensor)
         .hint("name its column with `map`, or choose another algorithm");
-  result_.warnings.add(
-      "sensor_not_in_log", "the log does not have these sensors: fused without them", sensor);
+  result_.warnings.add("sensor_not_in_log", "the log does not have these sensors: fused without them", sensor);
 }
 
 void Fusing::find_channels() {
   check_map();
   const ReadOptions& reading = options_.reading;
-  dressed_ =
-      !reading.units.empty() || !reading.channel_unit.empty() || !reading.channel_scale.empty();
+  dressed_ = !reading.units.empty() || !reading.channel_unit.empty() || !reading.channel_scale.empty();
   const std::vector<Channel> channels = channels_of(log_, options_.reading, progress_);
   std::vector<std::string> names;
   names.reserve(channels.size());
@@ -212,8 +203,7 @@ void Fusing::find_channels() {
     result_.sensors.push_back({sensor.name, "", sensor.unit});
     const bool axes = !aligned || std::all_of(sensor.cross.begin(), sensor.cross.end(), there);
     if (there(channel) && axes) {
-      to_recorded_.push_back(
-          to_recorded(sensor, channels[static_cast<std::size_t>(find(channel))]));
+      to_recorded_.push_back(to_recorded(sensor, channels[static_cast<std::size_t>(find(channel))]));
       result_.sensors[i].channel = channel;
       present_.push_back(i);
     } else if (channel != sensor.channel) {
@@ -234,8 +224,7 @@ void Fusing::find_channels() {
                 return out;
               }()));
   for (std::size_t i = 0; i < learnt_.sensors.size(); ++i)
-    if (result_.sensors[i].channel.empty() && !learnt_.sensors[i].left_out)
-      without(learnt_.sensors[i].name);
+    if (result_.sensors[i].channel.empty() && !learnt_.sensors[i].left_out) without(learnt_.sensors[i].name);
 }
 
 void Fusing::describe_scene() {
@@ -255,10 +244,8 @@ void Fusing::describe_scene() {
     sensor.channel = result_.sensors[i].channel;
     sensor.h = from.h;
     sensor.scale = from.scale * to_recorded_[k];
-    if (!dressed_ && from.cross.empty())
-      scene_.reading.channel_scale.push_back(sensor.channel + "=1");
-    sensor.unit =
-        from.unit.empty() && (std::abs(from.scale) == 1 || tilt) ? from.recorded_unit : from.unit;
+    if (!dressed_ && from.cross.empty()) scene_.reading.channel_scale.push_back(sensor.channel + "=1");
+    sensor.unit = from.unit.empty() && (std::abs(from.scale) == 1 || tilt) ? from.recorded_unit : from.unit;
     sensor.cross = from.cross;
     const std::size_t place = scene_.sensors.size();
     if (tilt && from.name == learnt_.tilt.gyroscope) scene_.tilt->gyroscope = place;
@@ -281,24 +268,21 @@ void Fusing::check_rate() {
         .says(
             "the log's rate is {} times that of the log where this was learnt: the noise of a "
             "sample, which {} weighs against the drifts, is not known there",
-            brief_text(ratio, 4),
-            algorithm_.label)
+            brief_text(ratio, 4), algorithm_.label)
         .got("{} Hz", brief_text(instants_->info().rate_hz, 6))
         .hint("learn on a log of this rate, or choose another algorithm");
-  result_.warnings.add("another_rate",
-                       "the log's rate is not that of the log where this was learnt: delays and "
-                       "times are kept, what counts samples (memories, noise of a sample) is not",
-                       fmt::format("{} Hz, learnt at {} Hz",
-                                   brief_text(instants_->info().rate_hz, 6),
-                                   brief_text(learnt_.rate_hz, 6)));
+  result_.warnings.add(
+      "another_rate",
+      "the log's rate is not that of the log where this was learnt: delays and "
+      "times are kept, what counts samples (memories, noise of a sample) is not",
+      fmt::format("{} Hz, learnt at {} Hz", brief_text(instants_->info().rate_hz, 6), brief_text(learnt_.rate_hz, 6)));
 }
 
 void Fusing::tell_frozen() {
   const SourceInfo& source = instants_->source().info();
   result_.warnings.merge(source.samples_say);
   for (const std::size_t i : source.frozen)
-    result_.warnings.add("frozen_sensor",
-                         kFrozenMissing,
+    result_.warnings.add("frozen_sensor", kFrozenMissing,
                          still_words(scene_.sensors[i].name, source.presence[i], source.rate_hz));
 }
 
@@ -307,8 +291,7 @@ void Fusing::prepare_instants() {
   std::vector<double> offsets;
   for (const std::size_t i : present_) offsets.push_back(learnt_.sensors[i].offset);
   instants_->set_offsets(std::move(offsets));
-  for (std::size_t k = 0; k < present_.size(); ++k)
-    result_.sensors[present_[k]].unit = instants_->info().units[k];
+  for (std::size_t k = 0; k < present_.size(); ++k) result_.sensors[present_[k]].unit = instants_->info().units[k];
   if (!learnt_.interpolation.empty()) {
     alignment_ = alignment_of(learnt_, present_, instants_->info().rate_hz);
     for (const fusion::ChannelAlignment& channel : alignment_.alignment.channels)
@@ -327,12 +310,10 @@ void Fusing::make_runner() {
   fusion::Array array = array_of(learnt_);
   const InstantsInfo& info = instants_->info();
   array.rate_hz = info.rate_hz;
-  array.fault_free_samples =
-      std::clamp<std::int64_t>(std::llround(fault_free_s() * info.rate_hz), 0, info.count);
+  array.fault_free_samples = std::clamp<std::int64_t>(std::llround(fault_free_s() * info.rate_hz), 0, info.count);
   if (entry_->description->needs.fault_free_start && array.fault_free_samples == 0)
     throw usage_error("E0934", "`fault_free_s`")
-        .says("{} learns its thresholds at the start of a log, where no sensor fails",
-              algorithm_.label)
+        .says("{} learns its thresholds at the start of a log, where no sensor fails", algorithm_.label)
         .hint("say how long that is in this log, or choose another algorithm");
   for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) {
     row_.push_back(learnt_.sensors[i].left_out ? -1 : std::ssize(sensor_of_));
@@ -360,9 +341,8 @@ void Fusing::look_ahead() {
   for (const auto& [name, value] : algorithm_.options) settings.set(name, value);
   if (!entry_->looks_ahead(settings)) return;
   PassProgress passing(progress_, "looking ahead");
-  instants_->pass(0, instants_->info().count, block(), passing, [&](const InstantBlock& b) {
-    runner_->look(given(b.samples));
-  });
+  instants_->pass(0, instants_->info().count, block(), passing,
+                  [&](const InstantBlock& b) { runner_->look(given(b.samples)); });
   runner_->finish_learning();
 }
 
@@ -371,8 +351,7 @@ double Fusing::fault_free_s() const {
   if (options_.fault_free_s) return *options_.fault_free_s;
   const std::string& sha256 = instants_->info().logs[0].sha256;
   const bool same = !sha256.empty() && !options_.reading.from_s &&
-                    std::any_of(learnt_.learnt_from.begin(),
-                                learnt_.learnt_from.end(),
+                    std::any_of(learnt_.learnt_from.begin(), learnt_.learnt_from.end(),
                                 [&](const LearntFrom& from) { return from.sha256 == sha256; });
   return same ? learnt_.fault_free_s : 0;
 }
@@ -383,19 +362,15 @@ LogInfo Fusing::columns() const {
   out.samples = out.rows = static_cast<std::uint64_t>(info.count);
   out.time = info.logs[0].time;
   out.time.rate_hz = info.rate_hz;
-  for (const LearntInput& input : learnt_.inputs)
-    out.channels.push_back({input.name, input.unit, false});
-  for (const LearntInput& input : learnt_.inputs)
-    out.channels.push_back({input.name + " sd", input.unit, false});
-  for (const LearntSensor& sensor : learnt_.sensors)
-    out.channels.push_back({sensor.name + " used", "", true});
+  for (const LearntInput& input : learnt_.inputs) out.channels.push_back({input.name, input.unit, false});
+  for (const LearntInput& input : learnt_.inputs) out.channels.push_back({input.name + " sd", input.unit, false});
+  for (const LearntSensor& sensor : learnt_.sensors) out.channels.push_back({sensor.name + " used", "", true});
   return out;
 }
 
 /// A row a sensor of the algorithm; those that the log has not are missing.
 const Eigen::MatrixXd& Fusing::given(const Eigen::MatrixXd& samples) {
-  if (present_.size() == learnt_.sensors.size() && sensor_of_.size() == present_.size())
-    return samples;
+  if (present_.size() == learnt_.sensors.size() && sensor_of_.size() == present_.size()) return samples;
   full_.setConstant(std::ssize(sensor_of_), samples.cols(), kMissing);
   for (std::size_t k = 0; k < present_.size(); ++k)
     if (const std::ptrdiff_t row = row_[present_[k]]; row >= 0)
@@ -443,8 +418,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   x_.resize(inputs, all.cols());
   variance_.resize(inputs, all.cols());
   runner_->run(all, x_, variance_);
-  const std::vector<double>* const doubt =
-      check_.doubt ? &check_.doubt->push(all, x_.row(0)) : nullptr;
+  const std::vector<double>* const doubt = check_.doubt ? &check_.doubt->push(all, x_.row(0)) : nullptr;
   x_ *= output_scale_;
   for (std::vector<double>& column : out_) column.resize(rows);
   for (Eigen::Index j = 0; j < inputs; ++j)
@@ -452,11 +426,9 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = x_(j, at);
       double sd = stated(j) * std::sqrt(variance_(j, at));
-      if (doubt != nullptr && (*doubt)[k] > 0)
-        sd = std::hypot(sd, output_scale_ * std::sqrt((*doubt)[k]));
+      if (doubt != nullptr && (*doubt)[k] > 0) sd = std::hypot(sd, output_scale_ * std::sqrt((*doubt)[k]));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
-      out_[r + static_cast<std::size_t>(j)][k] =
-          std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
+      out_[r + static_cast<std::size_t>(j)][k] = std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
     }
   for (std::size_t k = 0; k < rows; ++k) {
     result_.estimates += std::isfinite(out_[0][k]) ? 1 : 0;
@@ -464,8 +436,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   }
   fill_flags(all, 2 * r);
   if (check_.steps && check_.rows.size() == sensor_of_.size()) check_.steps->push(all);
-  if (check_.steps && check_.rows.size() < sensor_of_.size())
-    check_.steps->push(all(check_.rows, Eigen::all));
+  if (check_.steps && check_.rows.size() < sensor_of_.size()) check_.steps->push(all(check_.rows, Eigen::all));
   if (check_.readings) check_.readings->push(all);
   faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
@@ -475,8 +446,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
 /// By how much a deviation that the algorithm states is multiplied: unit, and what the replay measured of its coverage.
 double Fusing::stated(Eigen::Index input) const {
   const std::vector<double>& factor = algorithm_.sd_factor;
-  return output_scale_ *
-         (factor.size() == learnt_.inputs.size() ? factor[static_cast<std::size_t>(input)] : 1);
+  return output_scale_ * (factor.size() == learnt_.inputs.size() ? factor[static_cast<std::size_t>(input)] : 1);
 }
 
 void Fusing::begin_check() {
@@ -521,10 +491,7 @@ void Fusing::check_readings() {
     names.push_back(learnt_.sensors[i].name);
     units.push_back(result_.sensors[i].unit);
   }
-  detail::warn_of_changes(check_.readings->changes(learnt_readings()),
-                          names,
-                          units,
-                          {0, instants_->info().rate_hz},
+  detail::warn_of_changes(check_.readings->changes(learnt_readings()), names, units, {0, instants_->info().rate_hz},
                           result_.warnings);
 }
 
@@ -539,8 +506,7 @@ void Fusing::tell() {
     result_.warnings.add("faults_not_kept",
                          "more faults than are kept: flags of sensors behind the last one are not "
                          "complete",
-                         "",
-                         log->dropped());
+                         "", log->dropped());
 }
 
 FuseResult Fusing::run(ColumnSink& sink) {
@@ -557,18 +523,14 @@ FuseResult Fusing::run(ColumnSink& sink) {
   look_ahead();
   sink.begin(columns());
   PassProgress named(progress_, "fusing");
-  instants_->pass(
-      0, info.count, block(), named, [&](const InstantBlock& b) { take(b.samples, sink); });
+  instants_->pass(0, info.count, block(), named, [&](const InstantBlock& b) { take(b.samples, sink); });
   tell();
   return std::move(result_);
 }
 
 }  // namespace
 
-FuseResult fuse(const std::string& log,
-                const LearntFusion& learnt,
-                ColumnSink& sink,
-                const FuseOptions& options,
+FuseResult fuse(const std::string& log, const LearntFusion& learnt, ColumnSink& sink, const FuseOptions& options,
                 Progress& progress) {
   if (read_once(log))
     throw usage_error("E0934", log)

@@ -52,10 +52,7 @@ struct FuseResult {
 /// Gives `sink` the inputs, their standard deviations, and one flag per sensor (1: in use, 0: taken out by the
 /// algorithm, missing: no sample). Throws Error(input) when log and file do not fit, Error(usage) for an
 /// algorithm or sensor that the file does not have.
-FuseResult fuse(const std::string& log,
-                const LearntFusion& learnt,
-                ColumnSink& sink,
-                const FuseOptions& options = {},
+FuseResult fuse(const std::string& log, const LearntFusion& learnt, ColumnSink& sink, const FuseOptions& options = {},
                 Progress& progress = no_progress());
 
 }  // namespace libchar

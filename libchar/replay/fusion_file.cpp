@@ -22,8 +22,8 @@ constexpr Word kTrends[] = {{"none"}, {"mean"}, {"line"}};
 const Fields<LearntInput> kLearntInputFields = {
     field<&LearntInput::name>("name", {.meaning = "of the estimate's column", .required = true}),
     field<&LearntInput::unit>("unit", {.meaning = "of the estimate", .otherwise = "not known"}),
-    field<&LearntInput::reference_offset>(
-        "reference_offset", {.meaning = "subtracted from the reference", .otherwise = "0"}),
+    field<&LearntInput::reference_offset>("reference_offset",
+                                          {.meaning = "subtracted from the reference", .otherwise = "0"}),
 };
 
 const Fields<LearntFrom> kLearntFromFields = {
@@ -40,23 +40,16 @@ const Fields<LearntTilt> kLearntTiltFields = {
 const Fields<LearntAlignment> kLearntAlignmentFields = {
     field<&LearntAlignment::delay_samples>(
         "delay_samples",
-        {.range = {-8, 8},
-         .meaning = "the sensor is so late, in samples at `rate_hz`",
-         .otherwise = "0"}),
+        {.range = {-8, 8}, .meaning = "the sensor is so late, in samples at `rate_hz`", .otherwise = "0"}),
     field<&LearntAlignment::bias>("bias", {.meaning = "in units of the input", .otherwise = "0"}),
-    field<&LearntAlignment::gain>("gain",
-                                  {.range = {-1, std::numeric_limits<double>::max(), true},
-                                   .meaning = "beyond one",
-                                   .otherwise = "0"}),
-    field<&LearntAlignment::cross>("cross",
-                                   {.meaning = "share of each further axis", .otherwise = "none"}),
+    field<&LearntAlignment::gain>(
+        "gain", {.range = {-1, std::numeric_limits<double>::max(), true}, .meaning = "beyond one", .otherwise = "0"}),
+    field<&LearntAlignment::cross>("cross", {.meaning = "share of each further axis", .otherwise = "none"}),
     field<&LearntAlignment::low>(
-        "low",
-        {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; "
-                    "−1e300: no limit",
-         .otherwise = "no limits"}),
-    field<&LearntAlignment::high>(
-        "high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
+        "low", {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; "
+                           "−1e300: no limit",
+                .otherwise = "no limits"}),
+    field<&LearntAlignment::high>("high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
 };
 
 // One sensor may be the median at nearly every instant: zeros are written too.
@@ -64,11 +57,9 @@ const Fields<LearntSensor::Reading> kLearntReadingFields = always(Fields<LearntS
     field<&LearntSensor::Reading::offset>("offset", {.meaning = "in units of the input"}),
     field<&LearntSensor::Reading::gain>("gain", {.meaning = "beyond one"}),
     field<&LearntSensor::Reading::usual_mean>(
-        "usual_mean",
-        {.range = kNotNegative,
-         .meaning = "nine of ten blocks were in the mean no further from that"}),
-    field<&LearntSensor::Reading::usual_rms>(
-        "usual_rms", {.range = kNotNegative, .meaning = "nor did they scatter more"}),
+        "usual_mean", {.range = kNotNegative, .meaning = "nine of ten blocks were in the mean no further from that"}),
+    field<&LearntSensor::Reading::usual_rms>("usual_rms",
+                                             {.range = kNotNegative, .meaning = "nor did they scatter more"}),
 });
 
 // ---- options and learnt numbers: keys that the algorithm names ----
@@ -107,8 +98,7 @@ void read_learnt(const MapReader& at, std::string_view key, LearntAlgorithm& alg
 void write_learnt(const Field& row, const LearntAlgorithm& algorithm, std::vector<Entry>& out) {
   if (algorithm.learnt.empty()) return;
   std::vector<Entry> below;
-  for (const fusion::LearntNumbers& numbers : algorithm.learnt)
-    below.push_back({numbers.name, numbers.values});
+  for (const fusion::LearntNumbers& numbers : algorithm.learnt) below.push_back({numbers.name, numbers.values});
   out.push_back(part_entry(std::string(row.key), std::move(below)));
 }
 
@@ -128,8 +118,8 @@ class FileCheck {
   FileCheck(const MapReader& top, const LearntFusion& learnt) : top_(top), learnt_(learnt) {}
 
   void run() const {
-    if (learnt_.preparation.to_hz > 0 && !(learnt_.preparation.from_hz > 0 &&
-                                           learnt_.preparation.from_hz < learnt_.preparation.to_hz))
+    if (learnt_.preparation.to_hz > 0 &&
+        !(learnt_.preparation.from_hz > 0 && learnt_.preparation.from_hz < learnt_.preparation.to_hz))
       top_.refuse("low_pass_hz", "stands behind a high-pass with a lower corner");
     if (learnt_.sensors.empty()) top_.refuse("sensors", "expected at least one sensor");
     if (learnt_.inputs.empty()) top_.refuse("inputs", "expected at least one input");
@@ -142,8 +132,7 @@ class FileCheck {
 
  private:
   Refusal refusal(const char* list, std::size_t index) const {
-    return input_error("E0930", top_.where(top_.list(list)[index]))
-        .about(fmt::format("{}[{}]", list, index));
+    return input_error("E0930", top_.where(top_.list(list)[index])).about(fmt::format("{}[{}]", list, index));
   }
 
   void sensor(std::size_t i) const {
@@ -151,26 +140,21 @@ class FileCheck {
     for (std::size_t j = 0; j < i; ++j)
       if (learnt_.sensors[j].name == s.name)
         throw refusal("sensors", i).says("two sensors have the name {}", printable(s.name, 40));
-    if (s.scale == 0)
-      throw refusal("sensors", i).says("a scale of zero leaves nothing of the samples");
+    if (s.scale == 0) throw refusal("sensors", i).says("a scale of zero leaves nothing of the samples");
     if (!tilted() && s.h.size() != learnt_.inputs.size())
       throw refusal("sensors", i)
-          .says(
-              "h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size());
-    if (s.flicker.has_value() != s.walk.has_value() ||
-        s.gauss_markov_sigma.size() != s.gauss_markov_tau_s.size())
+          .says("h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size());
+    if (s.flicker.has_value() != s.walk.has_value() || s.gauss_markov_sigma.size() != s.gauss_markov_tau_s.size())
       throw refusal("sensors", i)
           .says(
               "a noise model has flicker and walk, and a gauss_markov_tau_s for each "
               "gauss_markov_sigma");
     for (const auto* limits : {&s.alignment.low, &s.alignment.high})
       if (!limits->empty() && limits->size() != 1 + s.cross.size())
-        throw refusal("sensors", i)
-            .says("alignment: a limit of the sensor and of each of its further axes");
+        throw refusal("sensors", i).says("alignment: a limit of the sensor and of each of its further axes");
     if (s.cross.size() != learnt_.sensors[0].cross.size() ||
         (!s.alignment.cross.empty() && s.alignment.cross.size() != s.cross.size()))
-      throw refusal("sensors", i)
-          .says("all sensors name as many further axes, and share in as many");
+      throw refusal("sensors", i).says("all sensors name as many further axes, and share in as many");
   }
 
   bool tilted() const { return !learnt_.tilt.gyroscope.empty(); }
@@ -178,9 +162,7 @@ class FileCheck {
   void tilt() const {
     for (const std::string* name :
          {&learnt_.tilt.gyroscope, &learnt_.tilt.accelerometer_x, &learnt_.tilt.accelerometer_z})
-      if (std::none_of(learnt_.sensors.begin(), learnt_.sensors.end(), [&](const auto& s) {
-            return s.name == *name;
-          }))
+      if (std::none_of(learnt_.sensors.begin(), learnt_.sensors.end(), [&](const auto& s) { return s.name == *name; }))
         top_.refuse("tilt", fmt::format("no sensor has the name {}", printable(*name, 40)));
   }
 
@@ -202,82 +184,61 @@ const Fields<LearntFusion> kFusionHead = {
     tool_row<LearntFusion>(),
     field<&LearntFusion::name>("name", {.meaning = "of the scene"}),
     list_of<&LearntFusion::learnt_from>(
-        "learnt_from",
-        kLearntFromFields,
+        "learnt_from", kLearntFromFields,
         {.meaning = "files it was learnt from: their path and SHA-256", .form = Entry::Form::flow}),
-    field<&LearntFusion::rate_hz>("rate_hz",
-                                  {.unit = "Hz",
-                                   .range = kPositive,
-                                   .meaning = "of the instants that were fused",
-                                   .written = Written::always,
-                                   .required = true}),
+    field<&LearntFusion::rate_hz>("rate_hz", {.unit = "Hz",
+                                              .range = kPositive,
+                                              .meaning = "of the instants that were fused",
+                                              .written = Written::always,
+                                              .required = true}),
 };
 
 // How samples become instants.
 const Fields<LearntFusion> kFusionInstants = {
-    field<&LearntFusion::average_s>("average_s",
-                                    {.unit = "s",
-                                     .range = kPositive,
-                                     .meaning = "an instant is the mean over so long",
-                                     .otherwise = "one sample"}),
-    field<&LearntFusion::resample_hz>(
-        "resample_hz",
-        {.unit = "Hz",
-         .range = kPositive,
-         .meaning = "samples are interpolated to this rate by their stamps",
-         .otherwise = "they are not"}),
+    field<&LearntFusion::average_s>(
+        "average_s",
+        {.unit = "s", .range = kPositive, .meaning = "an instant is the mean over so long", .otherwise = "one sample"}),
+    field<&LearntFusion::resample_hz>("resample_hz",
+                                      {.unit = "Hz",
+                                       .range = kPositive,
+                                       .meaning = "samples are interpolated to this rate by their stamps",
+                                       .otherwise = "they are not"}),
     field<&LearntFusion::preparation, &ScenePreparation::detrend>(
-        "detrend",
-        {.words = kTrends,
-         .meaning = "subtracted from each sensor, of the whole log",
-         .otherwise = "none"}),
+        "detrend", {.words = kTrends, .meaning = "subtracted from each sensor, of the whole log", .otherwise = "none"}),
     field<&LearntFusion::preparation, &ScenePreparation::from_hz>(
-        "high_pass_hz",
-        {.unit = "Hz",
-         .range = kNotNegative,
-         .meaning = "corner of a high-pass that each sensor goes through",
-         .otherwise = "no filter"}),
+        "high_pass_hz", {.unit = "Hz",
+                         .range = kNotNegative,
+                         .meaning = "corner of a high-pass that each sensor goes through",
+                         .otherwise = "no filter"}),
     field<&LearntFusion::preparation, &ScenePreparation::to_hz>(
         "low_pass_hz",
-        {.unit = "Hz",
-         .range = kNotNegative,
-         .meaning = "corner of the low-pass behind it",
-         .otherwise = "none"}),
-    field<&LearntFusion::learning_instants>(
-        "learning_instants", {.meaning = "with a reference, before the run", .otherwise = "0"}),
-    field<&LearntFusion::fault_free_s>("fault_free_s",
-                                       {.unit = "s",
-                                        .range = kNotNegative,
-                                        .meaning = "so long no sensor failed at the start",
-                                        .otherwise = "0: not known"}),
+        {.unit = "Hz", .range = kNotNegative, .meaning = "corner of the low-pass behind it", .otherwise = "none"}),
+    field<&LearntFusion::learning_instants>("learning_instants",
+                                            {.meaning = "with a reference, before the run", .otherwise = "0"}),
+    field<&LearntFusion::fault_free_s>("fault_free_s", {.unit = "s",
+                                                        .range = kNotNegative,
+                                                        .meaning = "so long no sensor failed at the start",
+                                                        .otherwise = "0: not known"}),
 };
 
 const Fields<LearntFusion> kFusionContent = {
     list_of<&LearntFusion::inputs>(
-        "inputs",
-        kLearntInputFields,
-        {.meaning =
-             "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference",
+        "inputs", kLearntInputFields,
+        {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference",
          .required = true,
          .form = Entry::Form::flow}),
-    field<&LearntFusion::interpolation>("interpolation",
-                                        {.words = kInterpolations,
-                                         .meaning = "of the alignment",
-                                         .otherwise = "nothing is aligned"}),
-    part<&LearntFusion::tilt>(
-        "tilt", kLearntTiltFields, {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
-    list_of<&LearntFusion::sensors>(
-        "sensors", fusion_sensor_fields(), {.meaning = "in their order (below)", .required = true}),
-    field<&LearntFusion::recommended>("recommended",
-                                      {.meaning = "label of the best method", .otherwise = "none"}),
-    list_of<&LearntFusion::findings>(
-        "findings",
-        finding_fields(),
-        {.meaning = "about the recording and its sensors when this was learnt"}),
-    list_of<&LearntFusion::algorithms>(
-        "algorithms", fusion_algorithm_fields(), {.meaning = "that ran (below)", .required = true}),
-    custom<LearntFusion, read_complete, write_complete>(
-        "complete", "true", {.meaning = "the last line: a file without it is cut off"}),
+    field<&LearntFusion::interpolation>(
+        "interpolation", {.words = kInterpolations, .meaning = "of the alignment", .otherwise = "nothing is aligned"}),
+    part<&LearntFusion::tilt>("tilt", kLearntTiltFields, {.meaning = "sensors of a tilt", .form = Entry::Form::flow}),
+    list_of<&LearntFusion::sensors>("sensors", fusion_sensor_fields(),
+                                    {.meaning = "in their order (below)", .required = true}),
+    field<&LearntFusion::recommended>("recommended", {.meaning = "label of the best method", .otherwise = "none"}),
+    list_of<&LearntFusion::findings>("findings", finding_fields(),
+                                     {.meaning = "about the recording and its sensors when this was learnt"}),
+    list_of<&LearntFusion::algorithms>("algorithms", fusion_algorithm_fields(),
+                                       {.meaning = "that ran (below)", .required = true}),
+    custom<LearntFusion, read_complete, write_complete>("complete", "true",
+                                                        {.meaning = "the last line: a file without it is cut off"}),
 };
 
 }  // namespace
@@ -286,74 +247,59 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
   static const Fields<LearntSensor> rows = {
       field<&LearntSensor::name>("name", {.meaning = "of the sensor", .required = true}),
       field<&LearntSensor::channel>("channel", {.meaning = "of the log", .required = true}),
-      field<&LearntSensor::recorded_unit>(
-          "recorded_unit", {.meaning = "of the channel as recorded", .otherwise = "not known"}),
-      field<&LearntSensor::unit>(
-          "unit", {.meaning = "of the samples after `scale`", .otherwise = "that of the channel"}),
-      field<&LearntSensor::scale>(
-          "scale", {.meaning = "recorded samples are multiplied by it", .otherwise = "1"}),
-      field<&LearntSensor::h>(
-          "h", {.meaning = "weights of the inputs in this sensor", .otherwise = "`1`"}),
-      field<&LearntSensor::offset>(
-          "offset", {.meaning = "subtracted from the scaled samples", .otherwise = "0"}),
-      field<&LearntSensor::noise_variance>(
-          "noise_variance", {.range = kPositive, .meaning = "of a sample, told to the algorithms"}),
-      field<&LearntSensor::flicker>("flicker",
-                                    {.range = kNotNegative, .meaning = "B of its noise model"}),
-      field<&LearntSensor::walk>("walk",
-                                 {.range = kNotNegative, .meaning = "K of its noise model"}),
-      field<&LearntSensor::gauss_markov_sigma>(
-          "gauss_markov_sigma", {.meaning = "deviations of its Gauss–Markov processes"}),
-      field<&LearntSensor::gauss_markov_tau_s>("gauss_markov_tau_s",
-                                               {.meaning = "their times of correlation, in s"}),
+      field<&LearntSensor::recorded_unit>("recorded_unit",
+                                          {.meaning = "of the channel as recorded", .otherwise = "not known"}),
+      field<&LearntSensor::unit>("unit",
+                                 {.meaning = "of the samples after `scale`", .otherwise = "that of the channel"}),
+      field<&LearntSensor::scale>("scale", {.meaning = "recorded samples are multiplied by it", .otherwise = "1"}),
+      field<&LearntSensor::h>("h", {.meaning = "weights of the inputs in this sensor", .otherwise = "`1`"}),
+      field<&LearntSensor::offset>("offset", {.meaning = "subtracted from the scaled samples", .otherwise = "0"}),
+      field<&LearntSensor::noise_variance>("noise_variance",
+                                           {.range = kPositive, .meaning = "of a sample, told to the algorithms"}),
+      field<&LearntSensor::flicker>("flicker", {.range = kNotNegative, .meaning = "B of its noise model"}),
+      field<&LearntSensor::walk>("walk", {.range = kNotNegative, .meaning = "K of its noise model"}),
+      field<&LearntSensor::gauss_markov_sigma>("gauss_markov_sigma",
+                                               {.meaning = "deviations of its Gauss–Markov processes"}),
+      field<&LearntSensor::gauss_markov_tau_s>("gauss_markov_tau_s", {.meaning = "their times of correlation, in s"}),
       field<&LearntSensor::cross>("cross", {.meaning = "channels of the device's further axes"}),
-      part<&LearntSensor::alignment>(
-          "alignment", kLearntAlignmentFields, {.meaning = "what is taken out of the sensor"}),
+      part<&LearntSensor::alignment>("alignment", kLearntAlignmentFields,
+                                     {.meaning = "what is taken out of the sensor"}),
       field<&LearntSensor::step_noise>(
-          "step_noise",
-          {.range = kPositive,
-           .meaning = "deviation of its noise from sample to sample, told from the differences "
-                      "between sensors: a log that differs is warned of"}),
+          "step_noise", {.range = kPositive,
+                         .meaning = "deviation of its noise from sample to sample, told from the differences "
+                                    "between sensors: a log that differs is warned of"}),
       field<&LearntSensor::step_noise_error>(
-          "step_noise_error",
-          {.range = kNotNegative, .meaning = "standard error of the logarithm of its square"}),
+          "step_noise_error", {.range = kNotNegative, .meaning = "standard error of the logarithm of its square"}),
       maybe_part<&LearntSensor::reading>(
-          "reading",
-          kLearntReadingFields,
+          "reading", kLearntReadingFields,
           {.meaning = "relative to the median of the sensors: a log that differs is warned of",
            .form = Entry::Form::flow}),
       field<&LearntSensor::left_out>(
-          "left_out",
-          {.meaning = "true: it had no samples, and algorithms were not given it",
-           .otherwise = "false"}),
+          "left_out", {.meaning = "true: it had no samples, and algorithms were not given it", .otherwise = "false"}),
   };
   return rows;
 }
 
 const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
   static const Fields<LearntAlgorithm> rows = {
-      field<&LearntAlgorithm::label>(
-          "label", {.meaning = "as in the report", .written = Written::always, .required = true}),
-      field<&LearntAlgorithm::name>(
-          "name", {.meaning = "of the algorithm", .written = Written::always, .required = true}),
-      field<&LearntAlgorithm::refused>(
-          "refused", {.meaning = "why it cannot be applied", .otherwise = "it can"}),
-      custom<LearntAlgorithm, read_options, write_options_of>(
-          "options", "map of numbers", {.meaning = "as used"}),
+      field<&LearntAlgorithm::label>("label",
+                                     {.meaning = "as in the report", .written = Written::always, .required = true}),
+      field<&LearntAlgorithm::name>("name",
+                                    {.meaning = "of the algorithm", .written = Written::always, .required = true}),
+      field<&LearntAlgorithm::refused>("refused", {.meaning = "why it cannot be applied", .otherwise = "it can"}),
+      custom<LearntAlgorithm, read_options, write_options_of>("options", "map of numbers", {.meaning = "as used"}),
       field<&LearntAlgorithm::sd_factor>(
-          "sd_factor",
-          {.meaning = "of each input: the stated standard deviation times this covered 95 % of the "
-                      "errors of the replay",
-           .otherwise = "not known"}),
-      custom<LearntAlgorithm, read_learnt, write_learnt>(
-          "learnt", "map of lists of numbers", {.meaning = "from the reference"}),
+          "sd_factor", {.meaning = "of each input: the stated standard deviation times this covered 95 % of the "
+                                   "errors of the replay",
+                        .otherwise = "not known"}),
+      custom<LearntAlgorithm, read_learnt, write_learnt>("learnt", "map of lists of numbers",
+                                                         {.meaning = "from the reference"}),
   };
   return rows;
 }
 
 const Fields<LearntFusion>& fusion_fields() {
-  static const Fields<LearntFusion> rows =
-      joined(joined(kFusionHead, kFusionInstants), kFusionContent);
+  static const Fields<LearntFusion> rows = joined(joined(kFusionHead, kFusionInstants), kFusionContent);
   return rows;
 }
 

@@ -55,18 +55,16 @@ struct LearntSensor {
 
 struct LearntInput {
   std::string name, unit;
-  std::optional<double>
-      reference_offset;  ///< subtracted from the reference: it is not in the estimates
+  std::optional<double> reference_offset;  ///< subtracted from the reference: it is not in the estimates
 };
 
 struct LearntAlgorithm {
   std::string label, name;
   std::vector<std::pair<std::string, double>> options;  ///< all of them, as used
   fusion::Learnt learnt;
-  std::vector<double>
-      sd_factor;        ///< of each input: times the stated deviation it covered 95 % of the replay
-  std::string refused;  ///< why it cannot be applied, a sentence; empty: it can
-  int line = 0, column = 0;  ///< in the file it was read from
+  std::vector<double> sd_factor;  ///< of each input: times the stated deviation it covered 95 % of the replay
+  std::string refused;            ///< why it cannot be applied, a sentence; empty: it can
+  int line = 0, column = 0;       ///< in the file it was read from
 };
 
 struct LearntTilt {

@@ -46,15 +46,8 @@ struct SensorMeter {
 
 class Replay {
  public:
-  Replay(Scene& scene,
-         const ReplayOptions& options,
-         Progress& progress,
-         const ReplayWorkspace& workspace)
-      : scene_(scene),
-        options_(options),
-        workspace_(workspace),
-        progress_(progress),
-        instants_(scene, progress) {
+  Replay(Scene& scene, const ReplayOptions& options, Progress& progress, const ReplayWorkspace& workspace)
+      : scene_(scene), options_(options), workspace_(workspace), progress_(progress), instants_(scene, progress) {
     if (scene.reference && scene.reference->estimate_lag) estimate_lag();
     PassProgress at_rest(progress, "measuring the rest");
     knowledge_ = know_sensors(scene, instants_, at_rest);
@@ -62,14 +55,11 @@ class Replay {
     instants_.set_offsets(knowledge_.offsets);
     plan_ = make_plan(scene, options, instants_, knowledge_);
     // Too short to teach and to be judged.
-    if (scene.align && scene.align->choose && plan_.learn_to <= plan_.learn_from)
-      scene.align.reset();
+    if (scene.align && scene.align->choose && plan_.learn_to <= plan_.learn_from) scene.align.reset();
     if (scene.reference && scene.reference->estimate_offset) estimate_offset();
   }
 
-  std::vector<std::string> explain() const {
-    return sentences(plan_, scene_, instants_, knowledge_);
-  }
+  std::vector<std::string> explain() const { return sentences(plan_, scene_, instants_, knowledge_); }
 
   ReplayResult run() {
     if (scene_.align) align();
@@ -95,9 +85,7 @@ class Replay {
     }
     PassProgress passing(progress_, "estimating the lag");
     const TimeWindow all;
-    lag_s_ = find_lag(scene_,
-                      instants_,
-                      options_.evaluation ? *options_.evaluation : scene_.evaluation.value_or(all),
+    lag_s_ = find_lag(scene_, instants_, options_.evaluation ? *options_.evaluation : scene_.evaluation.value_or(all),
                       passing);
     instants_.set_lag(lag_s_, progress_);
     ++passes_;
@@ -108,16 +96,15 @@ class Replay {
     PassProgress passing(progress_, "estimating the offset");
     const bool learning = plan_.learn_to > plan_.learn_from;
     const std::int64_t from = learning ? plan_.learn_from : plan_.run_from + plan_.warm_up;
-    const OffsetEstimate found = find_reference_offset(
-        scene_, instants_, from, learning ? plan_.learn_to : plan_.run_to, passing);
+    const OffsetEstimate found =
+        find_reference_offset(scene_, instants_, from, learning ? plan_.learn_to : plan_.run_to, passing);
     instants_.set_reference_offset(found.offset);
     const double unit = instants_.info().output_scale;
-    offset_ =
-        FoundOffset{found.offset * unit,
-                    {(found.offset - found.reach95) * unit, (found.offset + found.reach95) * unit},
-                    learning ? plan_.learning : plan_.evaluation,
-                    learning,
-                    found.long_memory};
+    offset_ = FoundOffset{found.offset * unit,
+                          {(found.offset - found.reach95) * unit, (found.offset + found.reach95) * unit},
+                          learning ? plan_.learning : plan_.evaluation,
+                          learning,
+                          found.long_memory};
     ++passes_;
   }
 
@@ -147,8 +134,7 @@ class Replay {
     frame_.live = &plan_.live;
     frame_.heap = workspace_.heap;
     frame_.rate_hz = instants_.info().rate_hz;
-    frame_.start_s =
-        instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
+    frame_.start_s = instants_.info().start_s + static_cast<double>(plan_.run_from) / frame_.rate_hz;
     frame_.scored_from_s = frame_.start_s + static_cast<double>(plan_.warm_up) / frame_.rate_hz;
     frame_.instants = plan_.run_to - plan_.run_from;
     frame_.output_scale = instants_.info().output_scale;
@@ -160,8 +146,7 @@ class Replay {
       if (algorithm.runs()) {
         runs_.emplace_back(algorithm, frame_);
         const bool left_out = !algorithm.blind.whole && algorithm.blind.stretches.empty();
-        if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run() &&
-            !left_out)
+        if (plan_.without_reference && !algorithm.learns_before() && !algorithm.learns_run() && !left_out)
           blind_.push_back(std::make_unique<BlindRun>(algorithm, plan_.array, plan_.live));
         else
           blind_.push_back(nullptr);
@@ -173,14 +158,10 @@ class Replay {
     optimum_frame_.heap = nullptr;
     optimum_frame_.allan = optimum_frame_.tracks = false;
     optimum_.reserve(plan_.optimum.size());
-    for (const PlannedAlgorithm& algorithm : plan_.optimum)
-      optimum_.emplace_back(algorithm, optimum_frame_);
+    for (const PlannedAlgorithm& algorithm : plan_.optimum) optimum_.emplace_back(algorithm, optimum_frame_);
     sensors_.resize(scene_.sensors.size());
-    tracker_ = RunTracker(frame_,
-                          plan_.run_to - plan_.run_from,
-                          runs_.size(),
-                          sensors_are_comparable(),
-                          fault_starts());
+    tracker_ =
+        RunTracker(frame_, plan_.run_to - plan_.run_from, runs_.size(), sensors_are_comparable(), fault_starts());
   }
 
   std::vector<std::int64_t> fault_starts() const {
@@ -200,12 +181,11 @@ class Replay {
   void learn_before_run() {
     PassProgress passing(progress_, "learning");
     ++passes_;
-    instants_.pass(
-        plan_.learn_from, plan_.learn_to, kLearningBlock, passing, [&](const InstantBlock& b) {
-          for (AlgorithmRun& run : runs_)
-            if (run.planned().learns_before()) run.learn(b.samples, b.truth);
-          if (watched_from() < plan_.run_from) watch_readings(b.samples);
-        });
+    instants_.pass(plan_.learn_from, plan_.learn_to, kLearningBlock, passing, [&](const InstantBlock& b) {
+      for (AlgorithmRun& run : runs_)
+        if (run.planned().learns_before()) run.learn(b.samples, b.truth);
+      if (watched_from() < plan_.run_from) watch_readings(b.samples);
+    });
   }
 
   // A sensor is judged by most of what is known of it: the run, and what directly precedes it.
@@ -215,21 +195,19 @@ class Replay {
   }
 
   void learn_on_run() {
-    PassProgress passing(progress_,
-                         plan_.run_learning_pass ? "learning the bounds" : "looking ahead");
+    PassProgress passing(progress_, plan_.run_learning_pass ? "learning the bounds" : "looking ahead");
     ++passes_;
-    instants_.pass(
-        plan_.run_from, plan_.run_to, kLearningBlock, passing, [&](const InstantBlock& b) {
-          for (AlgorithmRun& run : runs_)
-            if (run.planned().learns_run()) run.learn(b.samples, b.truth);
-          for (AlgorithmRun& run : runs_)
-            if (run.planned().looks_ahead()) run.look(b.samples);
-          for (const auto& blind : blind_)
-            if (blind && blind->looks_ahead()) blind->look(b.first - plan_.run_from, b.samples);
-          if (!plan_.run_learning_pass) return;
-          const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
-          for (AlgorithmRun& run : optimum_) run.learn(healthy, b.truth);
-        });
+    instants_.pass(plan_.run_from, plan_.run_to, kLearningBlock, passing, [&](const InstantBlock& b) {
+      for (AlgorithmRun& run : runs_)
+        if (run.planned().learns_run()) run.learn(b.samples, b.truth);
+      for (AlgorithmRun& run : runs_)
+        if (run.planned().looks_ahead()) run.look(b.samples);
+      for (const auto& blind : blind_)
+        if (blind && blind->looks_ahead()) blind->look(b.first - plan_.run_from, b.samples);
+      if (!plan_.run_learning_pass) return;
+      const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
+      for (AlgorithmRun& run : optimum_) run.learn(healthy, b.truth);
+    });
   }
 
   // The optimum knows which samples are those of a failed sensor, and leaves them out.
@@ -239,8 +217,7 @@ class Replay {
     healthy_ = samples;
     for (const SensorFault& fault : faults) {
       const std::int64_t from = std::max(instants_.instant_at(fault.from_s), first);
-      const std::int64_t to =
-          std::min<std::int64_t>(instants_.instant_at(fault.to_s), first + samples.cols());
+      const std::int64_t to = std::min<std::int64_t>(instants_.instant_at(fault.to_s), first + samples.cols());
       if (from < to)
         healthy_.row(static_cast<Eigen::Index>(fault.sensor))
             .segment(static_cast<Eigen::Index>(from - first), static_cast<Eigen::Index>(to - from))
@@ -259,8 +236,7 @@ class Replay {
     const fusion::Array live = subset(plan_.array, plan_.live);
     if (!watch_.readings && !scene_.tilt && live.one_common_input() && live.channels >= 3)
       watch_.readings.emplace(live.channels, plan_.run_to - watched_from());
-    if (watch_.readings)
-      with_live(samples, [this](const auto& rows) { watch_.readings->push(rows); });
+    if (watch_.readings) with_live(samples, [this](const auto& rows) { watch_.readings->push(rows); });
   }
 
   template <class Work>
@@ -271,11 +247,8 @@ class Replay {
 
   // What another log can be fused with.
   void note_learnt() {
-    learnt_ = learnt_of(scene_,
-                        plan_,
-                        instants_,
-                        knowledge_,
-                        scene_.align && scene_.align->apply ? &*alignment_ : nullptr);
+    learnt_ =
+        learnt_of(scene_, plan_, instants_, knowledge_, scene_.align && scene_.align->apply ? &*alignment_ : nullptr);
     for (const AlgorithmRun& run : runs_)
       if (run.planned().asked) learnt_.algorithms.push_back(run.hand_out());
   }
@@ -294,8 +267,7 @@ class Replay {
       const Eigen::MatrixXd& healthy = without_faults(b.first, b.samples);
       for (AlgorithmRun& run : optimum_) run.run(healthy);
       const std::int64_t done = b.first - plan_.run_from;
-      const auto skip = static_cast<Eigen::Index>(
-          std::clamp<std::int64_t>(plan_.warm_up - done, 0, b.samples.cols()));
+      const auto skip = static_cast<Eigen::Index>(std::clamp<std::int64_t>(plan_.warm_up - done, 0, b.samples.cols()));
       for (AlgorithmRun& run : runs_) run.score(done, b.truth, skip);
       for (AlgorithmRun& run : optimum_) run.score(done, b.truth, skip);
       for (const auto& blind : blind_)
@@ -309,9 +281,7 @@ class Replay {
     });
   }
 
-  void judge_sensors(const Eigen::MatrixXd& samples,
-                     const Eigen::MatrixXd& healthy,
-                     const Eigen::MatrixXd& truth,
+  void judge_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& healthy, const Eigen::MatrixXd& truth,
                      Eigen::Index skip) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
     copies_.push(samples);
@@ -359,22 +329,17 @@ class Replay {
       if (run.alive() && run.planned().asked)
         for (const InputResult& input : all)
           info.channels.push_back(
-              {all.size() == 1 ? run.planned().label : run.planned().label + " " + input.name,
-               input.unit,
-               false});
+              {all.size() == 1 ? run.planned().label : run.planned().label + " " + input.name, input.unit, false});
     workspace_.estimates->begin(info);
   }
 
   void give_estimates(const InstantBlock& b) {
     std::vector<std::vector<double>> columns(1);
     for (Eigen::Index k = 0; k < b.samples.cols(); ++k)
-      columns[0].push_back(frame_.start_s +
-                           static_cast<double>(b.first - plan_.run_from + k) / frame_.rate_hz);
+      columns[0].push_back(frame_.start_s + static_cast<double>(b.first - plan_.run_from + k) / frame_.rate_hz);
     const auto add = [&](const auto& row) { columns.emplace_back(row.begin(), row.end()); };
-    if (b.truth.rows() == 0)
-      columns.resize(1 + inputs().size(), std::vector<double>(columns[0].size(), kMissing));
-    for (Eigen::Index j = 0; j < b.truth.rows(); ++j)
-      add((b.truth.row(j) * frame_.output_scale).eval());
+    if (b.truth.rows() == 0) columns.resize(1 + inputs().size(), std::vector<double>(columns[0].size(), kMissing));
+    for (Eigen::Index j = 0; j < b.truth.rows(); ++j) add((b.truth.row(j) * frame_.output_scale).eval());
     for (const AlgorithmRun& run : runs_)
       if (run.alive() && run.planned().asked)
         for (Eigen::Index j = 0; j < run.estimates().rows(); ++j) add(run.estimates().row(j));
@@ -392,8 +357,7 @@ class Replay {
           if (!run.timed_enough()) run.repeat(samples);
     for (const AlgorithmRun& run : runs_)
       for (AlgorithmResult& algorithm : result.algorithms)
-        if (run.alive() && algorithm.label == run.planned().label)
-          algorithm.ns_per_sample = run.median_ns();
+        if (run.alive() && algorithm.label == run.planned().label) algorithm.ns_per_sample = run.median_ns();
   }
 
   std::vector<InputResult> inputs() const {
@@ -413,9 +377,7 @@ class Replay {
   void refuse_sizes() const;
   void add_facts(ReplayResult& out) const;
   void add_sensors(ReplayResult& out, const ScoreOptions& scoring) const;
-  Scored scored(const AlgorithmRun& run,
-                const BlindRun* blind,
-                const ReplayResult& so_far,
+  Scored scored(const AlgorithmRun& run, const BlindRun* blind, const ReplayResult& so_far,
                 const ScoreOptions& scoring) const;
   std::vector<Meters> add_algorithms(ReplayResult& out, const ScoreOptions& scoring) const;
   std::vector<double> costs() const;
@@ -463,8 +425,7 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   if (knowledge_.noise_variances[i] > 0) out.noise_variance = knowledge_.noise_variances[i];
   out.noise_source = knowledge_.noise_sources[i];
   out.offset = knowledge_.offsets[i];
-  out.missing =
-      static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
+  out.missing = static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
   out.constant = sensors_[i].constant;
   if (const auto original = copies_.original_of(i); original && !out.constant)
     out.copy_of = scene_.sensors[*original].name;
@@ -484,9 +445,8 @@ void Replay::add_facts(ReplayResult& out) const {
   out.scored_from_s = frame_.scored_from_s;
   if (plan_.learn_to > plan_.learn_from) out.learning = plan_.learning;
   out.evaluation = plan_.evaluation;
-  out.window_s = options_.window_s > 0
-                     ? options_.window_s
-                     : kWindowShare * static_cast<double>(out.instants) / info.rate_hz;
+  out.window_s =
+      options_.window_s > 0 ? options_.window_s : kWindowShare * static_cast<double>(out.instants) / info.rate_hz;
   out.lag_s = scene_.reference && scene_.reference->estimate_lag ? lag_s_
               : scene_.reference                                 ? scene_.reference->lag_s
                                                                  : 0;
@@ -503,28 +463,22 @@ void Replay::add_facts(ReplayResult& out) const {
 }
 
 void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
-  for (std::size_t i = 0; i < sensors_.size(); ++i)
-    out.sensors.push_back(sensor_result(i, scoring));
+  for (std::size_t i = 0; i < sensors_.size(); ++i) out.sensors.push_back(sensor_result(i, scoring));
   for (const SensorResult& sensor : out.sensors)
-    if (sensor.constant)
-      out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
+    if (sensor.constant) out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
   for (const SensorResult& sensor : out.sensors)
     if (!sensor.copy_of.empty())
-      out.warnings.add(
-          "copied_sensor",
-          "sensors that repeat another one, sample by sample: one sensor counted twice",
-          sensor.name + " repeats " + sensor.copy_of);
+      out.warnings.add("copied_sensor", "sensors that repeat another one, sample by sample: one sensor counted twice",
+                       sensor.name + " repeats " + sensor.copy_of);
   for (const SceneSensor& sensor : scene_.sensors)
     for (const Finding& one : sensor.model ? sensor.model->findings : std::vector<Finding>{})
       if (one.severity != Severity::note)
-        out.warnings.add(one.code, "the model of a sensor: " + as_part(one.sentence), sensor.name)
-            .severity = one.severity;
+        out.warnings.add(one.code, "the model of a sensor: " + as_part(one.sentence), sensor.name).severity =
+            one.severity;
 }
 
 // One that ran, and by which of its errors it is compared with others; empty: by none.
-Replay::Scored Replay::scored(const AlgorithmRun& run,
-                              const BlindRun* blind,
-                              const ReplayResult& so_far,
+Replay::Scored Replay::scored(const AlgorithmRun& run, const BlindRun* blind, const ReplayResult& so_far,
                               const ScoreOptions& scoring) const {
   Scored out{run.result(scoring, so_far.window_s), {}};
   AlgorithmResult& result = out.result;
@@ -610,13 +564,10 @@ void doubt_offset(ReplayResult& out) {
                width = 0.5 * (score.error.bias_ci95.high - score.error.bias_ci95.low);
   if (!(bias * bias > kShare * rmse * rmse) || !(bias > kTimes * width)) return;
   Finding& found = best.remarks.add(
-      "constant_error",
-      fmt::format(
-          "{} of the mean square error is a constant, {}{}: "
-          "an offset of the reference or of the sensors",
-          percent_text(bias * bias / (rmse * rmse)),
-          number_text(score.error.bias, 3),
-          out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
+      "constant_error", fmt::format("{} of the mean square error is a constant, {}{}: "
+                                    "an offset of the reference or of the sensors",
+                                    percent_text(bias * bias / (rmse * rmse)), number_text(score.error.bias, 3),
+                                    out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
   found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
 }
 
@@ -640,14 +591,12 @@ void Replay::tell_readings(ReplayResult& out) const {
   std::vector<std::string> names, units;
   for (std::size_t k = 0; k < out.sensors.size(); ++k) {
     if (!plan_.live.empty() &&
-        std::find(plan_.live.begin(), plan_.live.end(), static_cast<Eigen::Index>(k)) ==
-            plan_.live.end())
+        std::find(plan_.live.begin(), plan_.live.end(), static_cast<Eigen::Index>(k)) == plan_.live.end())
       continue;
     names.push_back(out.sensors[k].name);
     units.push_back(out.sensors[k].unit);
   }
-  const double start_s =
-      instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
+  const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
   detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, out.warnings);
 }
 
@@ -683,8 +632,7 @@ ReplayResult Replay::collect() {
   }
   for (const AlgorithmRun& run : runs_)
     for (LearntAlgorithm& algorithm : learnt_.algorithms)
-      if (run.planned().asked && algorithm.label == run.planned().label)
-        algorithm.sd_factor = run.sd_factor();
+      if (run.planned().asked && algorithm.label == run.planned().label) algorithm.sd_factor = run.sd_factor();
   out.learnt = learnt_;
   doubt_offset(out);
   add_doubts_of_chosen(out);
@@ -700,9 +648,7 @@ ReplayResult Replay::collect() {
 
 }  // namespace
 
-std::vector<std::string> explain_replay(const Scene& scene,
-                                        const ReplayOptions& options,
-                                        Progress& progress) {
+std::vector<std::string> explain_replay(const Scene& scene, const ReplayOptions& options, Progress& progress) {
   Scene own = taught(scene, options);
   return Replay(own, options, progress, {}).explain();
 }
@@ -719,9 +665,7 @@ void forget_timing(ReplayResult& result) {
 
 }  // namespace
 
-ReplayResult replay(const Scene& scene,
-                    const ReplayOptions& options,
-                    Progress& progress,
+ReplayResult replay(const Scene& scene, const ReplayOptions& options, Progress& progress,
                     const ReplayWorkspace& workspace) {
   const auto start = std::chrono::steady_clock::now();
   const WorkMeter work;

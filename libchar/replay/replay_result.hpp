@@ -29,7 +29,7 @@ namespace libchar {
 
 /// Values over time, thinned to bins: the smallest and the largest in each. Empty: nothing to show.
 struct Timeline {
-  std::vector<double> time_s;  ///< middle of each bin, seconds from the recording's first sample
+  std::vector<double> time_s;                  ///< middle of each bin, seconds from the recording's first sample
   std::vector<std::vector<double>> low, high;  ///< [series][bin]; NaN: no value in this bin
   bool empty() const { return time_s.empty(); }
 };
@@ -83,9 +83,8 @@ struct SensorResult {
 struct AlignmentResult {
   /// A term of the alignment that was tried: errors on halves of the learning window, each taught by the other.
   struct Trial {
-    std::string term;  ///< "bias", "delay", "delay, cubic", "gain", "misalignment"; "": as recorded
-    double rmse =
-        0;  ///< of weights learnt on the other half, with it and with the terms that were kept before
+    std::string term;    ///< "bias", "delay", "delay, cubic", "gain", "misalignment"; "": as recorded
+    double rmse = 0;     ///< of weights learnt on the other half, with it and with the terms that were kept before
     double of_mean = 0;  ///< of the plain mean
     bool kept = false;
   };
@@ -130,18 +129,15 @@ inline constexpr double kPracticalTolerance = 0.01;
 
 /// Scores that need no reference, named as such: errors that all sensors share are not seen.
 struct BlindScore {
-  double leave_one_out_rms = 0;  ///< RMS over all sensors of (fused from the others) - (the sensor)
+  double leave_one_out_rms = 0;       ///< RMS over all sensors of (fused from the others) - (the sensor)
   std::vector<double> leave_one_out;  ///< the same for each sensor; NaN: could not run
-  double split_rms =
-      0;  ///< RMS of half the difference of two parts of the array; NaN: could not run
+  double split_rms = 0;               ///< RMS of half the difference of two parts of the array; NaN: could not run
   Interval leave_one_out_ci95;
-  double share =
-      1;  ///< of the evaluation that was scored; below 1 leave-one-out costs more than its budget
+  double share = 1;  ///< of the evaluation that was scored; below 1 leave-one-out costs more than its budget
   /// geometric mean over the sensors of their leave-one-out RMS: what methods are ranked by
   double predictive_rms = 0;
   Interval predictive_ci95;
-  double offset_share =
-      0;  ///< of leave_one_out_rms squared, that is in the sensors' mean differences from the others
+  double offset_share = 0;  ///< of leave_one_out_rms squared, that is in the sensors' mean differences from the others
 };
 
 struct AlgorithmResult : detail::FaultsFound {
@@ -154,29 +150,26 @@ struct AlgorithmResult : detail::FaultsFound {
 
   std::vector<InputScore> inputs;  ///< empty without a reference
   std::optional<BlindScore> blind;
-  double rmse =
-      0;  ///< of the first input, or the predictive one without a reference: what tables sort
-          ///< by; NaN: none
+  double rmse = 0;  ///< of the first input, or the predictive one without a reference: what tables sort
+                    ///< by; NaN: none
   Interval rmse_ci95;
-  double regret = 0;  ///< root mean square over the inputs of RMSE / optimum, minus 1; NaN: unknown
+  double regret = 0;                      ///< root mean square over the inputs of RMSE / optimum, minus 1; NaN: unknown
   std::optional<Interval> ratio_to_best;  ///< 95 % interval of RMSE / RMSE of the best method
                                           ///< (bounds apart); none: it is the best
   bool as_good_as_best =
       false;  ///< that interval (corrected for the number of methods) holds 1, or the difference is below one per cent
   double availability = 0;
 
-  double ns_per_sample = 0;  ///< median over interleaved blocks; NaN: too short to measure
-  double learning_s = 0;     ///< making it and its learning, CPU of one core
+  double ns_per_sample = 0;                 ///< median over interleaved blocks; NaN: too short to measure
+  double learning_s = 0;                    ///< making it and its learning, CPU of one core
   std::optional<std::uint64_t> peak_bytes;  ///< of heap, over learning and run; none: not measured
 
   /// of each input, one per sensor: medians over the run, of several inputs those at its end; empty: not known
   std::vector<std::vector<double>> weights;
   std::vector<double> variances;  ///< medians over the run, one per sensor; empty: not known
-  double weight_distance =
-      0;  ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
-  double variance_error =
-      0;  ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
-  Timeline weight_track;  ///< one series per sensor; empty when the weights are constant
+  double weight_distance = 0;     ///< RMS over time of |w - optimal weights| (Euclid), one input; NaN: unknown
+  double variance_error = 0;      ///< RMS over sensors and time of ln(variance / true error variance); NaN: unknown
+  Timeline weight_track;          ///< one series per sensor; empty when the weights are constant
   Timeline variance_track;
   Findings remarks;
 };
@@ -226,7 +219,7 @@ struct ReplayFacts {
 
 struct ReplayResult : ReplayFacts {
   Scene scene;
-  std::vector<LogInfo> logs;  ///< the recording, the reference's own log; empty for a simulation
+  std::vector<LogInfo> logs;         ///< the recording, the reference's own log; empty for a simulation
   std::vector<std::string> command;  ///< as typed; set by the caller
   std::vector<Entry> settings;       ///< effective ones, for provenance
   double lag_s = 0;                  ///< the sensors lag the reference by this

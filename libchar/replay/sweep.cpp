@@ -20,9 +20,7 @@ Refusal sweep_refusal(const std::string& where) {
       .hint(where + " minque.gamma=0.99");
 }
 
-bool is_whole(double value) {
-  return std::floor(value) == value && std::abs(value) < 1e9;
-}
+bool is_whole(double value) { return std::floor(value) == value && std::abs(value) < 1e9; }
 
 /// All of a short range; of a longer one the ends and what stands at about equal ratios (differences from zero on).
 std::vector<double> range_values(double from, double to) {
@@ -39,9 +37,7 @@ std::vector<double> range_values(double from, double to) {
   return out;
 }
 
-std::vector<double> values_in(const std::string& list,
-                              const std::string& where,
-                              const std::string& text) {
+std::vector<double> values_in(const std::string& list, const std::string& where, const std::string& text) {
   std::vector<double> out;
   if (list.find("..") != std::string::npos) {
     const Interval range = parse_range(list, RangeOf::number, where);
@@ -69,8 +65,7 @@ SceneAlgorithm with_option(SceneAlgorithm algorithm, const std::string& option, 
 Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most) {
   const std::size_t equals = text.find('='), dot = text.rfind('.', equals);
   if (equals == std::string::npos || dot == std::string::npos) throw sweep_refusal(where).got(text);
-  Sweep out{text.substr(0, dot),
-            text.substr(dot + 1, equals - dot - 1),
+  Sweep out{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
             values_in(text.substr(equals + 1), where, text)};
   if (out.values.size() > most) throw sweep_refusal(where).got(text);
   fusion::Settings settings(fusion::algorithm(out.algorithm).options);
@@ -78,8 +73,7 @@ Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t
   return out;
 }
 
-std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps,
-                                  const std::vector<SceneAlgorithm>& algorithms) {
+std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps, const std::vector<SceneAlgorithm>& algorithms) {
   std::vector<SceneAlgorithm> out = algorithms;
   for (const Sweep& sweep : sweeps) {
     std::vector<SceneAlgorithm> next;
@@ -90,8 +84,7 @@ std::vector<SceneAlgorithm> swept(const std::vector<Sweep>& sweeps,
         continue;
       }
       found = true;
-      for (const double value : sweep.values)
-        next.push_back(with_option(algorithm, sweep.option, value));
+      for (const double value : sweep.values) next.push_back(with_option(algorithm, sweep.option, value));
     }
     for (std::size_t i = 0; i < sweep.values.size() && !found; ++i)
       next.push_back(with_option({sweep.algorithm, {}, 0, 0}, sweep.option, sweep.values[i]));

@@ -22,9 +22,7 @@ std::string name_of_sensor(const SensorModel& model, const std::string& path) {
 }
 
 // Devices of one model are numbered; equal names of several files get their number too.
-void add_devices(ArraySimulation& simulation,
-                 const SensorModel& model,
-                 const std::string& name,
+void add_devices(ArraySimulation& simulation, const SensorModel& model, const std::string& name,
                  std::uint64_t devices) {
   std::set<std::string> taken;
   for (const SimulatedSensor& sensor : simulation.sensors) taken.insert(sensor.name);
@@ -45,9 +43,7 @@ ArraySimulation simulation_of_models(const std::vector<std::string>& model_files
       if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
       if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
         throw usage_error("E0721", path)
-            .says("is a model at {} Hz and the one before at {} Hz",
-                  model.rate_hz,
-                  simulation.rate_hz)
+            .says("is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz)
             .hint("give one `rate_hz` for all");
       add_devices(simulation, model, name_of_sensor(model, path), options.devices);
     }
@@ -55,9 +51,7 @@ ArraySimulation simulation_of_models(const std::vector<std::string>& model_files
   return simulation;
 }
 
-void read_recorded_signal(SignalSpec& signal,
-                          const std::string& place,
-                          const ArraySimulation& simulation,
+void read_recorded_signal(SignalSpec& signal, const std::string& place, const ArraySimulation& simulation,
                           Findings& warnings) {
   if (signal.kind != "recording") return;
   const auto refusal = [&]() { return usage_error("E0721", place).got(signal.file); };
@@ -66,21 +60,17 @@ void read_recorded_signal(SignalSpec& signal,
   if (!signal.channel.empty()) reading.channels = {signal.channel};
   Recording log = read_recording(signal.file, reading);
   if (log.samples.size() != 1)
-    throw refusal()
-        .says("the recording holds {} channels", log.samples.size())
-        .hint("name one: channel=NAME");
+    throw refusal().says("the recording holds {} channels", log.samples.size()).hint("name one: channel=NAME");
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
     throw refusal()
-        .says("the recording has {} Hz, and the simulation runs at {} Hz",
-              brief_text(rate, 6),
+        .says("the recording has {} Hz, and the simulation runs at {} Hz", brief_text(rate, 6),
               brief_text(simulation.rate_hz, 6))
         .hint("`rate_hz` " + shortest(rounded(rate, 6)));
   signal.samples = std::move(log.samples[0]);
   if (signal.samples.empty()) throw refusal().says("the recording holds no sample");
   if (signal.samples.size() < simulation.samples)
-    warnings.add("recorded_signal_short",
-                 "a recorded signal ends before the simulation; its last sample is held",
+    warnings.add("recorded_signal_short", "a recorded signal ends before the simulation; its last sample is held",
                  place);
 }
 

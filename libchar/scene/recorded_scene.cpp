@@ -23,10 +23,8 @@ constexpr std::size_t kNamesShown = 24;
 
 std::string list_of(const std::vector<std::string>& names) {
   const std::size_t shown = std::min(names.size(), kNamesShown);
-  return fmt::format(
-      "{}{}",
-      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-      shown < names.size() ? ", …" : "");
+  return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                     shown < names.size() ? ", …" : "");
 }
 
 // Three axes are in one unit, too: only the caller knows which channels see one input.
@@ -37,19 +35,15 @@ std::string list_of(const std::vector<std::string>& names) {
   for (const Channel& channel : read_log_head(r.file, head).channels) names.push_back(channel.name);
   throw usage_error("E0749", "`sensors`")
       .says("which channels measure one quantity?")
-      .hint("{} has {}; patterns such as 'gyro*' name several",
-            printable(r.file),
-            printable(list_of(names)));
+      .hint("{} has {}; patterns such as 'gyro*' name several", printable(r.file), printable(list_of(names)));
 }
 
-std::vector<std::string> together(const std::vector<std::vector<std::string>>& parts,
-                                  const char* option) {
+std::vector<std::string> together(const std::vector<std::vector<std::string>>& parts, const char* option) {
   std::vector<std::string> out;
   std::set<std::string> seen;
   for (const auto& part : parts)
     for (const std::string& name : part) {
-      if (!seen.insert(name).second)
-        throw usage_error("E0749", option).says("a channel is named twice").got(name);
+      if (!seen.insert(name).second) throw usage_error("E0749", option).says("a channel is named twice").got(name);
       out.push_back(name);
     }
   return out;
@@ -64,19 +58,14 @@ Chosen choose_columns(const SensorRecording& r) {
   Chosen out;
   const bool own_log = !r.reference_file.empty();
   if (!r.reference.empty())
-    out.reference = together(
-        channel_names(
-            own_log ? r.reference_file : r.file, own_log ? ReadOptions{} : r.reading, r.reference),
-        "`reference`");
+    out.reference =
+        together(channel_names(own_log ? r.reference_file : r.file, own_log ? ReadOptions{} : r.reading, r.reference),
+                 "`reference`");
   out.sensors = together(
-      channel_names(
-          r.file, r.reading, r.sensors, own_log ? std::vector<std::string>{} : out.reference),
-      "`sensors`");
+      channel_names(r.file, r.reading, r.sensors, own_log ? std::vector<std::string>{} : out.reference), "`sensors`");
   if (out.sensors.size() > kMostSensors)
     throw usage_error("E0749", "`sensors`")
-        .says("{} sensors are more than the {} that a scene may have",
-              out.sensors.size(),
-              kMostSensors);
+        .says("{} sensors are more than the {} that a scene may have", out.sensors.size(), kMostSensors);
   for (const std::string& name : out.reference)
     if (!own_log && std::find(out.sensors.begin(), out.sensors.end(), name) != out.sensors.end())
       throw usage_error("E0749", "`reference`")
@@ -87,9 +76,7 @@ Chosen choose_columns(const SensorRecording& r) {
 }
 
 // Those of `names`, with their units.
-std::vector<Channel> channels_of(const std::string& file,
-                                 ReadOptions reading,
-                                 const std::vector<std::string>& names) {
+std::vector<Channel> channels_of(const std::string& file, ReadOptions reading, const std::vector<std::string>& names) {
   if (reading.names.empty()) reading.channels = names;
   std::vector<Channel> out;
   for (const Channel& channel : read_log_head(file, reading).channels)
@@ -100,21 +87,16 @@ std::vector<Channel> channels_of(const std::string& file,
 // Where two channels say their units, one is converted to the other (a replay does it) or they are refused.
 void check_units(const SensorRecording& r, const Chosen& chosen) {
   std::vector<std::string> here = chosen.sensors;
-  if (r.reference_file.empty())
-    here.insert(here.end(), chosen.reference.begin(), chosen.reference.end());
+  if (r.reference_file.empty()) here.insert(here.end(), chosen.reference.begin(), chosen.reference.end());
   std::vector<Channel> all = channels_of(r.file, r.reading, here);
   if (!r.reference_file.empty())
-    for (Channel& channel : channels_of(r.reference_file, {}, chosen.reference))
-      all.push_back(std::move(channel));
+    for (Channel& channel : channels_of(r.reference_file, {}, chosen.reference)) all.push_back(std::move(channel));
   std::erase_if(all, [](const Channel& channel) { return channel.unit.empty(); });
   for (const Channel& channel : all)
     if (!Unit::sample_factor(channel.unit, all[0].unit))
       throw usage_error("E0749", r.file)
-          .says("{} is in {}, and {} in {}: they are not one quantity",
-                printable(all[0].name, 40),
-                printable(all[0].unit, 40),
-                printable(channel.name, 40),
-                printable(channel.unit, 40))
+          .says("{} is in {}, and {} in {}: they are not one quantity", printable(all[0].name, 40),
+                printable(all[0].unit, 40), printable(channel.name, 40), printable(channel.unit, 40))
           .hint(
               "choose others with `sensors`, say what they are in with `units`, or give each a "
               "scale and a unit in a scene file");
@@ -122,16 +104,14 @@ void check_units(const SensorRecording& r, const Chosen& chosen) {
 
 void add_model(SceneSensor& sensor, const std::string& file, Scene& scene) {
   sensor.model = read_model_file(file);
-  if (std::find(scene.files.begin(), scene.files.end(), file) == scene.files.end())
-    scene.files.push_back(file);
+  if (std::find(scene.files.begin(), scene.files.end(), file) == scene.files.end()) scene.files.push_back(file);
 }
 
 void add_models(const SensorRecording& r, Scene& scene) {
   if (!r.models_folder.empty()) {
     refuse_interrupted(r.models_folder);
     for (SceneSensor& sensor : scene.sensors) {
-      const fs::path file =
-          fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
+      const fs::path file = fs::path(r.models_folder) / (file_name_for(sensor.name) + ".sensor.yaml");
       std::error_code ignored;  // what is there and cannot be looked at is told when it is opened
       if (fs::status(file, ignored).type() == fs::file_type::not_found)
         throw usage_error("E0749", "`models`")
@@ -142,13 +122,10 @@ void add_models(const SensorRecording& r, Scene& scene) {
     }
   }
   for (const auto& [name, file] : r.models) {
-    const auto sensor = std::find_if(scene.sensors.begin(),
-                                     scene.sensors.end(),
+    const auto sensor = std::find_if(scene.sensors.begin(), scene.sensors.end(),
                                      [&name = name](const auto& s) { return s.name == name; });
     if (sensor == scene.sensors.end())
-      throw usage_error("E0749", "`model`")
-          .says("there is no sensor of this name among those chosen")
-          .got(name);
+      throw usage_error("E0749", "`model`").says("there is no sensor of this name among those chosen").got(name);
     add_model(*sensor, file, scene);
   }
 }
@@ -162,9 +139,7 @@ Scene scene_from_recording(const SensorRecording& r) {
         .hint("save it in a file");
   if (r.sensors.empty()) ask_for_sensors(r);
   if (r.reference.empty() && !r.reference_file.empty())
-    throw usage_error("E0749", "`reference_log`")
-        .says("which of its channels is the reference?")
-        .got(r.reference_file);
+    throw usage_error("E0749", "`reference_log`").says("which of its channels is the reference?").got(r.reference_file);
   const Chosen chosen = choose_columns(r);
   check_units(r, chosen);
   Scene scene;

@@ -49,8 +49,7 @@ struct SceneReference {
   double offset = 0;             ///< it reads so much more than the sensors; in its own unit
   bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
   /// A mean over the interval behind the stamp, in front of it or around it; the value at the stamp.
-  static constexpr std::string_view kReadings[] = {
-      "mean_after", "mean_before", "mean_centred", "instant"};
+  static constexpr std::string_view kReadings[] = {"mean_after", "mean_before", "mean_centred", "instant"};
   /// What the values of one that is slower than the sensors stand for: of kReadings, or estimate.
   std::string samples = "estimate";
   /// false: nothing is learnt from it unless a window is said; else the first half of a recording teaches where
@@ -60,10 +59,9 @@ struct SceneReference {
 
 /// What all sensors and the reference go through alike, before anything is learnt or fused.
 struct ScenePreparation {
-  std::string detrend =
-      "none";          ///< of kDetrends: what is subtracted from each, of the whole recording
-  double from_hz = 0;  ///< corner of a high-pass; 0: no filter
-  double to_hz = 0;    ///< corner of a low-pass behind it; 0: none
+  std::string detrend = "none";  ///< of kDetrends: what is subtracted from each, of the whole recording
+  double from_hz = 0;            ///< corner of a high-pass; 0: no filter
+  double to_hz = 0;              ///< corner of a low-pass behind it; 0: none
   bool filters() const { return from_hz > 0; }
 };
 inline constexpr std::string_view kDetrends[] = {"none", "mean", "line"};
@@ -75,16 +73,14 @@ struct SceneAlign {
   std::vector<std::string> terms;    ///< of kAlignTerms; empty: all (bias only without `rest`)
   std::string by;                    ///< reference, sensors; empty: the reference if there is one
   std::string interpolation = "sinc";
-  bool choose =
-      false;  ///< terms are tried one by one and taken where they pay on the other half of the window
-  bool apply = true;  ///< false: the error budget alone, algorithms see the samples as recorded
+  bool choose = false;  ///< terms are tried one by one and taken where they pay on the other half of the window
+  bool apply = true;    ///< false: the error budget alone, algorithms see the samples as recorded
 };
 inline constexpr std::string_view kAlignTerms[] = {"delay", "bias", "gain", "misalignment"};
 
 struct SceneAlgorithm {
   std::string name;
-  std::vector<std::pair<std::string, double>>
-      options;  ///< numbers, as the algorithm's table names them
+  std::vector<std::pair<std::string, double>> options;  ///< numbers, as the algorithm's table names them
   int line = 0, column = 0;
 };
 
@@ -117,9 +113,8 @@ struct Scene {
   std::optional<SceneReference> reference;
   std::optional<SceneTilt> tilt;  ///< then the reference is the tilt, and rows h say nothing
   std::optional<TimeWindow> learning, evaluation;
-  std::optional<TimeWindow> rest;  ///< the true inputs are zero there
-  std::optional<double>
-      fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
+  std::optional<TimeWindow> rest;      ///< the true inputs are zero there
+  std::optional<double> fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
   /// From the start of the evaluation: run, but not scored.
   std::optional<double> warm_up_s;
   std::vector<SensorFault> faults;

@@ -53,27 +53,20 @@ SceneAlign align_of(const MapReader& top, const Scene& scene) {
   if (align.by == "reference" && !scene.reference)
     throw scene_refusal("E0748", at, "by").says("the scene has no reference").hint("by: sensors");
   if (align.choose && (!scene.reference || align.by == "sensors"))
-    throw scene_refusal("E0748", at, "choose")
-        .says("a reference judges what pays")
-        .hint("terms: […] without one");
-  if (scene.tilt)
-    throw scene_refusal("E0748", top, "align")
-        .says("the sensors of a tilt measure different quantities");
+    throw scene_refusal("E0748", at, "choose").says("a reference judges what pays").hint("terms: […] without one");
+  if (scene.tilt) throw scene_refusal("E0748", top, "align").says("the sensors of a tilt measure different quantities");
   return align;
 }
 
 void check_preparation(const MapReader& top, const Scene& scene) {
   const ScenePreparation& p = scene.preparation;
   if (top.has("band_hz") && top.has("high_pass_hz"))
-    throw scene_refusal("E0735", top, "high_pass_hz")
-        .says("band_hz has a high-pass already")
-        .hint("give one of them");
+    throw scene_refusal("E0735", top, "high_pass_hz").says("band_hz has a high-pass already").hint("give one of them");
   const char* key = p.to_hz != 0          ? "band_hz"
                     : p.filters()         ? "high_pass_hz"
                     : p.detrend != "none" ? "detrend"
                                           : "reference";
-  if (const std::string why = why_not_prepared(scene); !why.empty())
-    throw scene_refusal("E0750", top, key).says(why);
+  if (const std::string why = why_not_prepared(scene); !why.empty()) throw scene_refusal("E0750", top, key).says(why);
 }
 
 // Either every sensor names as many other axes, or none does.
@@ -81,10 +74,8 @@ void check_cross(const MapReader& top, const SensorIndex& index, const Scene& sc
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
     if (scene.sensors[i].cross.size() != scene.sensors[0].cross.size())
       throw scene_refusal_at("E0748", top, *index.places[i].node, index.places[i].path)
-          .says("sensor {} names {} other axes, and the first one {}",
-                printable(scene.sensors[i].name, 40),
-                scene.sensors[i].cross.size(),
-                scene.sensors[0].cross.size())
+          .says("sensor {} names {} other axes, and the first one {}", printable(scene.sensors[i].name, 40),
+                scene.sensors[i].cross.size(), scene.sensors[0].cross.size())
           .hint("cross: the same axes of each device, in one order");
 }
 
@@ -96,8 +87,7 @@ SensorFault fault_of(const MapReader& at, const Scene& scene, const SensorIndex&
   fault.kind = text.kind;
   const bool valueless = is_valueless(fault.kind);
   if (valueless && at.has("value"))
-    throw scene_refusal("E0739", at, "value")
-        .says("a fault of kind {} has no value", name_of(fault.kind));
+    throw scene_refusal("E0739", at, "value").says("a fault of kind {} has no value", name_of(fault.kind));
   const bool size = fault.kind == FaultKind::noise || fault.kind == FaultKind::saturation;
   if (!valueless) fault.value = at.number("value", size ? kNotNegative : kAnyNumber);
   fault.from_s = text.from_s;
@@ -107,19 +97,14 @@ SensorFault fault_of(const MapReader& at, const Scene& scene, const SensorIndex&
   return fault;
 }
 
-std::vector<SensorFault> faults_of(const MapReader& from,
-                                   const Scene& scene,
-                                   const SensorIndex& index) {
+std::vector<SensorFault> faults_of(const MapReader& from, const Scene& scene, const SensorIndex& index) {
   std::vector<SensorFault> out;
   if (!from.has("faults")) return out;
   const auto& list = from.list("faults");
   for (std::size_t i = 0; i < list.size(); ++i)
-    out.push_back(fault_of(MapReader(list[i],
-                                     from.file(),
-                                     fmt::format("{}[{}]", from.path_of("faults"), i),
-                                     keys_of(fault_fields())),
-                           scene,
-                           index));
+    out.push_back(fault_of(
+        MapReader(list[i], from.file(), fmt::format("{}[{}]", from.path_of("faults"), i), keys_of(fault_fields())),
+        scene, index));
   return out;
 }
 
@@ -128,9 +113,8 @@ bool has_recorded_signal(const Document& node) {
   const DocumentEntry* kind = node.find("kind");
   if (kind != nullptr && kind->value.text == "recording") return true;
   return std::any_of(node.list.begin(), node.list.end(), has_recorded_signal) ||
-         std::any_of(node.map.begin(), node.map.end(), [](const DocumentEntry& entry) {
-           return has_recorded_signal(entry.value);
-         });
+         std::any_of(node.map.begin(), node.map.end(),
+                     [](const DocumentEntry& entry) { return has_recorded_signal(entry.value); });
 }
 
 // What is wrong is said at the block.
@@ -145,10 +129,8 @@ void check_simulation(const MapReader& at, const ArraySimulation& simulation) {
 }
 
 // The simulation that `simulate` began with: the same sensors and faults, and its own rows h.
-std::optional<ArraySimulation> simulation_again(const MapReader& at,
-                                                const SimulatedFrom& from,
-                                                const SceneFolder& folder,
-                                                Scene& scene) {
+std::optional<ArraySimulation> simulation_again(const MapReader& at, const SimulatedFrom& from,
+                                                const SceneFolder& folder, Scene& scene) {
   if (!folder.may_be_absent && has_recorded_signal(at.require("simulate"))) return std::nullopt;
   SceneFolder files = folder;
   files.may_be_absent = false;
@@ -160,8 +142,7 @@ std::optional<ArraySimulation> simulation_again(const MapReader& at,
   const std::size_t inputs = out.truth.size();
   if (!from.rows.empty() && from.rows.size() != inputs * scene.sensors.size())
     throw scene_refusal("E0741", at, "rows")
-        .says("expected {} weights, one a sensor and true input, found {}",
-              inputs * scene.sensors.size(),
+        .says("expected {} weights, one a sensor and true input, found {}", inputs * scene.sensors.size(),
               from.rows.size());
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const SceneSensor& sensor = scene.sensors[i];
@@ -174,13 +155,9 @@ std::optional<ArraySimulation> simulation_again(const MapReader& at,
   return out;
 }
 
-SimulatedFrom simulated_of(const MapReader& top,
-                           const SceneFolder& folder,
-                           Scene& scene,
-                           const SensorIndex& index) {
+SimulatedFrom simulated_of(const MapReader& top, const SceneFolder& folder, Scene& scene, const SensorIndex& index) {
   if (scene.simulate)
-    throw scene_refusal("E0735", top, "simulated")
-        .says("tells what a recording holds; this scene has none");
+    throw scene_refusal("E0735", top, "simulated").says("tells what a recording holds; this scene has none");
   const MapReader at = top.map("simulated", keys_of(simulated_fields()));
   SimulatedFrom from;
   read_fields(simulated_fields(), at, from);
@@ -191,10 +168,7 @@ SimulatedFrom simulated_of(const MapReader& top,
 }
 
 /// The blocks `learning`, `evaluation`, `rest`, `fault_free_s`, `faults` and `simulated`.
-void read_scene_times(const MapReader& top,
-                      const SceneFolder& folder,
-                      const SensorIndex& index,
-                      Scene& scene) {
+void read_scene_times(const MapReader& top, const SceneFolder& folder, const SensorIndex& index, Scene& scene) {
   read_fields(scene_time_fields(), top, scene);
   scene.faults = faults_of(top, scene, index);
   check_cross(top, index, scene);
@@ -206,18 +180,14 @@ void read_scene_times(const MapReader& top,
 // The blocks `reference` and `tilt` of a scene file.
 // The blocks `reference` and `tilt` of a scene file, and the rows h that they go with.
 
-void read_options(const MapReader& at,
-                  const SceneFolder& folder,
-                  SceneReference& reference,
-                  Scene& scene) {
+void read_options(const MapReader& at, const SceneFolder& folder, SceneReference& reference, Scene& scene) {
   for (const std::string& key : keys_of(reference_fields()))
     if (scene.simulate && key != "channels" && at.has(key))
       at.refuse(key, "a simulation knows its truth: name truth signals only");
   if (at.has("lag_s") && at.has("delay"))
     throw scene_refusal("E0735", at, "delay").says("lag_s says the same").hint("give one of them");
   read_fields(reference_fields(), at, reference);
-  if (at.has("recording"))
-    reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
+  if (at.has("recording")) reference.recording = scene_recording_of(at, "recording", folder, reference.reading, scene);
 }
 
 void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scene) {
@@ -233,13 +203,11 @@ void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scen
   const MapReader& at = map ? *map : top;
   const char* key = map ? "channels" : "reference";
   reference.channels = at.texts(key);
-  if (reference.channels.empty())
-    throw scene_refusal("E0736", at, key).says("expected the name of a channel");
+  if (reference.channels.empty()) throw scene_refusal("E0736", at, key).says("expected the name of a channel");
   const Document& names = at.require(key);
   for (const Document& name : is_scalar(names) ? std::vector<Document>{names} : names.list)
     check_scene_text(top, name, at.path_of(key), scene);
-  if (std::set<std::string>(reference.channels.begin(), reference.channels.end()).size() !=
-      reference.channels.size())
+  if (std::set<std::string>(reference.channels.begin(), reference.channels.end()).size() != reference.channels.size())
     throw scene_refusal("E0737", at, key).says("a channel stands twice");
   if (map) read_options(at, folder, reference, scene);
   if (scene.simulate)
@@ -275,11 +243,8 @@ void check_rows(const MapReader& top, const SensorIndex& index, const Scene& sce
     const std::string name = printable(scene.sensors[i].name, 40);
     if (h.size() != inputs)
       throw scene_refusal_at("E0741", top, *index.places[i].node, index.places[i].path)
-          .says("the row h of sensor {} has {}, and there {} {}",
-                name,
-                plural(h.size(), "weight"),
-                inputs == 1 ? "is" : "are",
-                plural(inputs, "true input"))
+          .says("the row h of sensor {} has {}, and there {} {}", name, plural(h.size(), "weight"),
+                inputs == 1 ? "is" : "are", plural(inputs, "true input"))
           .hint("give h one weight a truth signal or reference channel");
     const bool blind = std::all_of(h.begin(), h.end(), [](double w) { return w == 0; });
     if (blind && !scene.simulate)
@@ -289,10 +254,7 @@ void check_rows(const MapReader& top, const SensorIndex& index, const Scene& sce
 }
 
 // The blocks `reference` and `tilt`, and whether every row h fits the true inputs.
-void read_scene_reference(const MapReader& top,
-                          const SceneFolder& folder,
-                          const SensorIndex& index,
-                          Scene& scene) {
+void read_scene_reference(const MapReader& top, const SceneFolder& folder, const SensorIndex& index, Scene& scene) {
   read_reference(top, folder, scene);
   if (top.has("tilt")) read_tilt(top, index, scene);
   check_rows(top, index, scene);
@@ -326,8 +288,7 @@ class SceneReader {
           .says("a scene has either a recording or a simulation")
           .hint("recording: FILE, or simulate: {rate_hz, duration_s, truth}");
     if (top_.has("recording"))
-      scene_.recording =
-          scene_recording_of(top_, "recording", folder_for_again(), scene_.reading, scene_);
+      scene_.recording = scene_recording_of(top_, "recording", folder_for_again(), scene_.reading, scene_);
     if (top_.has("simulate")) scene_.simulate = scene_simulation_of(top_, folder_, scene_);
   }
 
@@ -365,8 +326,7 @@ class SceneReader {
       if (entry.key == "name") continue;
       const std::string key = fmt::format("{}.{}", path, printable(entry.key, 40));
       if (entry.value.kind != Document::Kind::number)
-        throw scene_refusal_at("E0744", top_, entry.value, key)
-            .says("an option of an algorithm is a number");
+        throw scene_refusal_at("E0744", top_, entry.value, key).says("an option of an algorithm is a number");
       algorithm.options.emplace_back(entry.key, entry.value.number);
     }
     return algorithm;
@@ -375,8 +335,7 @@ class SceneReader {
   void finish_simulation() {
     if (!scene_.simulate) return;
     for (const SceneSensor& sensor : scene_.sensors)
-      scene_.simulate->sensors.push_back(
-          {sensor.name, sensor.model.value_or(SensorModel{}), sensor.h});
+      scene_.simulate->sensors.push_back({sensor.name, sensor.model.value_or(SensorModel{}), sensor.h});
     scene_.simulate->faults = scene_.faults;
     check_simulation(top_, *scene_.simulate);
   }
@@ -392,44 +351,29 @@ class SceneReader {
 Refusal scene_refusal(const char* code, const MapReader& at, std::string_view key) {
   const DocumentEntry* entry = at.node().find(key);
   const Document& place = entry != nullptr ? entry->value : at.node();
-  return input_error(code, at.where(place))
-      .about(at.path_of(key))
-      .got(entry != nullptr ? place.text : "");
+  return input_error(code, at.where(place)).about(at.path_of(key)).got(entry != nullptr ? place.text : "");
 }
 
-Refusal scene_refusal_at(const char* code,
-                         const MapReader& at,
-                         const Document& node,
-                         const std::string& path) {
+Refusal scene_refusal_at(const char* code, const MapReader& at, const Document& node, const std::string& path) {
   return input_error(code, at.where(node)).about(path).got(shown(node));
 }
 
-void check_scene_text(const MapReader& at,
-                      const Document& node,
-                      const std::string& path,
-                      Scene& scene) {
+void check_scene_text(const MapReader& at, const Document& node, const std::string& path, Scene& scene) {
   if (node.text.find('\0') != std::string::npos)
     throw scene_refusal_at("E0737", at, node, path).says("a name holds a zero byte");
   if (printable(node.text) != node.text)
-    scene.warnings.add("control_characters",
-                       "names hold characters that cannot be printed; they are shown escaped",
+    scene.warnings.add("control_characters", "names hold characters that cannot be printed; they are shown escaped",
                        at.where(node));
 }
 
-bool is_scalar(const Document& node) {
-  return node.kind != Document::Kind::map && node.kind != Document::Kind::list;
-}
+bool is_scalar(const Document& node) { return node.kind != Document::Kind::map && node.kind != Document::Kind::list; }
 
 void check_oversampling(const MapReader& at, std::uint64_t oversampling) {
-  if (oversampling < 1 || oversampling > 1024)
-    at.refuse("oversampling", "expected a whole number from 1 to 1024");
+  if (oversampling < 1 || oversampling > 1024) at.refuse("oversampling", "expected a whole number from 1 to 1024");
 }
 
-std::size_t index_of_name(const MapReader& at,
-                          std::string_view key,
-                          const std::string& name,
-                          const std::vector<std::string>& names,
-                          const std::string& what) {
+std::size_t index_of_name(const MapReader& at, std::string_view key, const std::string& name,
+                          const std::vector<std::string>& names, const std::string& what) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const auto near = nearest(name, names);
@@ -437,9 +381,7 @@ std::size_t index_of_name(const MapReader& at,
       .says("{} is not {}", printable(name, 40), what)
       .hint(did_you_mean(
           near,
-          names.size() > 9
-              ? ""
-              : fmt::format("there are {}", printable(fmt::format("{}", fmt::join(names, ", "))))));
+          names.size() > 9 ? "" : fmt::format("there are {}", printable(fmt::format("{}", fmt::join(names, ", "))))));
 }
 
 Scene parse_scene(std::string_view text, const std::string& path, const SceneReadOptions& options) {
@@ -459,8 +401,7 @@ bool looks_like_scene(const std::string& path) {
 
 bool is_scene_file(const std::string& path) {
   const std::string text = read_document_text(path);
-  const Document document =
-      path.ends_with(".json") ? parse_json_document(text, path) : parse_yaml_document(text, path);
+  const Document document = path.ends_with(".json") ? parse_json_document(text, path) : parse_yaml_document(text, path);
   const DocumentEntry* format = document.find("format");
   return format != nullptr && format->value.text == "scene";
 }

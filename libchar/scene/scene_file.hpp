@@ -31,9 +31,7 @@ bool looks_like_scene(const std::string& path);
 bool is_scene_file(const std::string& path);
 
 /// The same from text that stands for a file at `path`.
-Scene parse_scene(std::string_view text,
-                  const std::string& path,
-                  const SceneReadOptions& options = {});
+Scene parse_scene(std::string_view text, const std::string& path, const SceneReadOptions& options = {});
 
 // Whether the filter, the trend and the offset of a scene go together.
 
@@ -54,16 +52,13 @@ std::string scene_yaml(const Scene& scene);
 struct SceneFolder {
   std::string scene;           ///< path of the scene file
   bool allow_outside = false;  ///< files elsewhere may be named
-  bool may_be_absent =
-      false;  ///< a file that is not there yet is only checked for where it would be
+  bool may_be_absent = false;  ///< a file that is not there yet is only checked for where it would be
 };
 
 /// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at
 /// `where` ("FILE:LINE:COL") for a path that leaves the scene's folder (by "..", absolute, or over
 /// a link), names the scene itself, or is not an existing regular file. Nothing is opened.
-std::string resolve_scene_file(const std::string& named,
-                               const SceneFolder& folder,
-                               const std::string& where,
+std::string resolve_scene_file(const std::string& named, const SceneFolder& folder, const std::string& where,
                                const std::string& key);
 
 /// `file` relative to the folder of `scene`, as the scene would name it; absolute when it is
@@ -78,11 +73,11 @@ void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& ou
 
 /// Channels of one recording that measure one quantity.
 struct SensorRecording {
-  std::string file;                    ///< of the recording; read several times
-  ReadOptions reading;                 ///< `channels` stays empty
-  std::vector<std::string> sensors;    ///< names, positions c0, c1… or patterns (channel_names)
-  std::vector<std::string> reference;  ///< the same; several: their mean; empty: no reference
-  std::string reference_file;          ///< a log of the reference's own; empty: `file`
+  std::string file;                                         ///< of the recording; read several times
+  ReadOptions reading;                                      ///< `channels` stays empty
+  std::vector<std::string> sensors;                         ///< names, positions c0, c1… or patterns (channel_names)
+  std::vector<std::string> reference;                       ///< the same; several: their mean; empty: no reference
+  std::string reference_file;                               ///< a log of the reference's own; empty: `file`
   std::vector<std::pair<std::string, std::string>> models;  ///< a sensor, and its model's file
   std::string models_folder;  ///< holds CHANNEL.sensor.yaml of each sensor (a characterization)
   std::string scene_file;     ///< path of the scene; empty: none

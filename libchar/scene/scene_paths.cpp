@@ -27,14 +27,11 @@ struct Named {
   Refusal refusal(const char* code) const { return input_error(code, where).about(key).got(text); }
 };
 
-bool leaves(const fs::path& relative) {
-  return !relative.empty() && *relative.begin() == "..";
-}
+bool leaves(const fs::path& relative) { return !relative.empty() && *relative.begin() == ".."; }
 
 // Is `file` in `folder` or below? Both without links.
 bool is_beneath(const fs::path& file, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
-         folder.end();
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
 }
 
 fs::path folder_of(const std::string& scene) {
@@ -45,12 +42,10 @@ fs::path folder_of(const std::string& scene) {
 // What somebody may have meant by a name that is no file.
 std::string hint_for(const std::string& named, const fs::path& folder) {
   if (named.starts_with('~')) return "~ is not expanded: write the path out";
-  if (named.find("://") != std::string::npos)
-    return "nothing is read from a network: save the file beside the scene";
+  if (named.find("://") != std::string::npos) return "nothing is read from a network: save the file beside the scene";
   if (named.find("$(") != std::string::npos || named.find_first_of("`|;") != std::string::npos)
     return "it is taken as a file name, no command is run";
-  if (named.find_first_of("*?[") != std::string::npos)
-    return "patterns are not expanded: name one file";
+  if (named.find_first_of("*?[") != std::string::npos) return "patterns are not expanded: name one file";
   if (named == "-") return "standard input cannot be replayed: name a file";
   if (named.starts_with('-')) return "it is taken as a file name, not as an option";
   return fmt::format("paths are relative to the scene's folder, {}", printable(folder.string()));
@@ -61,12 +56,11 @@ void check_text(const Named& named) {
   if (named.text.find('\0') != std::string::npos)
     throw named.refusal("E0730").says("the name of a file holds a zero byte");
   const fs::path path(named.text);
-  const bool long_part = std::any_of(
-      path.begin(), path.end(), [](const fs::path& p) { return p.native().size() > 255; });
+  const bool long_part =
+      std::any_of(path.begin(), path.end(), [](const fs::path& p) { return p.native().size() > 255; });
   if (named.text.size() > 4095 || long_part)
-    throw named.refusal("E0730").says(
-        "a name of {} bytes is too long: 4095 are allowed, 255 between two slashes",
-        named.text.size());
+    throw named.refusal("E0730").says("a name of {} bytes is too long: 4095 are allowed, 255 between two slashes",
+                                      named.text.size());
 }
 
 void check_kind(const Named& named, const fs::path& whole) {
@@ -74,12 +68,9 @@ void check_kind(const Named& named, const fs::path& whole) {
   std::error_code problem;
   const fs::file_status status = fs::status(whole, problem);
   if (status.type() == fs::file_type::not_found)
-    throw named.refusal("E0732")
-        .says("there is no file {}", shown)
-        .hint(hint_for(named.text, whole.parent_path()));
+    throw named.refusal("E0732").says("there is no file {}", shown).hint(hint_for(named.text, whole.parent_path()));
   if (problem) throw named.refusal("E0732").says("cannot look at {}: {}", shown, problem.message());
-  if (fs::is_directory(status))
-    throw named.refusal("E0733").says("{} is a folder, a file was expected", shown);
+  if (fs::is_directory(status)) throw named.refusal("E0733").says("{} is a folder, a file was expected", shown);
   if (!fs::is_regular_file(status))
     throw named.refusal("E0733")
         .says("{} is no regular file (a pipe, a device, a socket)", shown)
@@ -88,9 +79,7 @@ void check_kind(const Named& named, const fs::path& whole) {
 
 }  // namespace
 
-std::string resolve_scene_file(const std::string& text,
-                               const SceneFolder& folder,
-                               const std::string& where,
+std::string resolve_scene_file(const std::string& text, const SceneFolder& folder, const std::string& where,
                                const std::string& key) {
   const Named named{text, where, key};
   check_text(named);
@@ -99,8 +88,7 @@ std::string resolve_scene_file(const std::string& text,
     throw named.refusal("E0731").says("an absolute path leaves the scene's folder").hint(kOutside);
   if (!folder.allow_outside && leaves(path.lexically_normal()))
     throw named.refusal("E0731")
-        .says("{} lies outside the scene's folder",
-              printable((root / path).lexically_normal().string()))
+        .says("{} lies outside the scene's folder", printable((root / path).lexically_normal().string()))
         .hint(kOutside);
   // As the system walks it: "link/.." is not always ".".
   const fs::path whole = fs::path(folder.scene).parent_path() / path;
@@ -110,8 +98,7 @@ std::string resolve_scene_file(const std::string& text,
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
   if (problem || root_problem)
-    throw named.refusal("E0732").says("cannot look at {}: {}",
-                                      printable(whole.string()),
+    throw named.refusal("E0732").says("cannot look at {}: {}", printable(whole.string()),
                                       (problem ? problem : root_problem).message());
   if (!folder.allow_outside && !is_beneath(real, real_root))
     throw named.refusal("E0731")
@@ -119,10 +106,8 @@ std::string resolve_scene_file(const std::string& text,
         .hint(kOutside);
   // Some of what the kernel shows there calls itself a regular file and has no end.
   for (const char* system : {"/proc", "/sys"})
-    if (is_beneath(real, system))
-      throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
-  if (fs::equivalent(whole, folder.scene, problem))
-    throw named.refusal("E0734").says("the scene names itself as data");
+    if (is_beneath(real, system)) throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
+  if (fs::equivalent(whole, folder.scene, problem)) throw named.refusal("E0734").says("the scene names itself as data");
   return whole.string();
 }
 
@@ -141,12 +126,9 @@ std::string path_for_scene(const std::string& file, const std::string& scene) {
   std::error_code problem;
   const fs::path root = whole_path(folder_of(scene), problem);
   const fs::path target = problem ? root : whole_path(file, problem);
-  if (problem)
-    throw input_error("E0732", scene)
-        .says("cannot look at {}: {}", printable(file), problem.message());
+  if (problem) throw input_error("E0732", scene).says("cannot look at {}: {}", printable(file), problem.message());
   const fs::path relative = target.lexically_relative(root);
-  const std::string name =
-      relative.empty() || leaves(relative) ? target.string() : relative.string();
+  const std::string name = relative.empty() || leaves(relative) ? target.string() : relative.string();
   if (first_invalid_utf8(name) != std::string::npos || name.find('\0') != std::string::npos)
     throw output_error("E0745", scene)
         .says("a file whose name is no UTF-8 cannot be named in a scene")
@@ -168,10 +150,7 @@ void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& ou
     bool twice = !seen.insert(problem ? output : whole.string()).second;
     for (const std::string& other : outputs)  // two names of one existing file
       twice = twice || (&other < &output && fs::equivalent(other, output, problem) && !problem);
-    if (twice)
-      throw output_error("E0746", output)
-          .says("two outputs are one file")
-          .hint("give each a name of its own");
+    if (twice) throw output_error("E0746", output).says("two outputs are one file").hint("give each a name of its own");
   }
 }
 

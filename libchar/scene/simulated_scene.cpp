@@ -15,8 +15,7 @@ namespace libchar {
 namespace {
 
 // The weights of the inputs that the reference names, out of those of all true inputs.
-std::vector<double> weights_of(const SceneReference& reference,
-                               const std::vector<double>& h,
+std::vector<double> weights_of(const SceneReference& reference, const std::vector<double>& h,
                                const ArraySimulation& simulation) {
   std::vector<double> row;
   const auto& names = simulation.truth_names;
@@ -41,8 +40,7 @@ ReadOptions reading_of(const ArraySimulation& simulation, const SimulatedRecordi
 }
 
 // All that makes the log again.
-SimulatedFrom simulated_from(const ArraySimulation& simulation,
-                             const SimulatedRecording& recording,
+SimulatedFrom simulated_from(const ArraySimulation& simulation, const SimulatedRecording& recording,
                              const Scene& scene) {
   SimulatedFrom out;
   out.seed = simulation.seed;
@@ -52,9 +50,7 @@ SimulatedFrom simulated_from(const ArraySimulation& simulation,
   out.deterministic = simulation.deterministic;
   out.command = recording.command;
   out.simulation = simulation;
-  const auto weighed_otherwise = [&](std::size_t i) {
-    return simulation.sensors[i].h != scene.sensors[i].h;
-  };
+  const auto weighed_otherwise = [&](std::size_t i) { return simulation.sensors[i].h != scene.sensors[i].h; };
   for (std::size_t i = 0; i < scene.sensors.size() && out.rows.empty(); ++i)
     if (weighed_otherwise(i))
       for (const SimulatedSensor& sensor : simulation.sensors)
@@ -77,15 +73,12 @@ LogInfo log_info(const ArraySimulation& simulation, const SimulatedRecording& re
     info.channels.push_back({sensor.name, output_unit(sensor.model), false});
   if (!recording.truth) return info;
   for (const std::string& name : simulation.truth_names)
-    info.channels.push_back(
-        {name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
+    info.channels.push_back({name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
   if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
   return info;
 }
 
-Scene replay_scene(const ArraySimulation& simulation,
-                   const SimulatedRecording& recording,
-                   const Scene& original) {
+Scene replay_scene(const ArraySimulation& simulation, const SimulatedRecording& recording, const Scene& original) {
   Scene scene;
   scene.learning = original.learning;
   scene.evaluation = original.evaluation;
@@ -102,13 +95,10 @@ Scene replay_scene(const ArraySimulation& simulation,
   scene.reading = reading_of(simulation, recording);
   for (const SimulatedSensor& sensor : simulation.sensors)
     scene.sensors.push_back({sensor.name, sensor.name, sensor.model, sensor.h});
-  for (std::size_t i = 0; i < original.sensors.size(); ++i)
-    scene.sensors[i].noise = original.sensors[i].noise;
+  for (std::size_t i = 0; i < original.sensors.size(); ++i) scene.sensors[i].noise = original.sensors[i].noise;
   if (recording.truth) {
-    scene.reference = original.reference.value_or(
-        SceneReference{simulation.truth_names, false, {}, {}, 0, false});
-    for (SceneSensor& sensor : scene.sensors)
-      sensor.h = weights_of(*scene.reference, sensor.h, simulation);
+    scene.reference = original.reference.value_or(SceneReference{simulation.truth_names, false, {}, {}, 0, false});
+    for (SceneSensor& sensor : scene.sensors) sensor.h = weights_of(*scene.reference, sensor.h, simulation);
   }
   scene.simulated = simulated_from(simulation, recording, scene);
   return scene;
@@ -123,21 +113,15 @@ void check_columns(const ArraySimulation& simulation, bool truth) {
   std::vector<std::string> names = simulation.truth_names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
   if (std::find(names.begin(), names.end(), "temperature") != names.end())
-    throw usage_error("E0721", "simulate")
-        .says("a channel has the name of the temperature column")
-        .got("temperature");
+    throw usage_error("E0721", "simulate").says("a channel has the name of the temperature column").got("temperature");
 }
 
-void stream_into(LogWriter& writer,
-                 const ArraySimulation& simulation,
-                 bool truth,
-                 Progress& progress) {
+void stream_into(LogWriter& writer, const ArraySimulation& simulation, bool truth, Progress& progress) {
   ArraySimulator simulator(simulation, 0);
   const std::size_t sensors = simulation.sensors.size();
   std::uint64_t done = 0;
   for (auto block = simulator.next(kRows); !block.empty(); block = simulator.next(kRows)) {
-    progress.update(static_cast<double>(done) / static_cast<double>(simulation.samples),
-                    "simulating");
+    progress.update(static_cast<double>(done) / static_cast<double>(simulation.samples), "simulating");
     writer.write(truth ? block : block.first(sensors));
     done += block[0].size();
   }
@@ -145,9 +129,7 @@ void stream_into(LogWriter& writer,
 
 }  // namespace
 
-SimulatedLog simulate_log(const ArraySimulation& simulation,
-                          const SimulatedRecording& recording,
-                          const Scene& original,
+SimulatedLog simulate_log(const ArraySimulation& simulation, const SimulatedRecording& recording, const Scene& original,
                           Progress& progress) {
   check(simulation);
   check_columns(simulation, recording.truth);
@@ -173,12 +155,9 @@ Findings late_faults(const ArraySimulation& simulation) {
   const double end_s = static_cast<double>(simulation.samples) / simulation.rate_hz;
   for (const SensorFault& fault : simulation.faults)
     if (fault.from_s >= end_s)
-      warnings.add("fault_after_end",
-                   "a fault begins after the end of the recording and changes nothing",
-                   fmt::format("{} from {} s, the end is at {} s",
-                               simulation.sensors[fault.sensor].name,
-                               brief_text(fault.from_s, 6),
-                               brief_text(end_s, 6)));
+      warnings.add("fault_after_end", "a fault begins after the end of the recording and changes nothing",
+                   fmt::format("{} from {} s, the end is at {} s", simulation.sensors[fault.sensor].name,
+                               brief_text(fault.from_s, 6), brief_text(end_s, 6)));
   return warnings;
 }
 

@@ -16,10 +16,10 @@ namespace libchar {
 
 /// A recording that a simulation writes.
 struct SimulatedRecording {
-  std::string file;        ///< of the log
-  std::string scene_file;  ///< of the scene that replays it
-  WriteOptions writing;    ///< of the log
-  bool truth = true;       ///< with the columns of the true inputs and of the temperature
+  std::string file;                       ///< of the log
+  std::string scene_file;                 ///< of the scene that replays it
+  WriteOptions writing;                   ///< of the log
+  bool truth = true;                      ///< with the columns of the true inputs and of the temperature
   std::vector<std::string> command = {};  ///< that asks for it, without the program
 };
 
@@ -31,9 +31,7 @@ LogInfo log_info(const ArraySimulation& simulation, const SimulatedRecording& re
 
 /// Channels by name, models inline, the truth as reference. What the scene that was simulated said
 /// of its replay (windows, algorithms, levels of noise) is kept from `original`.
-Scene replay_scene(const ArraySimulation& simulation,
-                   const SimulatedRecording& recording,
-                   const Scene& original);
+Scene replay_scene(const ArraySimulation& simulation, const SimulatedRecording& recording, const Scene& original);
 
 // A log with known truth, and the scene that replays it: one set, written together.
 
@@ -48,10 +46,8 @@ struct SimulatedLog {
 /// replays it; no `scene_file`: the log alone. What `original` says of a replay is kept. Both files
 /// are there, or neither. Throws as check(ArraySimulation) and open_log_writer, and Error(usage)
 /// where a channel has the name of another column.
-SimulatedLog simulate_log(const ArraySimulation& simulation,
-                          const SimulatedRecording& recording,
-                          const Scene& original = {},
-                          Progress& progress = no_progress());
+SimulatedLog simulate_log(const ArraySimulation& simulation, const SimulatedRecording& recording,
+                          const Scene& original = {}, Progress& progress = no_progress());
 
 /// Of faults that begin after the end of the recording.
 Findings late_faults(const ArraySimulation& simulation);
@@ -75,9 +71,7 @@ ArraySimulation simulation_of_models(const std::vector<std::string>& model_files
 /// path is used unchanged, not relative to a scene. A log that is shorter than the simulation is a
 /// warning; one of another rate, with several channels or without a sample is Error(usage) at
 /// `place`.
-void read_recorded_signal(SignalSpec& signal,
-                          const std::string& place,
-                          const ArraySimulation& simulation,
+void read_recorded_signal(SignalSpec& signal, const std::string& place, const ArraySimulation& simulation,
                           Findings& warnings);
 
 }  // namespace libchar

@@ -7,16 +7,11 @@ namespace libchar {
 namespace {
 
 // First sample at or after `t`; one that stands there but for rounding counts.
-double first_sample(double t, double rate_hz) {
-  return std::ceil(t * rate_hz - 1e-6);
-}
+double first_sample(double t, double rate_hz) { return std::ceil(t * rate_hz - 1e-6); }
 
 }  // namespace
 
-FaultInjector::FaultInjector(std::vector<SensorFault> faults,
-                             double rate_hz,
-                             std::uint64_t seed,
-                             std::uint64_t sensor)
+FaultInjector::FaultInjector(std::vector<SensorFault> faults, double rate_hz, std::uint64_t seed, std::uint64_t sensor)
     : faults_(std::move(faults)), rate_hz_(rate_hz) {
   // Every noise fault has a stream of its own, so that one more fault changes no other.
   for (std::size_t i = 0; i < faults_.size(); ++i)
@@ -31,8 +26,7 @@ void FaultInjector::apply(std::span<double> y) {
     const double healthy = sample;
     for (std::size_t i = 0; i < faults_.size(); ++i) {
       const SensorFault& fault = faults_[i];
-      if (k < first_sample(fault.from_s, rate_hz_) || k >= first_sample(fault.to_s, rate_hz_))
-        continue;
+      if (k < first_sample(fault.from_s, rate_hz_) || k >= first_sample(fault.to_s, rate_hz_)) continue;
       switch (fault.kind) {
         case FaultKind::scale:
           sample *= fault.value;

@@ -32,16 +32,12 @@ struct SensorFault {
 };
 
 template <>
-inline constexpr auto enum_table<FaultKind> =
-    enum_words<FaultKind, "scale bias ramp stuck saturation noise dropout">;
+inline constexpr auto enum_table<FaultKind> = enum_words<FaultKind, "scale bias ramp stuck saturation noise dropout">;
 
 /// Applies the faults of one sensor to consecutive blocks, in the order of the list.
 class FaultInjector {
  public:
-  FaultInjector(std::vector<SensorFault> faults,
-                double rate_hz,
-                std::uint64_t seed,
-                std::uint64_t sensor);
+  FaultInjector(std::vector<SensorFault> faults, double rate_hz, std::uint64_t seed, std::uint64_t sensor);
   bool idle() const { return faults_.empty(); }
   /// `y` holds the samples that follow those of the last call.
   void apply(std::span<double> y);

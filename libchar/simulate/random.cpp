@@ -15,11 +15,8 @@ namespace libchar {
 
 namespace {
 
-inline r123::Philox4x64::ctr_type block_at(const StreamKey& key,
-                                           std::uint64_t position,
-                                           std::uint64_t further) {
-  const r123::Philox4x64::ctr_type counter = {
-      {position, further, 0, static_cast<std::uint64_t>(key.purpose)}};
+inline r123::Philox4x64::ctr_type block_at(const StreamKey& key, std::uint64_t position, std::uint64_t further) {
+  const r123::Philox4x64::ctr_type counter = {{position, further, 0, static_cast<std::uint64_t>(key.purpose)}};
   return r123::Philox4x64()(counter, {{key.seed, key.sensor}});
 }
 
@@ -54,8 +51,7 @@ double normal_at(const StreamKey& key, std::uint64_t position, std::uint64_t wor
 
 std::array<std::uint64_t, 4> philox(const std::array<std::uint64_t, 4>& counter,
                                     const std::array<std::uint64_t, 2>& key) {
-  const auto out =
-      r123::Philox4x64()({{counter[0], counter[1], counter[2], counter[3]}}, {{key[0], key[1]}});
+  const auto out = r123::Philox4x64()({{counter[0], counter[1], counter[2], counter[3]}}, {{key[0], key[1]}});
   return {out[0], out[1], out[2], out[3]};
 }
 
@@ -94,8 +90,7 @@ void DeviateStream::fill_normal(std::span<double> out) {
   for (std::size_t done = 0; done < out.size();) {
     if (!filled_) refill();
     const std::size_t at = position_ % kWords, count = std::min(kWords - at, out.size() - done);
-    for (std::size_t i = 0; i < count; ++i)
-      out[done + i] = normal_at(key_, position_ + i, words_[at + i]);
+    for (std::size_t i = 0; i < count; ++i) out[done + i] = normal_at(key_, position_ + i, words_[at + i]);
     done += count;
     position_ += count;
     filled_ = at + count < kWords;

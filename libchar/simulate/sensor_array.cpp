@@ -24,32 +24,22 @@ constexpr std::uint64_t kTemperatureIndex = 1U << 20U;  // its random stream, aw
 /// All that is made is drawn, also what is renewed before a sample has seen it.
 constexpr double kMostRenewals = 1000;
 
-void check_hold(const char* key,
-                const std::optional<double>& hold_s,
-                const std::string& sensor,
-                double rate_hz) {
+void check_hold(const char* key, const std::optional<double>& hold_s, const std::string& sensor, double rate_hz) {
   if (!hold_s || *hold_s * rate_hz * kMostRenewals >= 1) return;
   throw input_error("E0554")
-      .says("sensor {}: {} of {} s renews the noise more than {} times between two samples",
-            sensor,
-            key,
-            *hold_s,
+      .says("sensor {}: {} of {} s renews the noise more than {} times between two samples", sensor, key, *hold_s,
             kMostRenewals)
       .hint("leave {} out: noise is then made anew for each sample", key);
 }
 
 void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
   if (sensor.h.size() != s.truth.size())
-    throw input_error("E0554").says("sensor {} weighs {} truth signals, and there are {}",
-                                    sensor.name,
-                                    sensor.h.size(),
+    throw input_error("E0554").says("sensor {} weighs {} truth signals, and there are {}", sensor.name, sensor.h.size(),
                                     s.truth.size());
   const double rate = s.rate_hz * static_cast<double>(s.oversampling);
   if (sensor.model.bandwidth_hz && *sensor.model.bandwidth_hz > 10 * rate)
     throw input_error("E0554")
-        .says("sensor {}: a bandwidth of {} Hz is far above the rate of {} Hz",
-              sensor.name,
-              *sensor.model.bandwidth_hz,
+        .says("sensor {}: a bandwidth of {} Hz is far above the rate of {} Hz", sensor.name, *sensor.model.bandwidth_hz,
               rate)
         .hint("leave bandwidth_hz out: nothing of it would be seen");
   check_hold("white_hold_s", sensor.model.white_hold_s, sensor.name, rate);
@@ -59,11 +49,10 @@ void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
 void check_signals(const ArraySimulation& s) {
   for (std::size_t j = 0; j < s.truth.size(); ++j) {
     const SignalSpec& signal = s.truth[j];
-    const bool derived =
-        signal.kind == "derivative" || signal.kind == "sine_of" || signal.kind == "cosine_of";
+    const bool derived = signal.kind == "derivative" || signal.kind == "sine_of" || signal.kind == "cosine_of";
     if (derived && signal.of >= j)
-      throw input_error("E0554").says(
-          "truth signal {} is made of signal {}, which does not stand before it", j, signal.of);
+      throw input_error("E0554").says("truth signal {} is made of signal {}, which does not stand before it", j,
+                                      signal.of);
     if (signal.kind == "points" && signal.points.empty())
       throw input_error("E0554").says("a signal of points has none");
     if (signal.kind == "recording" && signal.samples.empty())
@@ -101,17 +90,14 @@ void check(const ArraySimulation& s) {
   if (!(s.rate_hz >= 1e-9 && s.rate_hz <= 1e12))
     throw input_error("E0554").says("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
   if (s.samples == 0)
-    throw input_error("E0554")
-        .says("there is no sample to simulate")
-        .hint("give a duration or a number of samples");
+    throw input_error("E0554").says("there is no sample to simulate").hint("give a duration or a number of samples");
   if (s.oversampling == 0 || s.oversampling > 1024)
     throw input_error("E0554").says("oversampling must be from 1 to 1024");
   if (s.truth.empty() || s.truth.size() != s.truth_names.size())
     throw input_error("E0554").says("every truth signal needs a name, and there must be one");
   check_signals(s);
   std::set<std::string> names(s.truth_names.begin(), s.truth_names.end());
-  if (names.size() != s.truth_names.size())
-    throw input_error("E0554").says("two truth signals have one name");
+  if (names.size() != s.truth_names.size()) throw input_error("E0554").says("two truth signals have one name");
   for (const SimulatedSensor& sensor : s.sensors) {
     if (!names.insert(sensor.name).second)
       throw input_error("E0554")
@@ -123,8 +109,7 @@ void check(const ArraySimulation& s) {
   }
   for (const SensorFault& fault : s.faults)
     if (fault.sensor >= s.sensors.size())
-      throw input_error("E0554").says(
-          "a fault is of sensor {}, and there are {}", fault.sensor, s.sensors.size());
+      throw input_error("E0554").says("a fault is of sensor {}, and there are {}", fault.sensor, s.sensors.size());
 }
 
 struct ArraySimulator::State {
@@ -147,16 +132,14 @@ struct ArraySimulator::State {
     const std::uint64_t length = spec.samples * spec.oversampling;
     for (std::size_t j = 0; j < spec.truth.size(); ++j)
       signals.push_back(make_signal(spec.truth[j], rate, length, spec.seed, j));
-    if (spec.temperature)
-      temperature = make_signal(*spec.temperature, rate, length, spec.seed, kTemperatureIndex);
+    if (spec.temperature) temperature = make_signal(*spec.temperature, rate, length, spec.seed, kTemperatureIndex);
     if (spec.truth_bandwidth_hz) {
       const double a = std::exp(-2 * std::numbers::pi * *spec.truth_bandwidth_hz / rate);
       truth_low_pass.assign(spec.truth.size(), LowPass{a, 0, false, spec.low_pass_starts_at_zero});
     }
     for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
-      chains.emplace_back(
-          spec.sensors[i].model,
-          ChainOptions{rate, spec.seed, i, spec.low_pass_starts_at_zero, spec.deterministic});
+      chains.emplace_back(spec.sensors[i].model,
+                          ChainOptions{rate, spec.seed, i, spec.low_pass_starts_at_zero, spec.deterministic});
       draws.push_back(chains.back().draw());
       std::vector<SensorFault> own;
       for (const SensorFault& fault : spec.faults)
@@ -218,19 +201,15 @@ ArraySimulator::ArraySimulator(const ArraySimulation& simulation, int threads)
 
 std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted) {
   State& s = *state_;
-  const auto rows =
-      static_cast<std::size_t>(std::min<std::uint64_t>(wanted, s.spec.samples - s.done));
+  const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(wanted, s.spec.samples - s.done));
   s.columns.clear();
   if (rows == 0) return s.columns;
   s.make_truth(rows);
   if (s.threads == 1 || s.chains.size() == 1) {
     for (std::size_t i = 0; i < s.chains.size(); ++i) s.run_sensor(i, rows);
   } else {
-    parallel::Threads arena(s.threads > 0 ? std::min(s.threads, processors_given())
-                                          : processors_given());
-    arena.run([&] {
-      parallel::for_each(0, s.chains.size(), [&](std::size_t i) { s.run_sensor(i, rows); });
-    });
+    parallel::Threads arena(s.threads > 0 ? std::min(s.threads, processors_given()) : processors_given());
+    arena.run([&] { parallel::for_each(0, s.chains.size(), [&](std::size_t i) { s.run_sensor(i, rows); }); });
   }
   s.finish_truth(rows);
   s.done += rows;
@@ -242,8 +221,6 @@ std::span<const std::span<const double>> ArraySimulator::next(std::size_t wanted
   return s.columns;
 }
 
-const std::vector<DeviceDraw>& ArraySimulator::draws() const {
-  return state_->draws;
-}
+const std::vector<DeviceDraw>& ArraySimulator::draws() const { return state_->draws; }
 
 }  // namespace libchar

@@ -26,8 +26,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 // A signal whose value depends on the time only.
 class Formula final : public SignalSource {
  public:
-  Formula(double rate_hz, std::function<double(double)> value)
-      : rate_hz_(rate_hz), value_(std::move(value)) {}
+  Formula(double rate_hz, std::function<double(double)> value) : rate_hz_(rate_hz), value_(std::move(value)) {}
   void next(std::span<double> out, std::span<const std::span<const double>>) override {
     for (double& x : out) x = value_(static_cast<double>(k_++) / rate_hz_);
   }
@@ -73,8 +72,7 @@ class HeldUniform final : public SignalSource {
       // Renewal n stands at sample n * samples_per_renewal; several may lie between two samples.
       const std::uint64_t due =
           samples_per_renewal_ > 0
-              ? 1 + static_cast<std::uint64_t>(static_cast<double>(k_) / samples_per_renewal_ *
-                                               (1 + 1e-12))
+              ? 1 + static_cast<std::uint64_t>(static_cast<double>(k_) / samples_per_renewal_ * (1 + 1e-12))
               : k_ + 1;
       for (; renewals_ < due; ++renewals_) renew();
       x = spec_.offset + value_;
@@ -186,9 +184,7 @@ const std::vector<SignalKind>& signal_kind_rows() {
       {"zero", {}, "0"},
       {"constant", {"value"}, "the value"},
       {"sine", {"amplitude", "frequency_hz", "phase_rad"}, "A sin(2πft + φ)"},
-      {"chirp",
-       {"amplitude", "from_hz", "to_hz", "phase_rad"},
-       "frequency linear in time over the whole length"},
+      {"chirp", {"amplitude", "from_hz", "to_hz", "phase_rad"}, "frequency linear in time over the whole length"},
       {"noise",
        {"standard_deviation", "bandwidth_hz"},
        "white noise behind a first-order low-pass (0: none), of this standard deviation"},
@@ -198,9 +194,7 @@ const std::vector<SignalKind>& signal_kind_rows() {
       {"random_walk", {"step"}, "U/√s"},
       {"ramp", {"slope"}, "U/s"},
       {"points", {"points"}, "`[[t, value], …]`, linear in between, constant outside"},
-      {"recording",
-       {"file", "channel"},
-       "a channel of a log at the rate of the simulation; its last sample is held"},
+      {"recording", {"file", "channel"}, "a channel of a log at the rate of the simulation; its last sample is held"},
       {"derivative", {"of"}, "of a signal that stands before this one, by name or position from 0"},
       {"sine_of", {"of", "amplitude"}, "A sin x of such a signal in rad"},
       {"cosine_of", {"of", "amplitude"}, "A cos x of such a signal in rad"},
@@ -224,11 +218,8 @@ const std::vector<std::string>& signal_keys(const std::string& kind) {
   return none;
 }
 
-std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec,
-                                          double rate_hz,
-                                          std::uint64_t samples,
-                                          std::uint64_t seed,
-                                          std::uint64_t index) {
+std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec, double rate_hz, std::uint64_t samples,
+                                          std::uint64_t seed, std::uint64_t index) {
   const StreamKey key{seed, index, Purpose::truth};
   const std::string& kind = spec.kind;
   const auto formula = [&](std::function<double(double)> value) {

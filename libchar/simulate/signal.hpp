@@ -15,12 +15,12 @@ namespace libchar {
 
 /// What a signal is; only the fields of its kind count.
 struct SignalSpec {
-  std::string kind = "zero";  ///< one of signal_kinds()
-  double offset = 0;          ///< added to every kind but zero
-  double value = 0;           ///< constant
-  double amplitude = 1;       ///< sine, chirp, uniform: +-amplitude; sine_of, cosine_of: factor
-  double frequency_hz = 1;    ///< sine
-  double phase_rad = 0;       ///< sine, chirp
+  std::string kind = "zero";         ///< one of signal_kinds()
+  double offset = 0;                 ///< added to every kind but zero
+  double value = 0;                  ///< constant
+  double amplitude = 1;              ///< sine, chirp, uniform: +-amplitude; sine_of, cosine_of: factor
+  double frequency_hz = 1;           ///< sine
+  double phase_rad = 0;              ///< sine, chirp
   double from_hz = 0.01, to_hz = 1;  ///< chirp, linear in time over the whole length
   double standard_deviation = 1;     ///< noise: of the white noise after its low-pass
   /// noise: corner of its first-order low-pass; 0: white up to half the rate
@@ -32,8 +32,8 @@ struct SignalSpec {
   double slope = 0;  ///< ramp: U/s
   /// points: (t in s, value), linear in between, constant outside
   std::vector<std::pair<double, double>> points;
-  std::size_t of = 0;         ///< derivative, sine_of, cosine_of: index of an earlier signal (rad)
-  std::string file, channel;  ///< recording: where `samples` came from
+  std::size_t of = 0;           ///< derivative, sine_of, cosine_of: index of an earlier signal (rad)
+  std::string file, channel;    ///< recording: where `samples` came from
   std::vector<double> samples;  ///< recording: at the rate of the simulation, held at its end
 };
 
@@ -61,10 +61,7 @@ class SignalSource {
 };
 
 /// `index` and `seed` key the random kinds; `samples` is the length of the whole signal.
-std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec,
-                                          double rate_hz,
-                                          std::uint64_t samples,
-                                          std::uint64_t seed,
-                                          std::uint64_t index);
+std::unique_ptr<SignalSource> make_signal(const SignalSpec& spec, double rate_hz, std::uint64_t samples,
+                                          std::uint64_t seed, std::uint64_t index);
 
 }  // namespace libchar

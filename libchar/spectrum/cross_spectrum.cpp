@@ -43,13 +43,8 @@ std::vector<double> presence(std::span<const double> x, std::span<const double> 
   return out;
 }
 
-PairSums pair_sums(std::span<const double> x,
-                   std::span<const double> y,
-                   const Layout& layout,
-                   std::uint64_t first,
-                   std::uint64_t last,
-                   const WelchOptions& options,
-                   const std::vector<double>& window) {
+PairSums pair_sums(std::span<const double> x, std::span<const double> y, const Layout& layout, std::uint64_t first,
+                   std::uint64_t last, const WelchOptions& options, const std::vector<double>& window) {
   PairSums out(layout.segment / 2 + 1);
   Periodogram of_x(options, window), of_y(options, window);
   for (std::uint64_t i = first; i < last; ++i) {
@@ -77,22 +72,18 @@ void fill_bins(const PairSums& sums, double scale, CrossSpectrum& out) {
     out.first.push_back(sums.first[k] * to_density);
     out.second.push_back(sums.second[k] * to_density);
     const double product = sums.first[k] * sums.second[k];
-    const double coherence =
-        product > 0 ? std::clamp(std::norm(sums.both[k]) / product, 0.0, 1.0) : 0;
+    const double coherence = product > 0 ? std::clamp(std::norm(sums.both[k]) / product, 0.0, 1.0) : 0;
     out.coherence.push_back(coherence);
     out.coherence_unbiased.push_back(std::max(0.0, (segments * coherence - 1) / (segments - 1)));
     const double at_most = std::numbers::pi / std::sqrt(3.0);
     out.phase_sd_rad.push_back(
-        coherence > 0 ? std::min(at_most, std::sqrt((1 - coherence) / (2 * segments * coherence)))
-                      : at_most);
+        coherence > 0 ? std::min(at_most, std::sqrt((1 - coherence) / (2 * segments * coherence))) : at_most);
   }
 }
 
 }  // namespace
 
-CrossSpectrum cross_spectrum(std::span<const double> x,
-                             std::span<const double> y,
-                             double rate_hz,
+CrossSpectrum cross_spectrum(std::span<const double> x, std::span<const double> y, double rate_hz,
                              const WelchOptions& options) {
   check_options(options);
   check_rate(rate_hz);
@@ -101,20 +92,13 @@ CrossSpectrum cross_spectrum(std::span<const double> x,
         .says("a cross spectrum is of two records of one length")
         .got("{} and {} samples", x.size(), y.size());
   CrossSpectrum out;
-  const Layout layout =
-      layout_of(choose_segment(presence(x, y), options, out.notes), options.overlap);
+  const Layout layout = layout_of(choose_segment(presence(x, y), options, out.notes), options.overlap);
   const std::vector<double> window = window_values(options.window, layout.segment);
   const std::size_t count = detail::in_memory(layout.count(x.size()));
-  std::vector<PairSums> groups((count + layout.group - 1) / layout.group,
-                               PairSums(layout.segment / 2 + 1));
+  std::vector<PairSums> groups((count + layout.group - 1) / layout.group, PairSums(layout.segment / 2 + 1));
   parallel::for_each(0, groups.size(), [&](std::size_t g) {
-    groups[g] = pair_sums(x,
-                          y,
-                          layout,
-                          g * layout.group,
-                          std::min<std::uint64_t>(count, (g + 1) * layout.group),
-                          options,
-                          window);
+    groups[g] = pair_sums(x, y, layout, g * layout.group, std::min<std::uint64_t>(count, (g + 1) * layout.group),
+                          options, window);
   });
   PairSums sums(layout.segment / 2 + 1);
   Average average(options, layout);

@@ -36,25 +36,16 @@ RealFft::RealFft(std::size_t n) : state_(detail::hidden<State>()) {
   state_->spectrum = aligned<std::complex<double>>(n / 2 + 1);
 }
 
-std::span<double> RealFft::input() {
-  return {state_->values.get(), state_->n};
-}
+std::span<double> RealFft::input() { return {state_->values.get(), state_->n}; }
 
-std::span<std::complex<double>> RealFft::coefficients() {
-  return {state_->spectrum.get(), state_->n / 2 + 1};
-}
+std::span<std::complex<double>> RealFft::coefficients() { return {state_->spectrum.get(), state_->n / 2 + 1}; }
 
 // Planned where it is used: FFTW's estimate leaves what stands in the buffers.
 std::span<const std::complex<double>> RealFft::transform() {
   if (!state_->forward)
     state_->forward = fft_plan::planned(fft_plan::Kind::real_forward, state_->n, [&] {
       const fftw_iodim64 dimension = state_->dimension();
-      return fftw_plan_guru64_dft_r2c(1,
-                                      &dimension,
-                                      0,
-                                      nullptr,
-                                      state_->values.get(),
-                                      state_->bins(),
+      return fftw_plan_guru64_dft_r2c(1, &dimension, 0, nullptr, state_->values.get(), state_->bins(),
                                       FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
     });
   fftw_execute_dft_r2c(state_->forward.get(), state_->values.get(), state_->bins());
@@ -65,16 +56,13 @@ std::span<const double> RealFft::inverse() {
   if (!state_->backward)
     state_->backward = fft_plan::planned(fft_plan::Kind::real_backward, state_->n, [&] {
       const fftw_iodim64 dimension = state_->dimension();
-      return fftw_plan_guru64_dft_c2r(
-          1, &dimension, 0, nullptr, state_->bins(), state_->values.get(), FFTW_ESTIMATE);
+      return fftw_plan_guru64_dft_c2r(1, &dimension, 0, nullptr, state_->bins(), state_->values.get(), FFTW_ESTIMATE);
     });
   fftw_execute_dft_c2r(state_->backward.get(), state_->bins(), state_->values.get());
   return {state_->values.get(), state_->n};
 }
 
-std::size_t RealFft::size() const {
-  return state_->n;
-}
+std::size_t RealFft::size() const { return state_->n; }
 
 // FFTW's estimate is at its worst for lengths with high powers of five, such as 625 or 1000, which
 // records of a round number of samples give: plans of twice the time it could be. For these the
@@ -138,20 +126,16 @@ void ComplexFft::State::plan_two_steps(std::size_t a, std::size_t step, fftw_com
     const auto signed_of = [](std::size_t value) { return static_cast<std::ptrdiff_t>(value); };
     return fftw_iodim64{signed_of(length), signed_of(in), signed_of(out)};
   };
-  const fftw_iodim64 over_t1 = iodim(a, b * step, b * together),
-                     over_t2 = iodim(b, together, a * step);
+  const fftw_iodim64 over_t1 = iodim(a, b * step, b * together), over_t2 = iodim(b, together, a * step);
   const fftw_iodim64 every_t2[2] = {iodim(b, step, together), iodim(together, distance, 1)};
   const fftw_iodim64 every_m1[2] = {iodim(a, b * together, step), iodim(together, 1, distance)};
   between = aligned<std::complex<double>>(n * together);
   auto* const packed = reinterpret_cast<fftw_complex*>(between.get());
-  plan = fft_plan::owned(
-      fftw_plan_guru64_dft(1, &over_t1, 2, every_t2, values, packed, FFTW_FORWARD, FFTW_ESTIMATE));
-  second = fft_plan::owned(
-      fftw_plan_guru64_dft(1, &over_t2, 2, every_m1, packed, values, FFTW_FORWARD, FFTW_ESTIMATE));
+  plan = fft_plan::owned(fftw_plan_guru64_dft(1, &over_t1, 2, every_t2, values, packed, FFTW_FORWARD, FFTW_ESTIMATE));
+  second = fft_plan::owned(fftw_plan_guru64_dft(1, &over_t2, 2, every_m1, packed, values, FFTW_FORWARD, FFTW_ESTIMATE));
   for (std::size_t m1 = 0; m1 < a; ++m1)
     for (std::size_t t2 = 0; t2 < b; ++t2) {
-      const double angle =
-          2 * std::numbers::pi * static_cast<double>(m1 * t2) / static_cast<double>(n);
+      const double angle = 2 * std::numbers::pi * static_cast<double>(m1 * t2) / static_cast<double>(n);
       turns.push_back(std::cos(angle));
       turns.push_back(-std::sin(angle));
     }
@@ -159,8 +143,7 @@ void ComplexFft::State::plan_two_steps(std::size_t a, std::size_t step, fftw_com
 
 void ComplexFft::State::two_steps(fftw_complex* from, fftw_complex* to) const {
   auto* const packed = reinterpret_cast<fftw_complex*>(between.get());
-  for (std::size_t i = 0; i < count;
-       i += together, from += together * distance, to += together * distance) {
+  for (std::size_t i = 0; i < count; i += together, from += together * distance, to += together * distance) {
     fftw_execute_dft(plan.get(), from, packed);
     auto* const doubles = reinterpret_cast<double*>(between.get());
     together == 4 ? turn_fours(doubles, turns.data(), n) : turn_each(doubles, turns.data(), n);
@@ -177,15 +160,12 @@ struct PlannedFor {
   fftw_complex* values;
   explicit PlannedFor(std::size_t n) : memory(aligned<std::complex<double>>(n + 4)) {
     const auto past = reinterpret_cast<std::uintptr_t>(memory.get()) % 64;
-    values =
-        reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
+    values = reinterpret_cast<fftw_complex*>(reinterpret_cast<char*>(memory.get()) + (64 - past) % 64);
   }
 };
 
 fftw_iodim64 dimension_of(std::size_t n, std::size_t step) {
-  return {static_cast<std::ptrdiff_t>(n),
-          static_cast<std::ptrdiff_t>(step),
-          static_cast<std::ptrdiff_t>(step)};
+  return {static_cast<std::ptrdiff_t>(n), static_cast<std::ptrdiff_t>(step), static_cast<std::ptrdiff_t>(step)};
 }
 
 }  // namespace
@@ -204,8 +184,8 @@ ComplexFft::ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::
   if (a != 0 && (s.together == 4 || n % 2 == 0))
     s.plan_two_steps(a, step, memory.values);
   else
-    s.plan = fft_plan::owned(fftw_plan_guru64_dft(
-        1, &dimension, 1, &batch, memory.values, memory.values, FFTW_FORWARD, FFTW_ESTIMATE));
+    s.plan = fft_plan::owned(
+        fftw_plan_guru64_dft(1, &dimension, 1, &batch, memory.values, memory.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 
 ComplexFft::ComplexFft(std::size_t n) : state_(detail::hidden<State>()) {
@@ -219,8 +199,8 @@ ComplexFft::ComplexFft(std::size_t n) : state_(detail::hidden<State>()) {
   if (a != 0 && n % 2 == 0)
     s.plan_two_steps(a, 1, from.values);
   else
-    s.plan = fft_plan::owned(fftw_plan_guru64_dft(
-        1, &dimension, 0, nullptr, from.values, to.values, FFTW_FORWARD, FFTW_ESTIMATE));
+    s.plan = fft_plan::owned(
+        fftw_plan_guru64_dft(1, &dimension, 0, nullptr, from.values, to.values, FFTW_FORWARD, FFTW_ESTIMATE));
 }
 
 void ComplexFft::transform(double* interleaved) const {
@@ -267,8 +247,7 @@ struct Dct::State {
   RealFft fft;
   std::vector<std::complex<double>> coarse, fine;
 
-  explicit State(std::size_t n)
-      : fft(n), coarse(n / 2 / kFine + 1), fine(std::min(kFine, n / 2 + 1)) {
+  explicit State(std::size_t n) : fft(n), coarse(n / 2 / kFine + 1), fine(std::min(kFine, n / 2 + 1)) {
     for (std::size_t j = 0; j < coarse.size(); ++j)
       coarse[j] = turn(j * kFine, n) * std::sqrt(2 / static_cast<double>(n));
     for (std::size_t j = 0; j < fine.size(); ++j) fine[j] = turn(j, n);
@@ -312,8 +291,7 @@ void Dct::State::rotate(std::span<const std::complex<double>> v, double* c) cons
 
 std::span<const double> Dct::transform(std::span<const double> y) {
   const std::size_t n = state_->fft.size();
-  if (y.size() != n)
-    throw numeric_error("E0413").says("a cosine transform of {} values was given {}", n, y.size());
+  if (y.size() != n) throw numeric_error("E0413").says("a cosine transform of {} values was given {}", n, y.size());
   count_work(WorkKind::cosine_transforms, 1);
   const double centre = centre_of(y);
   state_->permute(y, centre);
@@ -337,9 +315,7 @@ struct SineSums::State {
 
 SineSums::SineSums(std::size_t n) : state_(detail::hidden<State>(n)) {}
 
-std::span<double> SineSums::input() {
-  return state_->values;
-}
+std::span<double> SineSums::input() { return state_->values; }
 
 std::span<const double> SineSums::transform() {
   State& s = *state_;
@@ -368,20 +344,12 @@ CosineSums::CosineSums(std::size_t n) : state_(detail::hidden<State>()) {
   s.plan = fft_plan::planned(fft_plan::Kind::sums_of_cosines, n, [&] {
     const fftw_iodim64 dimension = {static_cast<std::ptrdiff_t>(n), 1, 1};
     const fftw_r2r_kind r2r = FFTW_REDFT01;
-    return fftw_plan_guru64_r2r(1,
-                                &dimension,
-                                0,
-                                nullptr,
-                                s.values.get(),
-                                s.sums.get(),
-                                &r2r,
+    return fftw_plan_guru64_r2r(1, &dimension, 0, nullptr, s.values.get(), s.sums.get(), &r2r,
                                 FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
   });
 }
 
-std::span<double> CosineSums::input() {
-  return {state_->values.get(), state_->n};
-}
+std::span<double> CosineSums::input() { return {state_->values.get(), state_->n}; }
 
 std::span<const double> CosineSums::transform() {
   const State& s = *state_;

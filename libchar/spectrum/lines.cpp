@@ -69,10 +69,9 @@ Density density_of(const Spectrum& s) {
   const bool per_band = s.scaling == Scaling::ps || s.scaling == Scaling::ls;
   const double factor = (s.sides == Sides::two ? 2 : 1) / (per_band ? s.enbw_hz : 1);
   Density out;
-  const auto zero = static_cast<std::size_t>(
-      std::lower_bound(s.frequency_hz.begin(), s.frequency_hz.end(), 0.0) - s.frequency_hz.begin());
-  const std::size_t size =
-      std::min<std::size_t>(s.value.size() - zero, (static_cast<std::size_t>(s.segment) + 1) / 2);
+  const auto zero = static_cast<std::size_t>(std::lower_bound(s.frequency_hz.begin(), s.frequency_hz.end(), 0.0) -
+                                             s.frequency_hz.begin());
+  const std::size_t size = std::min<std::size_t>(s.value.size() - zero, (static_cast<std::size_t>(s.segment) + 1) / 2);
   out.power = std::span(s.value).subspan(zero, size);
   if (root || factor != 1) {
     out.own.reserve(size);
@@ -111,8 +110,7 @@ Density averaged(const Density& d, std::size_t count) {
 // Median of at most kFlank values.
 double median_of(const double* values, std::size_t count) {
   std::array<double, kFlank> sorted;
-  std::partial_sort_copy(
-      values, values + count, sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  std::partial_sort_copy(values, values + count, sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
   return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
 }
 
@@ -204,17 +202,14 @@ double half_width(std::span<const double> power, std::size_t peak, double level,
   return std::abs(static_cast<double>(inside) - static_cast<double>(peak)) + part;
 }
 
-SpectralLine line_of(
-    const Density& d, std::size_t first, std::size_t last, double floor, std::size_t lobe) {
+SpectralLine line_of(const Density& d, std::size_t first, std::size_t last, double floor, std::size_t lobe) {
   const auto begin = d.power.begin();
-  const auto peak =
-      static_cast<std::size_t>(std::max_element(begin + static_cast<std::ptrdiff_t>(first),
-                                                begin + static_cast<std::ptrdiff_t>(last) + 1) -
-                               begin);
+  const auto peak = static_cast<std::size_t>(
+      std::max_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(last) + 1) -
+      begin);
   SpectralLine line;
   const bool inner = peak > 0 && peak + 1 < d.power.size();
-  const double offset =
-      inner ? parabola_top(d.power[peak - 1], d.power[peak], d.power[peak + 1]) : 0;
+  const double offset = inner ? parabola_top(d.power[peak - 1], d.power[peak], d.power[peak + 1]) : 0;
   line.frequency_hz = d.frequency_hz(peak) + offset * d.step_hz();
   const std::size_t from = std::min(first, peak - std::min(peak, lobe)),
                     to = std::min(std::max(last, peak + lobe), d.power.size() - 1);
@@ -223,10 +218,7 @@ SpectralLine line_of(
   line.amplitude = std::sqrt(2 * std::max(sum, 0.0) * d.step_hz());
   line.excess = d.power[peak] / floor - 1;
   const double half = floor + (d.power[peak] - floor) / 2;
-  line.width_hz =
-      inner
-          ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz()
-          : 0;
+  line.width_hz = inner ? (half_width(d.power, peak, half, 1) + half_width(d.power, peak, half, -1)) * d.step_hz() : 0;
   return line;
 }
 
@@ -252,8 +244,7 @@ std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
   bool open = false;
   const auto close = [&] {
     if (open)
-      found.push_back({line_of(d, first, last, floor, lobe),
-                       d.frequency_hz(first) - d.step_hz(),
+      found.push_back({line_of(d, first, last, floor, lobe), d.frequency_hz(first) - d.step_hz(),
                        d.frequency_hz(last) + d.step_hz()});
     open = false;
   };
@@ -261,8 +252,7 @@ std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
     if (open && k > last + guard) close();
     if (floors.surely_at_least(k, d.power[k] / whole_flank)) continue;
     const Floor here = floors.at(k);
-    if (here.count == 0 || !(here.level > 0) || !(d.power[k] > here.level * threshold(here.count)))
-      continue;
+    if (here.count == 0 || !(here.level > 0) || !(d.power[k] > here.level * threshold(here.count))) continue;
     if (!open) first = k;
     floor = open ? std::min(floor, here.level) : here.level;
     open = true;
@@ -302,9 +292,7 @@ Quantization quantization_of(double step, double difference_sd) {
   return {step, std::sqrt(std::max(variance, 0.0))};
 }
 
-std::vector<SpectralLine> find_lines(const Spectrum& spectrum,
-                                     double alarm,
-                                     const Quantization& quantization) {
+std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm, const Quantization& quantization) {
   if (spectrum.segment == 0) return {};
   // Harmonics that fold onto each other make a fast drift's line up to 1.21 times as large.
   constexpr double kMargin = 1.3;
@@ -318,9 +306,8 @@ std::vector<SpectralLine> find_lines(const Spectrum& spectrum,
   const double rounding = kMargin * largest_quantization_line(quantization);
   for (const Found& f : found)
     if (f.line.amplitude > rounding) lines.push_back(f.line);
-  std::sort(lines.begin(), lines.end(), [](const SpectralLine& a, const SpectralLine& b) {
-    return a.frequency_hz < b.frequency_hz;
-  });
+  std::sort(lines.begin(), lines.end(),
+            [](const SpectralLine& a, const SpectralLine& b) { return a.frequency_hz < b.frequency_hz; });
   return lines;
 }
 

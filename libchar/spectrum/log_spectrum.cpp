@@ -12,9 +12,7 @@
 namespace libchar {
 namespace {
 
-bool is_root(Scaling scaling) {
-  return scaling == Scaling::lsd || scaling == Scaling::ls;
-}
+bool is_root(Scaling scaling) { return scaling == Scaling::lsd || scaling == Scaling::ls; }
 
 // All but the bins, which may be as many as a record has samples.
 Spectrum without_bins(const Spectrum& s) {
@@ -31,17 +29,15 @@ Spectrum without_bins(const Spectrum& s) {
   return out;
 }
 
-double power_of(const Spectrum& s, std::size_t i) {
-  return is_root(s.scaling) ? s.value[i] * s.value[i] : s.value[i];
-}
+double power_of(const Spectrum& s, std::size_t i) { return is_root(s.scaling) ? s.value[i] * s.value[i] : s.value[i]; }
 
 double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
   const double count = static_cast<double>(end - begin);
   double variance = 0;
   // All bins but the first and last of a spectrum have the same degrees of freedom.
-  const bool same = std::all_of(s.dof.begin() + static_cast<std::ptrdiff_t>(begin),
-                                s.dof.begin() + static_cast<std::ptrdiff_t>(end),
-                                [&](double dof) { return dof == s.dof[begin]; });
+  const bool same =
+      std::all_of(s.dof.begin() + static_cast<std::ptrdiff_t>(begin), s.dof.begin() + static_cast<std::ptrdiff_t>(end),
+                  [&](double dof) { return dof == s.dof[begin]; });
   if (same) {
     double terms = count;
     for (std::size_t m = 1; m <= s.neighbour_correlation.size() && begin + m < end; ++m)
@@ -60,9 +56,7 @@ double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
 struct LogAxis {
   double low = 1, per_e = 1;
   double log_low = std::log(low);
-  long bin(double log_f) const {
-    return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9));
-  }
+  long bin(double log_f) const { return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9)); }
 };
 
 LogAxis axis_of(double low, double high, std::size_t bins) {
@@ -95,13 +89,10 @@ void append_averages(const Spectrum& s, const LogAxis& axis, std::size_t begin, 
 
 Spectrum log_binned(const Spectrum& spectrum, std::size_t bins) {
   Spectrum out = without_bins(spectrum);
-  const auto first =
-      std::upper_bound(spectrum.frequency_hz.begin(), spectrum.frequency_hz.end(), 0.0);
+  const auto first = std::upper_bound(spectrum.frequency_hz.begin(), spectrum.frequency_hz.end(), 0.0);
   if (first == spectrum.frequency_hz.end() || bins == 0) return out;
-  append_averages(spectrum,
-                  axis_of(*first, spectrum.frequency_hz.back(), bins),
-                  static_cast<std::size_t>(first - spectrum.frequency_hz.begin()),
-                  out);
+  append_averages(spectrum, axis_of(*first, spectrum.frequency_hz.back(), bins),
+                  static_cast<std::size_t>(first - spectrum.frequency_hz.begin()), out);
   return out;
 }
 

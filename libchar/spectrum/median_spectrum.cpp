@@ -48,8 +48,7 @@ double median_of(std::vector<double>& values) {
 double expected_median(std::uint64_t count) {
   const std::uint64_t last = count % 2 == 1 ? count : count - 1;
   double sum = 0;
-  for (std::uint64_t i = last; i >= 1; --i)
-    sum += (i % 2 == 1 ? 1.0 : -1.0) / static_cast<double>(i);
+  for (std::uint64_t i = last; i >= 1; --i) sum += (i % 2 == 1 ? 1.0 : -1.0) / static_cast<double>(i);
   return sum;
 }
 
@@ -58,15 +57,13 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   check_rate(rate_hz);
   std::vector<std::string> notes;
   const Layout layout = layout_of(choose_segment(record, options, notes), options.overlap);
-  const std::size_t segments = detail::in_memory(layout.count(record.size())),
-                    bins = layout.segment / 2 + 1;
+  const std::size_t segments = detail::in_memory(layout.count(record.size())), bins = layout.segment / 2 + 1;
   if (static_cast<double>(segments) * static_cast<double>(bins) * sizeof(double) > kMostPowerBytes)
     throw usage_error("E0872", "`average`")
         .says(
             "a median takes the powers of all {} segments of {} bins at once, which are more than "
             "2 GiB",
-            segments,
-            bins)
+            segments, bins)
         .hint("give less `overlap`, or read less with `from_s`, `to_s`");
   const std::vector<double> window = window_values(options.window, layout.segment);
   std::vector<std::vector<double>> powers(segments);

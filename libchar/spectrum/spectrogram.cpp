@@ -20,8 +20,7 @@ void check_cells(std::uint64_t samples, const Layout& layout) {
     throw usage_error("E0875", "`segment`")
         .says("a segment of {} samples is longer than the record of {}", layout.segment, samples)
         .hint("the longest that fits has {}", samples);
-  const double cells =
-      static_cast<double>(layout.count(samples)) * static_cast<double>(layout.segment / 2 + 1);
+  const double cells = static_cast<double>(layout.count(samples)) * static_cast<double>(layout.segment / 2 + 1);
   if (cells * sizeof(double) > kMostCellBytes)
     throw usage_error("E0875", "`segment`")
         .says("the spectrogram would take more than 2 GiB")
@@ -30,9 +29,7 @@ void check_cells(std::uint64_t samples, const Layout& layout) {
 
 }  // namespace
 
-Spectrogram spectrogram(std::span<const double> record,
-                        double rate_hz,
-                        const WelchOptions& options) {
+Spectrogram spectrogram(std::span<const double> record, double rate_hz, const WelchOptions& options) {
   check_options(options);
   check_rate(rate_hz);
   const Layout layout = layout_of(options.segment, options.overlap);
@@ -46,16 +43,13 @@ Spectrogram spectrogram(std::span<const double> record,
   const bool density = options.scaling == Scaling::psd || options.scaling == Scaling::lsd;
   const bool root = options.scaling == Scaling::lsd || options.scaling == Scaling::ls;
   const double scale = 1 / (density ? rate_hz * energy : amplitude * amplitude);
-  Spectrogram out{
-      options.sides, options.scaling, options.window, rate_hz, layout.segment, {}, {}, {}};
+  Spectrogram out{options.sides, options.scaling, options.window, rate_hz, layout.segment, {}, {}, {}};
   const std::size_t bins = layout.segment / 2 + 1;
   for (std::size_t k = 0; k < bins; ++k)
-    out.frequency_hz.push_back(static_cast<double>(k) * rate_hz /
-                               static_cast<double>(layout.segment));
+    out.frequency_hz.push_back(static_cast<double>(k) * rate_hz / static_cast<double>(layout.segment));
   out.value.resize(detail::in_memory(layout.count(record.size())));
   for (std::size_t i = 0; i < out.value.size(); ++i)
-    out.time_s.push_back(
-        (static_cast<double>(i * layout.hop) + static_cast<double>(layout.segment) / 2) / rate_hz);
+    out.time_s.push_back((static_cast<double>(i * layout.hop) + static_cast<double>(layout.segment) / 2) / rate_hz);
   parallel::for_each(0, out.value.size(), [&](std::size_t i) {
     Periodogram periodogram(options, window);
     std::vector<double> power(bins, 0.0);

@@ -49,8 +49,7 @@ std::vector<double> window_values(Window window, std::size_t n) {
       w[j] = w[mirror - first];
       continue;
     }
-    const double x =
-        2 * std::numbers::pi * static_cast<double>(position) / static_cast<double>(period);
+    const double x = 2 * std::numbers::pi * static_cast<double>(position) / static_cast<double>(period);
     double value = terms[0], sign = -1;
     for (std::size_t m = 1; m < terms.size() && terms[m] != 0; ++m, sign = -sign)
       value += sign * terms[m] * std::cos(static_cast<double>(m) * x);
@@ -70,9 +69,7 @@ std::pair<double, double> interval_factors(double dof, double confidence) {
 
 std::pair<double, double> IntervalFactors::of(double dof) {
   const auto known = known_.find(dof);
-  return known != known_.end()
-             ? known->second
-             : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
+  return known != known_.end() ? known->second : known_.emplace(dof, interval_factors(dof, confidence_)).first->second;
 }
 
 std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, std::size_t i) {
@@ -83,8 +80,7 @@ std::pair<double, double> IntervalFactors::interval(const Spectrum& spectrum, st
   return {value * low, value * high};
 }
 
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        IntervalFactors& factors) {
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum, IntervalFactors& factors) {
   std::vector<std::optional<Interval>> out(spectrum.frequency_hz.size());
   for (std::size_t i = 0; i < std::min(out.size(), spectrum.dof.size()); ++i) {
     if (!(spectrum.dof[i] > 0)) continue;
@@ -94,8 +90,7 @@ std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum
   return out;
 }
 
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        double confidence) {
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum, double confidence) {
   IntervalFactors factors(confidence);
   return spectrum_intervals(spectrum, factors);
 }

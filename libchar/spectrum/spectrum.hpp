@@ -24,8 +24,7 @@ enum class Window {
 };  ///< periodic, but hann_nonzero = MATLAB's hanning
 
 template <>
-inline constexpr auto enum_table<Window> =
-    enum_words<Window, "hann rectangular blackman_harris flat_top hann_nonzero">;
+inline constexpr auto enum_table<Window> = enum_words<Window, "hann rectangular blackman_harris flat_top hann_nonzero">;
 
 std::vector<double> window_values(Window window, std::size_t n);
 
@@ -77,10 +76,8 @@ class IntervalFactors {
 };
 
 /// That of every bin; none where its degrees of freedom are not known.
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        IntervalFactors& factors);
-std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum,
-                                                        double confidence);
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum, IntervalFactors& factors);
+std::vector<std::optional<Interval>> spectrum_intervals(const Spectrum& spectrum, double confidence);
 
 // Spectra on a logarithmic frequency axis.
 
@@ -108,8 +105,7 @@ Quantization quantization_of(double step, double difference_sd);
 
 /// Narrow lines that exceed the local median floor with a false-alarm probability below
 /// `alarm` over the whole spectrum. Those that rounding may have made are not among them.
-std::vector<SpectralLine> find_lines(const Spectrum& spectrum,
-                                     double alarm = 1e-3,
+std::vector<SpectralLine> find_lines(const Spectrum& spectrum, double alarm = 1e-3,
                                      const Quantization& quantization = {});
 
 }  // namespace libchar

@@ -42,10 +42,7 @@ struct Worker {
   std::optional<WelchWorkspace::State::Piece> halves;
   std::optional<Periodogram> periodogram;
   /// No window: by halves.
-  Worker(const WelchOptions& options,
-         const Layout& layout,
-         const std::vector<double>& window,
-         WelchWorkspace& kept)
+  Worker(const WelchOptions& options, const Layout& layout, const std::vector<double>& window, WelchWorkspace& kept)
       : memory(kept.state()) {
     if (window.empty())
       halves = memory.take(layout.segment);
@@ -86,14 +83,10 @@ class Workers {
 };
 
 // The segments [index * group, (index + 1) * group) of the record.
-Group sum_of_group(std::uint64_t index,
-                   std::span<const double> record,
-                   const Layout& layout,
-                   Worker& worker) {
+Group sum_of_group(std::uint64_t index, std::span<const double> record, const Layout& layout, Worker& worker) {
   Group out{index, {}, {}};
   const std::uint64_t first = index * layout.group;
-  const std::uint64_t last =
-      std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
+  const std::uint64_t last = std::min<std::uint64_t>(first + layout.group, layout.count(record.size()));
   if (!worker.halves) {
     out.power.assign(layout.segment / 2 + 1, 0.0);
     for (std::uint64_t i = first; i < last; ++i)
@@ -107,8 +100,7 @@ Group sum_of_group(std::uint64_t index,
   for (std::uint64_t i = first; i <= last; i += 2) {
     const double* const x = record.data() + i * layout.hop;
     const HalfSegments::Half a = halves.half_at(x);
-    const HalfSegments::Half b =
-        i + 1 < there ? halves.half_at(x + layout.hop) : HalfSegments::Half();
+    const HalfSegments::Half b = i + 1 < there ? halves.half_at(x + layout.hop) : HalfSegments::Half();
     const auto used = halves.push(a, b, sums.get(), i < last ? sums.get() : nullptr);
     if (i > first) out.used.push_back(used.first);
     if (i < last) out.used.push_back(used.second);
@@ -140,62 +132,49 @@ struct Cutting {
   }
 };
 
-Spectrum finished(const Average& average,
-                  const std::vector<double>& window,
-                  Cutting&& cutting,
-                  double rate_hz) {
+Spectrum finished(const Average& average, const std::vector<double>& window, Cutting&& cutting, double rate_hz) {
   Spectrum spectrum = average.spectrum(window, rate_hz);
   spectrum.notes = std::move(cutting.notes);
   note_dropped(spectrum.dropped, spectrum.segments, spectrum.notes);
   return spectrum;
 }
 
-void add_groups(std::span<const double> record,
-                const Cutting& cutting,
-                const std::vector<double>& window,
-                WelchWorkspace& memory,
-                Average& average) {
+void add_groups(std::span<const double> record, const Cutting& cutting, const std::vector<double>& window,
+                WelchWorkspace& memory, Average& average) {
   const Layout& layout = cutting.layout;
   const std::uint64_t groups = (layout.count(record.size()) + layout.group - 1) / layout.group;
   const int threads = static_cast<int>(std::min(groups, threads_of(cutting.options)));
   if (threads <= 1) {
     Worker worker(cutting.options, layout, window, memory);
-    for (std::uint64_t g = 0; g < groups; ++g)
-      take(sum_of_group(g, record, layout, worker), average);
+    for (std::uint64_t g = 0; g < groups; ++g) take(sum_of_group(g, record, layout, worker), average);
     return;
   }
-  Workers workers(
-      [&] { return std::make_unique<Worker>(cutting.options, layout, window, memory); });
+  Workers workers([&] { return std::make_unique<Worker>(cutting.options, layout, window, memory); });
   const std::size_t most = 2 * static_cast<std::size_t>(threads);
   std::vector<Group> places(most);  // one is free again when the group `most` before has been taken
   std::uint64_t next = 0;
   const auto group_of = [](void* group) -> Group& { return *static_cast<Group*>(group); };
   parallel::Threads(threads).run([&] {
-    parallel::in_order(most,
-                       {.read = [&]() -> void* {
-                          if (next == groups) return nullptr;
-                          Group& group = places[next % most];
-                          group.index = next++;
-                          return &group;
-                        },
-                        .first = [](void*) {},
-                        .work =
-                            [&](void* group) {
-                              workers.lend([&](Worker& worker) {
-                                group_of(group) =
-                                    sum_of_group(group_of(group).index, record, layout, worker);
-                              });
-                            },
-                        .last = [&](void* group) { take(std::move(group_of(group)), average); }});
+    parallel::in_order(most, {.read = [&]() -> void* {
+                                if (next == groups) return nullptr;
+                                Group& group = places[next % most];
+                                group.index = next++;
+                                return &group;
+                              },
+                              .first = [](void*) {},
+                              .work =
+                                  [&](void* group) {
+                                    workers.lend([&](Worker& worker) {
+                                      group_of(group) = sum_of_group(group_of(group).index, record, layout, worker);
+                                    });
+                                  },
+                              .last = [&](void* group) { take(std::move(group_of(group)), average); }});
   });
 }
 
 }  // namespace
 
-Spectrum welch(std::span<const double> record,
-               double rate_hz,
-               const WelchOptions& options,
-               WelchWorkspace* workspace) {
+Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options, WelchWorkspace* workspace) {
   check_options(options);
   check_rate(rate_hz);
   Cutting cutting(record, options);
@@ -209,9 +188,7 @@ Spectrum welch(std::span<const double> record,
   return finished(average, window, std::move(cutting), rate_hz);
 }
 
-Spectrum welch_using_up(std::vector<double> record,
-                        double rate_hz,
-                        const WelchOptions& options,
+Spectrum welch_using_up(std::vector<double> record, double rate_hz, const WelchOptions& options,
                         WelchWorkspace* workspace) {
   check_options(options);
   check_rate(rate_hz);
@@ -245,11 +222,8 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
   const bool few = samples < kShortestSegment;
   if (!few && samples <= kLongestSegment) return static_cast<std::uint64_t>(samples);
   throw usage_error("E0201", "`segment`")
-      .says("at {} Hz this is {} samples, and a segment {} {}",
-            brief_text(rate_hz, 6),
-            brief_text(samples, 6),
-            few ? "needs at least" : "has at most",
-            few ? kShortestSegment : kLongestSegment)
+      .says("at {} Hz this is {} samples, and a segment {} {}", brief_text(rate_hz, 6), brief_text(samples, 6),
+            few ? "needs at least" : "has at most", few ? kShortestSegment : kLongestSegment)
       .got(got);
 }
 

@@ -43,15 +43,11 @@ struct WelchOptions {
 /// Welch's averaged modified periodogram. NaN = missing: segments that touch one are dropped; when
 /// fewer than one whole segment is left the segment is shortened and a note says so. Throws
 /// Error(numeric) when no segment of >= 8 samples is possible. `workspace` none: memory of its own.
-Spectrum welch(std::span<const double> record,
-               double rate_hz,
-               const WelchOptions& options = {},
+Spectrum welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {},
                WelchWorkspace* workspace = nullptr);
 
 /// The same, in less memory and by all threads where the segments are long: the record is used up.
-Spectrum welch_using_up(std::vector<double> record,
-                        double rate_hz,
-                        const WelchOptions& options = {},
+Spectrum welch_using_up(std::vector<double> record, double rate_hz, const WelchOptions& options = {},
                         WelchWorkspace* workspace = nullptr);
 
 /// Samples of a segment that lasts `seconds`. Throws Error(usage) when the rate is not known (0), or
@@ -68,23 +64,19 @@ struct CrossSpectrum {
   double effective_segments = 0;  ///< independent ones: overlap counted
   /// Coherence that independent channels stay below at a bin with 95 %: 1 - 0.05^(1/(K - 1)), K effective segments
   double significant_coherence = 1;
-  std::vector<double> frequency_hz;  ///< 0 … Nyquist
-  std::vector<std::complex<double>>
-      density;  ///< mean conj(X) Y, U_x U_y / Hz: the phase is that of y less that of x
-  std::vector<double> first, second;       ///< densities of x and y
-  std::vector<double> coherence;           ///< |density|² / (first · second), 0 … 1
-  std::vector<double> coherence_unbiased;  ///< (K c - 1)/(K - 1), not below 0
-  std::vector<double>
-      phase_sd_rad;  ///< sqrt((1 - c)/(2 K c)), at most pi/sqrt(3), which no phase at all has
+  std::vector<double> frequency_hz;           ///< 0 … Nyquist
+  std::vector<std::complex<double>> density;  ///< mean conj(X) Y, U_x U_y / Hz: the phase is that of y less that of x
+  std::vector<double> first, second;          ///< densities of x and y
+  std::vector<double> coherence;              ///< |density|² / (first · second), 0 … 1
+  std::vector<double> coherence_unbiased;     ///< (K c - 1)/(K - 1), not below 0
+  std::vector<double> phase_sd_rad;           ///< sqrt((1 - c)/(2 K c)), at most pi/sqrt(3), which no phase at all has
   std::vector<std::string> notes;
 };
 
 /// Welch's method for a pair of records of one length; segments that touch a missing sample of
 /// either are dropped. Densities whatever `options.scaling` says. Throws as welch; Error(numeric)
 /// with fewer than two segments: the coherence of one is 1 for any channels.
-CrossSpectrum cross_spectrum(std::span<const double> x,
-                             std::span<const double> y,
-                             double rate_hz,
+CrossSpectrum cross_spectrum(std::span<const double> x, std::span<const double> y, double rate_hz,
                              const WelchOptions& options = {});
 
 // The spectrum as it changes in time.
@@ -103,9 +95,7 @@ struct Spectrogram {
 /// The periodogram of each segment of welch() by itself: two degrees of freedom a bin. Needs
 /// `options.segment`. Throws as welch; Error(usage) where the record is shorter than a segment or
 /// the values are more than 2 GiB.
-Spectrogram spectrogram(std::span<const double> record,
-                        double rate_hz,
-                        const WelchOptions& options);
+Spectrogram spectrogram(std::span<const double> record, double rate_hz, const WelchOptions& options);
 
 // Welch's method with the median of the segments in place of their mean: bursts in a few segments do not count.
 
@@ -121,8 +111,6 @@ double expected_median(std::uint64_t count);
 /// welch(), each bin the median of the segments' powers over its expected value. Degrees of freedom
 /// are the mean's, less what a median of so many is worse (0.48 of them in the end). Throws as
 /// welch; Error(usage) where the powers of all segments are more than 2 GiB.
-Spectrum median_welch(std::span<const double> record,
-                      double rate_hz,
-                      const WelchOptions& options = {});
+Spectrum median_welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {});
 
 }  // namespace libchar

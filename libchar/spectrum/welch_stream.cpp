@@ -27,7 +27,7 @@ struct WelchStream::State {
   Average average;
   std::vector<double> segment;  // its first `filled` samples are there (or those of two halves)
   std::size_t filled = 0;
-  std::vector<double> group;  // power of the group under way, `in_group` segments of it
+  std::vector<double> group;                  // power of the group under way, `in_group` segments of it
   HalfSegments::SumsPointer sums, next_sums;  // the same by halves; of the group after it
   std::size_t in_group = 0;
   std::uint64_t samples = 0;
@@ -36,8 +36,7 @@ struct WelchStream::State {
   State(const WelchOptions& chosen, WelchWorkspace* workspace)
       : options(chosen),
         layout(layout_of(chosen.segment, chosen.overlap)),
-        window(HalfSegments::suits(chosen) ? std::vector<double>()
-                                           : window_values(chosen.window, layout.segment)),
+        window(HalfSegments::suits(chosen) ? std::vector<double>() : window_values(chosen.window, layout.segment)),
         average(options, layout),
         group(layout.segment / 2 + 1, 0.0) {
     if (window.empty()) {
@@ -178,9 +177,7 @@ WelchStream::WelchStream(const WelchOptions& options, WelchWorkspace* workspace)
         .hint("give a segment length");
   state_ = detail::hidden<State>(options, workspace);
 }
-WelchStream::WelchStream(const WelchOptions& options,
-                         const WelchSums& sums,
-                         WelchWorkspace* workspace)
+WelchStream::WelchStream(const WelchOptions& options, const WelchSums& sums, WelchWorkspace* workspace)
     : WelchStream(options, workspace) {
   state_->average = Average(state_->options, state_->layout, sums);
   state_->samples = sums.samples;
@@ -192,9 +189,7 @@ void WelchStream::push(std::span<const double> samples) {
   state_->halves ? state_->push_by_halves(samples, nullptr) : state_->push_by_segments(samples);
 }
 
-std::uint64_t WelchStream::shared_length() const {
-  return state_->halves ? state_->layout.hop : 0;
-}
+std::uint64_t WelchStream::shared_length() const { return state_->halves ? state_->layout.hop : 0; }
 
 void WelchStream::push(std::span<const double> samples, SharedBlocks& blocks) {
   state_->check_shared(blocks);
@@ -206,8 +201,7 @@ void WelchStream::push(std::span<const double> samples, SharedBlocks& blocks) {
 void WelchStream::end(SharedBlocks& blocks) {
   state_->check_shared(blocks);
   if (state_->filled >= state_->layout.hop) state_->take_last_half(blocks);
-  blocks.close(std::span<const double>(state_->segment).first(state_->filled),
-               state_->halves->block_power());
+  blocks.close(std::span<const double>(state_->segment).first(state_->filled), state_->halves->block_power());
 }
 
 WelchSums WelchStream::sums() const {

@@ -50,14 +50,11 @@ std::string WelchParts::why_not(const WelchOptions& options, std::uint64_t part)
   if (layout.segment > part)
     return fmt::format("segments of {} samples are longer than a leaf of {}", layout.segment, part);
   if (part % layout.hop != 0)
-    return fmt::format(
-        "segments begin every {} samples, which do not divide a leaf of {}", layout.hop, part);
+    return fmt::format("segments begin every {} samples, which do not divide a leaf of {}", layout.hop, part);
   return "";
 }
 
-std::uint64_t WelchParts::shared_length() const {
-  return state_->shared;
-}
+std::uint64_t WelchParts::shared_length() const { return state_->shared; }
 
 WelchSums WelchParts::take(std::span<const double> part, BlockTaker* taker) const {
   WelchStream stream(state_->options, state_->workspace);
@@ -112,37 +109,32 @@ static void welch_layout(Archive& at, Sums& sums) {
   at(sums.head, sums.tail, sums.first, sums.moves, sums.moves_little);
 }
 
-void WelchParts::write_state(const WelchSums& sums, StateWriter& to) {
-  welch_layout(to, sums);
-}
+void WelchParts::write_state(const WelchSums& sums, StateWriter& to) { welch_layout(to, sums); }
 
 WelchSums WelchParts::read_state(StateReader& from) const {
   WelchSums sums;
   welch_layout(from, sums);
   const Layout& layout = state_->layout;
   const std::size_t lags = (layout.segment - 1) / layout.hop;
-  const bool none = sums.samples == 0 && sums.used == 0 && sums.dropped == 0 &&
-                    sums.power.empty() && sums.pairs.empty() && sums.begin.empty() &&
-                    sums.end.empty() && sums.head.empty() && sums.tail.empty();
+  const bool none = sums.samples == 0 && sums.used == 0 && sums.dropped == 0 && sums.power.empty() &&
+                    sums.pairs.empty() && sums.begin.empty() && sums.end.empty() && sums.head.empty() &&
+                    sums.tail.empty();
   if (none) return sums;
   const std::uint64_t segments = layout.count(sums.samples);
   const std::size_t ends = std::min(detail::in_memory(sums.samples), state_->end_samples());
   const bool whole = (sums.used == 0 || !sums.power.empty()) &&
-                     (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) &&
-                     sums.used <= segments && sums.dropped == segments - sums.used &&
-                     sums.pairs.size() == lags + 1 &&
+                     (sums.power.empty() || sums.power.size() == layout.segment / 2 + 1) && sums.used <= segments &&
+                     sums.dropped == segments - sums.used && sums.pairs.size() == lags + 1 &&
                      *std::max_element(sums.pairs.begin(), sums.pairs.end()) <= segments &&
                      sums.begin.size() == std::min<std::uint64_t>(segments, lags) &&
-                     sums.end.size() == sums.begin.size() && sums.head.size() == ends &&
-                     sums.tail.size() == ends;
+                     sums.end.size() == sums.begin.size() && sums.head.size() == ends && sums.tail.size() == ends;
   if (!whole) from.refuse("the sums of its spectrum");
   return sums;
 }
 
 // Paired as WelchStream pairs them: 0 and 1, 2 and 3…, and a last one alone.
 void BlockTransforms::take(std::span<const double> part, BlockTaker& taker) const {
-  HalfSegments halves(detail::in_memory(2 * block_),
-                      workspace_ != nullptr ? &workspace_->state().pools : nullptr);
+  HalfSegments halves(detail::in_memory(2 * block_), workspace_ != nullptr ? &workspace_->state().pools : nullptr);
   SharedBlocks blocks(block_, taker);
   const auto next = [&]() -> HalfSegments::Half {
     if (part.size() < block_) return {};

@@ -15,11 +15,11 @@
 namespace libchar {
 
 struct WelchSums {
-  std::uint64_t samples = 0, used = 0, dropped = 0;  ///< segments
-  std::vector<double> power;                         ///< sums over them; none: no segment
-  std::vector<std::uint64_t> pairs;       ///< [lag]: pairs of used segments so many hops apart
-  std::vector<unsigned char> begin, end;  ///< was it used: of as many segments as overlap one
-  std::vector<double> head, tail;         ///< samples of a segment less a hop, or all there are
+  std::uint64_t samples = 0, used = 0, dropped = 0;         ///< segments
+  std::vector<double> power;                                ///< sums over them; none: no segment
+  std::vector<std::uint64_t> pairs;                         ///< [lag]: pairs of used segments so many hops apart
+  std::vector<unsigned char> begin, end;                    ///< was it used: of as many segments as overlap one
+  std::vector<double> head, tail;                           ///< samples of a segment less a hop, or all there are
   double first = std::numeric_limits<double>::quiet_NaN();  ///< sample that is there
   bool moves = false, moves_little = false;                 ///< do others differ from it
 };
@@ -75,9 +75,7 @@ class WelchStream {
   /// `workspace`: shared with other streams, and needed while this one is made only; none: memory of its own.
   explicit WelchStream(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
   /// One that has seen a record elsewhere, part by part; no more samples come.
-  WelchStream(const WelchOptions& options,
-              const WelchSums& sums,
-              WelchWorkspace* workspace = nullptr);
+  WelchStream(const WelchOptions& options, const WelchSums& sums, WelchWorkspace* workspace = nullptr);
   void push(std::span<const double> samples);
   Spectrum finish(double rate_hz) const;
 

@@ -23,12 +23,8 @@ namespace {
 
 __extension__ typedef __float128 Quad;
 
-const std::vector<DeviationType> kAll = {DeviationType::adev,
-                                         DeviationType::oadev,
-                                         DeviationType::mdev,
-                                         DeviationType::tdev,
-                                         DeviationType::hdev,
-                                         DeviationType::ohdev,
+const std::vector<DeviationType> kAll = {DeviationType::adev,  DeviationType::oadev, DeviationType::mdev,
+                                         DeviationType::tdev,  DeviationType::hdev,  DeviationType::ohdev,
                                          DeviationType::totdev};
 
 std::vector<double> white(std::size_t n, unsigned seed, double offset = 0, double sigma = 1) {
@@ -46,10 +42,7 @@ std::vector<double> integers(std::size_t n, unsigned seed) {
   return y;
 }
 
-AllanCurve curve_of(const std::vector<double>& y,
-                    DeviationType type,
-                    TauGrid grid = TauGrid::octave,
-                    int threads = 0) {
+AllanCurve curve_of(const std::vector<double>& y, DeviationType type, TauGrid grid = TauGrid::octave, int threads = 0) {
   AllanOptions options;
   options.type = type;
   options.grid = grid;
@@ -62,8 +55,7 @@ double reference(const std::vector<double>& y, std::size_t m, bool modified) {
   std::vector<Quad> x(y.size() + 1, Quad(0));
   for (std::size_t i = 0; i < y.size(); ++i) x[i + 1] = x[i] + Quad(y[i]);
   std::vector<Quad> d;
-  for (std::size_t i = 0; i + 2 * m < x.size(); ++i)
-    d.push_back(x[i + 2 * m] - 2 * x[i + m] + x[i]);
+  for (std::size_t i = 0; i + 2 * m < x.size(); ++i) d.push_back(x[i + 2 * m] - 2 * x[i + m] + x[i]);
   Quad sum = 0;
   std::size_t terms = d.size();
   if (modified) {
@@ -134,9 +126,7 @@ TEST_CASE("as many samples as one term spans make one point, one fewer none") {
 
 TEST_CASE("numbers of terms follow the formulas") {
   const auto y = white(1000, 1);
-  const auto terms = [&](DeviationType type) {
-    return curve_of(y, type).points.at(3).terms;
-  };  // m = 8
+  const auto terms = [&](DeviationType type) { return curve_of(y, type).points.at(3).terms; };  // m = 8
   CHECK(terms(DeviationType::adev) == 124);
   CHECK(terms(DeviationType::oadev) == 985);
   CHECK(terms(DeviationType::mdev) == 978);
@@ -180,10 +170,8 @@ TEST_CASE("grids") {
     for (const auto& p : curve_of(y, DeviationType::oadev, grid).points) m.push_back(p.m);
     return m;
   };
-  CHECK(factors(TauGrid::octave) ==
-        std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048});
-  CHECK(factors(TauGrid::decade) ==
-        std::vector<std::uint64_t>{1, 2, 4, 10, 20, 40, 100, 200, 400, 1000, 2000});
+  CHECK(factors(TauGrid::octave) == std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048});
+  CHECK(factors(TauGrid::decade) == std::vector<std::uint64_t>{1, 2, 4, 10, 20, 40, 100, 200, 400, 1000, 2000});
   const auto dense = factors(TauGrid::dense);
   CHECK(dense[998] == 999);
   CHECK(dense.size() > 1050);
@@ -216,8 +204,7 @@ TEST_CASE("grids") {
   CHECK(part.points.back().m == 32);
 }
 
-TEST_CASE(
-    "averaging times reach as far as a term does, of the total deviation over the whole record") {
+TEST_CASE("averaging times reach as far as a term does, of the total deviation over the whole record") {
   const auto y = white(101, 4);
   for (const DeviationRow& row : deviation_rows()) {
     CAPTURE(row.word);
@@ -245,8 +232,7 @@ TEST_CASE("powers of two scale bit-exactly, from denormals to 1e200") {
     for (double& v : tiny) v *= 1e-310;
     const AllanCurve denormal = curve_of(tiny, type);
     for (std::size_t k = 0; k < base.points.size(); ++k)
-      CHECK(denormal.points[k].deviation ==
-            Approx(base.points[k].deviation * 1e-310).epsilon(1e-5).margin(3e-323));
+      CHECK(denormal.points[k].deviation == Approx(base.points[k].deviation * 1e-310).epsilon(1e-5).margin(3e-323));
   }
 }
 
@@ -263,21 +249,17 @@ TEST_CASE("an offset changes no bit of integer data") {
 TEST_CASE("constants give exactly zero, whatever they are") {
   for (const double c : {0.0, -0.0, 9.81, 1e9, -1e200, 1e-310})
     for (const DeviationType type : kAll)
-      for (const auto& p : curve_of(std::vector<double>(3000, c), type).points)
-        CHECK(p.deviation == 0);
+      for (const auto& p : curve_of(std::vector<double>(3000, c), type).points) CHECK(p.deviation == 0);
 }
 
 TEST_CASE("offset 1e9 sigma and strong drift, against 113 bits") {
   const std::size_t n = 50000;
-  auto offset = white(n, 5, 987654321.123456, 1), drift = white(n, 6),
-       gravity = white(n, 7, 9.81, 1e-3);
+  auto offset = white(n, 5, 987654321.123456, 1), drift = white(n, 6), gravity = white(n, 7, 9.81, 1e-3);
   for (std::size_t i = 0; i < n; ++i) drift[i] += 1e6 * double(i) / double(n);
   const auto worst = [&](const std::vector<double>& y, bool modified) {
-    const AllanCurve curve =
-        curve_of(y, modified ? DeviationType::mdev : DeviationType::oadev, TauGrid::decade);
+    const AllanCurve curve = curve_of(y, modified ? DeviationType::mdev : DeviationType::oadev, TauGrid::decade);
     double w = 0;
-    for (const auto& p : curve.points)
-      w = std::max(w, std::fabs(p.deviation / reference(y, p.m, modified) - 1));
+    for (const auto& p : curve.points) w = std::max(w, std::fabs(p.deviation / reference(y, p.m, modified) - 1));
     return w;
   };
   for (const bool modified : {false, true}) {
@@ -295,8 +277,7 @@ TEST_CASE("records that end where a block of the phase does, and a sample beside
     for (const std::size_t n : {whole - 2, whole - 1, whole, whole + 1}) {
       const std::vector<double> y = white(n, 11, 3.0);
       for (const bool modified : {false, true})
-        for (const auto& p :
-             curve_of(y, modified ? DeviationType::mdev : DeviationType::oadev).points)
+        for (const auto& p : curve_of(y, modified ? DeviationType::mdev : DeviationType::oadev).points)
           CHECK(p.deviation == Approx(reference(y, p.m, modified)).epsilon(1e-12));
     }
 }
@@ -309,8 +290,7 @@ TEST_CASE("closed forms: ramp, alternation, block means, one octave of identitie
   }
   for (const auto& p : curve_of(ramp, DeviationType::oadev).points)
     CHECK(p.deviation == Approx(3 * p.tau_s / std::sqrt(2.0)).epsilon(1e-14));
-  for (const auto& p : curve_of(ramp, DeviationType::ohdev).points)
-    CHECK(std::fabs(p.deviation) <= 1e-9);
+  for (const auto& p : curve_of(ramp, DeviationType::ohdev).points) CHECK(std::fabs(p.deviation) <= 1e-9);
   for (const auto& p : curve_of(alternating, DeviationType::oadev).points)
     CHECK(p.deviation == (p.m == 1 ? std::sqrt(2.0) : 0));
 
@@ -318,12 +298,10 @@ TEST_CASE("closed forms: ramp, alternation, block means, one octave of identitie
   const AllanCurve plain = curve_of(y, DeviationType::adev);
   CHECK(at(plain, 1) == at(curve_of(y, DeviationType::oadev), 1));
   CHECK(at(plain, 1) == Approx(at(curve_of(y, DeviationType::mdev), 1)).epsilon(1e-13));
-  const AllanCurve modified = curve_of(y, DeviationType::mdev),
-                   time = curve_of(y, DeviationType::tdev);
+  const AllanCurve modified = curve_of(y, DeviationType::mdev), time = curve_of(y, DeviationType::tdev);
   for (std::size_t k = 0; k < modified.points.size(); ++k)
     CHECK(time.points[k].deviation ==
-          Approx(modified.points[k].tau_s * modified.points[k].deviation / std::sqrt(3.0))
-              .epsilon(1e-15));
+          Approx(modified.points[k].tau_s * modified.points[k].deviation / std::sqrt(3.0)).epsilon(1e-15));
   for (const std::size_t m : {2U, 16U, 128U}) {
     std::vector<double> means(y.size() / m);
     for (std::size_t i = 0; i < y.size(); ++i) means[i / m] += y[i] / double(m);
@@ -338,8 +316,7 @@ TEST_CASE("time reversal") {
     std::reverse(y.begin(), y.end());
     const AllanCurve backward = curve_of(y, type);
     for (const auto& p : forward.points)
-      if (type == DeviationType::oadev || type == DeviationType::mdev ||
-          type == DeviationType::ohdev)
+      if (type == DeviationType::oadev || type == DeviationType::mdev || type == DeviationType::ohdev)
         CHECK(at(backward, p.m) == Approx(p.deviation).epsilon(1e-13));
   }
 }
@@ -347,8 +324,7 @@ TEST_CASE("time reversal") {
 TEST_CASE("means are over what is present of a window that is more than half there") {
   auto y = white(3000, 10, 50);
   std::mt19937_64 engine(12);
-  for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 2001UL, 2002UL, 2999UL})
-    y[gap] = std::nan("");
+  for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 2001UL, 2002UL, 2999UL}) y[gap] = std::nan("");
   y[2500] = std::numeric_limits<double>::infinity();
   for (const int missing : {0, 1000}) {
     for (int i = 0; i < missing; ++i) y[engine() % y.size()] = std::nan("");
@@ -375,8 +351,7 @@ TEST_CASE("modified deviations average the terms of means over what is present")
   for (const int missing : {1, 200}) {
     for (int i = 0; i < missing; ++i) y[engine() % y.size()] = std::nan("");
     const test::PresentReference reference(y, [](std::uint64_t) { return 1; });
-    const AllanCurve curve = curve_of(y, DeviationType::mdev),
-                     time = curve_of(y, DeviationType::tdev);
+    const AllanCurve curve = curve_of(y, DeviationType::mdev), time = curve_of(y, DeviationType::tdev);
     REQUIRE(time.points.size() == curve.points.size());
     CHECK(curve.points.back().m == 256);
     for (std::size_t k = 0; k < curve.points.size(); ++k) {
@@ -386,8 +361,7 @@ TEST_CASE("modified deviations average the terms of means over what is present")
       CHECK(p.terms == t.terms);
       CHECK(p.deviation == Approx(std::sqrt(static_cast<double>(t.variance))).epsilon(1e-12));
       CHECK(p.inflation == Approx(static_cast<double>(t.inflation)).epsilon(1e-12));
-      CHECK(time.points[k].deviation ==
-            Approx(p.deviation * p.tau_s / std::sqrt(3.0)).epsilon(1e-14));
+      CHECK(time.points[k].deviation == Approx(p.deviation * p.tau_s / std::sqrt(3.0)).epsilon(1e-14));
     }
   }
 }
@@ -397,8 +371,7 @@ TEST_CASE(
     "stretch") {
   const std::size_t n = 6000;
   auto y = white(n, 10, 50);
-  for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 3000UL, 3001UL, 3002UL, 5999UL})
-    y[gap] = std::nan("");
+  for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 3000UL, 3001UL, 3002UL, 5999UL}) y[gap] = std::nan("");
   y[2500] = std::numeric_limits<double>::infinity();
   AllanOptions phase;
   phase.data = DataKind::phase;
@@ -407,9 +380,8 @@ TEST_CASE(
     long double sum = 0;
     for (std::size_t i = 0; i + 2 * p.m < n; ++i) {
       const auto first = y.begin() + static_cast<std::ptrdiff_t>(i);
-      if (!std::all_of(first, first + static_cast<std::ptrdiff_t>(2 * p.m + 1), [](double v) {
-            return std::isfinite(v);
-          }))
+      if (!std::all_of(first, first + static_cast<std::ptrdiff_t>(2 * p.m + 1),
+                       [](double v) { return std::isfinite(v); }))
         continue;
       const auto d = static_cast<long double>((y[i + 2 * p.m] - y[i + p.m]) - (y[i + p.m] - y[i]));
       ++terms;
@@ -418,8 +390,7 @@ TEST_CASE(
     const auto count = 2 * static_cast<long double>(terms);
     INFO("m " << p.m);
     CHECK(p.terms == terms);
-    CHECK(p.deviation * p.tau_s ==
-          Approx(std::sqrt(static_cast<double>(sum / count))).epsilon(1e-12));
+    CHECK(p.deviation * p.tau_s == Approx(std::sqrt(static_cast<double>(sum / count))).epsilon(1e-12));
   }
   const AllanCurve total = curve_of(y, DeviationType::totdev);
   REQUIRE_FALSE(total.notes.empty());
@@ -462,8 +433,7 @@ TEST_CASE("the number of threads changes no bit") {
   y[123456] = std::nan("");
   for (const DeviationType type : kAll) {
     const AllanCurve one = curve_of(y, type, TauGrid::octave, 1);
-    for (const int threads : {2, 3, 8})
-      check_same_bits(one, curve_of(y, type, TauGrid::octave, threads), 1);
+    for (const int threads : {2, 3, 8}) check_same_bits(one, curve_of(y, type, TauGrid::octave, threads), 1);
   }
 }
 

@@ -41,9 +41,7 @@ AllanCurve pyramid_of(const std::vector<double>& y, std::size_t piece = 0, doubl
   return pyramid.finish(dt);
 }
 
-std::uint64_t stride(std::uint64_t m) {
-  return m >= 8 ? m / 4 : 1;
-}
+std::uint64_t stride(std::uint64_t m) { return m >= 8 ? m / 4 : 1; }
 
 /// Samples less the first: the reference adds whole windows.
 std::vector<double> less_first(std::vector<double> y) {
@@ -84,11 +82,10 @@ void check_same(const AllanCurve& a, const AllanCurve& b, double factor = 1) {
 
 }  // namespace
 
-TEST_CASE(
-    "pyramid equals the stride-m/4 reference to 2e-13, at every length around the block size") {
-  for (const std::size_t n : {2UL,    3UL,    7UL,    8UL,     15UL,     16UL,    17UL,   63UL,
-                              64UL,   1000UL, 4095UL, 4096UL,  4097UL,   4102UL,  4103UL, 4104UL,
-                              8191UL, 8192UL, 8193UL, 12288UL, 100003UL, 524288UL})
+TEST_CASE("pyramid equals the stride-m/4 reference to 2e-13, at every length around the block size") {
+  for (const std::size_t n :
+       {2UL,    3UL,    7UL,    8UL,    15UL,   16UL,   17UL,   63UL,   64UL,    1000UL,   4095UL,
+        4096UL, 4097UL, 4102UL, 4103UL, 4104UL, 8191UL, 8192UL, 8193UL, 12288UL, 100003UL, 524288UL})
     check_against_direct(noise(n, unsigned(n)), 2e-13);
 }
 
@@ -100,8 +97,7 @@ TEST_CASE("pyramid with offset and drift") {
 
 TEST_CASE("pyramid does not see how the samples were pushed") {
   auto y = noise(70001, 4, 100);
-  for (const std::size_t gap : {0UL, 5UL, 4095UL, 4096UL, 40000UL, 40001UL, 70000UL})
-    y[gap] = std::nan("");
+  for (const std::size_t gap : {0UL, 5UL, 4095UL, 4096UL, 40000UL, 40001UL, 70000UL}) y[gap] = std::nan("");
   const AllanCurve whole = pyramid_of(y);
   for (const std::size_t piece : {1UL, 2UL, 7UL, 67UL, 4095UL, 4096UL, 4097UL, 65537UL})
     check_same(whole, pyramid_of(y, piece));
@@ -142,8 +138,7 @@ TEST_CASE("pyramid scales bit-exactly by powers of two and survives extremes") {
   }
   // With samples missing where blocks meet as well: the means there have a scale of their own.
   auto holed = y;
-  for (const std::size_t gap : {7UL, 4090UL, 4094UL, 4097UL, 8185UL, 8191UL, 16380UL})
-    holed[gap] = std::nan("");
+  for (const std::size_t gap : {7UL, 4090UL, 4094UL, 4097UL, 8185UL, 8191UL, 16380UL}) holed[gap] = std::nan("");
   const AllanCurve with_gaps = pyramid_of(holed);
   for (const int k : {-600, 600, 900}) {
     auto scaled = holed;
@@ -178,8 +173,7 @@ TEST_CASE("pyramid and full overlap share m = 1, 2, 4 and agree within their spr
   REQUIRE(pyramid.points.size() == full.points.size());
   CHECK(pyramid.stride_divisor == 4);
   for (std::size_t k = 0; k < full.points.size(); ++k)
-    CHECK(pyramid.points[k].deviation ==
-          Approx(full.points[k].deviation).epsilon(k < 3 ? 1e-13 : 0.1));
+    CHECK(pyramid.points[k].deviation == Approx(full.points[k].deviation).epsilon(k < 3 ? 1e-13 : 0.1));
 }
 
 TEST_CASE("dense times at stride m/4 are the pyramid's at octaves and the direct sum elsewhere") {
@@ -212,8 +206,7 @@ TEST_CASE("dense times at stride m/4 are the pyramid's at octaves and the direct
     }
     const long double m = static_cast<long double>(p.m);
     CHECK(p.deviation ==
-          Approx(static_cast<double>(std::sqrt(sum / static_cast<long double>(2 * terms)) / m))
-              .epsilon(1e-11));
+          Approx(static_cast<double>(std::sqrt(sum / static_cast<long double>(2 * terms)) / m)).epsilon(1e-11));
   }
   CHECK(octaves == 10);  // above 1000 the dense ones are no powers of two
 }
@@ -248,8 +241,7 @@ TEST_CASE("pyramid can be asked before the end and refuses too short records") {
 TEST_CASE("pyramid: what stands behind a block is not looked at, what stands in it is") {
   // A page that may not be read stands behind the last value.
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  void* const pages =
-      ::mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void* const pages = ::mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   REQUIRE(pages != MAP_FAILED);
   REQUIRE(::mprotect(static_cast<char*>(pages) + page, page, PROT_NONE) == 0);
   const std::span<double> whole(static_cast<double*>(pages), page / sizeof(double));
@@ -263,8 +255,7 @@ TEST_CASE("pyramid: what stands behind a block is not looked at, what stands in 
     CHECK(squares[0] + squares[1] + squares[2] + squares_of_four(z.data(), n) == 0);
     CHECK(all_finite(z.data(), n));
     for (std::size_t k = 0; k < n; ++k)
-      for (const double bad :
-           {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         z[k] = bad;
         CHECK_FALSE(all_finite(z.data(), n));
         z[k] = 1;

@@ -30,8 +30,7 @@ std::vector<double> record_of_parts(std::size_t n, double offset, double drift, 
 
 AllanSums sums_in_parts(const std::vector<double>& y, std::size_t leaf) {
   return test::joined_parts<AllanSums>(
-      y,
-      leaf,
+      y, leaf,
       [](std::span<const double> part, bool) {
         AllanPyramid pyramid;
         pyramid.push(part);
@@ -91,8 +90,7 @@ TEST_CASE("Allan sums: a state that was written and read is the same") {
   const AllanCurve a = octave_curve(sums, 1), b = octave_curve(read_allan_sums(from), 1);
   from.finish();
   REQUIRE(a.points.size() == b.points.size());
-  for (std::size_t i = 0; i < a.points.size(); ++i)
-    REQUIRE(a.points[i].deviation == b.points[i].deviation);
+  for (std::size_t i = 0; i < a.points.size(); ++i) REQUIRE(a.points[i].deviation == b.points[i].deviation);
 }
 
 TEST_CASE("Allan sums: a state with more terms than its samples have is refused") {

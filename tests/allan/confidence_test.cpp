@@ -79,8 +79,7 @@ double worst_of_diagonal(const Eigen::MatrixXd& got, const Eigen::MatrixXd& trut
   double worst = 0;
   for (Eigen::Index i = 0; i < got.rows(); ++i)
     for (Eigen::Index j = 0; j < got.cols(); ++j)
-      worst = std::max(worst,
-                       std::fabs(got(i, j) - truth(i, j)) / std::sqrt(truth(i, i) * truth(j, j)));
+      worst = std::max(worst, std::fabs(got(i, j) - truth(i, j)) / std::sqrt(truth(i, i) * truth(j, j)));
   return worst;
 }
 
@@ -92,13 +91,10 @@ TEST_CASE("edf identities: white 2M/3, walk M at m = 1, one term has one degree 
     // Exactly M^2/(M + (M - 1)/2), which tends to 2M/3.
     CHECK(equivalent_dof(DeviationType::oadev, kWhite, 1, terms, 1, 0.01) ==
           Approx(m * m / (m + (m - 1) / 2)).epsilon(1e-9));
-    CHECK(equivalent_dof(DeviationType::oadev, kWalk, 1, terms, 1, 0.01) ==
-          Approx(m).epsilon(1e-12));
+    CHECK(equivalent_dof(DeviationType::oadev, kWalk, 1, terms, 1, 0.01) == Approx(m).epsilon(1e-12));
   }
-  CHECK(equivalent_dof(DeviationType::oadev, kWhite, 1, 3000000, 1, 1) ==
-        Approx(2e6).epsilon(1e-6));
-  for (const auto type :
-       {DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev})
+  CHECK(equivalent_dof(DeviationType::oadev, kWhite, 1, 3000000, 1, 1) == Approx(2e6).epsilon(1e-6));
+  for (const auto type : {DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev})
     CHECK(equivalent_dof(type, {1, 1, 1, 1, 0}, 500, 1, 1, 1) == Approx(1).epsilon(1e-12));
 }
 
@@ -107,8 +103,7 @@ TEST_CASE("edf of the overlapping Allan deviation against the exact table") {
   for (const auto& row : test::table(test::known("allan/edf_oadev_discrete.csv"))) {
     if (row[0] == "N") continue;
     const Mixture& theta = row[1] == "0" ? kWhite : row[1] == "-1" ? kFlicker : kWalk;
-    const double got = equivalent_dof(
-        DeviationType::oadev, theta, std::stoull(row[2]), std::stoull(row[3]), 1, 0.1);
+    const double got = equivalent_dof(DeviationType::oadev, theta, std::stoull(row[2]), std::stoull(row[3]), 1, 0.1);
     INFO("N " << row[0] << " alpha " << row[1] << " m " << row[2] << " got " << got);
     CHECK(got == Approx(std::stod(row[4])).epsilon(1.5e-5));
     ++rows;
@@ -122,18 +117,14 @@ TEST_CASE("edf of the overlapping Allan deviation against the exact table") {
 // 1e-9.
 TEST_CASE("correlation of octaves against the tables") {
   const Eigen::MatrixXd white = allan_covariance(octaves(16384), kWhite);
-  CHECK(white(0, 1) / std::sqrt(white(0, 0) * white(1, 1)) ==
-        Approx(0.46288919397005934).epsilon(1e-9));
-  CHECK(white(0, 2) / std::sqrt(white(0, 0) * white(2, 2)) ==
-        Approx(0.18055441738988048).epsilon(1e-9));
-  CHECK(white(1, 2) / std::sqrt(white(1, 1) * white(2, 2)) ==
-        Approx(0.5015111502043262).epsilon(1e-9));
+  CHECK(white(0, 1) / std::sqrt(white(0, 0) * white(1, 1)) == Approx(0.46288919397005934).epsilon(1e-9));
+  CHECK(white(0, 2) / std::sqrt(white(0, 0) * white(2, 2)) == Approx(0.18055441738988048).epsilon(1e-9));
+  CHECK(white(1, 2) / std::sqrt(white(1, 1) * white(2, 2)) == Approx(0.5015111502043262).epsilon(1e-9));
   const std::pair<const char*, Mixture> sets[] = {{"0", kWhite}, {"-1", kFlicker}, {"-2", kWalk}};
   const AllanCovariance prepared(octaves(16384));
   for (const auto& [alpha, theta] : sets) {
     const Eigen::MatrixXd cov = prepared.at(theta);
-    const auto rows =
-        test::table(test::known(std::string("allan/corr_octave_alpha") + alpha + "_N16384.csv"));
+    const auto rows = test::table(test::known(std::string("allan/corr_octave_alpha") + alpha + "_N16384.csv"));
     REQUIRE(rows.size() == 12);
     for (Eigen::Index i = 0; i < 12; ++i)
       for (Eigen::Index j = 0; j < 12; ++j) {
@@ -201,12 +192,10 @@ TEST_CASE("the covariance that is remembered is that of the curve") {
 }
 
 TEST_CASE("covariance against every pair of terms, N = 256, all five terms") {
-  for (const Mixture& theta :
-       {kWhite, kFlicker, kWalk, Mixture{0, 0, 0, 1, 0}, Mixture{1, 0.5, 0.1, 2, 0.01}})
+  for (const Mixture& theta : {kWhite, kFlicker, kWalk, Mixture{0, 0, 0, 1, 0}, Mixture{1, 0.5, 0.1, 2, 0.01}})
     for (const std::uint64_t divisor : {0ULL, 4ULL}) {
       const AllanCurve curve = octaves(256, divisor, 0.5);
-      CHECK(worst_of_diagonal(allan_covariance(curve, theta), brute_force(curve, theta)) * 1e12 <=
-            1);
+      CHECK(worst_of_diagonal(allan_covariance(curve, theta), brute_force(curve, theta)) * 1e12 <= 1);
     }
   AllanCurve plain = octaves(200);
   plain.type = DeviationType::adev;
@@ -238,8 +227,7 @@ TEST_CASE("fast covariance against every lag, N = 20000, full overlap and stride
           const AllanPoint &p = curve.points[std::size_t(i)], &q = curve.points[std::size_t(j)];
           const auto sp = std::int64_t(stride_of(curve, p)), sq = std::int64_t(stride_of(curve, q));
           // sp is a multiple of sq: count the pairs at every lag k sq.
-          const std::int64_t ratio = sp / sq, np = std::int64_t(p.terms),
-                             nq = std::int64_t(q.terms);
+          const std::int64_t ratio = sp / sq, np = std::int64_t(p.terms), nq = std::int64_t(q.terms);
           double sum = 0;
           for (std::int64_t k = -(nq - 1); k <= ratio * (np - 1); ++k) {
             const std::int64_t high = std::min(np - 1, (k + nq - 1) / ratio);
@@ -249,8 +237,7 @@ TEST_CASE("fast covariance against every lag, N = 20000, full overlap and stride
             sum += double(high - low + 1) * (r * r + 2 * theta[4] * p.tau_s * q.tau_s * r);
           }
           const double truth = sum / (2 * double(p.terms) * double(q.terms));
-          worst =
-              std::max(worst, std::fabs(fast(i, j) - truth) / std::sqrt(fast(i, i) * fast(j, j)));
+          worst = std::max(worst, std::fabs(fast(i, j) - truth) / std::sqrt(fast(i, i) * fast(j, j)));
         }
     }
     INFO("divisor " << divisor << " worst " << worst);
@@ -267,59 +254,51 @@ TEST_CASE("covariance is symmetric, positive definite and consistent with the ed
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const AllanPoint& p = curve.points[i];
     const double mean = allan_variance(theta, double(p.m), 1);
-    const double edf =
-        equivalent_dof(DeviationType::oadev, theta, p.m, p.terms, stride_of(curve, p), 1);
+    const double edf = equivalent_dof(DeviationType::oadev, theta, p.m, p.terms, stride_of(curve, p), 1);
     CHECK(2 * mean * mean / cov(Eigen::Index(i), Eigen::Index(i)) == Approx(edf).epsilon(1e-7));
   }
 }
 
-TEST_CASE(
-    "edf of modified, Hadamard and non-overlapping deviations against their lags one by one") {
+TEST_CASE("edf of modified, Hadamard and non-overlapping deviations against their lags one by one") {
   const Mixture theta = {1, 0.7, 0.02, 0.3, 0};
-  const auto direct =
-      [&](DeviationType type, std::uint64_t m, std::uint64_t terms, std::uint64_t stride) {
-        // Terms as weights on the phase; their covariance straight from s.
-        std::vector<double> w;
-        if (type == DeviationType::ohdev || type == DeviationType::hdev) {
-          w.assign(3 * m + 1, 0.0);
-          w[0] = -1, w[m] = 3, w[2 * m] = -3, w[3 * m] = 1;
-        } else if (type == DeviationType::mdev) {
-          w.assign(3 * m, 0.0);
-          for (std::uint64_t i = 0; i < m; ++i) w[i] += 1, w[i + m] -= 2, w[i + 2 * m] += 1;
-        } else {
-          w.assign(2 * m + 1, 0.0);
-          w[0] = 1, w[m] = -2, w[2 * m] = 1;
-        }
-        const auto covariance = [&](double lag) {
-          double sum = 0;
-          for (std::size_t a = 0; a < w.size(); ++a)
-            for (std::size_t b = 0; b < w.size(); ++b)
-              if (w[a] != 0 && w[b] != 0)
-                for (std::size_t t = 0; t < 4; ++t)
-                  sum += w[a] * w[b] * theta[t] *
-                         phase_covariance(Term(t), lag + double(b) - double(a), 1);
-          return sum;
-        };
-        const double r0 = covariance(0);
-        double sum = 0;
-        for (std::uint64_t k = 1; k < terms; ++k) {
-          const double r = covariance(double(k * stride)) / r0;
-          sum += double(terms - k) * r * r;
-        }
-        return double(terms) * double(terms) / (double(terms) + 2 * sum);
-      };
+  const auto direct = [&](DeviationType type, std::uint64_t m, std::uint64_t terms, std::uint64_t stride) {
+    // Terms as weights on the phase; their covariance straight from s.
+    std::vector<double> w;
+    if (type == DeviationType::ohdev || type == DeviationType::hdev) {
+      w.assign(3 * m + 1, 0.0);
+      w[0] = -1, w[m] = 3, w[2 * m] = -3, w[3 * m] = 1;
+    } else if (type == DeviationType::mdev) {
+      w.assign(3 * m, 0.0);
+      for (std::uint64_t i = 0; i < m; ++i) w[i] += 1, w[i + m] -= 2, w[i + 2 * m] += 1;
+    } else {
+      w.assign(2 * m + 1, 0.0);
+      w[0] = 1, w[m] = -2, w[2 * m] = 1;
+    }
+    const auto covariance = [&](double lag) {
+      double sum = 0;
+      for (std::size_t a = 0; a < w.size(); ++a)
+        for (std::size_t b = 0; b < w.size(); ++b)
+          if (w[a] != 0 && w[b] != 0)
+            for (std::size_t t = 0; t < 4; ++t)
+              sum += w[a] * w[b] * theta[t] * phase_covariance(Term(t), lag + double(b) - double(a), 1);
+      return sum;
+    };
+    const double r0 = covariance(0);
+    double sum = 0;
+    for (std::uint64_t k = 1; k < terms; ++k) {
+      const double r = covariance(double(k * stride)) / r0;
+      sum += double(terms - k) * r * r;
+    }
+    return double(terms) * double(terms) / (double(terms) + 2 * sum);
+  };
   struct Case {
     DeviationType type;
     std::uint64_t m, terms, stride;
   };
-  for (const Case& c : {Case{DeviationType::ohdev, 1, 400, 1},
-                        Case{DeviationType::ohdev, 8, 700, 1},
-                        Case{DeviationType::ohdev, 60, 900, 1},
-                        Case{DeviationType::hdev, 8, 90, 8},
-                        Case{DeviationType::mdev, 1, 400, 1},
-                        Case{DeviationType::mdev, 2, 400, 1},
-                        Case{DeviationType::mdev, 7, 500, 1},
-                        Case{DeviationType::adev, 5, 300, 5},
+  for (const Case& c : {Case{DeviationType::ohdev, 1, 400, 1}, Case{DeviationType::ohdev, 8, 700, 1},
+                        Case{DeviationType::ohdev, 60, 900, 1}, Case{DeviationType::hdev, 8, 90, 8},
+                        Case{DeviationType::mdev, 1, 400, 1}, Case{DeviationType::mdev, 2, 400, 1},
+                        Case{DeviationType::mdev, 7, 500, 1}, Case{DeviationType::adev, 5, 300, 5},
                         Case{DeviationType::oadev, 64, 900, 16}}) {
     INFO(name_of(c.type) << " m " << c.m);
     CHECK(equivalent_dof(c.type, theta, c.m, c.terms, c.stride, 1) ==
@@ -331,8 +310,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
   const int records = 6000;
   const std::size_t n = 256;
   for (const bool walk : {false, true})
-    for (const auto type :
-         {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev}) {
+    for (const auto type : {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev}) {
       std::mt19937_64 engine(7);
       std::normal_distribution<double> normal;
       std::vector<double> sum(5), square(5);
@@ -361,8 +339,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
         INFO(name_of(type) << " m " << points[k].m << " walk " << walk << " simulated " << edf);
         // Standard error of a simulated edf: sqrt((2 + 12/edf)/records), times 3; total deviation
         // is approximate: 12 %.
-        const double limit =
-            (type == DeviationType::totdev ? 0.12 : 0.0) + 3 * std::sqrt((2 + 12 / edf) / records);
+        const double limit = (type == DeviationType::totdev ? 0.12 : 0.0) + 3 * std::sqrt((2 + 12 / edf) / records);
         CHECK(equivalent_dof(type, walk ? kWalk : kWhite, points[k].m, points[k].terms, 1, 1) ==
               Approx(edf).epsilon(limit));
       }
@@ -386,12 +363,9 @@ TEST_CASE(
   const double before = curve.points.back().edf;
   add_intervals(curve, {1, 0.1, 0.01, 0, 1});
   CHECK(curve.points.back().edf > 10 * before);
-  for (const Mixture& theta : {Mixture{},
-                               Mixture{0, 0, 0, 0, 1},
-                               Mixture{1e-200, 0, 1e-190, 0, 0},
-                               Mixture{1e200, 0, 0, 0, 1e-200}})
-    for (const auto type :
-         {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev}) {
+  for (const Mixture& theta :
+       {Mixture{}, Mixture{0, 0, 0, 0, 1}, Mixture{1e-200, 0, 1e-190, 0, 0}, Mixture{1e200, 0, 0, 0, 1e-200}})
+    for (const auto type : {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev}) {
       curve.type = type;
       add_intervals(curve, theta);
       for (const auto& p : curve.points) {

@@ -74,8 +74,7 @@ TEST_CASE("cornered hat: simulated devices of known noise, with the stated stand
   constexpr int kRuns = 200;
   std::vector<double> sum(4), squares(4), stated(4);
   for (int run = 0; run < kRuns; ++run) {
-    const CorneredHat hat =
-        cornered_hat(devices(sigma, 1000, 10 + static_cast<unsigned>(run)), 1, at_times({4}));
+    const CorneredHat hat = cornered_hat(devices(sigma, 1000, 10 + static_cast<unsigned>(run)), 1, at_times({4}));
     for (std::size_t c = 0; c < 4; ++c) {
       const HatPoint& p = hat.devices[c][0];
       sum[c] += p.variance;
@@ -116,8 +115,7 @@ TEST_CASE("cornered hat: what is common does not count, order and other statisti
   for (std::size_t i = 0; i < 800; ++i)
     for (auto& record : moved) record[i] += std::sin(0.01 * double(i)) * 4;
   const Records turned = {r[2], r[0], r[1]};
-  for (const DeviationType type :
-       {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev}) {
+  for (const DeviationType type : {DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev}) {
     AllanOptions options = at_times({4});
     options.type = type;
     const CorneredHat a = cornered_hat(r, 1, options), b = cornered_hat(moved, 1, options),
@@ -139,8 +137,7 @@ TEST_CASE(
   const CorneredHat plain = cornered_hat(r, 1, at_times({4})),
                     by_covariance = cornered_hat_of_differences(d, 1, at_times({4}));
   for (std::size_t c = 0; c < 3; ++c)
-    CHECK(by_covariance.devices[c][0].variance ==
-          Approx(plain.devices[c][0].variance).epsilon(1e-9));
+    CHECK(by_covariance.devices[c][0].variance == Approx(plain.devices[c][0].variance).epsilon(1e-9));
   const Records noise = devices({2, 2, 2}, 5000, 5);
   for (std::size_t i = 0; i < 5000; ++i)
     for (std::size_t c = 0; c < 3; ++c) d[c][i] += noise[c][i] - noise[c][0];
@@ -171,8 +168,7 @@ TEST_CASE("cornered hat of differences: the noise of the measurements is in what
       for (std::size_t i = 1; i < kReadings; ++i)
         for (std::size_t c = 1; c < 3; ++c) x[c][i] = x[c][i - 1] + normal(random);
       for (std::size_t i = 0; i < kReadings; ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-          d[c][i] = x[c][i] - x[(c + 1) % 3][i] + counter * normal(random);
+        for (std::size_t c = 0; c < 3; ++c) d[c][i] = x[c][i] - x[(c + 1) % 3][i] + counter * normal(random);
       AllanOptions options = at_times(taus);
       options.data = DataKind::phase;
       const CorneredHat hat = cornered_hat_of_differences(d, 1, options);

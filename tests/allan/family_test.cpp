@@ -18,15 +18,9 @@ using namespace libchar;
 
 namespace {
 
-const std::vector<DeviationType> kFamily = {DeviationType::pdev,
-                                            DeviationType::mtotdev,
-                                            DeviationType::ttotdev,
-                                            DeviationType::htotdev,
-                                            DeviationType::theo1,
-                                            DeviationType::theobr,
-                                            DeviationType::theoh,
-                                            DeviationType::mtie,
-                                            DeviationType::tierms};
+const std::vector<DeviationType> kFamily = {DeviationType::pdev,    DeviationType::mtotdev, DeviationType::ttotdev,
+                                            DeviationType::htotdev, DeviationType::theo1,   DeviationType::theobr,
+                                            DeviationType::theoh,   DeviationType::mtie,    DeviationType::tierms};
 
 std::vector<double> nist_suite() {
   std::vector<double> y;
@@ -54,8 +48,7 @@ FamilyData family_data(const std::string& name) {
   if (name == "nist1000") return {nist_suite(), DataKind::rate};
   if (name == "nbs9") return {{892, 809, 823, 798, 671, 644, 883, 903, 677}, DataKind::rate};
   if (name == "phasedat") return {phase_dat(), DataKind::phase};
-  return {test::npy(test::shared("data/clock_cs5071a_vs_hmaser_phase.npy")).column(0),
-          DataKind::phase};
+  return {test::npy(test::shared("data/clock_cs5071a_vs_hmaser_phase.npy")).column(0), DataKind::phase};
 }
 
 std::vector<double> family_taus(const Json& values, DeviationType type) {
@@ -92,9 +85,7 @@ int rows_met(const Json& set) {
   return rows;
 }
 
-Json published_sets() {
-  return Json::parse(test::slurp(test::known("allan/published_family.json")))["sets"];
-}
+Json published_sets() { return Json::parse(test::slurp(test::known("allan/published_family.json")))["sets"]; }
 
 std::vector<double> normal_rates(std::size_t n, unsigned seed, double offset = 0) {
   std::mt19937 random(seed);
@@ -104,9 +95,7 @@ std::vector<double> normal_rates(std::size_t n, unsigned seed, double offset = 0
   return y;
 }
 
-AllanCurve family_curve(const std::vector<double>& y,
-                        DeviationType type,
-                        TauGrid grid = TauGrid::decade,
+AllanCurve family_curve(const std::vector<double>& y, DeviationType type, TauGrid grid = TauGrid::decade,
                         int threads = 0) {
   AllanOptions options;
   options.type = type;
@@ -190,15 +179,13 @@ TEST_CASE("family: the number of threads changes no bit, also where terms are sp
     options.threads = 3;
     const AllanCurve three = allan_deviation(y, 1, options);
     REQUIRE(one.points.size() == three.points.size());
-    for (std::size_t k = 0; k < one.points.size(); ++k)
-      CHECK(one.points[k].deviation == three.points[k].deviation);
+    for (std::size_t k = 0; k < one.points.size(); ++k) CHECK(one.points[k].deviation == three.points[k].deviation);
   }
 }
 
 TEST_CASE("family: spaced terms are close to all of them, and said") {
   const auto y = normal_rates(8000, 5);
-  for (const DeviationType type :
-       {DeviationType::theo1, DeviationType::mtotdev, DeviationType::htotdev}) {
+  for (const DeviationType type : {DeviationType::theo1, DeviationType::mtotdev, DeviationType::htotdev}) {
     AllanOptions options;
     options.type = type;
     options.work_a_point = 1 << 18;
@@ -213,8 +200,7 @@ TEST_CASE("family: spaced terms are close to all of them, and said") {
       const AllanPoint& p = all.points[k];
       const double raw = p.deviation * std::sqrt(p.bias);
       CAPTURE(name_of(type), p.m);
-      CHECK(std::fabs(spaced.points[k].deviation - raw) <=
-            0.2 * (p.ci68.high - p.ci68.low) * std::sqrt(p.bias));
+      CHECK(std::fabs(spaced.points[k].deviation - raw) <= 0.2 * (p.ci68.high - p.ci68.low) * std::sqrt(p.bias));
     }
   }
 }
@@ -227,8 +213,7 @@ TEST_CASE("family: gaps leave the terms beside them, or the longest stretch, and
   for (const DeviationType type : kFamily) {
     const AllanCurve curve = family_curve(holed, type);
     CHECK(curve.missing == 3);
-    const bool one =
-        deviation_row(type).reflected || deviation_row(type).family == DeviationFamily::theo;
+    const bool one = deviation_row(type).reflected || deviation_row(type).family == DeviationFamily::theo;
     if (one) {
       family_near(curve, family_curve(longest, type), 0);
       REQUIRE_FALSE(curve.notes.empty());
@@ -255,8 +240,7 @@ TEST_CASE("family: MTIE and TIE rms of a straight line, a step and an alternatio
   }
   const AllanCurve rms = family_curve(step, DeviationType::tierms);
   for (const AllanPoint& p : rms.points)
-    CHECK(p.deviation == Approx(2 * std::sqrt(double(std::min<std::uint64_t>(p.m, 101 - p.m)) /
-                                              double(101 - p.m))));
+    CHECK(p.deviation == Approx(2 * std::sqrt(double(std::min<std::uint64_t>(p.m, 101 - p.m)) / double(101 - p.m))));
 }
 
 TEST_CASE("family: MTIE and TIE rms have no interval, the others one that holds the value") {
@@ -373,8 +357,7 @@ TEST_CASE("family: simulated noises have the expected values and degrees of free
     }
     for (std::size_t c = 0; c < std::size(cases); ++c) {
       CAPTURE(name_of(cases[c].type), kind, value[c].dof(), stated[c]);
-      CHECK(value[c].mean() / plain[c].mean() ==
-            Approx(cases[c].ratio[kind]).epsilon(cases[c].bound));
+      CHECK(value[c].mean() / plain[c].mean() == Approx(cases[c].ratio[kind]).epsilon(cases[c].bound));
       CHECK(stated[c] == Approx(value[c].dof()).epsilon(0.2));
     }
   }
@@ -411,8 +394,7 @@ TEST_CASE("family: intervals of the bias-removed Theo1 cover at every averaging 
 
 TEST_CASE("family: the bias of the total deviations stays on request, and it is said") {
   const auto y = normal_rates(500, 12);
-  for (const DeviationType type :
-       {DeviationType::mtotdev, DeviationType::ttotdev, DeviationType::htotdev}) {
+  for (const DeviationType type : {DeviationType::mtotdev, DeviationType::ttotdev, DeviationType::htotdev}) {
     AllanOptions options;
     options.type = type;
     const AllanCurve raw = allan_deviation(y, 1, options);
@@ -451,12 +433,9 @@ TEST_CASE("family: slopes of the power laws") {
     DeviationType type;
     double slope[3];
   };
-  const Case cases[] = {{DeviationType::pdev, {-1.5, -0.5, 0.5}},
-                        {DeviationType::mtotdev, {-1.5, -0.5, 0.5}},
-                        {DeviationType::ttotdev, {-0.5, 0.5, 1.5}},
-                        {DeviationType::htotdev, {-1, -0.5, 0.5}},
-                        {DeviationType::theoh, {-1, -0.5, 0.5}},
-                        {DeviationType::tierms, {0, 0.5, 1}}};
+  const Case cases[] = {{DeviationType::pdev, {-1.5, -0.5, 0.5}},   {DeviationType::mtotdev, {-1.5, -0.5, 0.5}},
+                        {DeviationType::ttotdev, {-0.5, 0.5, 1.5}}, {DeviationType::htotdev, {-1, -0.5, 0.5}},
+                        {DeviationType::theoh, {-1, -0.5, 0.5}},    {DeviationType::tierms, {0, 0.5, 1}}};
   for (int n = 0; n < 3; ++n) {
     const int kind = n == 0 ? 3 : n == 1 ? 0 : 2;
     std::mt19937 random(7);
@@ -475,8 +454,7 @@ TEST_CASE("family: slopes of the power laws") {
     }
     for (std::size_t c = 0; c < std::size(cases); ++c) {
       CAPTURE(name_of(cases[c].type), kind);
-      CHECK(std::log2(at64[c].mean() / at16[c].mean()) / 4 ==
-            Approx(cases[c].slope[n]).margin(0.06));
+      CHECK(std::log2(at64[c].mean() / at16[c].mean()) / 4 == Approx(cases[c].slope[n]).margin(0.06));
     }
   }
 }

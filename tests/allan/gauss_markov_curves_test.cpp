@@ -31,8 +31,7 @@ TEST_CASE("means of a Gauss-Markov process vary as the sum over all pairs of sam
         const MeanCovariance known = pair_by_pair(tau, m, dt), got = gauss_markov_means(tau, m, dt);
         CHECK(got.variance == Approx(known.variance).epsilon(1e-12));
         CHECK(got.neighbours == Approx(known.neighbours).epsilon(1e-12));
-        CHECK(gauss_markov_allan_variance(tau, m, dt) ==
-              Approx(known.variance - known.neighbours).epsilon(1e-9));
+        CHECK(gauss_markov_allan_variance(tau, m, dt) == Approx(known.variance - known.neighbours).epsilon(1e-9));
       }
 }
 
@@ -43,8 +42,7 @@ TEST_CASE("far below its correlation time a Gauss-Markov process is a random wal
       const double dt = 0.1, tau = m * dt / across;
       const double walk = 2 / tau * (2 * m * m + 1) * dt / (6 * m);
       INFO(across << " " << m);
-      CHECK(gauss_markov_allan_variance(tau, m, dt) ==
-            Approx(walk * (1 - 0.75 * across)).epsilon(across / m + 2e-9));
+      CHECK(gauss_markov_allan_variance(tau, m, dt) == Approx(walk * (1 - 0.75 * across)).epsilon(across / m + 2e-9));
     }
 }
 

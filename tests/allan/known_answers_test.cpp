@@ -42,9 +42,7 @@ std::vector<double> phase_of(const std::vector<double>& rate) {
   return x;
 }
 
-Json read(const std::string& name) {
-  return Json::parse(test::slurp(test::known(name)));
-}
+Json read(const std::string& name) { return Json::parse(test::slurp(test::known(name))); }
 
 void check_against(const Json& table, const std::vector<double>& rate, double limit) {
   for (const auto& [m, row] : table.items())
@@ -57,8 +55,7 @@ void check_against(const Json& table, const std::vector<double>& rate, double li
       REQUIRE(curve.points.size() == 1);
       CHECK(std::fabs(curve.points[0].deviation / truth - 1) <= limit);
       CHECK(curve.points[0].terms == answer.at(1).get<std::uint64_t>());
-      const AllanCurve phase =
-          allan_deviation(phase_of(rate), 1, asking(*type, std::stod(m), DataKind::phase));
+      const AllanCurve phase = allan_deviation(phase_of(rate), 1, asking(*type, std::stod(m), DataKind::phase));
       CHECK(std::fabs(phase.points[0].deviation / truth - 1) <= 1e-11);  // x itself is rounded
       CHECK(phase.points[0].terms == answer.at(1).get<std::uint64_t>());
     }
@@ -83,8 +80,7 @@ TEST_CASE("SP 1065 1000-point suite, second computation") {
     for (const auto& [m, answer] : rows.items()) {
       INFO(name << " m = " << m);
       const AllanCurve curve = allan_deviation(rate, 1, asking(*type, std::stod(m)));
-      CHECK(std::fabs(curve.points[0].deviation / std::stod(answer["dev"].get<std::string>()) -
-                      1) <= 1e-13);
+      CHECK(std::fabs(curve.points[0].deviation / std::stod(answer["dev"].get<std::string>()) - 1) <= 1e-13);
       CHECK(curve.points[0].terms == answer["n"].get<std::uint64_t>());
       ++checked;
     }
@@ -102,8 +98,7 @@ TEST_CASE("Stable32 tables of PHASE.DAT, every averaging time") {
   int rows = 0;
   for (const char* name : {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev"})
     for (const char* suffix : {"", "_octave"}) {
-      const auto path =
-          test::shared(std::string("oracle/allan/phasedat/phase_dat_") + name + suffix + ".txt");
+      const auto path = test::shared(std::string("oracle/allan/phasedat/phase_dat_") + name + suffix + ".txt");
       std::istringstream lines(test::slurp(path));
       for (std::string line; std::getline(lines, line);) {
         std::istringstream cells(line);
@@ -111,8 +106,7 @@ TEST_CASE("Stable32 tables of PHASE.DAT, every averaging time") {
         double tau = 0, alpha = 0, low = 0, sigma = 0;
         if (!(cells >> m >> tau >> terms >> alpha >> low >> sigma)) continue;
         INFO(path.filename().string() << " m = " << m);
-        const AllanCurve curve =
-            allan_deviation(phase, 1, asking(*deviation_type(name), double(m), DataKind::phase));
+        const AllanCurve curve = allan_deviation(phase, 1, asking(*deviation_type(name), double(m), DataKind::phase));
         CHECK(curve.points.at(0).deviation == Approx(sigma).epsilon(1e-4));
         CHECK(curve.points.at(0).terms == terms);
         ++rows;
@@ -128,12 +122,9 @@ TEST_CASE("Stable32 1.62: sigma to its four digits, terms exactly") {
   for (std::string line; std::getline(text, line);)
     if (!line.empty() && line[0] != '#') phase.push_back(std::stod(line));
   const std::vector<std::tuple<const char*, DeviationType, std::vector<double>>> sets = {
-      {"PHASE_a.tau", DeviationType::oadev, phase},
-      {"PHASE_m.tau", DeviationType::mdev, phase},
-      {"PHASE_h.tau", DeviationType::ohdev, phase},
-      {"PHASE_tot.tau", DeviationType::totdev, phase},
-      {"TST_SUIT_a.tau", DeviationType::oadev, nist1000()},
-      {"TST_SUIT_m.tau", DeviationType::mdev, nist1000()}};
+      {"PHASE_a.tau", DeviationType::oadev, phase},         {"PHASE_m.tau", DeviationType::mdev, phase},
+      {"PHASE_h.tau", DeviationType::ohdev, phase},         {"PHASE_tot.tau", DeviationType::totdev, phase},
+      {"TST_SUIT_a.tau", DeviationType::oadev, nist1000()}, {"TST_SUIT_m.tau", DeviationType::mdev, nist1000()}};
   for (const auto& [name, type, data] : sets) {
     std::ifstream in(test::shared(std::string("oracle/allan/stable32_1.62/") + name));
     double tau = 0, sigma = 0, low = 0, high = 0, edf = 0;
@@ -159,29 +150,26 @@ TEST_CASE("clock recordings against Stable32") {
     const double a = row[0] != "totdev" || alpha > -0.5 ? 0 : alpha > -1.5 ? 0.481 : 0.75;
     return std::sqrt(1 - a * std::stod(row[2]) / static_cast<double>(n));
   };
-  const auto check_table =
-      [&](const std::string& name, DataKind data, double limit, bool normalise) {
-        auto record = test::npy(test::shared("data/" + name + ".npy")).values;
-        if (normalise)
-          for (double& y : record) y = (y - 1e7) / 1e7;
-        int rows = 0;
-        double worst = 0;
-        for (const auto& row : test::table(test::shared("data/" + name + ".stable32.csv"))) {
-          const auto type = deviation_type(row[0]);
-          if (!type) continue;
-          const AllanCurve curve =
-              allan_deviation(record, 1, asking(*type, std::stod(row[2]), data));
-          INFO(name << " " << row[0] << " " << row[1]);
-          const double error = std::fabs(
-              curve.points.at(0).deviation / bias(row, record.size()) / std::stod(row[6]) - 1);
-          CHECK(error <= limit);
-          CHECK(curve.points.at(0).terms == std::stoul(row[3]));
-          worst = std::max(worst, error);
-          ++rows;
-        }
-        INFO(name << ": worst relative difference " << worst);
-        CHECK(rows >= 90);
-      };
+  const auto check_table = [&](const std::string& name, DataKind data, double limit, bool normalise) {
+    auto record = test::npy(test::shared("data/" + name + ".npy")).values;
+    if (normalise)
+      for (double& y : record) y = (y - 1e7) / 1e7;
+    int rows = 0;
+    double worst = 0;
+    for (const auto& row : test::table(test::shared("data/" + name + ".stable32.csv"))) {
+      const auto type = deviation_type(row[0]);
+      if (!type) continue;
+      const AllanCurve curve = allan_deviation(record, 1, asking(*type, std::stod(row[2]), data));
+      INFO(name << " " << row[0] << " " << row[1]);
+      const double error = std::fabs(curve.points.at(0).deviation / bias(row, record.size()) / std::stod(row[6]) - 1);
+      CHECK(error <= limit);
+      CHECK(curve.points.at(0).terms == std::stoul(row[3]));
+      worst = std::max(worst, error);
+      ++rows;
+    }
+    INFO(name << ": worst relative difference " << worst);
+    CHECK(rows >= 90);
+  };
   check_table("clock_cs5071a_vs_hmaser_phase", DataKind::phase, 1e-4, false);
   check_table("clock_ocxo10mhz_freq", DataKind::rate, 2e-3, true);
 }
@@ -194,18 +182,15 @@ TEST_CASE("all 108 published values of the ADIS16405 run") {
   double worst = 0;
   int rows = 0;
   AllanCurve curve;
-  for (const auto& row :
-       test::table(test::shared("data/static_adis16405_run1.published_oadev.csv"))) {
+  for (const auto& row : test::table(test::shared("data/static_adis16405_run1.published_oadev.csv"))) {
     if (row[0] == "channel") continue;
     if (!channel.contains(row[0])) {
       channel[row[0]] = channel.size() - (channel.contains(row[0]) ? 1 : 0);
       curve = allan_deviation(array.column(channel.size() - 1), 0.01);
     }
     const double tau = std::stod(row[1]);
-    const auto point =
-        std::find_if(curve.points.begin(), curve.points.end(), [&](const AllanPoint& p) {
-          return std::fabs(p.tau_s / tau - 1) < 1e-6;
-        });
+    const auto point = std::find_if(curve.points.begin(), curve.points.end(),
+                                    [&](const AllanPoint& p) { return std::fabs(p.tau_s / tau - 1) < 1e-6; });
     REQUIRE(point != curve.points.end());
     worst = std::max(worst, std::fabs(point->deviation / std::stod(row[3]) - 1));
     ++rows;
@@ -222,8 +207,7 @@ TEST_CASE("50-digit Allan vectors to double precision") {
     if (row[0] == "m") continue;
     const double m = std::stod(row[0]);
     const AllanPoint plain = allan_deviation(y, 1, asking(DeviationType::adev, m)).points.at(0);
-    const AllanPoint overlapping =
-        allan_deviation(y, 1, asking(DeviationType::oadev, m)).points.at(0);
+    const AllanPoint overlapping = allan_deviation(y, 1, asking(DeviationType::oadev, m)).points.at(0);
     CHECK(plain.deviation == Approx(std::stod(row[1])).epsilon(4e-15));
     CHECK(plain.terms == std::stoul(row[2]));
     CHECK(overlapping.deviation == Approx(std::stod(row[3])).epsilon(4e-15));

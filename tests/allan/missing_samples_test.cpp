@@ -21,8 +21,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 std::vector<double> punched(std::vector<double> y, double share, double length, test::Gaussian& g) {
   bool missing = false;
   for (double& v : y) {
-    const double change =
-        missing ? (1 - share) / length : share / length;  // length 1: each by itself
+    const double change = missing ? (1 - share) / length : share / length;  // length 1: each by itself
     if (length == 1)
       missing = g.uniform() < share;
     else if (g.uniform() < change / (1 - share))
@@ -63,8 +62,7 @@ std::vector<Sums> sums_of(const Mixture& theta, double share, double length, boo
 
 }  // namespace
 
-TEST_CASE(
-    "at 10 % missing every octave to a quarter of the record is there, at once and in one pass") {
+TEST_CASE("at 10 % missing every octave to a quarter of the record is there, at once and in one pass") {
   test::NoiseSource source(20000, 1, 3);
   for (const double length : {1.0, 5.0, 50.0})
     for (int r = 0; r < 20; ++r) {

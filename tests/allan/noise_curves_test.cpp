@@ -21,14 +21,11 @@ Quad odd_sum(long n) {
 /// B^2/(4 pi m^2) [(16 m^2 - 1) H_2m - (16 m^2 - 4) H_m] as published, in 113 bits.
 double flicker_reference(long m) {
   const Quad z = Quad(m) * Quad(m);
-  return static_cast<double>(((16 * z - 1) * odd_sum(2 * m) - (16 * z - 4) * odd_sum(m)) /
-                             (4 * kPi113 * z));
+  return static_cast<double>(((16 * z - 1) * odd_sum(2 * m) - (16 * z - 4) * odd_sum(m)) / (4 * kPi113 * z));
 }
 
 double from_phase(Term t, double m, double dt) {
-  return (phase_covariance(t, 2 * m, dt) - 4 * phase_covariance(t, m, dt) +
-          3 * phase_covariance(t, 0, dt)) /
-         (m * m);
+  return (phase_covariance(t, 2 * m, dt) - 4 * phase_covariance(t, m, dt) + 3 * phase_covariance(t, 0, dt)) / (m * m);
 }
 
 }  // namespace
@@ -36,24 +33,7 @@ double from_phase(Term t, double m, double dt) {
 TEST_CASE("flicker Allan variance agrees with 113-bit sums") {
   CHECK(unit_allan_variance(Term::flicker, 1, 0.01) == Approx(2 / std::numbers::pi).epsilon(2e-16));
   double worst = 0;
-  for (const long m : {1L,
-                       2L,
-                       3L,
-                       5L,
-                       11L,
-                       12L,
-                       13L,
-                       16L,
-                       23L,
-                       24L,
-                       25L,
-                       31L,
-                       47L,
-                       48L,
-                       100L,
-                       1000L,
-                       4096L,
-                       100000L}) {
+  for (const long m : {1L, 2L, 3L, 5L, 11L, 12L, 13L, 16L, 23L, 24L, 25L, 31L, 47L, 48L, 100L, 1000L, 4096L, 100000L}) {
     const double got = unit_allan_variance(Term::flicker, double(m), 1);
     worst = std::max(worst, std::fabs(got / flicker_reference(m) - 1));
   }
@@ -71,8 +51,7 @@ TEST_CASE("flicker Allan variance joins its asymptote: the published factors and
   CHECK(ratio(16) == Approx(1.0046).margin(5e-5));
   for (const double m : {1e4, 1e6, 1e9}) {
     const double next =
-        (1.5 * (std::log(m) + std::numbers::egamma) + 2.5 * std::numbers::ln2 - 0.25) /
-        (4 * std::numbers::pi * m * m);
+        (1.5 * (std::log(m) + std::numbers::egamma) + 2.5 * std::numbers::ln2 - 0.25) / (4 * std::numbers::pi * m * m);
     CHECK(unit_allan_variance(Term::flicker, m, 1) == Approx(floor + next).epsilon(1e-15));
   }
 }
@@ -82,8 +61,7 @@ TEST_CASE("walk, white, quantization, ramp: closed forms and small-m factors") {
   CHECK(unit_allan_variance(Term::walk, 1, dt) == Approx(dt / 2).epsilon(1e-15));
   CHECK(unit_allan_variance(Term::walk, 2, dt) == Approx(1.125 * 2 * dt / 3).epsilon(1e-15));
   CHECK(unit_allan_variance(Term::white, 7, dt) == Approx(1 / (7 * dt)).epsilon(1e-15));
-  CHECK(unit_allan_variance(Term::quantization, 7, dt) ==
-        Approx(3 / (49 * dt * dt)).epsilon(1e-15));
+  CHECK(unit_allan_variance(Term::quantization, 7, dt) == Approx(3 / (49 * dt * dt)).epsilon(1e-15));
   CHECK(unit_allan_variance(Term::ramp, 7, dt) == Approx(49 * dt * dt / 2).epsilon(1e-15));
   const Mixture theta = {2, 3, 5, 7, 11};
   double sum = 0;
@@ -102,8 +80,7 @@ TEST_CASE("generalised covariance of the phase gives the Allan variance") {
 TEST_CASE("second difference of the summed phase covariance is the phase covariance") {
   for (const Term t : {Term::white, Term::flicker, Term::walk, Term::quantization})
     for (const double n : {0.0, 1.0, 2.0, 5.0, 23.0, 24.0, 25.0, 40.0}) {
-      const double second = summed_phase_covariance(t, n + 1, 0.5) -
-                            2 * summed_phase_covariance(t, n, 0.5) +
+      const double second = summed_phase_covariance(t, n + 1, 0.5) - 2 * summed_phase_covariance(t, n, 0.5) +
                             summed_phase_covariance(t, n - 1, 0.5);
       const double size = std::fabs(summed_phase_covariance(t, n + 1, 0.5));
       INFO("n " << n << " term " << int(t));
@@ -136,8 +113,7 @@ TEST_CASE("the spectrum integrates to the Allan variance") {
       INFO("term " << int(t) << " m " << m);
       CHECK(sum / (2.0 * cells) == Approx(unit_allan_variance(t, m, dt)).epsilon(1e-6));
     }
-  CHECK(spectrum({2, 0, 3, 0, 9}, 1.0, dt) ==
-        Approx(2 + 3 * unit_spectrum(Term::walk, 1.0, dt)).epsilon(1e-15));
+  CHECK(spectrum({2, 0, 3, 0, 9}, 1.0, dt) == Approx(2 + 3 * unit_spectrum(Term::walk, 1.0, dt)).epsilon(1e-15));
 }
 
 TEST_CASE("discrete densities meet their asymptotes at low frequency and the stated ratios above") {
@@ -145,8 +121,6 @@ TEST_CASE("discrete densities meet their asymptotes at low frequency and the sta
   for (const Term t : {Term::white, Term::flicker, Term::walk, Term::quantization})
     CHECK(unit_spectrum(t, 1e-6, dt) == Approx(spectrum_asymptote(t, 1e-6, dt)).epsilon(1e-11));
   // Aliasing of sampled noise: S_d/S_c at nu = 1/2 is pi/2 for flicker, (pi/2)^2 for the walk.
-  CHECK(unit_spectrum(Term::flicker, 1, dt) / spectrum_asymptote(Term::flicker, 1, dt) ==
-        Approx(1.5708).margin(1e-4));
-  CHECK(unit_spectrum(Term::walk, 1, dt) / spectrum_asymptote(Term::walk, 1, dt) ==
-        Approx(2.4674).margin(1e-4));
+  CHECK(unit_spectrum(Term::flicker, 1, dt) / spectrum_asymptote(Term::flicker, 1, dt) == Approx(1.5708).margin(1e-4));
+  CHECK(unit_spectrum(Term::walk, 1, dt) / spectrum_asymptote(Term::walk, 1, dt) == Approx(2.4674).margin(1e-4));
 }

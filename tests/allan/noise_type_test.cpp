@@ -21,8 +21,7 @@ namespace {
 std::vector<double> power_law_phase(std::uint64_t seed, double d, std::size_t n) {
   test::Gaussian normal(seed);
   std::vector<double> h(n, 1.0), w(n), x(n, 0.0);
-  for (std::size_t k = 1; k < n; ++k)
-    h[k] = h[k - 1] * (static_cast<double>(k) - 1 + d) / static_cast<double>(k);
+  for (std::size_t k = 1; k < n; ++k) h[k] = h[k - 1] * (static_cast<double>(k) - 1 + d) / static_cast<double>(k);
   for (double& v : w) v = normal();
   for (std::size_t t = 0; t < n; ++t)
     for (std::size_t k = 0; k <= t; ++k) x[t] += h[k] * w[t - k];
@@ -79,8 +78,7 @@ TEST_CASE("noise types: missing readings, short and constant records") {
 
 TEST_CASE("noise types in words") {
   const std::vector<NoiseType> types = {{1, 1, 2, 2}, {2, 2, 2, 1.9}, {4, 4, 1, 1}, {8, 8, -2, -2}};
-  CHECK(noise_types_text(types) ==
-        "white phase from 1 s to 2 s, flicker phase at 4 s, random-walk frequency at 8 s");
+  CHECK(noise_types_text(types) == "white phase from 1 s to 2 s, flicker phase at 4 s, random-walk frequency at 8 s");
   CHECK(noise_types_text({}).empty());
 }
 
@@ -90,8 +88,7 @@ TEST_CASE("Stable32 names the noise of two clocks alike") {
   const auto frequency = test::npy(test::shared("data/clock_ocxo10mhz_freq.npy")).values;
   std::vector<double> sum = {0};
   for (const double f : frequency) sum.push_back(sum.back() + (f / 1e7 - 1));
-  const auto compare = [](const std::vector<double>& x,
-                          const std::map<std::uint64_t, int>& theirs) {
+  const auto compare = [](const std::vector<double>& x, const std::map<std::uint64_t, int>& theirs) {
     int compared = 0;
     for (const auto& [m, alpha] : theirs) {
       if (x.size() / m < 75) continue;  // below, it takes another method

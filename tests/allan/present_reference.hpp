@@ -48,8 +48,7 @@ class PresentReference {
         whole = whole && 2 * present > m;
         const long double weight = weights[order - 2][w];
         d += weight * mean;
-        less += weight * weight *
-                (1.0L / static_cast<long double>(present) - 1.0L / static_cast<long double>(m));
+        less += weight * weight * (1.0L / static_cast<long double>(present) - 1.0L / static_cast<long double>(m));
       }
       if (!whole) continue;
       ++truth.terms;
@@ -60,14 +59,9 @@ class PresentReference {
     const long double count = (order == 2 ? 2.0L : 6.0L) * static_cast<long double>(truth.terms);
     const auto octave = static_cast<std::size_t>(std::log2(static_cast<double>(m)) + 1e-9);
     const long double spread = octave == 0 ? 0 : spread_[octave - 1];
-    const auto type =
-        stride == m ? (order == 2 ? libchar::DeviationType::adev : libchar::DeviationType::hdev)
-                    : (order == 2 ? libchar::DeviationType::oadev : libchar::DeviationType::ohdev);
-    correct(truth,
-            squares / count,
-            short_of / count,
-            spread,
-            1 / static_cast<double>(m),
+    const auto type = stride == m ? (order == 2 ? libchar::DeviationType::adev : libchar::DeviationType::hdev)
+                                  : (order == 2 ? libchar::DeviationType::oadev : libchar::DeviationType::ohdev);
+    correct(truth, squares / count, short_of / count, spread, 1 / static_cast<double>(m),
             white_dof(type, m, truth.terms, stride));
     return truth;
   }
@@ -97,8 +91,7 @@ class PresentReference {
     const auto octave = static_cast<std::size_t>(std::log2(static_cast<double>(m)) + 1e-9);
     const double unit = static_cast<double>((wide * wide + 1) / (2 * wide * wide * wide)),
                  dof = white_dof(libchar::DeviationType::mdev, m, truth.terms, 1);
-    correct(
-        truth, squares / count, short_of / count, octave == 0 ? 0 : spread_[octave - 1], unit, dof);
+    correct(truth, squares / count, short_of / count, octave == 0 ? 0 : spread_[octave - 1], unit, dof);
     return truth;
   }
 
@@ -120,10 +113,7 @@ class PresentReference {
   }
 
   /// Degrees of freedom of the terms in white noise, by the library.
-  static double white_dof(libchar::DeviationType type,
-                          std::uint64_t m,
-                          std::uint64_t terms,
-                          std::uint64_t stride) {
+  static double white_dof(libchar::DeviationType type, std::uint64_t m, std::uint64_t terms, std::uint64_t stride) {
     libchar::AllanCurve curve;
     curve.type = type;
     if (stride > 1 && stride < m) curve.stride_divisor = m / stride;
@@ -136,11 +126,7 @@ class PresentReference {
     return curve.points[0].edf;
   }
 
-  static void correct(PresentTruth& truth,
-                      long double before,
-                      long double c,
-                      long double spread,
-                      double of_white,
+  static void correct(PresentTruth& truth, long double before, long double c, long double spread, double of_white,
                       double dof) {
     truth.variance = before;
     if (c < 1e-15L) return;

@@ -36,20 +36,17 @@ TEST_CASE("ten a decade: octaves stay as they were, and every decade has ten tim
     REQUIRE(point_at(fine, p.m) != nullptr);
     CHECK(point_at(fine, p.m)->deviation == p.deviation);
   }
-  for (std::size_t i = 1; i < fine.points.size(); ++i)
-    CHECK(fine.points[i].m > fine.points[i - 1].m);
+  for (std::size_t i = 1; i < fine.points.size(); ++i) CHECK(fine.points[i].m > fine.points[i - 1].m);
   const auto between = [&](double from, double to) {
-    return std::count_if(fine.points.begin(), fine.points.end(), [&](const AllanPoint& p) {
-      return p.tau_s >= from && p.tau_s < to;
-    });
+    return std::count_if(fine.points.begin(), fine.points.end(),
+                         [&](const AllanPoint& p) { return p.tau_s >= from && p.tau_s < to; });
   };
   CHECK(between(0.1, 1) >= 10);
   CHECK(between(1, 10) >= 10);
   CHECK(between(10, 100) >= 10);
 }
 
-TEST_CASE(
-    "ten a decade: values and intervals are those of the full overlap within a fifth of their sd") {
+TEST_CASE("ten a decade: values and intervals are those of the full overlap within a fifth of their sd") {
   const auto x = walk_and_noise(40000, 2);
   const AllanCurve octaves = allan_deviation(x, 0.01);
   AllanCurve fine = octaves;
@@ -117,8 +114,7 @@ TEST_CASE("ten a decade: limits hold, and missing samples are exact or nothing")
 
 TEST_CASE("ten a decade: a wild first sample counts as in the full overlap") {
   auto x = walk_and_noise(100000, 4);
-  x[0] =
-      3000;  // in one term of m = 20: with every fourth of them it would be in four times its share
+  x[0] = 3000;  // in one term of m = 20: with every fourth of them it would be in four times its share
   AllanCurve fine = allan_deviation(x, 0.01);
   add_ten_a_decade(x, {}, 1U << 20U, fine);
   AllanOptions list;
@@ -127,8 +123,7 @@ TEST_CASE("ten a decade: a wild first sample counts as in the full overlap") {
   const AllanCurve exact = allan_deviation(x, 0.01, list);
   REQUIRE(exact.points.size() == fine.points.size());
   for (std::size_t i = 0; i < fine.points.size(); ++i)
-    if (fine.points[i].m < 1000)
-      CHECK(fine.points[i].deviation <= exact.points[i].deviation * 1.02);
+    if (fine.points[i].m < 1000) CHECK(fine.points[i].deviation <= exact.points[i].deviation * 1.02);
 }
 
 TEST_CASE("ten a decade: points that the octaves' sums give besides are those of their own sums") {

@@ -67,20 +67,17 @@ double exact_deviation(const std::vector<Wide>& x, std::uint64_t m, std::uint64_
   long double sum = 0;
   std::uint64_t terms = 0;
   for (std::uint64_t i = 0; i + 2 * m < x.size(); i += stride, ++terms) {
-    const long double d =
-        std::ldexp(static_cast<long double>(x[i + 2 * m] - 2 * x[i + m] + x[i]), -60);
+    const long double d = std::ldexp(static_cast<long double>(x[i + 2 * m] - 2 * x[i + m] + x[i]), -60);
     sum += d * d;
   }
-  return static_cast<double>(std::sqrt(sum / (2.0L * static_cast<long double>(terms))) /
-                             static_cast<long double>(m));
+  return static_cast<double>(std::sqrt(sum / (2.0L * static_cast<long double>(terms))) / static_cast<long double>(m));
 }
 
 double worst_error(const AllanCurve& curve, const std::vector<Wide>& x) {
   double worst = 0;
   for (const AllanPoint& p : curve.points) {
     if (p.m != 1 && p.m != 32 && p.m != 1024 && p.m != 65536 && p.m != 1048576) continue;
-    worst =
-        std::max(worst, std::fabs(p.deviation / exact_deviation(x, p.m, stride_of(curve, p)) - 1));
+    worst = std::max(worst, std::fabs(p.deviation / exact_deviation(x, p.m, stride_of(curve, p)) - 1));
   }
   return worst;
 }
@@ -107,8 +104,7 @@ void speed(std::size_t n) {
   const double both = best_of(3, [&] {
     AllanPyramid p;
     Moments m;
-    for (std::size_t i = 0; i < n;
-         i += 4096) {  // as a streaming reader would: block by block, both in cache
+    for (std::size_t i = 0; i < n; i += 4096) {  // as a streaming reader would: block by block, both in cache
       const auto block = std::span(y).subspan(i, std::min<std::size_t>(4096, n - i));
       p.push(block);
       m.push(block);
@@ -118,16 +114,10 @@ void speed(std::size_t n) {
   best_ratio = both / plain;
   fmt::print("samples                    {}\n", n);
   fmt::print("memcpy                     {:8.3f} ns/sample\n", plain * per);
-  fmt::print("pyramid, all octaves       {:8.3f} ns/sample  {:6.2f} x memcpy\n",
-             pyramid * per,
-             pyramid / plain);
-  fmt::print("moments                    {:8.3f} ns/sample  {:6.2f} x memcpy\n",
-             moments * per,
-             moments / plain);
-  fmt::print(
-      "pyramid + moments          {:8.3f} ns/sample  {:6.2f} x memcpy   (floor 5, aim 3.3)\n",
-      both * per,
-      best_ratio);
+  fmt::print("pyramid, all octaves       {:8.3f} ns/sample  {:6.2f} x memcpy\n", pyramid * per, pyramid / plain);
+  fmt::print("moments                    {:8.3f} ns/sample  {:6.2f} x memcpy\n", moments * per, moments / plain);
+  fmt::print("pyramid + moments          {:8.3f} ns/sample  {:6.2f} x memcpy   (floor 5, aim 3.3)\n", both * per,
+             best_ratio);
   std::fflush(stdout);
   if (n > 20000000) return;
   for (const DeviationType type :
@@ -142,12 +132,8 @@ void speed(std::size_t n) {
       options.threads = 0;
       sink += allan_deviation(y, 1, options).points[0].deviation;
     });
-    fmt::print(
-        "full overlap, {:6}       {:8.2f} ns/sample  {:6.1f} x memcpy, one thread; {:.1f} x, all\n",
-        name_of(type),
-        one * per,
-        one / plain,
-        all / plain);
+    fmt::print("full overlap, {:6}       {:8.2f} ns/sample  {:6.1f} x memcpy, one thread; {:.1f} x, all\n",
+               name_of(type), one * per, one / plain, all / plain);
   }
   fmt::print("(checksum {})\n", sink);
 }
@@ -162,10 +148,7 @@ void errors() {
   const auto row = [&](const char* name, double offset, double drift) {
     const auto y = white(n, offset, drift);
     const auto x = exact_phase(y);
-    fmt::print("{:34} {:10.1e} {:12.1e}\n",
-               name,
-               worst_error(pyramid_of(y), x),
-               worst_error(allan_deviation(y, 1), x));
+    fmt::print("{:34} {:10.1e} {:12.1e}\n", name, worst_error(pyramid_of(y), x), worst_error(allan_deviation(y, 1), x));
     std::fflush(stdout);
   };
   row("no offset", 0, 0);
@@ -176,8 +159,7 @@ void errors() {
 }
 
 void covariance_cost() {
-  fmt::print(
-      "\ncovariance of the octaves and degrees of freedom, cost independent of the record\n");
+  fmt::print("\ncovariance of the octaves and degrees of freedom, cost independent of the record\n");
   for (const double n : {2e5, 1e8, 1e10}) {
     AllanCurve curve;
     curve.samples = static_cast<std::uint64_t>(n);
@@ -199,11 +181,7 @@ void covariance_cost() {
     fmt::print(
         "N = {:5.0e}  {} octaves: covariance {:6.2f} ms, again for another mixture {:.4f} ms; edf "
         "and intervals {:.2f} ms\n",
-        n,
-        curve.points.size(),
-        first * 1e3,
-        again * 1e3,
-        intervals * 1e3);
+        n, curve.points.size(), first * 1e3, again * 1e3, intervals * 1e3);
   }
 }
 

@@ -51,10 +51,7 @@ struct Scene {
   double q, b, k;
 };
 
-void add(const AllanCurve& holed,
-         const AllanCurve& whole,
-         const Mixture& theta,
-         std::vector<Column>& columns) {
+void add(const AllanCurve& holed, const AllanCurve& whole, const Mixture& theta, std::vector<Column>& columns) {
   AllanCurve curve = holed;
   add_intervals(curve, theta);
   for (const AllanPoint& p : curve.points) {
@@ -62,9 +59,8 @@ void add(const AllanCurve& holed,
     if (columns.size() <= k) columns.resize(k + 1);
     Column& c = columns[k];
     const double full = whole.points[k].deviation;
-    const double truth = deviation_row(curve.type).is_allan()
-                             ? std::sqrt(allan_variance(theta, static_cast<double>(p.m), 1))
-                             : full;
+    const double truth =
+        deviation_row(curve.type).is_allan() ? std::sqrt(allan_variance(theta, static_cast<double>(p.m), 1)) : full;
     c.sum += p.deviation * p.deviation;
     c.whole += full * full;
     ++c.points;
@@ -72,10 +68,7 @@ void add(const AllanCurve& holed,
   }
 }
 
-void show(const Scene& scene,
-          const Gaps& gaps,
-          const char* form,
-          const std::vector<Column>& columns) {
+void show(const Scene& scene, const Gaps& gaps, const char* form, const std::vector<Column>& columns) {
   fmt::print("{:8} {:3.0f} % {:5.0f}  {:7}  bias", scene.name, 100 * gaps.share, gaps.length, form);
   for (const Column& c : columns) fmt::print(" {:+5.1f}", 50 * (c.sum / c.whole - 1));
   fmt::print("\n{:30}  cover", "");
@@ -97,18 +90,9 @@ int main(int argc, char** argv) {
   options.type = argc > 3 ? deviation_type(argv[3]).value_or(options.type) : options.type;
   const bool octaves = options.type == DeviationType::oadev;
   const auto n = static_cast<std::size_t>(std::pow(10, argc > 2 ? std::atof(argv[2]) : 4.2));
-  for (const Scene& scene :
-       {Scene{"white", 1, 0, 0}, Scene{"flicker", 0, 1, 0}, Scene{"walk", 0, 0, 1}})
-    for (const Gaps& gaps : {Gaps{0, 0},
-                             Gaps{.01, 0},
-                             Gaps{.05, 0},
-                             Gaps{.1, 0},
-                             Gaps{.3, 0},
-                             Gaps{.1, 10},
-                             Gaps{.1, 100},
-                             Gaps{.1, 1000},
-                             Gaps{.3, 10},
-                             Gaps{.3, 100}}) {
+  for (const Scene& scene : {Scene{"white", 1, 0, 0}, Scene{"flicker", 0, 1, 0}, Scene{"walk", 0, 0, 1}})
+    for (const Gaps& gaps : {Gaps{0, 0}, Gaps{.01, 0}, Gaps{.05, 0}, Gaps{.1, 0}, Gaps{.3, 0}, Gaps{.1, 10},
+                             Gaps{.1, 100}, Gaps{.1, 1000}, Gaps{.3, 10}, Gaps{.3, 100}}) {
       test::NoiseSource source(n, 1, 7);
       const Mixture theta = {scene.q * scene.q, scene.b * scene.b, scene.k * scene.k};
       std::vector<Column> exact, streamed;

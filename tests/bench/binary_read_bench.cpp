@@ -18,14 +18,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void write_file(const std::string& path, std::size_t rows, const char* order, const char* dtype) {
   libchar::LogInfo info;
-  for (const char* name : {"c0", "c1", "c2", "c3", "c4", "c5"})
-    info.channels.push_back({name, "", false});
+  for (const char* name : {"c0", "c1", "c2", "c3", "c4", "c5"}) info.channels.push_back({name, "", false});
   libchar::WriteOptions options;
   options.overwrite = true;
   options.order = order;
@@ -71,12 +68,7 @@ int main(int argc, char** argv) {
   fmt::print(
       "{} rows of 6 channels; best of 3, GB/s of file (file "
       "cached)\n{:<24}{:>8}{:>8}{:>12}{:>12}\n",
-      rows,
-      "file",
-      "read()",
-      "all",
-      "1 channel",
-      "all + hash");
+      rows, "file", "read()", "all", "1 channel", "all + hash");
   for (const char* dtype : {"f64", "f32"}) {
     for (const char* order : {"interleaved", "planar"}) {
       write_file(path, rows, order, dtype);
@@ -84,15 +76,10 @@ int main(int argc, char** argv) {
       libchar::ReadOptions all, one, hashed;
       all.hash = one.hash = false;
       one.channels = {"c3"};
-      const auto best = [&](auto measure) {
-        return gigabytes / std::min({measure(), measure(), measure()});
-      };
-      fmt::print("{:<24}{:>8.2f}{:>8.2f}{:>12.2f}{:>12.2f}\n",
-                 fmt::format("npy {} {}", dtype, order),
-                 best([&] { return plain_read(path); }),
-                 best([&] { return stream(path, all); }),
-                 best([&] { return stream(path, one); }),
-                 best([&] { return stream(path, hashed); }));
+      const auto best = [&](auto measure) { return gigabytes / std::min({measure(), measure(), measure()}); };
+      fmt::print("{:<24}{:>8.2f}{:>8.2f}{:>12.2f}{:>12.2f}\n", fmt::format("npy {} {}", dtype, order),
+                 best([&] { return plain_read(path); }), best([&] { return stream(path, all); }),
+                 best([&] { return stream(path, one); }), best([&] { return stream(path, hashed); }));
     }
   }
   std::filesystem::remove(path);

@@ -26,9 +26,7 @@ using namespace libchar;
 
 namespace {
 
-double wall() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double cpu() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -61,8 +59,8 @@ constexpr Style kStyles[] = {{"shortest", "{}"},
                              {.name = "blanks", .blanks = true}};
 
 std::string cell(const Style& style, double x) {
-  const std::string number = style.counts ? fmt::format("{}", std::lround(x * 16384))
-                                          : fmt::format(fmt::runtime(style.number), x);
+  const std::string number =
+      style.counts ? fmt::format("{}", std::lround(x * 16384)) : fmt::format(fmt::runtime(style.number), x);
   return (style.blanks ? " " : "") + (style.quotes ? '"' + number + '"' : number);
 }
 
@@ -81,8 +79,7 @@ std::string make(const Style& style, std::size_t bytes) {
     std::string line = fmt::format("{:.3f}", static_cast<double>(row) * 0.005);
     for (int c = 0; c < 6; ++c) {
       const double x = noise(random) + (c == 5 ? 9.81 : 0);
-      const bool gone =
-          c == 2 && style.missing > 0 && row % static_cast<std::size_t>(style.missing) == 0;
+      const bool gone = c == 2 && style.missing > 0 && row % static_cast<std::size_t>(style.missing) == 0;
       line += gone ? "," : "," + cell(style, x);
     }
     text += written(line);
@@ -125,38 +122,22 @@ double plain_loop(const std::string& text) {
 
 int main(int count, char** arguments) {
   const std::size_t megabytes = count > 1 ? static_cast<std::size_t>(std::atoi(arguments[1])) : 100;
-  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
-             "style",
-             "memcpy",
-             "from_chars",
-             "parse_rows",
-             "read_log",
-             "read_log",
-             "no hash",
-             "parse/");
-  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n",
-             "",
-             "GB/s",
-             "MB/s core",
-             "MB/s core",
-             "MB/s wall",
-             "MB/s cpu",
-             "MB/s cpu",
-             "from_ch.");
+  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "style", "memcpy", "from_chars", "parse_rows",
+             "read_log", "read_log", "no hash", "parse/");
+  fmt::print("{:<12} {:>10} {:>12} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "", "GB/s", "MB/s core", "MB/s core",
+             "MB/s wall", "MB/s cpu", "MB/s cpu", "from_ch.");
   volatile double keep = 0;
   for (const Style& style : kStyles) {
     const std::string text = make(style, megabytes << 20U);
     const double size = static_cast<double>(text.size());
     std::vector<char> copy(text.size());
     const double copying = best_of(3, [&] { std::memcpy(copy.data(), text.data(), text.size()); });
-    const double plain =
-        style.plain() ? best_of(3, [&] { keep = plain_loop(text); }) : std::nan("");
+    const double plain = style.plain() ? best_of(3, [&] { keep = plain_loop(text); }) : std::nan("");
 
     ReadOptions options;
     if (count > 2) options.block_bytes = static_cast<std::size_t>(std::atoi(arguments[2]));
     LogInfo info;
-    const csv::Dialect dialect =
-        csv::understand(std::string_view(text).substr(0, 1U << 20U), false, options, info);
+    const csv::Dialect dialect = csv::understand(std::string_view(text).substr(0, 1U << 20U), false, options, info);
     csv::Plan plan;
     plan.dialect = &dialect;
     plan.target = {csv::Plan::kTime, 0, 1, 2, 3, 4, 5};
@@ -193,15 +174,9 @@ int main(int count, char** arguments) {
       read_log(path, options, sink);
     });
     ::close(file);
-    fmt::print("{:<12} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n",
-               style.name,
-               size / copying * 1e-9,
-               size / plain * 1e-6,
-               size / parsing * 1e-6,
-               size / walls * 1e-6,
-               size / cpus * 1e-6,
-               size / unhashed * 1e-6,
-               plain / parsing);
+    fmt::print("{:<12} {:>10.2f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>12.0f} {:>10.2f}\n", style.name,
+               size / copying * 1e-9, size / plain * 1e-6, size / parsing * 1e-6, size / walls * 1e-6,
+               size / cpus * 1e-6, size / unhashed * 1e-6, plain / parsing);
   }
 
   std::mt19937_64 random(1);
@@ -218,9 +193,7 @@ int main(int count, char** arguments) {
       meter.push(samples);
       keep = meter.finish().mean;
     });
-    fmt::print("quality meter, {} samples: {:.2f} ns/sample\n",
-               name,
-               seconds / static_cast<double>(x.size()) * 1e9);
+    fmt::print("quality meter, {} samples: {:.2f} ns/sample\n", name, seconds / static_cast<double>(x.size()) * 1e9);
   }
   test::print_kernels("csv");
 }

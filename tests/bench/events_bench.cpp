@@ -44,14 +44,12 @@ using Truth = std::function<void(std::vector<double>&, double sigma)>;
 
 Truth step(double sigmas, double at) {
   return [=](std::vector<double>& y, double sigma) {
-    for (std::size_t t = static_cast<std::size_t>(at * kRate); t < y.size(); ++t)
-      y[t] += sigmas * sigma;
+    for (std::size_t t = static_cast<std::size_t>(at * kRate); t < y.size(); ++t) y[t] += sigmas * sigma;
   };
 }
 Truth warm_up(double sigmas, double tau) {
   return [=](std::vector<double>& y, double sigma) {
-    for (std::size_t t = 0; t < y.size(); ++t)
-      y[t] += sigmas * sigma * std::exp(-static_cast<double>(t) / kRate / tau);
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += sigmas * sigma * std::exp(-static_cast<double>(t) / kRate / tau);
   };
 }
 Truth ramp(double sigmas) {
@@ -82,11 +80,8 @@ struct Tally {
   int records = 0, alarmed = 0;
   std::map<std::string, int> kinds;
   double ms = 0, size = 0, score = 0, furthest_s = 0;
-  double
-      clean2 = 0,
-      after2 = 0,
-      moved2 =
-          0;  ///< squares: K of the clean record and afterwards less the truth, and their difference
+  double clean2 = 0, after2 = 0,
+         moved2 = 0;  ///< squares: K of the clean record and afterwards less the truth, and their difference
 };
 
 void count(const EventSearch& found, Tally& tally) {
@@ -113,26 +108,16 @@ void print(const std::string& scene, const std::string& name, const Tally& tally
   std::string kinds;
   for (const auto& [kind, times] : tally.kinds) kinds += fmt::format(" {} {}", times, kind);
   const double count = tally.records, found = std::max(1, tally.alarmed);
-  fmt::print("{:21} {:19} {:4} of {:4}  score {:4.1f} size {:7.4f} off {:4.2f} s",
-             scene,
-             name,
-             tally.alarmed,
-             tally.records,
-             tally.score / found,
-             tally.size / found,
-             tally.furthest_s);
+  fmt::print("{:21} {:19} {:4} of {:4}  score {:4.1f} size {:7.4f} off {:4.2f} s", scene, name, tally.alarmed,
+             tally.records, tally.score / found, tally.size / found, tally.furthest_s);
   if (tally.clean2 > 0)
-    fmt::print(
-        "  K: untreated x {:.2f}, then rms error {:.2f} of the clean fit's, moved by {:.2f} of it",
-        tally.untreated / count,
-        std::sqrt(tally.after2 / tally.clean2),
-        std::sqrt(tally.moved2 / tally.clean2));
+    fmt::print("  K: untreated x {:.2f}, then rms error {:.2f} of the clean fit's, moved by {:.2f} of it",
+               tally.untreated / count, std::sqrt(tally.after2 / tally.clean2), std::sqrt(tally.moved2 / tally.clean2));
   fmt::print("  {:.1f} ms {}\n", tally.ms / count, kinds);
   std::fflush(stdout);
 }
 
-Tally run(
-    const Scene& scene, const Case& one, int records, std::uint64_t seed, std::uint64_t points) {
+Tally run(const Scene& scene, const Case& one, int records, std::uint64_t seed, std::uint64_t points) {
   test::NoiseSource source(kSamples, kRate, seed);
   Tally tally;
   for (int r = 0; r < records; ++r) {
@@ -149,8 +134,7 @@ Tally run(
     count(found, tally);
     if (!one.truth) continue;
     for (const Event& event : found.events)
-      if (event.kind == EventKind::step)
-        tally.furthest_s = std::max(tally.furthest_s, std::abs(event.at_s - one.at_s));
+      if (event.kind == EventKind::step) tally.furthest_s = std::max(tally.furthest_s, std::abs(event.at_s - one.at_s));
     subtract_events(found.events, kRate, y);
     const double after = walk_of(y) - scene.k;
     tally.clean2 += clean * clean;
@@ -168,11 +152,9 @@ void print_recording(const std::string& path, double rate_hz) {
     const Motion motion = find_motion(series);
     fmt::print("column {}:\n", c);
     for (const Finding& one : motion.findings) fmt::print("   {}\n", one.sentence);
-    for (const Finding& one : test::digital_faults(record, rate_hz).findings)
-      fmt::print("   {}\n", one.sentence);
+    for (const Finding& one : test::digital_faults(record, rate_hz).findings) fmt::print("   {}\n", one.sentence);
     if (motion.whole) continue;
-    for (const Finding& one : find_events(series, fitted_powers()).findings)
-      fmt::print("   {}\n", one.sentence);
+    for (const Finding& one : find_events(series, fitted_powers()).findings) fmt::print("   {}\n", one.sentence);
   }
 }
 
@@ -186,7 +168,6 @@ int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 100;
   const std::uint64_t points = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1U << 15U;
   for (const Scene& scene : kScenes) print(scene.name, "clean", run(scene, {}, records, 1, points));
-  for (const Case& one : kCases)
-    print(kScenes[2].name, one.name, run(kScenes[2], one, records / 2 + 1, 7, points));
+  for (const Case& one : kCases) print(kScenes[2].name, one.name, run(kScenes[2], one, records / 2 + 1, 7, points));
   return 0;
 }

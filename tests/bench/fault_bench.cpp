@@ -57,8 +57,7 @@ struct Wrongs {
 class Gyroscopes {
  public:
   static constexpr int kSensors = 6;
-  explicit Gyroscopes(std::uint64_t seed, const Wrongs& wrongs = {})
-      : wrongs_(wrongs), gauss_(seed) {
+  explicit Gyroscopes(std::uint64_t seed, const Wrongs& wrongs = {}) : wrongs_(wrongs), gauss_(seed) {
     for (int i = 0; i < kSensors; ++i) {
       deviation_[i] = std::sqrt(304.2) * 1e-3 * (3 + i);
       gain_[i] = 1 + wrongs.gain * gauss_();
@@ -66,8 +65,7 @@ class Gyroscopes {
     }
   }
   double truth(double back = 0) const {
-    return 7.854 *
-           std::sin(2 * std::numbers::pi * 5 * (static_cast<double>(k_) - back) / kRate + .785);
+    return 7.854 * std::sin(2 * std::numbers::pi * 5 * (static_cast<double>(k_) - back) / kRate + .785);
   }
   void next(double* y) {
     ++k_;
@@ -84,8 +82,7 @@ class Gyroscopes {
   Wrongs wrongs_;
   test::Gaussian gauss_;
   std::int64_t k_ = -1;
-  double deviation_[kSensors] = {}, gain_[kSensors] = {}, delay_[kSensors] = {},
-         walk_[kSensors] = {};
+  double deviation_[kSensors] = {}, gain_[kSensors] = {}, delay_[kSensors] = {}, walk_[kSensors] = {};
   Flicker flicker_[kSensors];
 };
 
@@ -113,17 +110,9 @@ std::vector<Fault> faults_of_interest() {
 }
 
 /// s: a bank of its own in NumPy, sensors known, at one false alarm in 1e5 s (h = 23.6); sensors 1, 3, 6.
-constexpr double kLimits[][3] = {{.49, .76, 2.0},
-                                 {.083, .16, .34},
-                                 {.013, .034, .080},
-                                 {.43, .78, 2.2},
-                                 {.11, .23, .50},
-                                 {.03, .06, .11},
-                                 {1.4, .73, .65},
-                                 {.37, .21, .18},
-                                 {3.2, 4.3, 5.5},
-                                 {.067, .17, .47},
-                                 {.005, .005, .005}};
+constexpr double kLimits[][3] = {{.49, .76, 2.0}, {.083, .16, .34}, {.013, .034, .080}, {.43, .78, 2.2},
+                                 {.11, .23, .50}, {.03, .06, .11},  {1.4, .73, .65},    {.37, .21, .18},
+                                 {3.2, 4.3, 5.5}, {.067, .17, .47}, {.005, .005, .005}};
 
 Array gyroscopes(std::int64_t fault_free) {
   Array array;
@@ -176,8 +165,7 @@ void delays(int trials) {
       int found = 0, right = 0, early = 0;
       std::vector<std::pair<std::string, int>> kinds;
       for (int t = 0; t < trials; ++t) {
-        const Trial trial =
-            one_trial(faults[f], sensor, static_cast<std::uint64_t>(1000 * t) + 10 * f + 1, 60);
+        const Trial trial = one_trial(faults[f], sensor, static_cast<std::uint64_t>(1000 * t) + 10 * f + 1, 60);
         if (trial.early) {
           ++early;
           continue;
@@ -186,25 +174,15 @@ void delays(int trials) {
         ++found;
         sum += trial.delay;
         right += trial.right ? 1 : 0;
-        auto place = std::find_if(
-            kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == trial.kind; });
+        auto place = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == trial.kind; });
         if (place == kinds.end()) place = kinds.insert(place, {trial.kind, 0});
         ++place->second;
       }
       std::string list;
       for (const auto& [kind, count] : kinds) list += fmt::format(" {} {}", count, kind);
       const double mean = found > 0 ? sum / found : std::nan(""), limit = kLimits[f][s];
-      fmt::print("{:<16} {:>6} {:>8.3f} {:>7.3f} {:>6.2f} {:>3}/{} {:>8} {}{}\n",
-                 faults[f].name,
-                 sensor + 1,
-                 mean,
-                 limit,
-                 mean / limit,
-                 found,
-                 trials,
-                 right,
-                 list,
-                 early > 0 ? fmt::format("  EARLY {}", early) : "");
+      fmt::print("{:<16} {:>6} {:>8.3f} {:>7.3f} {:>6.2f} {:>3}/{} {:>8} {}{}\n", faults[f].name, sensor + 1, mean,
+                 limit, mean / limit, found, trials, right, list, early > 0 ? fmt::format("  EARLY {}", early) : "");
     }
 }
 
@@ -213,8 +191,7 @@ void clean(std::int64_t samples) {
     const char* name;
     Wrongs wrongs;
   };
-  for (const Case& c : {Case{"white", {0, 0, 0, 0}},
-                        Case{"B 8e-4", {8e-4, 0, 0, 0}},
+  for (const Case& c : {Case{"white", {0, 0, 0, 0}}, Case{"B 8e-4", {8e-4, 0, 0, 0}},
                         Case{"B 8e-4, gains 1 %, delays 1/2", {8e-4, 0, .01, .5}},
                         Case{"B 8e-4, K 3e-4, gains 1 %, delays 1/2", {8e-4, 3e-4, .01, .5}}}) {
     // Records of 1e6 samples, each with its own start.
@@ -231,19 +208,13 @@ void clean(std::int64_t samples) {
       for (const FaultEvent& e : minque.faults().events())
         if (e.faulty) {
           ++events;
-          if (first.size() < 200)
-            first += fmt::format(" {}@{}:{}", name(e.rule), e.sample, e.channel + 1);
+          if (first.size() < 200) first += fmt::format(" {}@{}:{}", name(e.rule), e.sample, e.channel + 1);
         }
       doubts += static_cast<std::int64_t>(minque.faults().doubts().size());
     }
     const double seconds = static_cast<double>(done) / kRate;
-    fmt::print("{:<40} {} samples: {} alarms, {} doubts; {:.2f} in 1e5 s {}\n",
-               c.name,
-               done,
-               events,
-               doubts,
-               static_cast<double>(events + doubts) / seconds * 1e5,
-               first);
+    fmt::print("{:<40} {} samples: {} alarms, {} doubts; {:.2f} in 1e5 s {}\n", c.name, done, events, doubts,
+               static_cast<double>(events + doubts) / seconds * 1e5, first);
   }
 }
 
@@ -276,15 +247,8 @@ void recovery() {
           }
         }
       }
-      fmt::print(
-          "{:<12} sensor {}: early returns {}, in again {}/{} after {:.2f} s (longest {:.2f})\n",
-          all[f].name,
-          sensor + 1,
-          early,
-          returned,
-          trials,
-          sum / std::max(returned, 1),
-          longest);
+      fmt::print("{:<12} sensor {}: early returns {}, in again {}/{} after {:.2f} s (longest {:.2f})\n", all[f].name,
+                 sensor + 1, early, returned, trials, sum / std::max(returned, 1), longest);
     }
 }
 
@@ -320,8 +284,7 @@ void sets(int trials) {
         minque.step(Sample(y, Gyroscopes::kSensors));
       }
       std::vector<char> out(Gyroscopes::kSensors, 0);
-      for (const FaultEvent& e : minque.faults().events())
-        out[static_cast<std::size_t>(e.channel)] = e.faulty ? 1 : 0;
+      for (const FaultEvent& e : minque.faults().events()) out[static_cast<std::size_t>(e.channel)] = e.faulty ? 1 : 0;
       bool same = true, none = true;
       for (int i = 0; i < Gyroscopes::kSensors; ++i) {
         const bool hurt = std::find(c.sensors.begin(), c.sensors.end(), i) != c.sensors.end();
@@ -337,12 +300,7 @@ void sets(int trials) {
       else
         ++wrong;
     }
-    fmt::print("{:<32} right {:>3}, ambiguous {:>3}, else {:>3} of {}\n",
-               c.name,
-               right,
-               ambiguous,
-               wrong,
-               trials);
+    fmt::print("{:<32} right {:>3}, ambiguous {:>3}, else {:>3} of {}\n", c.name, right, ambiguous, wrong, trials);
   }
 }
 
@@ -366,17 +324,12 @@ void matrix(int trials) {
   for (int i = 0; i < kN; ++i) deviations[i] = .0523 * (1 + .25 * i);
   const Eigen::MatrixXd& h = array.observation_matrix;
   const Eigen::MatrixXd weighted = deviations.cwiseAbs2().cwiseInverse().asDiagonal() * h;
-  const double leverage =
-      (h.row(2) * test::inverse(h.transpose() * weighted) * weighted.row(2).transpose()).value();
+  const double leverage = (h.row(2) * test::inverse(h.transpose() * weighted) * weighted.row(2).transpose()).value();
   const double v = deviations[2] * deviations[2] / (1 - leverage);
   const double input = 7.854 * 7.854 / 2 + arms[2] * arms[2] * 25 / 2;
   const double ratio = 9 * (1 - leverage) + leverage;
-  const double information[] = {1e-9,
-                                .04 * input / (2 * v),
-                                .0025 * input / (2 * v),
-                                .0025 / (2 * v),
-                                (ratio - 1 - std::log(ratio)) / 2,
-                                1e9};
+  const double information[] = {
+      1e-9, .04 * input / (2 * v), .0025 * input / (2 * v), .0025 / (2 * v), (ratio - 1 - std::log(ratio)) / 2, 1e9};
   for (std::size_t f = 0; f < std::size(faults); ++f) {
     double sum = 0;
     int found = 0, right = 0, early = 0;
@@ -406,14 +359,8 @@ void matrix(int trials) {
         break;
       }
     }
-    fmt::print("r = 2, n = 8: {:<10} {:.3f} s (limit {:.3f}) found {}/{} isolated {} early {}\n",
-               faults[f].name,
-               sum / std::max(found, 1),
-               std::max(23.6 / information[f], 1.0) / kRate,
-               found,
-               trials,
-               right,
-               early);
+    fmt::print("r = 2, n = 8: {:<10} {:.3f} s (limit {:.3f}) found {}/{} isolated {} early {}\n", faults[f].name,
+               sum / std::max(found, 1), std::max(23.6 / information[f], 1.0) / kRate, found, trials, right, early);
   }
 }
 
@@ -430,8 +377,7 @@ void speed() {
     for (int round = 0; round < 800; ++round) {
       const auto from = std::chrono::steady_clock::now();
       const int first = round % 40 * kRound;
-      for (int k = first; k < first + kRound; ++k)
-        minque.step(Sample(&y[static_cast<std::size_t>(k) * 6], 6));
+      for (int k = first; k < first + kRound; ++k) minque.step(Sample(&y[static_cast<std::size_t>(k) * 6], 6));
       const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - from;
       best = std::min(best, took.count() / kRound);
     }

@@ -41,8 +41,7 @@ const std::vector<Scene> kScenes = {
 
 struct Tally {
   double sum = 0, square = 0;
-  int covered = 0, count = 0, detected = 0, undetermined = 0, reported = 0, reported_covered = 0,
-      decided_covered = 0;
+  int covered = 0, count = 0, detected = 0, undetermined = 0, reported = 0, reported_covered = 0, decided_covered = 0;
 };
 
 struct Row {
@@ -51,18 +50,14 @@ struct Row {
   double fit_ms = 0, bins_ms = 0, worst_excess = 0, worst_ratio = 0, p_below = 0;
 };
 
-Mixture theta_of(const Scene& scene) {
-  return {scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0};
-}
+Mixture theta_of(const Scene& scene) { return {scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0}; }
 
 double milliseconds(Clock::time_point from) {
   return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
 }
 
 /// Excess of -lnL at the fit over the best of eight random starts.
-double excess_over_multistart(const std::vector<PowerBin>& bins,
-                              const NoiseFit& fit,
-                              test::Gaussian& gauss) {
+double excess_over_multistart(const std::vector<PowerBin>& bins, const NoiseFit& fit, test::Gaussian& gauss) {
   const BinProblem problem = bin_problem(bins);
   const double reached = half_deviance(problem, {fit.theta, {}});
   TermSet kept{};
@@ -70,8 +65,7 @@ double excess_over_multistart(const std::vector<PowerBin>& bins,
   double best = reached;
   for (int i = 0; i < 8; ++i) {
     ModelPoint start;
-    for (std::size_t t = 0; t < kTerms; ++t)
-      start.theta[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
+    for (std::size_t t = 0; t < kTerms; ++t) start.theta[t] = kept[t] ? fit.theta[t] * std::exp(4 * gauss()) : 0;
     best = std::min(best, score(problem, kept, &start, 1e-12).half_deviance);
   }
   return reached - best;
@@ -100,9 +94,9 @@ Row run(const Scene& scene, int records, bool in_blocks) {
   for (int r = 0; r < records; ++r) {
     const std::vector<double> y = source.record(scene.q, scene.b, scene.k);
     auto from = Clock::now();
-    const std::vector<PowerBin> bins =
-        in_blocks ? power_bins(powers_of(record_sums(y, false).plain.bins), scene.rate_hz)
-                  : power_bins(y, scene.rate_hz);
+    const std::vector<PowerBin> bins = in_blocks
+                                           ? power_bins(powers_of(record_sums(y, false).plain.bins), scene.rate_hz)
+                                           : power_bins(y, scene.rate_hz);
     row.bins_ms += milliseconds(from);
     const NoiseFit fit = fit_power_bins(bins, scene.rate_hz, y.size(), nullptr, plain);
     from = Clock::now();
@@ -132,44 +126,24 @@ Row run(const Scene& scene, int records, bool in_blocks) {
 void print(const Scene& scene, const Row& row) {
   const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
   const TermSet fitted = {true, scene.b > 0, scene.k > 0, false, false};
-  const auto bound =
-      cramer_rao(theta_of(scene), scene.rate_hz, static_cast<double>(scene.samples), fitted);
+  const auto bound = cramer_rao(theta_of(scene), scene.rate_hz, static_cast<double>(scene.samples), fitted);
   const double n = row.records;
   for (std::size_t i = 0; i < 3; ++i) {
     const Tally& t = row.term[i];
     if (truth[i] > 0) {
       const double crb = *bound[i] * truth[i];
-      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f} {:11.1f}",
-                 scene.name,
-                 kTermNames[i].letter,
-                 100 * *bound[i],
-                 crb * crb / (t.square / n),
-                 (t.sum / n - truth[i]) / crb,
-                 100.0 * t.covered / n,
-                 100.0 * t.detected / n,
-                 100.0 * t.undetermined / n,
-                 t.reported ? 100.0 * t.reported_covered / t.reported : 0.0,
-                 100.0 * t.decided_covered / n);
+      fmt::print("{:3} {:2} {:9.3f} {:10.3f} {:11.3f} {:10.1f} {:9.1f} {:13.1f} {:14.1f} {:11.1f}", scene.name,
+                 kTermNames[i].letter, 100 * *bound[i], crb * crb / (t.square / n), (t.sum / n - truth[i]) / crb,
+                 100.0 * t.covered / n, 100.0 * t.detected / n, 100.0 * t.undetermined / n,
+                 t.reported ? 100.0 * t.reported_covered / t.reported : 0.0, 100.0 * t.decided_covered / n);
     } else {
-      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14} {:11.1f}",
-                 scene.name,
-                 kTermNames[i].letter,
-                 "absent",
-                 "",
-                 "",
-                 "",
-                 100.0 * t.detected / n,
-                 100.0 * t.undetermined / n,
-                 "",
+      fmt::print("{:3} {:2} {:>9} {:>10} {:>11} {:>10} {:9.1f} {:13.1f} {:>14} {:11.1f}", scene.name,
+                 kTermNames[i].letter, "absent", "", "", "", 100.0 * t.detected / n, 100.0 * t.undetermined / n, "",
                  100.0 * t.decided_covered / n);
     }
     if (i == 0)
-      fmt::print(" {:7.1f} {:9.2e} {:8.3f} {:8.2f} {:7.1f}",
-                 100.0 * row.at_optimum / n,
-                 row.worst_excess,
-                 row.fit_ms / n,
-                 row.bins_ms / n,
-                 100 * row.p_below / n);
+      fmt::print(" {:7.1f} {:9.2e} {:8.3f} {:8.2f} {:7.1f}", 100.0 * row.at_optimum / n, row.worst_excess,
+                 row.fit_ms / n, row.bins_ms / n, 100 * row.p_below / n);
     fmt::print("\n");
   }
   std::fflush(stdout);

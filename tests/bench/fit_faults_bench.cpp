@@ -24,15 +24,12 @@ struct Scene {
 constexpr std::size_t kSamples = 200000;
 using Fault = std::function<void(std::vector<double>&, const Scene&, test::Gaussian&)>;
 
-double white_sd(const Scene& scene) {
-  return scene.q * std::sqrt(scene.rate_hz);
-}
+double white_sd(const Scene& scene) { return scene.q * std::sqrt(scene.rate_hz); }
 
 void drift(std::vector<double>& y, const Scene& scene, test::Gaussian&) {
   // A ramp whose Allan deviation at T/4 is three times that of the noise.
   const double tau = static_cast<double>(y.size()) / scene.rate_hz / 4;
-  const double noise =
-      std::sqrt(scene.q * scene.q / tau + 0.4413 * scene.b * scene.b + scene.k * scene.k * tau / 3);
+  const double noise = std::sqrt(scene.q * scene.q / tau + 0.4413 * scene.b * scene.b + scene.k * scene.k * tau / 3);
   const double slope = 3 * noise * std::sqrt(2.0) / tau;
   for (std::size_t t = 0; t < y.size(); ++t) y[t] += slope * static_cast<double>(t) / scene.rate_hz;
 }
@@ -55,10 +52,8 @@ const std::vector<std::pair<std::string, Fault>> kFaults = {
     {"1 % missing, 10 bursts",
      [](std::vector<double>& y, const Scene&, test::Gaussian& gauss) {
        for (int i = 0; i < 10; ++i) {
-         const auto from =
-             static_cast<std::size_t>(gauss.uniform() * 0.99 * static_cast<double>(y.size()));
-         for (std::size_t t = from; t < from + y.size() / 1000; ++t)
-           y[t] = std::numeric_limits<double>::quiet_NaN();
+         const auto from = static_cast<std::size_t>(gauss.uniform() * 0.99 * static_cast<double>(y.size()));
+         for (std::size_t t = from; t < from + y.size() / 1000; ++t) y[t] = std::numeric_limits<double>::quiet_NaN();
        }
      }},
     {"sine .5 sd at fs/4",
@@ -72,8 +67,7 @@ const std::vector<std::pair<std::string, Fault>> kFaults = {
        std::vector<double> ramp(y.size(), 0.0);
        drift(ramp, scene, gauss);
        for (std::size_t t = 0; t < y.size(); ++t)
-         y[t] +=
-             ramp.back() * std::exp(-5 * static_cast<double>(t) / static_cast<double>(y.size()));
+         y[t] += ramp.back() * std::exp(-5 * static_cast<double>(t) / static_cast<double>(y.size()));
      }},
     {"all four",
      [](std::vector<double>& y, const Scene& scene, test::Gaussian& gauss) {
@@ -85,10 +79,8 @@ void run(const Scene& scene, const std::string& name, const Fault& fault, int re
   test::NoiseSource source(kSamples, scene.rate_hz, 99);
   test::Gaussian faults(3);
   const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
-  const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0},
-                                scene.rate_hz,
-                                kSamples,
-                                {true, true, true, false, false});
+  const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0}, scene.rate_hz,
+                                kSamples, {true, true, true, false, false});
   std::array<std::array<double, 3>, 2> sum{}, square{};
   std::map<std::string, int> remedies;
   FitOptions options;
@@ -115,8 +107,7 @@ void run(const Scene& scene, const std::string& name, const Fault& fault, int re
     for (std::size_t i = 0; i < 3; ++i) fmt::print(" {:6.2f}", std::sqrt(square[with][i]));
     fmt::print("  ||");
   }
-  for (const auto& [kind, count] : remedies)
-    fmt::print(" {} {:.0f}%", kind, 100.0 * count / records);
+  for (const auto& [kind, count] : remedies) fmt::print(" {} {:.0f}%", kind, 100.0 * count / records);
   fmt::print("\n");
   std::fflush(stdout);
 }
@@ -128,8 +119,7 @@ int main(int argc, char** argv) {
   fmt::print(
       "bias and rms error of Q, B, K in Cramér-Rao bounds; left without, right with remedies; how "
       "often each remedy\n");
-  for (const Scene& scene :
-       {Scene{"f", 200, 1e-3, 1e-2, 5e-3}, Scene{"b'", 20.0 / 3, 1e-3, 1.598e-4, 4.137e-6}}) {
+  for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 5e-3}, Scene{"b'", 20.0 / 3, 1e-3, 1.598e-4, 4.137e-6}}) {
     for (const auto& [name, fault] : kFaults)
       if (argc < 3 || name.rfind(argv[2], 0) == 0) run(scene, name, fault, records);
   }

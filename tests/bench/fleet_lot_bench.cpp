@@ -30,26 +30,19 @@ namespace {
 
 using namespace libchar;
 
-constexpr DeviceQuantity kQuantities[] = {DeviceQuantity::white_noise,
-                                          DeviceQuantity::bias_instability,
-                                          DeviceQuantity::random_walk,
-                                          DeviceQuantity::turn_on_bias};
+constexpr DeviceQuantity kQuantities[] = {DeviceQuantity::white_noise, DeviceQuantity::bias_instability,
+                                          DeviceQuantity::random_walk, DeviceQuantity::turn_on_bias};
 
 struct Tally {
   int lots = 0, mean = 0, spread = 0;
 };
 
-bool holds(const Interval& i, double value) {
-  return i.low <= value && value <= i.high;
-}
+bool holds(const Interval& i, double value) { return i.low <= value && value <= i.high; }
 
 void print_rate(const std::string& what, int count, int of, const std::string& expected) {
   const double share = static_cast<double>(count) / of;
-  fmt::print("  {:<58} {:6.2f} % ± {:.2f}   expected {}\n",
-             what,
-             100 * share,
-             100 * std::sqrt(share * (1 - share) / of),
-             expected);
+  fmt::print("  {:<58} {:6.2f} % ± {:.2f}   expected {}\n", what, 100 * share,
+             100 * std::sqrt(share * (1 - share) / of), expected);
 }
 
 void coverage(const std::string& title, const test::MadeLot& made, int lots) {
@@ -69,12 +62,8 @@ void coverage(const std::string& title, const test::MadeLot& made, int lots) {
   }
   fmt::print("{}: {} lots of {} devices\n", title, lots, made.devices);
   for (std::size_t k = 0; k < 4; ++k) {
-    print_rate(
-        title_of(kQuantities[k]) + ", mean in its interval", tally[k].mean, tally[k].lots, "95 %");
-    print_rate(title_of(kQuantities[k]) + ", spread in its interval",
-               tally[k].spread,
-               tally[k].lots,
-               "95 %");
+    print_rate(title_of(kQuantities[k]) + ", mean in its interval", tally[k].mean, tally[k].lots, "95 %");
+    print_rate(title_of(kQuantities[k]) + ", spread in its interval", tally[k].spread, tally[k].lots, "95 %");
   }
   print_rate("lots in which a device is named", named, lots, "at most 1 %");
 }
@@ -116,10 +105,8 @@ void batches(int lots) {
     for (int b = 0; b < 6; ++b) {
       made.batch = std::to_string(b);
       made.prefix = made.batch + "-";
-      test::append(
-          records,
-          test::made_lot(
-              made, 9000000 + 6 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(b)));
+      test::append(records,
+                   test::made_lot(made, 9000000 + 6 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(b)));
     }
     for (const QuantityLot& q : fleet_lot(records).quantities)
       if (!q.of_kind && q.batch_difference) {
@@ -133,17 +120,13 @@ void batches(int lots) {
 
 /// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias
 /// repeats beside them.
-void temperatures(const std::string& title,
-                  std::size_t devices,
-                  const test::MadeTemperatures& how,
-                  int lots) {
+void temperatures(const std::string& title, std::size_t devices, const test::MadeTemperatures& how, int lots) {
   test::MadeLot made;
   made.devices = devices;
   made.channels = {"gyro_x"};
   int device = 0, of_devices = 0, mean = 0, spread = 0, repeat = 0, bias = 0, bias_spread = 0;
   for (int i = 0; i < lots; ++i) {
-    const auto drawn =
-        test::made_temperature_lot(made, how, 11000000 + static_cast<std::uint64_t>(i));
+    const auto drawn = test::made_temperature_lot(made, how, 11000000 + static_cast<std::uint64_t>(i));
     for (const QuantityLot& q : fleet_lot(drawn.records).quantities) {
       if (q.quantity == DeviceQuantity::turn_on_bias) {
         repeat += holds(q.repeats->within_ci95, how.scatter);
@@ -153,13 +136,11 @@ void temperatures(const std::string& title,
       if (q.quantity != DeviceQuantity::temperature_coefficient) continue;
       mean += holds(q.figures->mean_ci95, how.slope);
       spread += holds(q.figures->spread_ci95, how.slope_spread);
-      for (std::size_t d = 0; d < devices; ++d)
-        device += holds(q.temperatures->slopes[d].ci95, drawn.slope[d]);
+      for (std::size_t d = 0; d < devices; ++d) device += holds(q.temperatures->slopes[d].ci95, drawn.slope[d]);
       of_devices += static_cast<int>(devices);
     }
   }
-  fmt::print(
-      "temperature coefficients by recordings {}: {} lots of {} devices\n", title, lots, devices);
+  fmt::print("temperature coefficients by recordings {}: {} lots of {} devices\n", title, lots, devices);
   print_rate("a device's coefficient in its interval", device, of_devices, "95 %");
   print_rate("their mean in its interval", mean, lots, "95 %");
   print_rate("their spread in its interval", spread, lots, "95 %");
@@ -170,8 +151,7 @@ void temperatures(const std::string& title,
 
 /// Charts of a process that stays, and of four that do not.
 void charts(std::size_t values, int count) {
-  const char* const kinds[] = {
-      "stays", "shifts by 1.5 sigma half-way", "drifts by 3 sigma", "one value 6 sigma off"};
+  const char* const kinds[] = {"stays", "shifts by 1.5 sigma half-way", "drifts by 3 sigma", "one value 6 sigma off"};
   fmt::print("control charts of {} values\n", values);
   for (int kind = 0; kind < 4; ++kind) {
     test::Gaussian gauss(31 + static_cast<std::uint64_t>(kind));
@@ -196,16 +176,11 @@ void charts(std::size_t values, int count) {
       any += some;
       chance = zones.any_by_chance;
     }
-    print_rate(std::string("process ") + kinds[kind] + ": alarm",
-               alarm,
-               count,
-               kind == 0 ? "at most 1 %" : "");
+    print_rate(std::string("process ") + kinds[kind] + ": alarm", alarm, count, kind == 0 ? "at most 1 %" : "");
     print_rate("  any signal", any, count, kind == 0 ? fmt::format("{:.0f} %", 100 * chance) : "");
     for (std::size_t r = 0; r < kZoneRules; ++r)
-      fmt::print("    {:<20} signal {:5.1f} %, alarm {:5.2f} %\n",
-                 name_of(static_cast<ZoneRule>(r)),
-                 100.0 * signal[r] / count,
-                 100.0 * rule_alarm[r] / count);
+      fmt::print("    {:<20} signal {:5.1f} %, alarm {:5.2f} %\n", name_of(static_cast<ZoneRule>(r)),
+                 100.0 * signal[r] / count, 100.0 * rule_alarm[r] / count);
   }
 }
 
@@ -230,9 +205,7 @@ std::vector<Coefficient> fits_of_lot(Term term, double mean, double spread, std:
 }
 
 /// A lot's records, each with one of the fits.
-std::vector<DeviceRecord> lot_of_fits(const std::vector<Coefficient>& fits,
-                                      Term term,
-                                      std::size_t devices,
+std::vector<DeviceRecord> lot_of_fits(const std::vector<Coefficient>& fits, Term term, std::size_t devices,
                                       test::Gaussian& gauss) {
   test::MadeLot made;
   made.devices = devices;
@@ -273,14 +246,8 @@ void squares(Term term) {
     fmt::print(
         "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), "
         "skewness {:.2f} ({:.2f} by information), bias {:+.3f} sd ± .009\n",
-        title_of(quantity_of(term)),
-        c,
-        r,
-        sd * sd / (r * r * truth * truth),
-        1 + 0.55 * r / (1 + 1.5 * r),
-        third / count / (sd * sd * sd),
-        skewness / near,
-        bias / sd);
+        title_of(quantity_of(term)), c, r, sd * sd / (r * r * truth * truth), 1 + 0.55 * r / (1 + 1.5 * r),
+        third / count / (sd * sd * sd), skewness / near, bias / sd);
   }
 }
 
@@ -291,20 +258,16 @@ void left_out_lots(Term term, int lots) {
       // In units of what half of the records detect.
       const double mean = times * (term == Term::walk ? 3.3e-3 : 0.063);
       const std::vector<Coefficient> fits = fits_of_lot(term, mean, spread, 12000);
-      const auto found = std::count_if(fits.begin(), fits.end(), [](const Coefficient& c) {
-        return c.status == Status::detected;
-      });
-      fmt::print("{}, spread {}: detected in {:.0f} % of devices\n",
-                 title_of(quantity_of(term)),
-                 spread,
+      const auto found =
+          std::count_if(fits.begin(), fits.end(), [](const Coefficient& c) { return c.status == Status::detected; });
+      fmt::print("{}, spread {}: detected in {:.0f} % of devices\n", title_of(quantity_of(term)), spread,
                  100.0 * static_cast<double>(found) / static_cast<double>(fits.size()));
       for (const std::size_t devices : {8, 20, 200}) {
         test::Gaussian gauss(61);
         int with_mean = 0, in_mean = 0, in_spread = 0, of_all = 0;
         double sum_mean = 0, sum_spread = 0;
         for (int i = 0; i < lots; ++i)
-          for (const QuantityLot& q :
-               fleet_lot(lot_of_fits(fits, term, devices, gauss)).quantities) {
+          for (const QuantityLot& q : fleet_lot(lot_of_fits(fits, term, devices, gauss)).quantities) {
             if (!q.figures || q.quantity != quantity_of(term)) continue;
             ++with_mean;
             of_all += !q.left_out;
@@ -317,12 +280,7 @@ void left_out_lots(Term term, int lots) {
         fmt::print(
             "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, "
             "spread {:.3f}\n",
-            devices,
-            with_mean,
-            lots,
-            of_all,
-            100 * sum_mean / with_mean,
-            sum_spread / with_mean);
+            devices, with_mean, lots, of_all, 100 * sum_mean / with_mean, sum_spread / with_mean);
         print_rate("true mean in its interval", in_mean, with_mean, "95 %");
         print_rate("true spread in its interval", in_spread, with_mean, "95 %");
       }
@@ -366,11 +324,9 @@ RecordedChannel channel_of_fit(const NoiseFit& fit, double own) {
 void neighbour_lots(double walk, int lots) {
   constexpr double kTruth[] = {5e-3, 4e-3};
   const std::vector<NoiseFit> fits = neighbour_fits(walk, 4000);
-  const auto found = std::count_if(fits.begin(), fits.end(), [](const NoiseFit& fit) {
-    return fit[Term::walk].status == Status::detected;
-  });
-  fmt::print("K = {}: detected in {:.0f} % of records\n",
-             walk,
+  const auto found = std::count_if(fits.begin(), fits.end(),
+                                   [](const NoiseFit& fit) { return fit[Term::walk].status == Status::detected; });
+  fmt::print("K = {}: detected in {:.0f} % of records\n", walk,
              100.0 * static_cast<double>(found) / static_cast<double>(fits.size()));
   test::Gaussian gauss(7);
   for (const std::size_t devices : {20, 60, 200})
@@ -382,8 +338,7 @@ void neighbour_lots(double walk, int lots) {
         made.channels = {"gyro_x"};
         std::vector<DeviceRecord> records = test::made_lot(made, 1);
         for (DeviceRecord& r : records) {
-          const auto k =
-              static_cast<std::size_t>(gauss.uniform() * static_cast<double>(fits.size()));
+          const auto k = static_cast<std::size_t>(gauss.uniform() * static_cast<double>(fits.size()));
           r.channels = {channel_of_fit(fits[k], std::exp(spread * gauss()))};
         }
         for (const QuantityLot& q : fleet_lot(records).quantities) {
@@ -445,8 +400,7 @@ void size_of_a_fleet(std::size_t devices) {
   };
   fmt::print("{} devices of six channels\n", devices);
   std::vector<std::string> lines;
-  for (const DeviceRecord& r : test::made_lot(large_lot(devices), 1))
-    lines.push_back(device_record_text(r));
+  for (const DeviceRecord& r : test::made_lot(large_lot(devices), 1)) lines.push_back(device_record_text(r));
   lap("records made and written");
   std::vector<DeviceRecord> records;
   for (const std::string& line : lines) records.push_back(parse_device_record(line, "fleet"));
@@ -457,8 +411,7 @@ void size_of_a_fleet(std::size_t devices) {
   const auto files = write_fleet_report({records, &lot, "", {}, {}}, folder, true);
   lap("page, document, tables");
   for (const std::string& file : files)
-    fmt::print("  {:<30} {:6.1f} MB\n",
-               std::filesystem::path(file).filename().string(),
+    fmt::print("  {:<30} {:6.1f} MB\n", std::filesystem::path(file).filename().string(),
                static_cast<double>(std::filesystem::file_size(file)) / 1e6);
   std::filesystem::remove_all(folder);
 }
@@ -484,18 +437,12 @@ int main(int argc, char** argv) {
     for (const std::size_t n : {5, 30, 200}) comparisons(n, lots);
   if (asked('t')) {
     for (const std::size_t n : {8, 20, 200}) temperatures("at -20, 25, 60 and 25 °C", n, {}, lots);
-    temperatures("at three temperatures, slopes hardly differ",
-                 20,
-                 {.at_c = {-20, 25, 60}, .slope_spread = 1e-4},
+    temperatures("at three temperatures, slopes hardly differ", 20, {.at_c = {-20, 25, 60}, .slope_spread = 1e-4},
                  lots);
-    temperatures("at three temperatures, slopes differ much",
-                 20,
-                 {.at_c = {-20, 25, 60}, .slope_spread = 2e-3},
-                 lots);
+    temperatures("at three temperatures, slopes differ much", 20, {.at_c = {-20, 25, 60}, .slope_spread = 2e-3}, lots);
   }
   if (asked('z'))
-    for (const std::size_t n : {8, 20, 50, 200, 1000, 10000})
-      charts(n, n > 1000 ? lots : 10 * lots);
+    for (const std::size_t n : {8, 20, 50, 200, 1000, 10000}) charts(n, n > 1000 ? lots : 10 * lots);
   if (asked('n'))
     for (const Term term : {Term::flicker, Term::walk}) left_out_lots(term, lots);
   if (asked('s'))

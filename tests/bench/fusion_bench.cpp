@@ -23,10 +23,7 @@ using namespace libchar::fusion;
 
 namespace {
 
-Eigen::MatrixXd noisy(const Eigen::VectorXd& variances,
-                      Eigen::Index instants,
-                      std::uint64_t seed,
-                      double signal,
+Eigen::MatrixXd noisy(const Eigen::VectorXd& variances, Eigen::Index instants, std::uint64_t seed, double signal,
                       double* truth = nullptr) {
   test::Gaussian gauss(seed);
   Eigen::MatrixXd y(variances.size(), instants);
@@ -46,10 +43,7 @@ Settings with(const Entry& entry, const std::vector<std::pair<std::string_view, 
 
 /// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the
 /// record.
-double excess(const Eigen::VectorXd& variances,
-              const Settings& settings,
-              const char* name,
-              int seeds) {
+double excess(const Eigen::VectorXd& variances, const Settings& settings, const char* name, int seeds) {
   constexpr Eigen::Index kInstants = 200000, kFrom = 10000;
   const Eigen::VectorXd w = variances.cwiseInverse() / variances.cwiseInverse().sum();
   double ours = 0, best = 0;
@@ -68,15 +62,13 @@ double excess(const Eigen::VectorXd& variances,
 
 void regret(int argc, char** argv) {
   const Eigen::VectorXd t31 = (Eigen::VectorXd(5) << 100, 20, 10, 2, 1).finished();
-  const Eigen::VectorXd t51 =
-      (Eigen::VectorXd(6) << .00274, .00487, .00761, .01095, .01491, .01947).finished();
+  const Eigen::VectorXd t51 = (Eigen::VectorXd(6) << .00274, .00487, .00761, .01095, .01491, .01947).finished();
   const Eigen::VectorXd two = (Eigen::VectorXd(5) << 1, 1, 1e4, 1e4, 1e4).finished();
   const Eigen::VectorXd three = (Eigen::VectorXd(5) << 1, 1, 1, 1e4, 1e4).finished();
   std::vector<std::pair<std::string_view, double>> values;
   for (int i = 0; i + 1 < argc; i += 2) values.emplace_back(argv[i], std::stod(argv[i + 1]));
   const Entry& minque = algorithm("minque");
-  fmt::print(
-      "excess RMS in %: {:>8} {:>8} {:>12} {:>12}\n", "T3.1", "T5.1", "two good", "three good");
+  fmt::print("excess RMS in %: {:>8} {:>8} {:>12} {:>12}\n", "T3.1", "T5.1", "two good", "three good");
   for (const double gamma : {0.9, 0.98, 0.99, 0.995, 0.999, 0.9997}) {
     values.emplace_back("gamma", gamma);
     const Settings settings = with(minque, values);
@@ -156,8 +148,7 @@ double plain_minque(const Eigen::MatrixXd& y, bool pseudo) {
     const auto m = static_cast<Eigen::Index>(healthy.size());
     const Eigen::MatrixXd h = Eigen::MatrixXd::Ones(m, 1);
     const Eigen::VectorXd samples = y.col(k)(healthy);
-    const Eigen::MatrixXd p =
-        Eigen::MatrixXd::Identity(m, m) - h * test::inverse(h.transpose() * h) * h.transpose();
+    const Eigen::MatrixXd p = Eigen::MatrixXd::Identity(m, m) - h * test::inverse(h.transpose() * h) * h.transpose();
     const Eigen::MatrixXd squared = p.cwiseProduct(p);
     const Eigen::VectorXd residual = p * samples, delta = residual - mean(healthy);
     moment(healthy) = gamma * (moment(healthy) + (1 - gamma) * delta.cwiseProduct(delta));
@@ -166,8 +157,7 @@ double plain_minque(const Eigen::MatrixXd& y, bool pseudo) {
     variances(healthy) = estimated.cwiseAbs().cwiseMax(1e-12);
     const Eigen::MatrixXd r = Eigen::VectorXd(variances(healthy)).asDiagonal();
     const Eigen::MatrixXd r_inverse = test::inverse(r);
-    const Eigen::MatrixXd x =
-        test::inverse(h.transpose() * r_inverse * h) * h.transpose() * r_inverse * samples;
+    const Eigen::MatrixXd x = test::inverse(h.transpose() * r_inverse * h) * h.transpose() * r_inverse * samples;
     sum += x(0, 0);
     healthy.clear();
     for (Eigen::Index i = 0; i < n; ++i)
@@ -189,10 +179,7 @@ double plain_nanoseconds(const Eigen::MatrixXd& y, bool pseudo) {
 }
 
 void against_matrices() {
-  fmt::print("\nMINQUE, ns a step {:>8} {:>22} {:>22}\n",
-             "minque",
-             "matrices, inv (ratio)",
-             "matrices, pinv (ratio)");
+  fmt::print("\nMINQUE, ns a step {:>8} {:>22} {:>22}\n", "minque", "matrices, inv (ratio)", "matrices, pinv (ratio)");
   for (const Eigen::Index n : {6, 12, 50}) {
     const Eigen::MatrixXd y = noisy(Eigen::VectorXd::LinSpaced(n, 1, 7), n > 12 ? 20 : 200, 3, 2);
     Array array;

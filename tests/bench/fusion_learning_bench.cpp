@@ -44,8 +44,7 @@ struct Scene {
 /// White levels of [RV] table 3.1 (variance 608.4 S and 14.5 S of flicker, taken as
 /// white here); the input has variance 5.78 and, after its filter, correlation .285 at one sample.
 Scene five_sensors(std::uint64_t seed, Eigen::Index instants, Eigen::Index learning) {
-  const Eigen::ArrayXd variances =
-      623.0 * (Eigen::ArrayXd(5) << 5e-3, 1e-3, 5e-4, 1e-4, 5e-5).finished();
+  const Eigen::ArrayXd variances = 623.0 * (Eigen::ArrayXd(5) << 5e-3, 1e-3, 5e-4, 1e-4, 5e-5).finished();
   test::Gaussian gauss(seed);
   Scene made{Eigen::MatrixXd(5, instants), Eigen::VectorXd(instants), {}};
   constexpr double kCorrelation = 0.285;
@@ -65,24 +64,14 @@ double rms_from(Runner& runner, const Scene& scene, Eigen::Index from) {
   const Eigen::Index count = scene.y.cols() - from;
   Eigen::MatrixXd x(1, count), variance(1, count);
   runner.run(scene.y.rightCols(count), x, variance);
-  return std::sqrt((x.row(0).transpose() - scene.x.tail(count)).squaredNorm() /
-                   static_cast<double>(count));
+  return std::sqrt((x.row(0).transpose() - scene.x.tail(count)).squaredNorm() / static_cast<double>(count));
 }
 
 void perceptron(int seeds) {
   constexpr Eigen::Index kLearning = 10000, kInstants = 100000;
-  fmt::print(
-      "five sensors, 10 000 instants to learn from, 90 000 judged, {} seeds; optimum .1369\n",
-      seeds);
-  fmt::print("{:>8} {:>10} {:>9} {:>8} {:>9} {:>9}\n",
-             "neurons",
-             "CPU s",
-             "RMS",
-             "std",
-             "thesis",
-             "ns/step");
-  const std::array<std::pair<int, double>, 5> rows{
-      {{3, .1370}, {5, .1370}, {10, .1373}, {20, .1372}, {30, .1378}}};
+  fmt::print("five sensors, 10 000 instants to learn from, 90 000 judged, {} seeds; optimum .1369\n", seeds);
+  fmt::print("{:>8} {:>10} {:>9} {:>8} {:>9} {:>9}\n", "neurons", "CPU s", "RMS", "std", "thesis", "ns/step");
+  const std::array<std::pair<int, double>, 5> rows{{{3, .1370}, {5, .1370}, {10, .1373}, {20, .1372}, {30, .1378}}};
   for (const auto& [neurons, thesis] : rows) {
     std::vector<double> rms, took, step;
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -97,12 +86,8 @@ void perceptron(int seeds) {
       step.push_back(1e9 * seconds_since(from) / static_cast<double>(kInstants - kLearning));
     }
     const Eigen::Map<const Eigen::ArrayXd> r(rms.data(), static_cast<Eigen::Index>(rms.size()));
-    fmt::print("{:>8} {:>10.2f} {:>9.5f} {:>8.5f} {:>9.4f} {:>9.0f}\n",
-               neurons,
-               *std::max_element(took.begin(), took.end()),
-               r.mean(),
-               std::sqrt((r - r.mean()).square().mean()),
-               thesis,
+    fmt::print("{:>8} {:>10.2f} {:>9.5f} {:>8.5f} {:>9.4f} {:>9.0f}\n", neurons,
+               *std::max_element(took.begin(), took.end()), r.mean(), std::sqrt((r - r.mean()).square().mean()), thesis,
                *std::min_element(step.begin(), step.end()));
   }
 }
@@ -116,18 +101,8 @@ void takens() {
     slow.x[k] = x;
   }
   constexpr Eigen::Index kFrom = 2000;
-  fmt::print("{:>26} {:>4} {:>5} {:>9} {:>12} {:>12}\n",
-             "algorithm",
-             "d",
-             "m",
-             "us/step",
-             "RMS white",
-             "RMS sine");
-  fmt::print("{:>26} {:>4} {:>5} {:>9} {:>12.5f} {:>12.5f}\n",
-             "inverse-variance",
-             "",
-             "",
-             "",
+  fmt::print("{:>26} {:>4} {:>5} {:>9} {:>12} {:>12}\n", "algorithm", "d", "m", "us/step", "RMS white", "RMS sine");
+  fmt::print("{:>26} {:>4} {:>5} {:>9} {:>12.5f} {:>12.5f}\n", "inverse-variance", "", "", "",
              rms_from(*make("inverse-variance", white.array), white, kFrom),
              rms_from(*make("inverse-variance", slow.array), slow, kFrom));
   for (const char* name : {"kalman-takens", "kalman-takens-taught", "kalman-takens-published"})
@@ -151,15 +126,13 @@ void takens() {
           }
           rms[s] = std::sqrt(rms[s] / static_cast<double>(scene.y.cols() / kFrom * kFrom - kFrom));
         }
-        fmt::print(
-            "{:>26} {:>4} {:>5} {:>9.2f} {:>12.5f} {:>12.5f}\n", name, d, m, best, rms[0], rms[1]);
+        fmt::print("{:>26} {:>4} {:>5} {:>9.2f} {:>12.5f} {:>12.5f}\n", name, d, m, best, rms[0], rms[1]);
       }
   fmt::print(
       "as published with R the density, after the training (thesis .1363 and .1569, oracle .1369 "
       "and .1495):");
   for (const auto& [d, q] : {std::pair{6.0, 1e-2}, std::pair{4.0, 1e-3}}) {
-    auto runner = make("kalman-takens-published",
-                       white.array,
+    auto runner = make("kalman-takens-published", white.array,
                        {{"dimension", d}, {"process_variance", q}, {"noise_scale", 1 / 623.0}});
     Eigen::MatrixXd x(1, kFrom), variance(1, kFrom);
     runner->run(white.y.leftCols(kFrom), x, variance);
@@ -176,10 +149,7 @@ struct TiltScene {
 
 /// [RV 2.5]: 500 Hz; a swing of +-2.09 rad; rate noise and bias walk of a consumer gyroscope,
 /// accelerometers of 0.05 of gravity.
-TiltScene tilt_scene(std::uint64_t seed,
-                     Eigen::Index instants,
-                     double rate_noise,
-                     double gravity_noise) {
+TiltScene tilt_scene(std::uint64_t seed, Eigen::Index instants, double rate_noise, double gravity_noise) {
   test::Gaussian gauss(seed);
   TiltScene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), {}};
   constexpr double kRate = 500, kSwing = 2.09, kPulse = 1;
@@ -188,8 +158,7 @@ TiltScene tilt_scene(std::uint64_t seed,
     const double t = static_cast<double>(k) / kRate, angle = kSwing * std::sin(kPulse * t);
     bias += 1e-3 / std::sqrt(kRate) * gauss();
     made.angle[k] = angle;
-    made.y(0, k) =
-        kSwing * kPulse * std::cos(kPulse * t) + bias + rate_noise * std::sqrt(kRate) * gauss();
+    made.y(0, k) = kSwing * kPulse * std::cos(kPulse * t) + bias + rate_noise * std::sqrt(kRate) * gauss();
     made.y(1, k) = 9.81 * (std::sin(angle) + gravity_noise * gauss());
     made.y(2, k) = 9.81 * (std::cos(angle) + gravity_noise * gauss());
   }
@@ -218,19 +187,17 @@ void tilt() {
   const TiltScene scene = tilt_scene(1, 400000, 1e-3, 0.05);
   double best_lambda = 1e300, best_kalman = 1e300, lambda = 0, q = 0, r = 0;
   for (double tau = 0.01; tau < 200; tau *= 1.15)
-    if (const double got =
-            tilt_rms(*make("tilt-complementary", scene.array, {{"time_constant", tau}}), scene);
+    if (const double got = tilt_rms(*make("tilt-complementary", scene.array, {{"time_constant", tau}}), scene);
         got < best_lambda) {
       best_lambda = got;
       lambda = tau;
     }
   for (double angle = 1e-9; angle < 1e-4; angle *= 2)
     for (double bias = 1e-10; bias < 1e-2; bias *= 4)
-      if (const double got = tilt_rms(
-              *make("tilt-kalman",
-                    scene.array,
-                    {{"angle_noise", angle}, {"bias_noise", bias}, {"gravity_variance", .0025}}),
-              scene);
+      if (const double got =
+              tilt_rms(*make("tilt-kalman", scene.array,
+                             {{"angle_noise", angle}, {"bias_noise", bias}, {"gravity_variance", .0025}}),
+                       scene);
           got < best_kalman) {
         best_kalman = got;
         q = angle;

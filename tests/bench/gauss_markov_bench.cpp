@@ -13,13 +13,9 @@ namespace {
 
 using namespace libchar;
 
-bool in_model(const NoiseFit& fit) {
-  return fit.gauss_markov && fit.gauss_markov->in_model;
-}
+bool in_model(const NoiseFit& fit) { return fit.gauss_markov && fit.gauss_markov->in_model; }
 
-bool holds(const Coefficient& c, double truth) {
-  return c.ci95.low <= truth && truth <= c.ci95.high;
-}
+bool holds(const Coefficient& c, double truth) { return c.ci95.low <= truth && truth <= c.ci95.high; }
 
 void print_process(std::size_t samples, double rate_hz, int records) {
   constexpr double kWhite = 5e-3, kSigma = 0.02, kTau = 60;
@@ -27,8 +23,7 @@ void print_process(std::size_t samples, double rate_hz, int records) {
   double mean_sigma = 0, mean_tau = 0;
   for (int r = 0; r < records; ++r) {
     const auto seed = static_cast<std::uint64_t>(77 + r);
-    const std::vector<double> y =
-        test::white_and_process(seed, samples, rate_hz, kWhite, kSigma, kTau);
+    const std::vector<double> y = test::white_and_process(seed, samples, rate_hz, kWhite, kSigma, kTau);
     const NoiseFit fit = fit_record(y, rate_hz, nullptr);
     either += !in_model(fit) && fit.gauss_markov ? 1 : 0;
     if (!in_model(fit)) continue;
@@ -41,22 +36,15 @@ void print_process(std::size_t samples, double rate_hz, int records) {
   fmt::print(
       "{:.0f} correlation times: found {} of {}, looked for and left {}; sigma x {:.3f}, tau x "
       "{:.3f}; intervals hold {} and {}\n",
-      static_cast<double>(samples) / rate_hz / kTau,
-      found,
-      records,
-      either,
-      mean_sigma / found,
-      mean_tau / found,
-      sigma,
-      tau);
+      static_cast<double>(samples) / rate_hz / kTau, found, records, either, mean_sigma / found, mean_tau / found,
+      sigma, tau);
 }
 
 void print_false_alarms(int records) {
   struct Terms {
     double flicker, walk;
   };
-  for (const Terms& terms :
-       {Terms{5e-3, 1.5e-3}, Terms{5e-3, 0}, Terms{0, 1.5e-3}, Terms{1e-3, 3e-4}}) {
+  for (const Terms& terms : {Terms{5e-3, 1.5e-3}, Terms{5e-3, 0}, Terms{0, 1.5e-3}, Terms{1e-3, 3e-4}}) {
     constexpr std::size_t kSamples = 60'000;
     test::NoiseSource source(kSamples, 100, 31);
     int found = 0;

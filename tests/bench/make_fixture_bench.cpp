@@ -18,8 +18,5 @@ int main() {
       "accel_z Q 1e-4 g*sqrt(s)\n");
   fmt::print("t[s],gyro_z[deg/s],accel_z[g]\n");
   for (std::size_t i = 0; i < samples; ++i)
-    fmt::print("{:.2f},{:.6f},{:.7f}\n",
-               static_cast<double>(i) / rate_hz,
-               0.12 + gyro[i],
-               1.0013 + accel[i]);
+    fmt::print("{:.2f},{:.6f},{:.7f}\n", static_cast<double>(i) / rate_hz, 0.12 + gyro[i], 1.0013 + accel[i]);
 }

@@ -20,9 +20,7 @@ int main(int argc, char** argv) {
   if (out == nullptr) return 5;
   std::mt19937_64 bits(20261121);
   const auto uniform = [&] { return (static_cast<double>(bits() >> 11U) + 0.5) * 0x1p-53; };
-  const auto normal = [&] {
-    return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform());
-  };
+  const auto normal = [&] { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform()); };
   double walk[6] = {};
   fmt::memory_buffer line;
   line.append(
@@ -33,9 +31,7 @@ int main(int argc, char** argv) {
     for (int c = 0; c < 6; ++c) {
       walk[c] += 7e-6 * normal();
       const double offset = c == 5 ? 9.80665 : 0.01 * (c + 1);
-      fmt::format_to(std::back_inserter(line),
-                     ",{:.10g}",
-                     offset + walk[c] + (c < 3 ? 0.07 : 0.05) * normal());
+      fmt::format_to(std::back_inserter(line), ",{:.10g}", offset + walk[c] + (c < 3 ? 0.07 : 0.05) * normal());
     }
     line.push_back('\n');
     if (line.size() > (1U << 20U)) {

@@ -44,8 +44,7 @@ constexpr std::size_t kBlock = 4096;
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
 double peak_mib() {
@@ -82,8 +81,7 @@ std::vector<double> normals(std::size_t n, Purpose purpose) {
 
 /// Adds white noise and walk to flicker held in memory, as the whole-record ways do.
 double finish_record(std::vector<double>& y) {
-  const std::vector<double> white = normals(y.size(), Purpose::white),
-                            walk = normals(y.size(), Purpose::walk);
+  const std::vector<double> white = normals(y.size(), Purpose::white), walk = normals(y.size(), Purpose::walk);
   double level = 0;
   for (std::size_t t = 0; t < y.size(); ++t) {
     level += 7e-6 * walk[t];
@@ -153,16 +151,8 @@ void speed(std::size_t n) {
                     return block[0];
                   },
                   n});
-  ways.push_back({"  white alone",
-                  [&] {
-                    return stream(tactical_gyro({true, false, false}), n);
-                  },
-                  n});
-  ways.push_back({"  walk alone",
-                  [&] {
-                    return stream(tactical_gyro({false, false, true}), n);
-                  },
-                  n});
+  ways.push_back({"  white alone", [&] { return stream(tactical_gyro({true, false, false}), n); }, n});
+  ways.push_back({"  walk alone", [&] { return stream(tactical_gyro({false, false, true}), n); }, n});
   ways.push_back({"(a) shaped spectrum, one inverse FFT", [&] { return by_spectrum(n); }, n});
   ways.push_back({"(a) exact convolution by FFT, padded", [&] { return by_convolution(n); }, n});
   ways.push_back({"(b) recursive filter of 1000 taps", [&] { return stream(cut, n / 8); }, n / 8});
@@ -170,76 +160,56 @@ void speed(std::size_t n) {
     for (Way& way : ways) {
       const double start = cpu_seconds();
       sink += way.work();
-      way.best =
-          std::min(way.best, (cpu_seconds() - start) / static_cast<double>(way.samples) * 1e9);
+      way.best = std::min(way.best, (cpu_seconds() - start) / static_cast<double>(way.samples) * 1e9);
     }
   fmt::print("{} samples, one thread, user CPU, best of 5 interleaved (sink {:.3g})\n", n, sink);
   for (const Way& way : ways)
-    fmt::print("{:>8.2f} ns/sample {:>8.1f} M/s   x {:>6.2f}   {}\n",
-               way.best,
-               1e3 / way.best,
-               way.best / ways[0].best,
+    fmt::print("{:>8.2f} ns/sample {:>8.1f} M/s   x {:>6.2f}   {}\n", way.best, 1e3 / way.best, way.best / ways[0].best,
                way.name);
 }
 
 void error() {
-  fmt::print("{:>16} {:>9} {:>12} {:>12} {:>12}   largest relative error\n",
-             "length",
-             "sections",
-             "response",
-             "power",
+  fmt::print("{:>16} {:>9} {:>12} {:>12} {:>12}   largest relative error\n", "length", "sections", "response", "power",
              "variogram");
-  for (const std::uint64_t length : {std::uint64_t{1000},
-                                     std::uint64_t{1'000'000},
-                                     std::uint64_t{1'000'000'000},
-                                     std::uint64_t{0}}) {
+  for (const std::uint64_t length :
+       {std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{1'000'000'000}, std::uint64_t{0}}) {
     const FlickerFilter filter = design_flicker(length);
     const double n = static_cast<double>(length == 0 ? kLongestFlicker : length);
     double response = 0, power = 0, variogram = 0;
     for (int i = 0; i <= 4000; ++i) {
       const double k = std::round(std::pow(n, i / 4000.0)), z = 1 / k;
-      const double exact =
-          k < 100 ? test::kasdin_series(1, static_cast<std::size_t>(k) + 1).back()
-                  : (1 - z / 8 + z * z / 128 + 5 * z * z * z / 1024) / std::sqrt(kPi * k);
+      const double exact = k < 100 ? test::kasdin_series(1, static_cast<std::size_t>(k) + 1).back()
+                                   : (1 - z / 8 + z * z / 128 + 5 * z * z * z / 1024) / std::sqrt(kPi * k);
       response = std::max(response, std::fabs(test::flicker_response(filter, k) / exact - 1));
-      variogram =
-          std::max(variogram,
-                   std::fabs(test::flicker_variogram(filter, k) / (4 / kPi * odd_harmonic(k)) - 1));
+      variogram = std::max(variogram, std::fabs(test::flicker_variogram(filter, k) / (4 / kPi * odd_harmonic(k)) - 1));
       const double nu = 0.5 * std::pow(n, -i / 4000.0);
-      power =
-          std::max(power, std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(kPi * nu) - 1));
+      power = std::max(power, std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(kPi * nu) - 1));
     }
-    fmt::print("{:>16} {:>9} {:>12.2e} {:>12.2e} {:>12.2e}\n",
-               static_cast<std::uint64_t>(n),
-               filter.loss.size(),
-               response,
-               power,
-               variogram);
+    fmt::print("{:>16} {:>9} {:>12.2e} {:>12.2e} {:>12.2e}\n", static_cast<std::uint64_t>(n), filter.loss.size(),
+               response, power, variogram);
   }
 }
 
 /// Records of 2^22 samples; the fast decades from the first 2^16, the slow ones from means of 1024,
 /// each against its exact expectation.
 void spectrum(std::size_t records) {
-  constexpr std::size_t kSamples = std::size_t{1} << 22U, kHead = std::size_t{1} << 16U,
-                        kMean = 1024, kMeans = kSamples / kMean;
+  constexpr std::size_t kSamples = std::size_t{1} << 22U, kHead = std::size_t{1} << 16U, kMean = 1024,
+                        kMeans = kSamples / kMean;
   Dct head(kHead), slow(kMeans);
   const BlockMeanDct slow_model(kMeans, kMean, 1);
   std::array<double, 8> sum{}, lines{};
-  const auto collect =
-      [&](std::span<const double> c, double length, const auto& in_range, const auto& mean) {
-        for (std::size_t k = 1; k < c.size(); ++k) {
-          const double nu = static_cast<double>(k) / (2 * length);
-          if (!in_range(nu)) continue;
-          const auto decade = static_cast<std::size_t>(std::floor(-std::log10(2 * nu)));
-          if (decade >= sum.size()) continue;
-          sum[decade] += c[k] * c[k] / mean(k);
-          ++lines[decade];
-        }
-      };
+  const auto collect = [&](std::span<const double> c, double length, const auto& in_range, const auto& mean) {
+    for (std::size_t k = 1; k < c.size(); ++k) {
+      const double nu = static_cast<double>(k) / (2 * length);
+      if (!in_range(nu)) continue;
+      const auto decade = static_cast<std::size_t>(std::floor(-std::log10(2 * nu)));
+      if (decade >= sum.size()) continue;
+      sum[decade] += c[k] * c[k] / mean(k);
+      ++lines[decade];
+    }
+  };
   std::vector<double> head_mean(kHead), slow_mean(kMeans);
-  for (std::size_t k = 1; k < kHead; ++k)
-    head_mean[k] = dct_mean(static_cast<double>(k), kHead, 1)[1];
+  for (std::size_t k = 1; k < kHead; ++k) head_mean[k] = dct_mean(static_cast<double>(k), kHead, 1)[1];
   for (std::size_t k = 1; k < kMeans; ++k) slow_mean[k] = slow_model.mean(k)[1];
   NoiseDesign design;
   design.coefficient = {0, 1, 0, 0, 0};
@@ -257,23 +227,16 @@ void spectrum(std::size_t records) {
       }
     }
     collect(
-        head.transform(first),
-        kHead,
-        [](double nu) { return nu >= 0.5e-3; },
+        head.transform(first), kHead, [](double nu) { return nu >= 0.5e-3; },
         [&](std::size_t k) { return head_mean[k]; });
     collect(
-        slow.transform(means),
-        kSamples,
-        [](double nu) { return nu < 0.5e-3; },
+        slow.transform(means), kSamples, [](double nu) { return nu < 0.5e-3; },
         [&](std::size_t k) { return slow_mean[k]; });
   }
   fmt::print("{} records of {} samples of flicker\n", records, kSamples);
   for (std::size_t d = 0; d < sum.size() && lines[d] > 0; ++d)
-    fmt::print("nu {:.1e} .. {:.1e}: power/exact {:.5f} +- {:.5f} ({:+.2f} sd)\n",
-               0.5 * std::pow(10, -double(d) - 1),
-               0.5 * std::pow(10, -double(d)),
-               sum[d] / lines[d],
-               std::sqrt(2 / lines[d]),
+    fmt::print("nu {:.1e} .. {:.1e}: power/exact {:.5f} +- {:.5f} ({:+.2f} sd)\n", 0.5 * std::pow(10, -double(d) - 1),
+               0.5 * std::pow(10, -double(d)), sum[d] / lines[d], std::sqrt(2 / lines[d]),
                (sum[d] / lines[d] - 1) / std::sqrt(2 / lines[d]));
 }
 
@@ -295,20 +258,15 @@ void allan(std::size_t records) {
     }
     curve = pyramid.finish(1);
     sum.resize(curve.points.size(), 0.0);
-    for (std::size_t j = 0; j < sum.size(); ++j)
-      sum[j] += curve.points[j].deviation * curve.points[j].deviation;
+    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += curve.points[j].deviation * curve.points[j].deviation;
   }
   fmt::print("{} records of {} samples of flicker\n", records, kSamples);
   for (std::size_t j = 0; j < sum.size(); ++j) {
     const AllanPoint& point = curve.points[j];
     const double m = static_cast<double>(point.m), count = static_cast<double>(records);
     const double ratio = sum[j] / count / unit_allan_variance(Term::flicker, m, 1);
-    const double edf =
-        count * equivalent_dof(curve.type, theta, point.m, point.terms, stride_of(curve, point), 1);
-    fmt::print("m {:>9}: variance/exact {:.5f} +- {:.5f} ({:+.2f} sd), p {:.3f}\n",
-               point.m,
-               ratio,
-               std::sqrt(2 / edf),
+    const double edf = count * equivalent_dof(curve.type, theta, point.m, point.terms, stride_of(curve, point), 1);
+    fmt::print("m {:>9}: variance/exact {:.5f} +- {:.5f} ({:+.2f} sd), p {:.3f}\n", point.m, ratio, std::sqrt(2 / edf),
                (ratio - 1) / std::sqrt(2 / edf),
                2 * std::min(chi_square_cdf(ratio * edf, edf), chi_square_tail(ratio * edf, edf)));
   }
@@ -318,17 +276,12 @@ void allan(std::size_t records) {
 
 int main(int argc, char** argv) {
   const std::string_view mode = argc > 1 ? argv[1] : "";
-  const auto number = [&](std::size_t otherwise) {
-    return argc > 2 ? std::strtoull(argv[2], nullptr, 10) : otherwise;
-  };
+  const auto number = [&](std::size_t otherwise) { return argc > 2 ? std::strtoull(argv[2], nullptr, 10) : otherwise; };
   if (mode == "--memory") {
     const std::size_t n = number(1'000'000);
     const double start = cpu_seconds(), sum = stream(tactical_gyro(), n);
-    fmt::print("{} samples: peak RSS {:.1f} MiB, {:.2f} ns/sample user CPU (sink {:.3g})\n",
-               n,
-               peak_mib(),
-               (cpu_seconds() - start) / static_cast<double>(n) * 1e9,
-               sum);
+    fmt::print("{} samples: peak RSS {:.1f} MiB, {:.2f} ns/sample user CPU (sink {:.3g})\n", n, peak_mib(),
+               (cpu_seconds() - start) / static_cast<double>(n) * 1e9, sum);
   } else if (mode == "--error") {
     error();
   } else if (mode == "--allan") {

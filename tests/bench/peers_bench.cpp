@@ -37,21 +37,16 @@ struct Scene {
 };
 
 const std::vector<Scene> kScenes = {
-    {"Q", 100, 1080000, {2.5e-3, 0, 0}},
-    {"Q K", 100, 1080000, {2.502e-3, 0, 6.97e-5}},
-    {"Q B K", 100, 1080000, {2.5e-3, 6e-4, 7e-6}},
-    {"fixture gyro_z", 50, 50000, {4e-3, 4e-3, 1.5e-3}},
+    {"Q", 100, 1080000, {2.5e-3, 0, 0}},           {"Q K", 100, 1080000, {2.502e-3, 0, 6.97e-5}},
+    {"Q B K", 100, 1080000, {2.5e-3, 6e-4, 7e-6}}, {"fixture gyro_z", 50, 50000, {4e-3, 4e-3, 1.5e-3}},
     {"fixture accel_z", 50, 50000, {1e-4, 0, 0}},
 };
 
 Values of(const NoiseEstimate& estimate) {
-  return {
-      estimate[0].value.value_or(0), estimate[1].value.value_or(0), estimate[2].value.value_or(0)};
+  return {estimate[0].value.value_or(0), estimate[1].value.value_or(0), estimate[2].value.value_or(0)};
 }
 
-Values imu_utils_values(const std::vector<double>& y, double rate_hz) {
-  return of(imu_utils(y, rate_hz, {}));
-}
+Values imu_utils_values(const std::vector<double>& y, double rate_hz) { return of(imu_utils(y, rate_hz, {})); }
 
 Values allan_variance_ros_values(const std::vector<double>& y, double rate_hz) {
   return of(allan_variance_ros(y, rate_hz, {}));
@@ -64,9 +59,7 @@ Values relative_values(const std::vector<double>& y, double rate_hz) {
 Values ours(const std::vector<double>& y, double rate_hz) {
   const AllanCurve curve = allan_deviation(y, 1 / rate_hz);
   const NoiseFit fit = fit_record(y, rate_hz, &curve);
-  return {fit[Term::white].value.value_or(0),
-          fit[Term::flicker].value.value_or(0),
-          fit[Term::walk].value.value_or(0)};
+  return {fit[Term::white].value.value_or(0), fit[Term::flicker].value.value_or(0), fit[Term::walk].value.value_or(0)};
 }
 
 // ---- the comparison ----
@@ -88,11 +81,8 @@ struct Tally {
 
 std::string cell(const Tally& t, std::size_t k, int n, double truth, double reference) {
   const double rms = std::sqrt(t.error[k] / n), mean = t.sum[k] / n;
-  const std::string ratio = reference > 0 ? fmt::format("{:.3g} ×", rms / reference)
-                            : rms > 0     ? "–"
-                                          : "0";
-  return truth > 0 ? fmt::format("{:.4g} ± {:.2g} ({})", mean, rms, ratio)
-                   : fmt::format("{:.2g} (absent)", mean);
+  const std::string ratio = reference > 0 ? fmt::format("{:.3g} ×", rms / reference) : rms > 0 ? "–" : "0";
+  return truth > 0 ? fmt::format("{:.4g} ± {:.2g} ({})", mean, rms, ratio) : fmt::format("{:.2g} (absent)", mean);
 }
 
 void run_scene(const Scene& scene, std::uint64_t seed, int records) {
@@ -110,21 +100,13 @@ void run_scene(const Scene& scene, std::uint64_t seed, int records) {
       }
     }
   }
-  fmt::print("\n{}: Q {:g}, B {:g}, K {:g}; {} samples at {:g} Hz, {} records\n\n",
-             scene.name,
-             scene.truth[0],
-             scene.truth[1],
-             scene.truth[2],
-             scene.samples,
-             scene.rate_hz,
-             records);
+  fmt::print("\n{}: Q {:g}, B {:g}, K {:g}; {} samples at {:g} Hz, {} records\n\n", scene.name, scene.truth[0],
+             scene.truth[1], scene.truth[2], scene.samples, scene.rate_hz, records);
   fmt::print("| method | Q | B | K | ms |\n|---|---|---|---|---|\n");
   for (std::size_t k = 0; k < kMethods.size(); ++k) {
     fmt::print("| {} |", kMethods[k].name);
     for (std::size_t t = 0; t < 3; ++t)
-      fmt::print(
-          " {} |",
-          cell(tallies[k], t, records, scene.truth[t], std::sqrt(tallies[0].error[t] / records)));
+      fmt::print(" {} |", cell(tallies[k], t, records, scene.truth[t], std::sqrt(tallies[0].error[t] / records)));
     fmt::print(" {:.0f} |\n", 1e3 * tallies[k].seconds / records);
   }
 }
@@ -147,21 +129,14 @@ void run_curves(const std::filesystem::path& folder) {
         curve.y = numbers(folder / ("data_" + imu + "_" + kind + "_" + axis + ".txt"));
         FitOptions all;
         all.threshold = 0;
-        const double t = rms_log10(
-            curve.y, numbers(folder / ("data_" + imu + "_sim_" + kind + "_" + axis + ".txt")));
+        const double t = rms_log10(curve.y, numbers(folder / ("data_" + imu + "_sim_" + kind + "_" + axis + ".txt")));
         const double d = rms_log10(fit_curve(curve));
         theirs += t / 3;
         all_terms += rms_log10(fit_curve(curve, all)) / 3;
         decided += d / 3;
         worst = std::max(worst, d / t);
       }
-      fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} |\n",
-                 imu,
-                 kind,
-                 theirs,
-                 all_terms,
-                 decided,
-                 worst);
+      fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} |\n", imu, kind, theirs, all_terms, decided, worst);
     }
 }
 

@@ -42,18 +42,14 @@ CharacterizeOptions options_for(const Source& source) {
 std::string text(const Coefficient& c) {
   if (c.status == Status::not_fitted) return "-";
   if (!c.value) return fmt::format("<= {:.3g}", c.upper95.value_or(NAN));
-  return fmt::format("{:.4g} [{:.3g}, {:.3g}]{}",
-                     *c.value,
-                     c.ci95.low,
-                     c.ci95.high,
+  return fmt::format("{:.4g} [{:.3g}, {:.3g}]{}", *c.value, c.ci95.low, c.ci95.high,
                      c.status == Status::detected ? "" : fmt::format(" {}", name_of(c.status)));
 }
 
 void print_fit(const std::string& name, const NoiseFit& fit) {
   fmt::print("  {:12} p {:7.2g}, band to {:.4g} Hz |", name, fit.goodness.p, fit.band.top_hz);
   for (std::size_t t = 0; t < kTerms; ++t)
-    if (fit.term[t].status != Status::not_fitted)
-      fmt::print(" {} {};", kTermNames[t].letter, text(fit.term[t]));
+    if (fit.term[t].status != Status::not_fitted) fmt::print(" {} {};", kTermNames[t].letter, text(fit.term[t]));
   fmt::print("\n");
 }
 
@@ -70,8 +66,7 @@ std::string place(const Coefficient& c, Interval range) {
   if (!c.value) return "no value";
   if (*c.value >= range.low && *c.value <= range.high) return "inside";
   const bool reached = c.ci95.low <= range.high && c.ci95.high >= range.low;
-  return fmt::format("{:+.1f} % ({})",
-                     100 * (*c.value / (*c.value < range.low ? range.low : range.high) - 1),
+  return fmt::format("{:+.1f} % ({})", 100 * (*c.value / (*c.value < range.low ? range.low : range.high) - 1),
                      reached ? "interval reaches it" : "interval does not reach it");
 }
 
@@ -92,13 +87,10 @@ void print_whole(const std::filesystem::path& folder) {
     }
     if (i >= kGyroscopes.size()) continue;
     const NoiseFit& fit = *channel.fit;
-    fmt::print("    agreed ranges: Q {}, B {}, K {}\n",
-               place(fit[Term::white], kGyroscopes[i].q),
-               place(fit[Term::flicker], kGyroscopes[i].b),
-               place(fit[Term::walk], kGyroscopes[i].k));
+    fmt::print("    agreed ranges: Q {}, B {}, K {}\n", place(fit[Term::white], kGyroscopes[i].q),
+               place(fit[Term::flicker], kGyroscopes[i].b), place(fit[Term::walk], kGyroscopes[i].k));
   }
-  fmt::print(
-      "  p > 0.001 in {} of {}, --verify agrees on {}\n\n", passes, imu.channels.size(), agree);
+  fmt::print("  p > 0.001 in {} of {}, --verify agrees on {}\n\n", passes, imu.channels.size(), agree);
 }
 
 Recording part_of(const Recording& whole, std::size_t part, std::size_t parts) {
@@ -129,10 +121,9 @@ Predicted predicted(const NoiseFit& model, const AllanCurve& measured) {
     const auto stated = model_interval(model, measured.type, m, measured.dt_s);
     if (!expected || !stated) continue;
     const double apart = std::log(*expected / point.deviation);
-    const double own =
-        apart > 0 ? std::log(*expected / stated->low) : std::log(stated->high / *expected);
-    const double measured_side = apart > 0 ? std::log(point.ci95.high / point.deviation)
-                                           : std::log(point.deviation / point.ci95.low);
+    const double own = apart > 0 ? std::log(*expected / stated->low) : std::log(stated->high / *expected);
+    const double measured_side =
+        apart > 0 ? std::log(point.ci95.high / point.deviation) : std::log(point.deviation / point.ci95.low);
     ++out.points;
     out.inside += std::abs(apart) <= std::hypot(own, measured_side) ? 1 : 0;
   }
@@ -158,12 +149,8 @@ Pairs print_quarters(const Source& source, const Recording& recording) {
         ++pairs.count;
         if (!(channel.p < 0.01)) continue;
         ++pairs.rejected;
-        fmt::print("  quarters {} and {} of {} differ: 2 ln L {:.1f}, p {:.3g}\n",
-                   a + 1,
-                   b + 1,
-                   channel.channel.name,
-                   channel.ratio,
-                   channel.p);
+        fmt::print("  quarters {} and {} of {} differ: 2 ln L {:.1f}, p {:.3g}\n", a + 1, b + 1, channel.channel.name,
+                   channel.ratio, channel.p);
       }
       for (const std::string& problem : pooled.problems) fmt::print("  {}\n", problem);
     }
@@ -172,8 +159,7 @@ Pairs print_quarters(const Source& source, const Recording& recording) {
 
 void print_parts(const std::filesystem::path& folder, const Source& source) {
   fmt::print("2. {}\n", source.file);
-  const Recording recording =
-      read_recording((folder / source.file).string(), options_for(source).reading);
+  const Recording recording = read_recording((folder / source.file).string(), options_for(source).reading);
   const Pairs pairs = print_quarters(source, recording);
   fmt::print("  {} of {} pairs of quarters rejected at 1 %\n", pairs.rejected, pairs.count);
   const Characterization whole = characterize(recording, options_for(source));
@@ -183,8 +169,7 @@ void print_parts(const std::filesystem::path& folder, const Source& source) {
     if (!channel.fit) continue;
     for (const Event& event : channel.fit->events)
       fmt::print("  whole record, {}: {}\n", channel.channel.name, event_sentence(event, ""));
-    fmt::print("  whole record, {}: {}\n",
-               channel.channel.name,
+    fmt::print("  whole record, {}: {}\n", channel.channel.name,
                channel.fit->stationarity.steady ? "steady" : channel.fit->stationarity.sentence);
   }
   const Characterization first = characterize(part_of(recording, 0, 2), options_for(source)),
@@ -193,15 +178,12 @@ void print_parts(const std::filesystem::path& folder, const Source& source) {
   for (std::size_t i = 0; i < first.channels.size(); ++i) {
     if (!first.channels[i].fit) continue;
     const Predicted here = predicted(*first.channels[i].fit, second.channels[i].allan);
-    fmt::print("  first half predicts the second, {}: {} of {} averaging times\n",
-               first.channels[i].channel.name,
-               here.inside,
-               here.points);
+    fmt::print("  first half predicts the second, {}: {} of {} averaging times\n", first.channels[i].channel.name,
+               here.inside, here.points);
     all.inside += here.inside;
     all.points += here.points;
   }
-  fmt::print(
-      "  all: {} of {} ({:.0f} %)\n\n", all.inside, all.points, 100.0 * all.inside / all.points);
+  fmt::print("  all: {} of {} ({:.0f} %)\n\n", all.inside, all.points, 100.0 * all.inside / all.points);
 }
 
 void print_curves(const std::filesystem::path& folder, const std::string& file) {
@@ -231,8 +213,7 @@ void print_clock(const std::filesystem::path& folder, const Source& source) {
 
 int main(int argc, char** argv) {
   const std::string parts = argc > 1 ? argv[1] : "123";
-  const std::filesystem::path folder =
-      argc > 2 ? std::filesystem::path(argv[2]) : test::shared_folder() / "data";
+  const std::filesystem::path folder = argc > 2 ? std::filesystem::path(argv[2]) : test::shared_folder() / "data";
   if (parts.find('1') != std::string::npos) print_whole(folder);
   if (parts.find('2') != std::string::npos)
     for (const Source& source : {kImu, kCaesium, kQuartz}) print_parts(folder, source);

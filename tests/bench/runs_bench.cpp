@@ -67,8 +67,7 @@ void count_terms(const Scene& scene, const NoiseFit& fit, Tally& tally) {
   const double truth[3] = {scene.truth.q, scene.truth.b, scene.truth.k};
   for (std::size_t t = 0; t < 3; ++t) {
     const Coefficient& c = fit.term[t];
-    const bool holds = c.value ? c.ci95.low <= truth[t] && truth[t] <= c.ci95.high
-                               : c.upper95.value_or(0) >= truth[t];
+    const bool holds = c.value ? c.ci95.low <= truth[t] && truth[t] <= c.ci95.high : c.upper95.value_or(0) >= truth[t];
     tally.covered[t] += holds ? 1 : 0;
     tally.limited[t] += c.value ? 0 : 1;
   }
@@ -79,8 +78,7 @@ void count_set(const Scene& scene, std::uint64_t seed, Tally& tally) {
   const std::vector<Characterization> runs = runs_of(scene, seed);
   const auto start = std::chrono::steady_clock::now();
   const PooledRuns pooled = pool_runs(runs);
-  tally.milliseconds +=
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  tally.milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const PooledChannel& c = pooled.channels.at(0);
   count_terms(scene, c.fit, tally);
   tally.unlike += c.consistent ? 0 : 1;
@@ -88,8 +86,7 @@ void count_set(const Scene& scene, std::uint64_t seed, Tally& tally) {
     (run.run + 1 == kRuns ? tally.named : tally.wrongly_named) += run.differs ? 1 : 0;
   if (!c.bias) return;
   tally.spread_found += c.bias->spread_ci95.low > 0 ? 1 : 0;
-  tally.spread_covered +=
-      c.bias->spread_ci95.low <= scene.turn_on && scene.turn_on <= c.bias->spread_ci95.high ? 1 : 0;
+  tally.spread_covered += c.bias->spread_ci95.low <= scene.turn_on && scene.turn_on <= c.bias->spread_ci95.high ? 1 : 0;
 }
 
 }  // namespace
@@ -111,21 +108,9 @@ int main(int argc, char** argv) {
   for (const Scene& scene : scenes) {
     Tally t;
     for (int s = 0; s < sets; ++s) count_set(scene, 1000 + static_cast<std::uint64_t>(s), t);
-    fmt::print("| {} | {}, {}, {} | {}, {}, {} | {} | {}, {} | {} | {} | {} | {:.0f} |\n",
-               scene.name,
-               t.covered[0],
-               t.covered[1],
-               t.covered[2],
-               t.limited[0],
-               t.limited[1],
-               t.limited[2],
-               t.unlike,
-               t.named,
-               t.wrongly_named,
-               t.spread_found,
-               t.spread_covered,
-               t.shaped,
-               t.milliseconds / sets);
+    fmt::print("| {} | {}, {}, {} | {}, {}, {} | {} | {}, {} | {} | {} | {} | {:.0f} |\n", scene.name, t.covered[0],
+               t.covered[1], t.covered[2], t.limited[0], t.limited[1], t.limited[2], t.unlike, t.named, t.wrongly_named,
+               t.spread_found, t.spread_covered, t.shaped, t.milliseconds / sets);
   }
   fmt::print("A misfit (unlike runs) has widened intervals.\n");
   return 0;

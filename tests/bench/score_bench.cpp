@@ -65,10 +65,7 @@ void row(const char* name, const Errors& errors, std::uint64_t records) {
     widths.push_back(s.rmse_ci95.high / s.rmse_ci95.low - 1);
   }
   std::sort(widths.begin(), widths.end());
-  fmt::print("{:<28} {:>8} {:>10} {:>12}\n",
-             name,
-             stated,
-             covered,
+  fmt::print("{:<28} {:>8} {:>10} {:>12}\n", name, stated, covered,
              widths.empty() ? "-" : fmt::format("{:.1f} %", 100 * widths[widths.size() / 2]));
 }
 

@@ -57,22 +57,16 @@ int main(int argc, char** argv) {
                        sink += fft.transform()[1].real();
                      }});
   entries.push_back({"cosine transform of the record", [&] { sink += dct.transform(x)[1]; }});
-  for (const std::uint64_t segment : {std::uint64_t{1} << 8U,
-                                      std::uint64_t{1} << 12U,
-                                      std::uint64_t{1} << 14U,
-                                      std::uint64_t{1} << 16U,
-                                      std::uint64_t{1} << 20U,
-                                      n / 4})
+  for (const std::uint64_t segment : {std::uint64_t{1} << 8U, std::uint64_t{1} << 12U, std::uint64_t{1} << 14U,
+                                      std::uint64_t{1} << 16U, std::uint64_t{1} << 20U, n / 4})
     for (const Detrend detrend : {Detrend::constant, Detrend::linear}) {
       WelchOptions options;
       options.segment = segment;
       options.detrend = detrend;
       options.threads = 1;
-      const std::string what = fmt::format("segment {:>8}, {} detrend",
-                                           segment,
-                                           detrend == Detrend::constant ? "constant" : "linear");
-      entries.push_back(
-          {"welch, " + what, [&, options] { sink += welch(x, 100, options).value[1]; }});
+      const std::string what =
+          fmt::format("segment {:>8}, {} detrend", segment, detrend == Detrend::constant ? "constant" : "linear");
+      entries.push_back({"welch, " + what, [&, options] { sink += welch(x, 100, options).value[1]; }});
       if (detrend == Detrend::linear || segment != std::uint64_t{1} << 16U) continue;
       entries.push_back({"stream, " + what + ", pushed by 4096", [&, options] {
                            WelchStream stream(options);
@@ -82,8 +76,7 @@ int main(int argc, char** argv) {
                          }});
       WelchOptions all = options;
       all.threads = 0;
-      entries.push_back(
-          {"welch, " + what + ", all threads", [&, all] { sink += welch(x, 100, all).value[1]; }});
+      entries.push_back({"welch, " + what + ", all threads", [&, all] { sink += welch(x, 100, all).value[1]; }});
     }
 
   for (int round = 0; round < 5; ++round)

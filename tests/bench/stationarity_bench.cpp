@@ -68,18 +68,15 @@ Record louder(Record y, double factor, double from, double to) {
 std::vector<Kind> steady_kinds() {
   return {
       {"white, 20000", [](unsigned s) { return terms(s, 20'000, 5e-3, 0, 0); }},
-      {"white, flicker, walk, 20000",
-       [](unsigned s) { return terms(s, 20'000, 5e-3, 5e-3, 1.5e-3); }},
-      {"white, flicker, walk, 200000",
-       [](unsigned s) { return terms(s, 200'000, 5e-3, 5e-3, 1.5e-3); }},
+      {"white, flicker, walk, 20000", [](unsigned s) { return terms(s, 20'000, 5e-3, 5e-3, 1.5e-3); }},
+      {"white, flicker, walk, 200000", [](unsigned s) { return terms(s, 200'000, 5e-3, 5e-3, 1.5e-3); }},
       {"flicker, 50000", [](unsigned s) { return terms(s, 50'000, 1e-4, 5e-3, 0); }},
       {"walk, 50000", [](unsigned s) { return terms(s, 50'000, 1e-4, 0, 1.5e-3); }},
       {"Gauss-Markov, tau 5 s, 100000",
        [](unsigned s) { return test::white_and_process(s, 100'000, kRate, 5e-3, 0.02, 5); }},
       {"low-passed, 50000", [](unsigned s) { return filtered(s, 50'000); }},
       {"Student's t of 3, 50000", [](unsigned s) { return heavy(s, 50'000); }},
-      {"steps of .7 sigma, 50000",
-       [](unsigned s) { return rounded(terms(s, 50'000, 5e-3, 0, 0), 0.035); }},
+      {"steps of .7 sigma, 50000", [](unsigned s) { return rounded(terms(s, 50'000, 5e-3, 0, 0), 0.035); }},
   };
 }
 
@@ -100,10 +97,7 @@ void print(const Kind& kind, int records) {
     unsteady += fit.stationarity.steady ? 0 : 1;
     noticeable += fit.stationarity.noticeable ? 1 : 0;
   }
-  fmt::print("{:32} tested {}, not the same throughout {}, by a twentieth and more {}\n",
-             kind.name,
-             tested,
-             unsteady,
+  fmt::print("{:32} tested {}, not the same throughout {}, by a twentieth and more {}\n", kind.name, tested, unsteady,
              noticeable);
 }
 

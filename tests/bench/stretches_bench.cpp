@@ -39,8 +39,7 @@ void make(std::uint64_t samples, const std::string& path, std::uint64_t holes) {
       block[i] = static_cast<float>(0.3 + walk) + 0.05F * normal(generator);
       if (holes > 0 && generator() % holes == 0) block[i] = std::numeric_limits<float>::quiet_NaN();
     }
-    out.write(reinterpret_cast<const char*>(block.data()),
-              static_cast<std::streamsize>(count * sizeof(float)));
+    out.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(count * sizeof(float)));
   }
   std::ofstream(path + ".json") << R"({"dtype": "f32", "endian": "little", "rate_hz": 1000,
  "channels": [{"name": "gyro", "unit": "deg/s"}]})";
@@ -62,9 +61,7 @@ Characterization merged(const std::vector<std::string>& files) {
 /// All numbers of a result, with their bits.
 std::string digest_of(const Characterization& found) {
   Sha256 digest;
-  const auto add = [&](double value) {
-    digest.update({reinterpret_cast<const char*>(&value), sizeof value});
-  };
+  const auto add = [&](double value) { digest.update({reinterpret_cast<const char*>(&value), sizeof value}); };
   for (const ChannelResult& channel : found.channels) {
     for (const AllanPoint& point : channel.allan.points) add(point.deviation);
     for (const double value : channel.spectrum.value) add(value);
@@ -78,9 +75,7 @@ std::string digest_of(const Characterization& found) {
   return digest.finish();
 }
 
-double apart(double a, double b) {
-  return a == b ? 0 : std::abs(a - b) / std::max(std::abs(a), std::abs(b));
-}
+double apart(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::max(std::abs(a), std::abs(b)); }
 
 void compare(const Characterization& one, const Characterization& other) {
   for (std::size_t c = 0; c < one.channels.size(); ++c) {
@@ -93,41 +88,29 @@ void compare(const Characterization& one, const Characterization& other) {
     if (x.fit && y.fit)
       for (std::size_t t = 0; t < x.fit->theta.size(); ++t)
         fit = std::max(fit, apart(x.fit->theta[t], y.fit->theta[t]));
-    fmt::print(
-        "{}: Allan {:.1e} of {} points, spectrum {:.1e}, fit {:.1e}, mean {:.1e}, sd {:.1e}\n",
-        x.channel.name,
-        allan,
-        x.allan.points.size(),
-        spectrum,
-        fit,
-        apart(x.quality.mean, y.quality.mean),
-        apart(x.quality.standard_deviation, y.quality.standard_deviation));
+    fmt::print("{}: Allan {:.1e} of {} points, spectrum {:.1e}, fit {:.1e}, mean {:.1e}, sd {:.1e}\n", x.channel.name,
+               allan, x.allan.points.size(), spectrum, fit, apart(x.quality.mean, y.quality.mean),
+               apart(x.quality.standard_deviation, y.quality.standard_deviation));
   }
 }
 
 int run(const std::vector<std::string>& words) {
   const std::string& what = words.at(0);
   const std::vector<std::string> rest(words.begin() + 1, words.end());
-  if (what == "make")
-    make(std::stoull(rest.at(0)), rest.at(1), rest.size() > 2 ? std::stoull(rest[2]) : 0);
-  if (what == "take")
-    take(rest.at(0), rest.at(1), {std::stoull(rest.at(2)), std::stoull(rest.at(3))});
+  if (what == "make") make(std::stoull(rest.at(0)), rest.at(1), rest.size() > 2 ? std::stoull(rest[2]) : 0);
+  if (what == "take") take(rest.at(0), rest.at(1), {std::stoull(rest.at(2)), std::stoull(rest.at(3))});
   if (what == "divide") {
     const std::uint64_t leaves = leaves_of(read_log_head(rest.at(0), {}).rows);
     const std::uint64_t stretches = std::stoull(rest.at(2));
     for (std::uint64_t s = 0; s < stretches; ++s)
-      take(rest[0],
-           fmt::format("{}/{:03}.state", rest.at(1), s),
+      take(rest[0], fmt::format("{}/{:03}.state", rest.at(1), s),
            {s * leaves / stretches, (s + 1) * leaves / stretches});
   }
   if (what == "merge") {
     const Characterization found = merged(rest);
     for (const ChannelResult& channel : found.channels)
-      fmt::print("{}: {} samples, mean {:.17g}, sd {:.17g}, {} Allan deviations\n",
-                 channel.channel.name,
-                 channel.quality.samples,
-                 channel.quality.mean,
-                 channel.quality.standard_deviation,
+      fmt::print("{}: {} samples, mean {:.17g}, sd {:.17g}, {} Allan deviations\n", channel.channel.name,
+                 channel.quality.samples, channel.quality.mean, channel.quality.standard_deviation,
                  channel.allan.points.size());
     fmt::print("digest {}\n", digest_of(found));
   }

@@ -70,14 +70,7 @@ void print_effect(const Kind& kind, double lag_s, int records) {
   fmt::print(
       "{:9} lag {:2} s: found {:3} of {}, interval holds {:3}, mean {:.4f}, K² {:.2f} × the clean "
       "fit's, left in {:.2f}\n",
-      kind.name,
-      lag_s,
-      found,
-      records,
-      covered,
-      sum / found,
-      with / clean,
-      left_in / clean);
+      kind.name, lag_s, found, records, covered, sum / found, with / clean, left_in / clean);
 }
 
 }  // namespace

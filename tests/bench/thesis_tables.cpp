@@ -111,10 +111,7 @@ const std::vector<Table>& tables() {
         {"30 neurons uncalibrated", .1498, .1505, .0011}}},
       {"Kalman-Takens [RV 3.8, table 3.10]",
        {{"Q 1e-2, d 6, M 20", .1363, .1369, .0010},
-        {"Q 1e-3, d 4, M 20",
-         .1569,
-         .1495,
-         .0009,
+        {"Q 1e-3, d 4, M 20", .1569, .1495, .0009,
          "thesis not reproducible: it needs a prediction error of 2.85, that of two neighbours; 20 "
          "give 2.4"}}},
       {"Random weighting [RV 3.9, table 3.10]",
@@ -156,11 +153,7 @@ const std::vector<Table>& tables() {
         {"detection 1", 400, 400.009, .005},
         {"detection 2", 500, 500.18, .05},
         {"detection 3", 600, 600.31, .10},
-        {"recovery 3",
-         760,
-         714.5,
-         1.3,
-         "thesis not reproducible: at its memory of 5 s, 60 s would need gamma 0.99975"},
+        {"recovery 3", 760, 714.5, 1.3, "thesis not reproducible: at its memory of 5 s, 60 s would need gamma 0.99975"},
         {"whole run, average", kNone, .866, .005},
         {"whole run, least squares of 0-400 s", kNone, 1.918, .010},
         {"whole run, published rule", kNone, .0485, .0005},
@@ -170,10 +163,7 @@ const std::vector<Table>& tables() {
         {"MINQUE detection 3", kNone, kNone, kNone, "not in the source"},
         {"MINQUE recovery 3", kNone, kNone, kNone, "not in the source"},
         {"whole run, MINQUE", kNone, kNone, kNone, "not in the source"},
-        {"whole run, bound sectioned-least-squares",
-         kNone,
-         kNone,
-         kNone,
+        {"whole run, bound sectioned-least-squares", kNone, kNone, kNone,
          "not in the source: it goes on with sensors of wrong gain, whose noise is no larger"}}},
   };
   return all;
@@ -195,10 +185,8 @@ void sensors(const Recorded& calibrated, const Recorded& uncalibrated, Found& fo
     corrected.y.row(i) = (uncalibrated.y.row(i).array() - learnt_u.bias[i]) / learnt_u.gain[i];
     found[numbered("sensor ", i, " corrected")].push_back(rms(corrected.y.row(i), corrected));
     found[numbered("sensor ", i, " calibrated")].push_back(rms(calibrated.y.row(i), calibrated));
-    found[numbered("sensor ", i, " uncalibrated")].push_back(
-        rms(uncalibrated.y.row(i), uncalibrated));
-    const libchar::SensorModel& m =
-        uncalibrated.scene.simulate->sensors[static_cast<std::size_t>(i)].model;
+    found[numbered("sensor ", i, " uncalibrated")].push_back(rms(uncalibrated.y.row(i), uncalibrated));
+    const libchar::SensorModel& m = uncalibrated.scene.simulate->sensors[static_cast<std::size_t>(i)].model;
     found[fmt::format("a{0} - A{0}", i + 1)].push_back(learnt_u.gain[i] - m.scale_factor.value);
     found[fmt::format("b{0} - B{0}", i + 1)].push_back(learnt_u.bias[i] - m.bias.value);
     found[numbered("w", i, " uncalibrated")].push_back(learnt_u.weights[i]);
@@ -211,8 +199,7 @@ void least_squares(const Recorded& calibrated, const Recorded& uncalibrated, Fou
   const Ran c = run("least-squares-published", {{"calibrate", 0}}, calibrated, 0, kLearn);
   for (Index i = 0; i < 5; ++i) found[numbered("w", i, " calibrated")].push_back(c.weights(i, 0));
   found["calibrated"].push_back(rms(c.x, calibrated));
-  found["uncalibrated"].push_back(
-      rms(run("least-squares-published", {}, uncalibrated, 0, kLearn).x, uncalibrated));
+  found["uncalibrated"].push_back(rms(run("least-squares-published", {}, uncalibrated, 0, kLearn).x, uncalibrated));
   found["sum of weights one"].push_back(
       rms(run("least-squares", {{"calibrate", 0}}, calibrated, 0, kLearn).x, calibrated));
   found["true weights"].push_back(rms(run("inverse-variance", {}, calibrated).x, calibrated));
@@ -224,8 +211,7 @@ double gain_error(const Recorded& r, const Eigen::VectorXd& inverse_gain, Index 
   const auto& sensors = r.scene.simulate->sensors;
   const double gauge = sensors[static_cast<std::size_t>(reference)].model.scale_factor.value;
   for (Index i = 0; i < r.array.channels; ++i)
-    sum += std::abs(inverse_gain[i] -
-                    gauge / sensors[static_cast<std::size_t>(i)].model.scale_factor.value);
+    sum += std::abs(inverse_gain[i] - gauge / sensors[static_cast<std::size_t>(i)].model.scale_factor.value);
   return sum;
 }
 
@@ -236,8 +222,7 @@ Blind after(const Recorded& r, const char* gauge, double reference) {
   libchar::fusion::Array blind = r.array;
   blind.noise_levels.resize(0);
   Blind algorithm(blind, settings);
-  for (Index k = 0; k < r.x.size(); ++k)
-    algorithm.step(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()));
+  for (Index k = 0; k < r.x.size(); ++k) algorithm.step(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()));
   return algorithm;
 }
 
@@ -273,16 +258,10 @@ void kalman_takens(const Recorded& r, Found& found) {
   // The listing takes the density S of sensor 1, 5e-3, for the variance.
   const double scale = 5e-3 / r.array.noise_levels[0];
   found["Q 1e-2, d 6, M 20"].push_back(
-      rms(run("kalman-takens-published", {{"process_variance", 1e-2}, {"noise_scale", scale}}, r).x,
-          r,
-          1000));
+      rms(run("kalman-takens-published", {{"process_variance", 1e-2}, {"noise_scale", scale}}, r).x, r, 1000));
   found["Q 1e-3, d 4, M 20"].push_back(
-      rms(run("kalman-takens-published",
-              {{"process_variance", 1e-3}, {"dimension", 4}, {"noise_scale", scale}},
-              r)
-              .x,
-          r,
-          1000));
+      rms(run("kalman-takens-published", {{"process_variance", 1e-3}, {"dimension", 4}, {"noise_scale", scale}}, r).x,
+          r, 1000));
 }
 
 void random_weighting(const Recorded& r, Found& found) {
@@ -297,13 +276,11 @@ void random_weighting(const Recorded& r, Found& found) {
 }
 
 double minque_excess(const Recorded& r, Index from, double gamma = 0.999) {
-  return rms(run("minque", {{"gamma", gamma}}, r).x, r, from) /
-         rms(run("inverse-variance", {}, r).x, r, from);
+  return rms(run("minque", {{"gamma", gamma}}, r).x, r, from) / rms(run("inverse-variance", {}, r).x, r, from);
 }
 
 void fault_free(const Recorded& r, Found& found) {
-  const double best =
-      rms(run("least-squares-published", {{"calibrate", 0}}, r, 0, r.instant(100)).x, r);
+  const double best = rms(run("least-squares-published", {{"calibrate", 0}}, r, 0, r.instant(100)).x, r);
   found["average / least squares"].push_back(rms(run("mean", {}, r).x, r) / best);
   found["MINQUE / least squares"].push_back(rms(run("minque-published", {}, r).x, r) / best);
   const auto& entry = libchar::fusion::algorithm("minque-published");
@@ -316,8 +293,7 @@ void fault_free(const Recorded& r, Found& found) {
 // First time at which a channel went out (or came in) after `since`, in s; NaN: never.
 double event(const Ran& ran, const Recorded& r, int channel, bool faulty, double since) {
   for (const auto& e : ran.faults)
-    if (e.channel == channel && e.faulty == faulty &&
-        static_cast<double>(e.sample) / r.array.rate_hz >= since)
+    if (e.channel == channel && e.faulty == faulty && static_cast<double>(e.sample) / r.array.rate_hz >= since)
       return static_cast<double>(e.sample) / r.array.rate_hz;
   return kNone;
 }
@@ -341,15 +317,13 @@ void faults(Recorded r, Found& found) {
   const Ran sectioned = sectioned_over_sound_sensors(r);
   for (const double t : {400, 500, 600, 700}) r.array.section_starts.push_back(r.instant(t));
   // Moments about the mean, one threshold for all, taken from the start on: as published.
-  const Ran published =
-      run("minque-published", {{"about_zero", 0}, {"common_threshold", 1}, {"settling", 0}}, r);
+  const Ran published = run("minque-published", {{"about_zero", 0}, {"common_threshold", 1}, {"settling", 0}}, r);
   const Ran minque = run("minque", {}, r);
   // Beginning, detection and return take their time: ratios are of what comes after.
   constexpr double kSettled[] = {20, 420, 520, 620, 730};
   for (std::size_t s = 0; s < 5; ++s) {
     const Index from = r.instant(kEdges[s]), to = r.instant(kEdges[s + 1]);
-    found[fmt::format("optimum {}-{} s", kEdges[s], kEdges[s + 1])].push_back(
-        rms(sectioned.x, r, from, to));
+    found[fmt::format("optimum {}-{} s", kEdges[s], kEdges[s + 1])].push_back(rms(sectioned.x, r, from, to));
     const Index later = r.instant(kSettled[s]);
     found[fmt::format("published rule / sectioned, {}-{} s", kSettled[s], kEdges[s + 1])].push_back(
         rms(published.x, r, later, to) / rms(sectioned.x, r, later, to));
@@ -396,33 +370,20 @@ int print(const Found& found) {
   int beyond = 0;
   std::vector<std::string> named;
   for (const Table& table : tables()) {
-    fmt::print("\n{}\n{:<40} {:>9} {:>21} {:>23} {:>6} {:>6}\n",
-               table.title,
-               "",
-               "thesis",
-               "oracle +- std",
-               "ours +- std",
-               "z",
-               "zt");
+    fmt::print("\n{}\n{:<40} {:>9} {:>21} {:>23} {:>6} {:>6}\n", table.title, "", "thesis", "oracle +- std",
+               "ours +- std", "z", "zt");
     for (const Row& row : table.rows) {
       const auto values = found.find(row.key);
-      const Centre ours =
-          centre(values == found.end() ? std::vector<double>{} : values->second, row.median);
+      const Centre ours = centre(values == found.end() ? std::vector<double>{} : values->second, row.median);
       const double z = (ours.value - row.oracle) / row.deviation;
       const double zt = row.median ? kNone : (row.thesis - ours.value) / ours.deviation;
       const bool judged = !*row.remark && !std::isnan(z);
       const bool off = judged && std::abs(z) > 3;
       beyond += off;
       if (*row.remark) named.push_back(fmt::format("{}: {}", row.key, row.remark));
-      fmt::print("{:<40} {:>9} {:>10} {:>10} {:>11} {:>11} {:>6} {:>6}{}\n",
-                 row.key,
-                 number(row.thesis),
-                 number(row.oracle),
-                 number(row.deviation, "{:.2g}"),
-                 number(ours.value),
-                 number(ours.deviation, "{:.2g}"),
-                 number(z, "{:.1f}"),
-                 number(zt, "{:.1f}"),
+      fmt::print("{:<40} {:>9} {:>10} {:>10} {:>11} {:>11} {:>6} {:>6}{}\n", row.key, number(row.thesis),
+                 number(row.oracle), number(row.deviation, "{:.2g}"), number(ours.value),
+                 number(ours.deviation, "{:.2g}"), number(z, "{:.1f}"), number(zt, "{:.1f}"),
                  off           ? "  BEYOND 3"
                  : *row.remark ? "  *"
                                : "");
@@ -440,8 +401,7 @@ int main(int count, char** words) {
   std::uint64_t seeds = 20, training_seeds = 20;
   for (int i = 1; i + 1 < count; i += 2) {
     if (std::strcmp(words[i], "--seeds") == 0) seeds = std::strtoull(words[i + 1], nullptr, 10);
-    if (std::strcmp(words[i], "--training-seeds") == 0)
-      training_seeds = std::strtoull(words[i + 1], nullptr, 10);
+    if (std::strcmp(words[i], "--training-seeds") == 0) training_seeds = std::strtoull(words[i + 1], nullptr, 10);
   }
   const auto start = std::chrono::steady_clock::now();
   Found found;
@@ -463,10 +423,7 @@ int main(int count, char** words) {
     fault_free(six, found);
     found["5.1, whole run"].push_back(minque_excess(six, 0));
     faults(simulate("rv-5.1-faults.yaml", seed + 2000), found);
-    fmt::print(stderr,
-               "\rseed {} of {}, {:.0f} s",
-               seed,
-               seeds,
+    fmt::print(stderr, "\rseed {} of {}, {:.0f} s", seed, seeds,
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   fmt::print(stderr, "\n");

@@ -63,18 +63,12 @@ Departure one_pole(double corner_over_rate) {
   const double a = std::exp(-2 * std::numbers::pi * corner_over_rate);
   return filter({1 - a, 0, 0, -a, 0});
 }
-Departure tap(double e) {
-  return filter({1 / (1 + e), e / (1 + e), 0, 0, 0});
-}
+Departure tap(double e) { return filter({1 / (1 + e), e / (1 + e), 0, 0, 0}); }
 /// Second order by the bilinear transform, unit gain at rest.
 Departure second_order(double corner_hz, double damping) {
   const double w = std::tan(std::numbers::pi * corner_hz / kRate), w2 = w * w;
   const double norm = 1 / (1 + 2 * damping * w + w2);
-  return filter({w2 * norm,
-                 2 * w2 * norm,
-                 w2 * norm,
-                 2 * (w2 - 1) * norm,
-                 (1 - 2 * damping * w + w2) * norm});
+  return filter({w2 * norm, 2 * w2 * norm, w2 * norm, 2 * (w2 - 1) * norm, (1 - 2 * damping * w + w2) * norm});
 }
 /// First order, gain 1 at rest and `gain` far above the corner.
 Departure shelf(double corner_hz, double gain) {
@@ -109,8 +103,7 @@ Departure quantization(double qz) {
 Departure spikes(double sigmas, double share, bool one_sided = false) {
   return [=](Samples& y, const Scene& scene, test::Gaussian& gauss) {
     for (double& value : y)
-      if (gauss.uniform() < share)
-        value += sigmas * scene.sd() * (one_sided || gauss.uniform() < 0.5 ? 1 : -1);
+      if (gauss.uniform() < share) value += sigmas * scene.sd() * (one_sided || gauss.uniform() < 0.5 ? 1 : -1);
   };
 }
 /// 1/f^exponent as a sum of first-order processes, four a decade; crosses white noise near 1 Hz.
@@ -125,8 +118,7 @@ Departure power_law(double exponent) {
       state.push_back(std::sqrt(variance) * gauss());
     }
     for (double& value : y)
-      for (std::size_t i = 0; i < state.size(); ++i)
-        value += state[i] = pole[i] * state[i] + drive[i] * gauss();
+      for (std::size_t i = 0; i < state.size(); ++i) value += state[i] = pole[i] * state[i] + drive[i] * gauss();
   };
 }
 Departure telegraphs(double sigmas) {
@@ -155,8 +147,8 @@ Departure footsteps(double sigmas) {
     for (std::size_t t = 0; t < y.size(); ++t)
       if (static_cast<double>(t) >= next) {
         for (std::size_t i = 0; i < 40 && t + i < y.size(); ++i)
-          y[t + i] += sigmas * scene.sd() * std::exp(-0.1 * static_cast<double>(i)) *
-                      std::sin(0.9 * static_cast<double>(i));
+          y[t + i] +=
+              sigmas * scene.sd() * std::exp(-0.1 * static_cast<double>(i)) * std::sin(0.9 * static_cast<double>(i));
         next += 55 + 8 * gauss();
       }
   };
@@ -189,36 +181,30 @@ std::vector<Kind> kinds() {
   const Scene white{kN, 0, 0}, flicker{kN, kB, 0}, walk{kN, 0, kK};
   std::vector<Kind> out;
   for (const std::size_t n : {kLong, kShort})
-    for (const auto& [scene, name] : {std::pair{Scene{}, "N B K"},
-                                      std::pair{white, "N"},
-                                      std::pair{flicker, "N B"},
-                                      std::pair{walk, "N K"}})
+    for (const auto& [scene, name] :
+         {std::pair{Scene{}, "N B K"}, std::pair{white, "N"}, std::pair{flicker, "N B"}, std::pair{walk, "N K"}})
       out.push_back({fmt::format("clean {} {}", name, n), n, nothing, scene});
-  for (const double f : {1.2, 0.8, 0.65, 0.5})
-    out.push_back({fmt::format("pole {} {}", f, kLong), kLong, one_pole(f)});
+  for (const double f : {1.2, 0.8, 0.65, 0.5}) out.push_back({fmt::format("pole {} {}", f, kLong), kLong, one_pole(f)});
   for (const double f : {1.0, 0.65, 0.5, 0.4, 0.3})
     out.push_back({fmt::format("pole {} {}", f, kShort), kShort, one_pole(f)});
   for (const double q : {1e-5, 4e-5, 6e-5, 1e-4})
     out.push_back({fmt::format("quantization {} {}", q, kLong), kLong, quantization(q)});
   for (const double q : {2e-5, 1e-4, 1.5e-4, 2.5e-4})
     out.push_back({fmt::format("quantization {} {}", q, kShort), kShort, quantization(q)});
-  for (const double e : {0.003, 0.01, 0.02, 0.1})
-    out.push_back({fmt::format("tap {}", e), kLong, tap(e)});
+  for (const double e : {0.003, 0.01, 0.02, 0.1}) out.push_back({fmt::format("tap {}", e), kLong, tap(e)});
   for (const double share : {0.003, 0.006, 0.012})
     out.push_back({fmt::format("spikes 6 sd {}", share), kLong, spikes(6, share)});
   out.push_back({"spikes 4 sd 0.003", kLong, spikes(4, 0.003)});
   out.push_back({"spikes 8 sd 0.003 one-sided", kLong, spikes(8, 0.003, true)});
   out.push_back({"spikes 12 sd 0.003", kLong, spikes(12, 0.003)});
-  for (const double f : {2.0, 0.5})
-    out.push_back({fmt::format("shelf 1.3 at {} Hz", f), kLong, shelf(f, 1.3)});
+  for (const double f : {2.0, 0.5}) out.push_back({fmt::format("shelf 1.3 at {} Hz", f), kLong, shelf(f, 1.3)});
   out.push_back({"shelf 0.8 at 2 Hz", kLong, shelf(2, 0.8)});
   for (const double f : {1.0, 2.0, 3.0, 5.0, 20.0})
     out.push_back({fmt::format("butterworth 2 at {} Hz", f), kLong, second_order(f, 0.7071)});
   out.push_back({"closed loop 0.7 at 1 Hz", kLong, second_order(1, 0.7)});
   out.push_back({"resonance 0.4 at 2 Hz", kLong, second_order(2, 0.4)});
   out.push_back({"alpha-beta .1 .005", kLong, alpha_beta(0.1, 0.005)});
-  for (const double a : {0.8, 1.3, 1.6})
-    out.push_back({fmt::format("1/f^{}", a), kLong, power_law(a), white});
+  for (const double a : {0.8, 1.3, 1.6}) out.push_back({fmt::format("1/f^{}", a), kLong, power_law(a), white});
   out.push_back({"high-pass 0.01 Hz", kLong, high_pass(0.01)});
   out.push_back({"high-pass 0.1 Hz", kLong, high_pass(0.1)});
   out.push_back({"telegraphs of five rates", kLong, telegraphs(0.2)});
@@ -247,11 +233,8 @@ void run(const Kind& kind, int records) {
   test::NoiseSource source(kind.samples + kLead, kRate, 11);
   test::Gaussian gauss(7);
   const std::array<double, 3> truth = kind.scene.truth();
-  const auto bound =
-      cramer_rao({truth[0] * truth[0], truth[1] * truth[1], truth[2] * truth[2], 0, 0},
-                 kRate,
-                 static_cast<double>(kind.samples),
-                 {true, truth[1] > 0, truth[2] > 0, false, false});
+  const auto bound = cramer_rao({truth[0] * truth[0], truth[1] * truth[1], truth[2] * truth[2], 0, 0}, kRate,
+                                static_cast<double>(kind.samples), {true, truth[1] > 0, truth[2] > 0, false, false});
   std::array<int, 3> held{}, valued{};
   int good = 0, silent = 0;
   double error = 0, square = 0, width = 0;
@@ -274,11 +257,8 @@ void run(const Kind& kind, int records) {
     }
     if (std::getenv("SHOW") != nullptr) {
       fmt::print("  N {:.3f} B {:.3f} K {:.3f} (over truth) p {:.3f}, band to {:.3g} Hz",
-                 fit.term[0].value.value_or(0) / truth[0],
-                 fit.term[1].value.value_or(0) / truth[1],
-                 fit.term[2].value.value_or(0) / truth[2],
-                 fit.goodness.p,
-                 fit.band.top_hz);
+                 fit.term[0].value.value_or(0) / truth[0], fit.term[1].value.value_or(0) / truth[1],
+                 fit.term[2].value.value_or(0) / truth[2], fit.goodness.p, fit.band.top_hz);
       for (const Remedy& remedy : fit.remedies) fmt::print("; {}", remedy.action);
       fmt::print("\n");
     }
@@ -294,17 +274,8 @@ void run(const Kind& kind, int records) {
   fmt::print(
       "{:30} N {:4.2f} B {:4.2f} K {:4.2f} | det {:3} {:3} {:3} | off {:7.2f} rms {:7.2f} stated "
       "{:6.2f} | good {:3} silent {:3} |",
-      kind.name,
-      static_cast<double>(held[0]) / records,
-      static_cast<double>(held[1]) / records,
-      static_cast<double>(held[2]) / records,
-      valued[0],
-      valued[1],
-      valued[2],
-      error,
-      std::sqrt(square),
-      width,
-      good,
+      kind.name, static_cast<double>(held[0]) / records, static_cast<double>(held[1]) / records,
+      static_cast<double>(held[2]) / records, valued[0], valued[1], valued[2], error, std::sqrt(square), width, good,
       silent);
   for (const auto& [code, count] : said) fmt::print(" {}:{}", code, count);
   fmt::print("\n");

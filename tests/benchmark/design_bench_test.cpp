@@ -45,8 +45,7 @@ TEST_CASE("design: different sensors together have the sum of their information"
   DesignOptions options;
   options.target = 1;
   options.records = 2;
-  const DesignBench bench =
-      bench_design({sensor_of("a", 3e-3, 0), sensor_of("b", 4e-3, 0)}, options);
+  const DesignBench bench = bench_design({sensor_of("a", 3e-3, 0), sensor_of("b", 4e-3, 0)}, options);
   CHECK(*bench.one_of_each == Approx(12e-3 / 5));
   CHECK(bench.sensors[0].sensors == 1);
 }
@@ -70,6 +69,5 @@ TEST_CASE("design: what does not go together is refused") {
   options.tau_s = 1;
   BenchSignal other = sensor_of("b", 5e-3, 0);
   other.rate_hz = 50;
-  CHECK_THROWS_WITH(bench_design({sensor_of("a", 5e-3, 0), other}, options),
-                    Catch::Contains("E0967"));
+  CHECK_THROWS_WITH(bench_design({sensor_of("a", 5e-3, 0), other}, options), Catch::Contains("E0967"));
 }

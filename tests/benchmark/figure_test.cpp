@@ -25,8 +25,7 @@ TEST_CASE("median: order statistics of the binomial, by hand") {
   CHECK(std::isnan(median_figure({}).value));
 }
 
-TEST_CASE(
-    "times: wider than a median's interval, and never narrower than what code placement costs") {
+TEST_CASE("times: wider than a median's interval, and never narrower than what code placement costs") {
   std::vector<double> values(20, 100);
   const Figure still = time_figure(values);
   CHECK(still.ci95.low == Approx(98.5));

@@ -53,8 +53,7 @@ TEST_CASE("fusion bench: a sweep is a row a value, and the excess follows the op
   options.algorithms = {"minque", "mean"};
   options.sweeps = {parse_sweep("minque.gamma=.9,.999", "--sweep")};
   const FusionBench bench = bench_fusion({three_sensors()}, options);
-  const FusionBenchRow &fast = row(bench, "minque (gamma=0.9)"),
-                       &slow = row(bench, "minque (gamma=0.999)");
+  const FusionBenchRow &fast = row(bench, "minque (gamma=0.9)"), &slow = row(bench, "minque (gamma=0.999)");
   CHECK(fast.swept);
   CHECK_FALSE(row(bench, "mean").swept);
   // Weights of ten instants scatter, those of a thousand do not.
@@ -72,8 +71,7 @@ TEST_CASE(
     if (scene.tilt) tilt = scene;
   REQUIRE(tilt.tilt);
   for (const bool first : {true, false}) {
-    const std::vector<Scene> scenes =
-        first ? std::vector{tilt, three_sensors()} : std::vector{three_sensors(), tilt};
+    const std::vector<Scene> scenes = first ? std::vector{tilt, three_sensors()} : std::vector{three_sensors(), tilt};
     const FusionBench bench = bench_fusion(scenes, options);
     REQUIRE(bench.scenes.size() == 1);
     CHECK(bench.scenes[0].name == "three");

@@ -10,9 +10,7 @@ using namespace libchar;
 
 namespace {
 
-ScalingPoint cost_at(double x, double cost) {
-  return {x, {cost, {cost, cost}, 7}, {}};
-}
+ScalingPoint cost_at(double x, double cost) { return {x, {cost, {cost, cost}, 7}, {}}; }
 
 }  // namespace
 

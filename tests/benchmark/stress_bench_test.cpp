@@ -29,13 +29,11 @@ TEST_CASE("stress: every deviation and every fusion algorithm is tried, worst fi
   const StressBench bench = bench_stress({true, 1});
   std::set<std::string> subjects;
   for (const StressCell& cell : bench.cells) subjects.insert(cell.subject);
-  for (const DeviationRow& row : deviation_rows())
-    CHECK(subjects.count(std::string(row.word)) == 1);
+  for (const DeviationRow& row : deviation_rows()) CHECK(subjects.count(std::string(row.word)) == 1);
   for (const fusion::Entry& entry : fusion::algorithms())
     CHECK(subjects.count(std::string(entry.description->name)) == 1);
   CHECK(bench.count(StressOutcome::digits) > 300);
-  CHECK(bench.count(StressOutcome::digits) + bench.count(StressOutcome::held) +
-            bench.count(StressOutcome::refused) ==
+  CHECK(bench.count(StressOutcome::digits) + bench.count(StressOutcome::held) + bench.count(StressOutcome::refused) ==
         bench.cells.size());
   double before = -100;
   for (const StressCell& cell : bench.cells) {
@@ -50,8 +48,7 @@ TEST_CASE("stress: digits by hand") {
   CHECK(right_digits(values, std::vector<Exact>{1, 0}) == Approx(3).margin(1e-9));
   CHECK(right_digits(values, std::vector<Exact>{1.001, 0}) == 16);
   CHECK(right_digits(std::vector<double>{1, 1e-5}, std::vector<Exact>{1, 0}) == Approx(5));
-  CHECK(right_digits_together(std::vector<double>{3, 4.005}, std::vector<Exact>{3, 4}) ==
-        Approx(3));
+  CHECK(right_digits_together(std::vector<double>{3, 4.005}, std::vector<Exact>{3, 4}) == Approx(3));
   CHECK(right_digits(std::vector<double>{std::nan("")}, std::vector<Exact>{1}) == 0);
   CHECK(right_digits(values, std::vector<Exact>{1.001}) == 0);
   StressCell cell;
@@ -67,8 +64,7 @@ TEST_CASE("stress: digits by hand") {
 }
 
 TEST_CASE("stress: the definitions in long double give SP 1065's thousand points") {
-  const auto known =
-      nlohmann::json::parse(test::slurp(test::known("allan/sp1065_1000pt_devs.json")));
+  const auto known = nlohmann::json::parse(test::slurp(test::known("allan/sp1065_1000pt_devs.json")));
   std::vector<double> y(1000);
   std::uint64_t n = 1234567890;
   for (double& value : y) {

@@ -87,8 +87,7 @@ TEST_CASE("a frequency far from nominal, or with none, is doubted in a sentence"
         {5e6, 1.0, "far from the nominal"},
         {1e7, 1.0, ""}}) {
     options.nominal_frequency = nominal;
-    for (std::size_t t = 0; t < noise.size(); ++t)
-      recording.samples[0][t] = 1e7 + scatter * noise[t];
+    for (std::size_t t = 0; t < noise.size(); ++t) recording.samples[0][t] = 1e7 + scatter * noise[t];
     const auto problems = characterize(recording, options).channels[0].findings;
     CAPTURE(nominal);
     REQUIRE(problems.empty() == (nominal == 1e7));
@@ -113,8 +112,7 @@ TEST_CASE("the model of half a quartz clock is its Allan curve, no narrow filter
     if (p.tau_s > 8) break;
     CAPTURE(p.tau_s);
     const auto m = static_cast<double>(p.m);
-    CHECK(*model_deviation(*channel.fit, channel.allan.type, m, 1) ==
-          Approx(p.deviation).epsilon(0.35));
+    CHECK(*model_deviation(*channel.fit, channel.allan.type, m, 1) == Approx(p.deviation).epsilon(0.35));
   }
 }
 
@@ -122,9 +120,8 @@ TEST_CASE("a record of five samples is called too short, not constant") {
   const Characterization result = of(white(5, 8));
   const auto& problems = result.channels[0].findings;
   REQUIRE_FALSE(problems.empty());
-  CHECK(std::none_of(problems.begin(), problems.end(), [](const Finding& p) {
-    return p.sentence.find("constant") != std::string::npos;
-  }));
+  CHECK(std::none_of(problems.begin(), problems.end(),
+                     [](const Finding& p) { return p.sentence.find("constant") != std::string::npos; }));
 }
 
 TEST_CASE("a step that was taken out is in the verdict") {
@@ -145,8 +142,7 @@ TEST_CASE("more channels than fit into memory in the end are refused before they
   CHECK(said == "E0707 5001 channels are more than are characterized at a time, 5000");
 }
 
-TEST_CASE(
-    "one wild sample of 1e300 is missing, counted and said, and nothing but such is no record") {
+TEST_CASE("one wild sample of 1e300 is missing, counted and said, and nothing but such is no record") {
   std::vector<double> y = white(20000, 8);
   const double clean = *(*of(y).channels[0].fit)[Term::white].value;
   y[7000] = 1e300;
@@ -157,8 +153,7 @@ TEST_CASE(
   CHECK(one.channels[0].quality.missing == 1);
   CHECK(one.channels[0].quality.standard_deviation == Approx(0.01).epsilon(0.05));
   REQUIRE(one.channels[0].quality.findings.size() == 1);
-  CHECK_THAT(one.channels[0].quality.findings[0].sentence,
-             Catch::Contains("1 sample beyond 1×10¹⁰⁰"));
+  CHECK_THAT(one.channels[0].quality.findings[0].sentence, Catch::Contains("1 sample beyond 1×10¹⁰⁰"));
   for (double& v : y) v *= 1e160;
   const Characterization all = of(y);
   CHECK_FALSE(all.channels[0].fit);
@@ -181,8 +176,7 @@ TEST_CASE("the interval of a correlation time holds the time, where other terms 
   NEEDS_SHARED("data/array_airq3_rtp201908_1min.csv");
   CharacterizeOptions options;
   options.wanted = {false, true, false, true};
-  const Characterization air =
-      characterize(test::shared("data/array_airq3_rtp201908_1min.csv").string(), options);
+  const Characterization air = characterize(test::shared("data/array_airq3_rtp201908_1min.csv").string(), options);
   int processes = 0;
   for (const ChannelResult& c : air.channels) {
     if (!c.fit || !c.fit->gauss_markov || !c.fit->gauss_markov->in_model) continue;

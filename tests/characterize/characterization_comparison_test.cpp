@@ -33,8 +33,7 @@ Coefficient limit(double upper) {
   return c;
 }
 
-ReportedCharacterization summary(const Coefficient& white,
-                                 const Coefficient& flicker,
+ReportedCharacterization summary(const Coefficient& white, const Coefficient& flicker,
                                  const std::string& unit = "deg/s") {
   ReportedCharacterization out;
   ReportedChannel c;
@@ -50,8 +49,7 @@ ReportedCharacterization summary(const Coefficient& white,
   return out;
 }
 
-CharacterizationComparison compared(const ReportedCharacterization& a,
-                                    const ReportedCharacterization& b) {
+CharacterizationComparison compared(const ReportedCharacterization& a, const ReportedCharacterization& b) {
   std::vector<ReportedCharacterization> sides = {a, b};
   for (std::size_t i = 0; i < 2; ++i)
     if (sides[i].name.empty()) sides[i].file = sides[i].name = i == 0 ? "A" : "B";
@@ -59,10 +57,7 @@ CharacterizationComparison compared(const ReportedCharacterization& a,
 }
 
 TermDifference flicker_difference(const Coefficient& a, const Coefficient& b) {
-  return compared(summary(known(1, 0.01), a), summary(known(1, 0.01), b))
-      .groups[0]
-      .terms[1]
-      .differences[1];
+  return compared(summary(known(1, 0.01), a), summary(known(1, 0.01), b)).groups[0].terms[1].differences[1];
 }
 
 CharacterizationCompareOptions wanting(const std::string& channel) {
@@ -72,12 +67,8 @@ CharacterizationCompareOptions wanting(const std::string& channel) {
 }
 
 /// A channel with a measured curve, `factor` times that of white noise.
-ReportedCharacterization measured(const std::string& name,
-                                  const std::string& channel,
-                                  const std::string& unit,
-                                  std::uint64_t seed,
-                                  double white,
-                                  double floor = 0) {
+ReportedCharacterization measured(const std::string& name, const std::string& channel, const std::string& unit,
+                                  std::uint64_t seed, double white, double floor = 0) {
   test::Gaussian gauss(seed);
   std::vector<double> record(8192);
   double slow = 0;
@@ -102,8 +93,7 @@ ReportedCharacterization measured(const std::string& name,
 }  // namespace
 
 TEST_CASE("compared terms: ratio, interval and p of two values") {
-  const auto c =
-      compared(summary(known(1, 0.03), known(2, 0.1)), summary(known(1.2, 0.04), known(2, 0.1)));
+  const auto c = compared(summary(known(1, 0.03), known(2, 0.1)), summary(known(1.2, 0.04), known(2, 0.1)));
   const ComparedTerm& term = c.groups[0].terms[0];
   const detail::TermRatio& white = term.ratios[1];
   CHECK(*white.ratio == Approx(1.2));
@@ -126,8 +116,7 @@ TEST_CASE("compared terms: equal sensors are called different in at most 1 % of 
     const auto drawn = [&](double sd) { return known(std::exp(sd * gauss()), sd); };
     const auto c = compared(summary(drawn(0.01), drawn(0.2)), summary(drawn(0.02), drawn(0.1)));
     bool any = false;
-    for (const ComparedTerm& t : c.groups[0].terms)
-      any = any || t.differences[1] != TermDifference::not_resolved;
+    for (const ComparedTerm& t : c.groups[0].terms) any = any || t.differences[1] != TermDifference::not_resolved;
     different += any ? 1 : 0;
   }
   CHECK(different <= 38);  // 20, and four standard deviations
@@ -164,8 +153,7 @@ TEST_CASE("checks of a comparison fail beyond chance only, and where B lost what
   CHECK(failed(limit(1), known(1.3, 0.05), "bias_instability+50%").empty());
   CHECK_THAT(failed(known(1, 0.05), known(1, 0.05, Status::misfit), "bias_instability+0%").at(0),
              Contains("not to be relied on"));
-  CHECK_THROWS_WITH(failed(known(1, 0.05, Status::misfit), known(9, 0.05), "bias_instability+0%"),
-                    Contains("E0923"));
+  CHECK_THROWS_WITH(failed(known(1, 0.05, Status::misfit), known(9, 0.05), "bias_instability+0%"), Contains("E0923"));
   CHECK_THROWS_WITH(failed(known(1, 0.05), known(9, 0.05), "y:bias_instability+0%"),
                     Contains("E0922") && Contains("neither report"));
 }
@@ -177,9 +165,7 @@ TEST_CASE("compared channels: units are converted, unlike ones and missing chann
   CHECK(*c.groups[0].terms[0].ratios[1].ratio == Approx(1));
   CHECK_THAT(c.remarks.at(0), Contains("unit deg/s in A, rad/s in B"));
   b.channels[0].unit = "Pa";
-  CHECK_THROWS_WITH(
-      compared(a, b),
-      Contains("E0976") && Contains("x of A is in deg/s") && Contains("x of B is in Pa"));
+  CHECK_THROWS_WITH(compared(a, b), Contains("E0976") && Contains("x of A is in deg/s") && Contains("x of B is in Pa"));
   auto both = b;
   both.channels.push_back(a.channels[0]);
   const auto apart = compared(a, both);
@@ -253,15 +239,11 @@ TEST_CASE("compared curves: of equal sensors none is the lowest, in 99 of 100") 
   for (int i = 0; i < kDraws; ++i) {
     std::vector<ReportedCharacterization> sides;
     for (int k = 0; k < 3; ++k)
-      sides.push_back(measured(std::string(1, static_cast<char>('a' + k)),
-                               "x",
-                               "deg/s",
-                               static_cast<std::uint64_t>(1000 + 3 * i + k),
-                               1));
+      sides.push_back(measured(std::string(1, static_cast<char>('a' + k)), "x", "deg/s",
+                               static_cast<std::uint64_t>(1000 + 3 * i + k), 1));
     const auto c = compare_characterizations(std::move(sides));
     bool any = false;
-    for (const ComparedGroup::Time& time : c.groups[0].times)
-      any = any || time.lowest.not_apart.size() < 2;
+    for (const ComparedGroup::Time& time : c.groups[0].times) any = any || time.lowest.not_apart.size() < 2;
     called += any ? 1 : 0;
   }
   CHECK(called <= 12);  // 4, and four standard deviations
@@ -272,25 +254,22 @@ TEST_CASE("compared sensors: what is not to be relied on is not the lowest, and 
   Finding motion = finding("moves_throughout", "The sensor moves throughout.");
   motion.subject = "x";
   moved.findings.push_back(motion);
-  const auto c = compare_characterizations(
-      {moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
+  const auto c =
+      compare_characterizations({moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
   CHECK_FALSE(c.groups[0].candidates[0].takes_part);
   CHECK(c.groups[0].ranges[0].lowest == std::vector<std::size_t>{1});
   CHECK_THAT(c.verdict, Contains("moved is left out: motion throughout"));
   // Each reason once, whoever has it.
-  std::vector<ReportedCharacterization> many = {measured("b", "x", "deg/s", 2, 1),
-                                                measured("c", "x", "deg/s", 3, 3)};
+  std::vector<ReportedCharacterization> many = {measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)};
   for (const char* name : {"d", "e", "f", "g", "h"}) {
     many.push_back(moved);
     many.back().name = name;
   }
-  CHECK_THAT(compare_characterizations(many).verdict,
-             Contains("d, e, f and 2 more are left out: motion throughout."));
+  CHECK_THAT(compare_characterizations(many).verdict, Contains("d, e, f and 2 more are left out: motion throughout."));
   moved.findings[0].severity = Severity::caution;
-  const auto careful = compare_characterizations(
-      {moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
-  CHECK_THAT(careful.verdict,
-             Contains("moved is lowest") && Contains("Check moved first: motion throughout"));
+  const auto careful =
+      compare_characterizations({moved, measured("b", "x", "deg/s", 2, 1), measured("c", "x", "deg/s", 3, 3)});
+  CHECK_THAT(careful.verdict, Contains("moved is lowest") && Contains("Check moved first: motion throughout"));
 }
 
 TEST_CASE("compared channels: another band or shape is said") {
@@ -327,15 +306,12 @@ TEST_CASE("a report that was written is read back and equals itself") {
 }
 
 TEST_CASE("what is no characterization is refused in a sentence") {
-  CHECK_THROWS_WITH(
-      parse_characterization_report(R"({"format":"replay-report","version":1})", "r.json"),
-      Contains("r.json") && Contains("E0771") && Contains("replay-report"));
-  CHECK_THROWS_AS(parse_characterization_report(R"({"format":"noise-fit","version":1})", "r.json"),
-                  Error);
+  CHECK_THROWS_WITH(parse_characterization_report(R"({"format":"replay-report","version":1})", "r.json"),
+                    Contains("r.json") && Contains("E0771") && Contains("replay-report"));
+  CHECK_THROWS_AS(parse_characterization_report(R"({"format":"noise-fit","version":1})", "r.json"), Error);
   CHECK_THROWS_AS(
       parse_characterization_report(
-          R"({"format":"noise-fit","version":1,"channels":[{"name":"x","goodness":{},"white_noise":{}}]})",
-          "r.json"),
+          R"({"format":"noise-fit","version":1,"channels":[{"name":"x","goodness":{},"white_noise":{}}]})", "r.json"),
       Error);
   CHECK_THROWS_AS(parse_characterization_report("[1,", "r.json"), Error);
 }

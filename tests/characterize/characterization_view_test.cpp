@@ -24,8 +24,7 @@ TEST_CASE("characterization view: the model stands at each point of each curve")
     REQUIRE(v.allan_model->values.size() == c.allan.points.size());
     REQUIRE(v.spectrum_model->values.size() == c.spectrum.frequency_hz.size());
     CHECK(v.allan_model->values[0] ==
-          model_deviation(
-              *c.fit, c.allan.type, static_cast<double>(c.allan.points[0].m), c.allan.dt_s));
+          model_deviation(*c.fit, c.allan.type, static_cast<double>(c.allan.points[0].m), c.allan.dt_s));
     const double q = *(*c.fit)[Term::white].value;
     CHECK(v.per_sample_sd == q * std::sqrt(result.log.time.rate_hz));
     CHECK(v.noise_density_one_sided == q * std::sqrt(2.0));
@@ -98,7 +97,6 @@ TEST_CASE("characterization view: the data sheet's line is that of a sensor at i
   REQUIRE(view.channels[0].data_sheet.size() == points.size());
   const double floor = 2 * std::log(2.0) / 3.14159265358979 * 4e-6;
   const AllanPoint& late = points[points.size() - 2];
-  CHECK(*view.channels[0].data_sheet[points.size() - 2] ==
-        Approx(std::sqrt(1e-4 / late.tau_s + floor)).epsilon(0.01));
+  CHECK(*view.channels[0].data_sheet[points.size() - 2] == Approx(std::sqrt(1e-4 / late.tau_s + floor)).epsilon(0.01));
   CHECK(view.channels[1].data_sheet.empty());
 }

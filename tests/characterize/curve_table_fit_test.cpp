@@ -23,9 +23,7 @@ std::string white_curves(const test::TemporaryFolder& folder, const std::string&
   return path;
 }
 
-double white_of(const ChannelFit& channel) {
-  return channel.fit[Term::white].value.value();
-}
+double white_of(const ChannelFit& channel) { return channel.fit[Term::white].value.value(); }
 
 }  // namespace
 
@@ -41,8 +39,7 @@ TEST_CASE("fit_curve_table: every column behind the first is a curve, named or n
 TEST_CASE("fit_curve_table: powers and roots of one curve give one coefficient") {
   const test::TemporaryFolder folder;
   CurveTableOptions options;
-  const double root =
-      white_of(fit_curve_table(white_curves(folder, "tau[s],a[V],b[V]\n"), options).channels[0]);
+  const double root = white_of(fit_curve_table(white_curves(folder, "tau[s],a[V],b[V]\n"), options).channels[0]);
   const std::string powers = (folder / "powers.csv").string();
   std::ofstream out(powers);
   out << "tau[s],a[V]\n";
@@ -58,22 +55,19 @@ TEST_CASE("fit_curve_table: curves by name and by pattern, a slip is told") {
   std::ofstream out(path);
   out << "channel,unit,tau_s,deviation\n";
   for (const char* name : {"gyro_x", "gyro_y", "accel_x"})
-    for (double tau = 0.01; tau < 200; tau *= 1.5)
-      out << fmt::format("{},V,{},{}\n", name, tau, 0.01 / std::sqrt(tau));
+    for (double tau = 0.01; tau < 200; tau *= 1.5) out << fmt::format("{},V,{},{}\n", name, tau, 0.01 / std::sqrt(tau));
   out.close();
   const auto names = [&](std::vector<std::string> wanted) {
     CurveTableOptions options;
     options.reading.channels = std::move(wanted);
     std::string all;
-    for (const ChannelFit& one : fit_curve_table(path, options).channels)
-      all += one.channel.name + " ";
+    for (const ChannelFit& one : fit_curve_table(path, options).channels) all += one.channel.name + " ";
     return all;
   };
   CHECK(names({"gyro*"}) == "gyro_x gyro_y ");
   CHECK(names({"*_x"}) == "gyro_x accel_x ");
   CHECK(names({"accel_x", "gyro_y"}) == "gyro_y accel_x ");
-  CHECK_THROWS_WITH(names({"gyro*", "acel_x"}),
-                    Catch::Contains("E0320") && Catch::Contains("did you mean accel_x"));
+  CHECK_THROWS_WITH(names({"gyro*", "acel_x"}), Catch::Contains("E0320") && Catch::Contains("did you mean accel_x"));
   CHECK_THROWS_WITH(names({"mag*"}), Catch::Contains("it has gyro_x, gyro_y, accel_x"));
 }
 

@@ -37,8 +37,7 @@ const Remedy* spikes_of(const ChannelResult& channel) {
 }  // namespace
 
 TEST_CASE("spikes of a record of leaves are those of a record of one") {
-  std::vector<double> y = white_record(kLeafSamples, 2),
-                      longer = white_record(2 * kLeafSamples + 7, 2);
+  std::vector<double> y = white_record(kLeafSamples, 2), longer = white_record(2 * kLeafSamples + 7, 2);
   const auto spikes_in = [](std::vector<double>& record) {
     for (double& value : record) value += 100;
     for (std::size_t t = 77; t < record.size(); t += 501) record[t] += t % 2 == 0 ? 30 : -30;
@@ -64,8 +63,7 @@ TEST_CASE("heavy tails of a record of leaves are left as they are") {
   with.spectrum.segment = without.spectrum.segment = 8192;
   without.fit.remedies = false;
   with.fit.white_top = true;
-  const ChannelResult a = characterize(recording, with).channels[0],
-                      b = characterize(recording, without).channels[0];
+  const ChannelResult a = characterize(recording, with).channels[0], b = characterize(recording, without).channels[0];
   CHECK(spikes_of(a) == nullptr);
   REQUIRE(!a.fit->findings.empty());
   CHECK(a.fit->findings[0].sentence.find("not taken for spikes") != std::string::npos);
@@ -96,13 +94,11 @@ TEST_CASE("a counter gets curves and no fit, and the reason is said") {
     index[t] = static_cast<double>(t);
     modulo[t] = static_cast<double>(t % 256);
   }
-  const Characterization result =
-      characterize(recording_of({index, modulo, white_record(5000, 1)}, 100), {});
+  const Characterization result = characterize(recording_of({index, modulo, white_record(5000, 1)}, 100), {});
   for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
     CHECK_FALSE(result.channels[c].fit);
     REQUIRE(result.channels[c].findings.size() == 1);
-    CHECK(result.channels[c].findings[0].sentence.find(
-              "no noise fit: the channel rises by 1 with") == 0);
+    CHECK(result.channels[c].findings[0].sentence.find("no noise fit: the channel rises by 1 with") == 0);
     CHECK(!result.channels[c].allan.points.empty());
   }
   CHECK(result.channels[2].fit);

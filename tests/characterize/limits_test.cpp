@@ -48,12 +48,11 @@ TEST_CASE("a limit is decided by the whole interval, and not by what cannot be r
 TEST_CASE("a characterization against a data sheet: every judgement says why") {
   const Characterization imu = test::synthetic_imu();
   const std::string& first = imu.channels[0].channel.name;
-  const LimitReport report = judge_limits(
-      imu,
-      parse_limits("format: noise-limits\nversion: 1\nsensor: X\nlimits:\n  - channels: [" + first +
-                       "]\n    white_noise: {value: 1e-9, unit: U·√s}\n"
-                       "    bias_instability: {value: 1e9, unit: U}\n",
-                   "x.yaml"));
+  const LimitReport report =
+      judge_limits(imu, parse_limits("format: noise-limits\nversion: 1\nsensor: X\nlimits:\n  - channels: [" + first +
+                                         "]\n    white_noise: {value: 1e-9, unit: U·√s}\n"
+                                         "    bias_instability: {value: 1e9, unit: U}\n",
+                                     "x.yaml"));
   REQUIRE(report.judgements.size() == 2);
   CHECK(report.sensor == "X");
   CHECK(report.judgements[0].status == LimitStatus::fail);
@@ -66,11 +65,9 @@ TEST_CASE("a channel without a fit decides no limit") {
   Characterization imu = test::synthetic_imu();
   imu.channels[0].fit.reset();
   const LimitReport report =
-      judge_limits(imu,
-                   parse_limits("format: noise-limits\nversion: 1\nlimits:\n  - channels: [" +
-                                    imu.channels[0].channel.name +
-                                    "]\n    white_noise: {value: 1, unit: U·√s}\n",
-                                "x.yaml"));
+      judge_limits(imu, parse_limits("format: noise-limits\nversion: 1\nlimits:\n  - channels: [" +
+                                         imu.channels[0].channel.name + "]\n    white_noise: {value: 1, unit: U·√s}\n",
+                                     "x.yaml"));
   CHECK(report.count(LimitStatus::not_decided) == 1);
   CHECK_THAT(report.judgements[0].sentence, Catch::Contains("no value"));
 }

@@ -28,8 +28,7 @@ std::string two_channels(const test::TemporaryFolder& folder) {
   out << "x[V],y[V]\n";
   out.precision(17);
   for (std::size_t i = 0; i < kLogRows; ++i) {
-    out << noise[i] + std::sin(2 * std::numbers::pi * kToneHz * 0.01 * static_cast<double>(i))
-        << ",";
+    out << noise[i] + std::sin(2 * std::numbers::pi * kToneHz * 0.01 * static_cast<double>(i)) << ",";
     if (i < kLogRows / 2) out << noise[i];
     out << "\n";
   }
@@ -95,13 +94,11 @@ TEST_CASE("log_spectra: a log without a rate, and one too short, are refused in 
   CHECK_THROWS_WITH(log_spectra(path, options), Contains("longer than the record of 4096"));
   options.spectrum.segment = 0;
   std::ofstream(path) << "x\n1\n2\n1\n3\n2\n";
-  CHECK_THROWS_WITH(log_spectra(path, options),
-                    Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
+  CHECK_THROWS_WITH(log_spectra(path, options), Contains("no channel gives a spectrum: x: ") && !Contains("E0401"));
 }
 
 // As `characterize` does it: one answer, in bounded memory.
-TEST_CASE(
-    "log_spectra: a record of more than a leaf has segments of 2^16 samples, a leaf a quarter") {
+TEST_CASE("log_spectra: a record of more than a leaf has segments of 2^16 samples, a leaf a quarter") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.csv").string();
   CharacterizeOptions options = at_100_hz();
@@ -118,14 +115,12 @@ TEST_CASE(
   CHECK(streamed.channels[0].spectrum.segment == 65536);
   CHECK_THAT(streamed.notes.at(0), Contains("N/4"));
   const Recording recording = read_recording(path, options.reading);
-  CHECK(log_spectra(view_of(recording), options).channels[0].spectrum.value ==
-        streamed.channels[0].spectrum.value);
+  CHECK(log_spectra(view_of(recording), options).channels[0].spectrum.value == streamed.channels[0].spectrum.value);
   options.quarter_segments = true;
   CHECK(log_spectra(path, options).channels[0].spectrum.segment == (kLeaf + 1) / 4);
   options.quarter_segments = false;
   options.spectrum.segment = 65536;
-  CHECK(log_spectra(path, options).channels[0].spectrum.value ==
-        streamed.channels[0].spectrum.value);
+  CHECK(log_spectra(path, options).channels[0].spectrum.value == streamed.channels[0].spectrum.value);
 }
 
 TEST_CASE("log_spectra: motion is said of a record of one leaf and of one of two") {

@@ -50,13 +50,11 @@ TEST_CASE("the low-pass in the spectrum and in the Allan curve are the same filt
   for (int i = 0; i < steps; ++i) {
     const double f = (i + 0.5) / steps / (2 * dt_s), s = std::sin(std::numbers::pi * f * dt_s);
     const double r = std::exp(-2 * std::numbers::pi * bandwidth_hz * dt_s);
-    const double gain =
-        (1 - r) * (1 - r) / (1 - 2 * r * std::cos(2 * std::numbers::pi * f * dt_s) + r * r);
+    const double gain = (1 - r) * (1 - r) / (1 - 2 * r * std::cos(2 * std::numbers::pi * f * dt_s) + r * r);
     sum += gain * 2 * s * s;
   }
   const double variance = 2 * sum / steps / (2 * dt_s);
-  const double deviation =
-      *model_deviation(white_behind_low_pass(bandwidth_hz), DeviationType::oadev, 1, dt_s);
+  const double deviation = *model_deviation(white_behind_low_pass(bandwidth_hz), DeviationType::oadev, 1, dt_s);
   CHECK(deviation * deviation == Approx(variance).epsilon(1e-4));
 }
 
@@ -75,8 +73,7 @@ TEST_CASE("read-off points: Q at 1 s, 0.664 B, K at 3 s, only for what is there"
   CHECK(read_off_points(*without.fit, without.allan).size() == 2);
 }
 
-TEST_CASE(
-    "densities: one-sided is twice two-sided, roots are roots, powers carry the noise bandwidth") {
+TEST_CASE("densities: one-sided is twice two-sided, roots are roots, powers carry the noise bandwidth") {
   Spectrum s;
   s.enbw_hz = 0.25;
   CHECK(scaled_density(s, 3.0) == 6.0);
@@ -124,14 +121,12 @@ TEST_CASE("model interval: of one term it is the term's, and limits of terms not
   CHECK(stated.low == Approx(deviation * 0.95));
   Mixture one{};
   one[2] = 1;
-  const double up = 0.0004 * allan_variance(one, 100, 0.1),
-               white_up = deviation * deviation * (1.1 * 1.1 - 1);
+  const double up = 0.0004 * allan_variance(one, 100, 0.1), white_up = deviation * deviation * (1.1 * 1.1 - 1);
   CHECK(stated.high == Approx(std::sqrt(deviation * deviation + std::hypot(up, white_up))));
   fit.stationarity.tested = true;
   fit.stationarity.steady = false;
   fit.stationarity.spread = {{1, 16, 0.1, 0}};
   const Interval wider = *model_interval(fit, DeviationType::oadev, 100, 0.1);
-  CHECK(std::log(deviation / wider.low) ==
-        Approx(std::hypot(std::log(1 / 0.95), spread_reach(fit.stationarity, 10))));
+  CHECK(std::log(deviation / wider.low) == Approx(std::hypot(std::log(1 / 0.95), spread_reach(fit.stationarity, 10))));
   CHECK(!model_interval(fit, DeviationType::mdev, 100, 0.1));
 }

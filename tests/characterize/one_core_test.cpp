@@ -60,12 +60,10 @@ void phase(Rows& y) {
 class Log {
  public:
   explicit Log(const Rows& rows)
-      : path_((std::filesystem::temp_directory_path() /
-               ("libchar_one_core_" + std::to_string(::getpid()) + ".f64"))
+      : path_((std::filesystem::temp_directory_path() / ("libchar_one_core_" + std::to_string(::getpid()) + ".f64"))
                   .string()) {
     std::ofstream(path_, std::ios::binary)
-        .write(reinterpret_cast<const char*>(rows.data()),
-               static_cast<std::streamsize>(rows.size() * sizeof(double)));
+        .write(reinterpret_cast<const char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(double)));
     std::ofstream(path_ + ".json")
         << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "a", "unit": "deg/s"}], "rate_hz": 100})";
   }
@@ -114,9 +112,7 @@ void same(const Characterization& a, const Characterization& b) {
   if (x.fit) same(*x.fit, *y.fit);
 }
 
-Characterization in_stretches(const std::string& path,
-                              const CharacterizeOptions& options,
-                              std::uint64_t stretches) {
+Characterization in_stretches(const std::string& path, const CharacterizeOptions& options, std::uint64_t stretches) {
   const std::uint64_t leaves = leaves_of(read_log_head(path, options.reading).rows);
   std::vector<NamedState> states;
   for (std::uint64_t s = 0; s < stretches; ++s) {
@@ -149,16 +145,13 @@ void one_answer(const Rows& rows, CharacterizeOptions options = {}) {
   CharacterizeOptions fit_alone = options;
   fit_alone.wanted = {false, true, false, true};
   same(*characterize(log.path(), fit_alone).channels[0].fit, *answer.channels[0].fit);
-  for (const std::uint64_t stretches : {1U, 2U, 3U})
-    same(in_stretches(log.path(), options, stretches), answer);
+  for (const std::uint64_t stretches : {1U, 2U, 3U}) same(in_stretches(log.path(), options, stretches), answer);
 }
 
 }  // namespace
 
 TEST_CASE("one log has one answer, whoever has its samples and however many at a time") {
-  for (const std::size_t size : {std::size_t{10'000},
-                                 std::size_t{kLeafSamples},
-                                 std::size_t{kLeafSamples + 1},
+  for (const std::size_t size : {std::size_t{10'000}, std::size_t{kLeafSamples}, std::size_t{kLeafSamples + 1},
                                  std::size_t{2 * kLeafSamples + 54321}}) {
     CAPTURE(size);
     one_answer(noise(size));
@@ -169,8 +162,7 @@ TEST_CASE("one log has one answer, whoever has its samples and however many at a
   }
 }
 
-TEST_CASE(
-    "of a log of several leaves events, motion, spikes and changes are found as of a short one") {
+TEST_CASE("of a log of several leaves events, motion, spikes and changes are found as of a short one") {
   const std::size_t size = 2 * kLeafSamples + 54321;
   const auto fit_of = [&](const std::function<void(Rows&)>& spoil) {
     const Log log(noise(size, spoil));

@@ -40,9 +40,7 @@ Recording recording(bool is_long) {
 
 using Change = std::function<void(CharacterizeOptions&)>;
 
-std::vector<ChannelResult> run(const Change& change,
-                               std::uint64_t memory = kEnough,
-                               bool is_long = false) {
+std::vector<ChannelResult> run(const Change& change, std::uint64_t memory = kEnough, bool is_long = false) {
   static const Recording shorter = recording(false), longer = recording(true);
   CharacterizeOptions options;
   options.spectrum.segment = 4096;
@@ -60,8 +58,7 @@ std::vector<std::uint64_t> factors(const AllanCurve& curve) {
 void same_bits(const AllanCurve& a, const AllanCurve& b) {
   CHECK(a.type == b.type);
   REQUIRE(factors(a) == factors(b));
-  for (std::size_t k = 0; k < a.points.size(); ++k)
-    CHECK(a.points[k].deviation == b.points[k].deviation);
+  for (std::size_t k = 0; k < a.points.size(); ++k) CHECK(a.points[k].deviation == b.points[k].deviation);
 }
 
 const Change kNothing = [](CharacterizeOptions&) {};
@@ -97,8 +94,7 @@ TEST_CASE("limits of the averaging time hold, of a short log and of one of two l
   };
   for (const bool is_long : {false, true}) {
     const auto limited = run(limits, kEnough, is_long), all = run(kNothing, kEnough, is_long);
-    CHECK(factors(limited[0].allan) ==
-          std::vector<std::uint64_t>{8, 16, 32, 64, 128, 256, 512, 1024});
+    CHECK(factors(limited[0].allan) == std::vector<std::uint64_t>{8, 16, 32, 64, 128, 256, 512, 1024});
     for (std::size_t k = 0; k < limited[0].allan.points.size(); ++k)
       CHECK(limited[0].allan.points[k].deviation == all[0].allan.points[k + 3].deviation);
     const auto none = run([](auto& o) { o.allan.tau_min_s = 1e5; }, kEnough, is_long);
@@ -138,10 +134,9 @@ TEST_CASE("what takes all samples of a long log is refused with the memory that 
 }
 
 TEST_CASE("a log of one leaf is computed whole, whatever memory is allowed") {
-  std::vector<std::pair<std::string, Change>> changes = {
-      {"nothing", kNothing},
-      {"decade", [](auto& o) { o.allan.grid = TauGrid::decade; }},
-      {"phase", [](auto& o) { o.data = SampleKind::phase; }}};
+  std::vector<std::pair<std::string, Change>> changes = {{"nothing", kNothing},
+                                                         {"decade", [](auto& o) { o.allan.grid = TauGrid::decade; }},
+                                                         {"phase", [](auto& o) { o.data = SampleKind::phase; }}};
   for (const DeviationRow& row : deviation_rows())
     changes.emplace_back(row.word, [&row](auto& o) { o.allan.type = row.type; });
   for (const auto& [name, change] : changes) {
@@ -160,8 +155,7 @@ TEST_CASE("dense times of a long record take every (m/4)-th term, and every one 
           o.wanted.spectrum = false;
           o.full_overlap = full;
         },
-        kEnough,
-        true);
+        kEnough, true);
   };
   const auto few = dense(false), all = dense(true);
   CHECK(few[0].allan.stride_divisor == kPyramidStride);
@@ -218,6 +212,5 @@ TEST_CASE("segments that do not divide a leaf are taken from leaves in turn") {
   options.segment = 5000;
   const Spectrum whole = log_binned(welch(recording(true).samples[0], 100, options), 400);
   REQUIRE(leaves.value.size() == whole.value.size());
-  for (std::size_t k = 0; k < whole.value.size(); ++k)
-    CHECK(leaves.value[k] == Approx(whole.value[k]).epsilon(1e-9));
+  for (std::size_t k = 0; k < whole.value.size(); ++k) CHECK(leaves.value[k] == Approx(whole.value[k]).epsilon(1e-9));
 }

@@ -9,8 +9,7 @@
 namespace test {
 
 /// Code and sentence of the error that a characterization ends in; "" when it ends in none.
-inline std::string refusal(const libchar::Recording& recording,
-                           const libchar::CharacterizeOptions& options) {
+inline std::string refusal(const libchar::Recording& recording, const libchar::CharacterizeOptions& options) {
   try {
     characterize(recording, options);
   } catch (const libchar::Error& error) {

@@ -37,10 +37,7 @@ Characterization run_of(std::vector<double> samples, const std::string& name, do
   return characterize(recording_of(std::move(samples), name, offset), options);
 }
 
-std::vector<Characterization> runs_of(const Sensor& sensor,
-                                      std::size_t count,
-                                      std::size_t samples,
-                                      std::uint64_t seed,
+std::vector<Characterization> runs_of(const Sensor& sensor, std::size_t count, std::size_t samples, std::uint64_t seed,
                                       double turn_on = 0) {
   test::NoiseSource noise(samples, kRate, seed);
   std::vector<Characterization> out;
@@ -64,8 +61,7 @@ TEST_CASE("pooled runs: one set of coefficients, as well known as all runs toget
   const PooledChannel pooled = only(pool_runs(runs));
   CHECK(pooled.consistent);
   CHECK(pooled.runs.size() == 16);
-  for (const auto& [term, value] :
-       {std::pair(Term::white, truth.q), std::pair(Term::flicker, truth.b)}) {
+  for (const auto& [term, value] : {std::pair(Term::white, truth.q), std::pair(Term::flicker, truth.b)}) {
     const Coefficient& c = pooled.fit[term];
     CAPTURE(static_cast<int>(term), value);
     REQUIRE(c.value);
@@ -78,8 +74,7 @@ TEST_CASE("pooled runs: one set of coefficients, as well known as all runs toget
   CHECK_FALSE(pooled.fit.term[0].bound);
 }
 
-TEST_CASE(
-    "pooled runs: intervals cover, and equal runs of unequal length are called unlike in 1 %") {
+TEST_CASE("pooled runs: intervals cover, and equal runs of unequal length are called unlike in 1 %") {
   const Sensor truth;
   int covered = 0, unlike = 0;
   constexpr int kSets = 40;
@@ -97,8 +92,7 @@ TEST_CASE(
   CHECK(unlike <= 3);    // 1 % of 40; more than three by chance: 0.1 %
 }
 
-TEST_CASE(
-    "pooled runs: a run of another sensor is named, and the coefficients are those of the rest") {
+TEST_CASE("pooled runs: a run of another sensor is named, and the coefficients are those of the rest") {
   auto runs = runs_of({}, 7, 6000, 3);
   test::NoiseSource noise(6000, kRate, 77);
   runs.push_back(run_of(noise.record(6.5e-3, 4e-3, 0), "odd"));

@@ -119,8 +119,7 @@ TEST_CASE("still: nothing moves, a log in a file, and all that is refused") {
   }
   options = only_fit();
   options.still.search = true;
-  CHECK(test::refusal(recording, options) ==
-        "E0705 the channel gyr_y moves throughout: the log has no still stretch");
+  CHECK(test::refusal(recording, options) == "E0705 the channel gyr_y moves throughout: the log has no still stretch");
   CHECK(test::refusal(two_channels(500, 3), options).find("E0705 no channel can be searched") == 0);
 }
 
@@ -131,9 +130,7 @@ TEST_CASE("digital faults stand in the result, and their coefficients are not be
   for (double& value : recording.samples[1]) value = std::round(value / (5 * sigma)) * 5 * sigma;
   const auto find = [](const ChannelResult& channel, const std::string& words) {
     const auto& p = channel.findings;
-    return std::any_of(p.begin(), p.end(), [&](const auto& s) {
-      return s.sentence.find(words) != std::string::npos;
-    });
+    return std::any_of(p.begin(), p.end(), [&](const auto& s) { return s.sentence.find(words) != std::string::npos; });
   };
   const Characterization result = characterize(recording, only_fit());
   const ChannelResult &clipped = result.channels[0], &coarse = result.channels[1];
@@ -156,7 +153,7 @@ TEST_CASE("digital faults stand in the result, and their coefficients are not be
   REQUIRE(twice.channels[0].digital.held);
   CHECK(twice.channels[0].digital.held->sensor_rate_hz == Approx(25));
   REQUIRE(has(twice.channels[0].quality.findings, "held_values"));
-  CHECK(twice.channels[0].quality.findings[0].sentence.find(
-            "the sensor gives 25.00 Hz where the log has 50.00 Hz") != std::string::npos);
+  CHECK(twice.channels[0].quality.findings[0].sentence.find("the sensor gives 25.00 Hz where the log has 50.00 Hz") !=
+        std::string::npos);
   CHECK(twice.channels[1].findings.empty());
 }

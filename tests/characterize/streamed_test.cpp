@@ -17,9 +17,8 @@ namespace {
 // 60000 rows of white noise with a random walk in two channels; `gap`: rows left out, one cell
 // empty.
 std::filesystem::path log_of(bool gap) {
-  const auto path =
-      std::filesystem::temp_directory_path() /
-      (std::string("libchar_streamed_") + std::to_string(::getpid()) + (gap ? "g.csv" : ".csv"));
+  const auto path = std::filesystem::temp_directory_path() /
+                    (std::string("libchar_streamed_") + std::to_string(::getpid()) + (gap ? "g.csv" : ".csv"));
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal;
   std::ofstream out(path);
@@ -30,21 +29,13 @@ std::filesystem::path log_of(bool gap) {
     walk += 0.002 * normal(generator);
     const double a = 0.05 * normal(generator) + walk, b = 9.81 + normal(generator);
     if (gap && i >= 30000 && i < 30200) continue;
-    std::snprintf(line,
-                  sizeof line,
-                  gap && i == 41000 ? "%.3f,%.9g,\n" : "%.3f,%.9g,%.9g\n",
-                  i * 0.005,
-                  a,
-                  b);
+    std::snprintf(line, sizeof line, gap && i == 41000 ? "%.3f,%.9g,\n" : "%.3f,%.9g,%.9g\n", i * 0.005, a, b);
     out << line;
   }
   return path;
 }
 
-Characterization streamed(const std::filesystem::path& path,
-                          std::size_t block_bytes,
-                          int threads,
-                          std::uint64_t memory,
+Characterization streamed(const std::filesystem::path& path, std::size_t block_bytes, int threads, std::uint64_t memory,
                           std::uint64_t segment = 8192) {
   CharacterizeOptions options;
   options.spectrum.segment = segment;
@@ -106,8 +97,7 @@ TEST_CASE("a log gives the same bits whatever the blocks and threads, with gaps 
   for (const bool gap : {false, true}) {
     const auto path = log_of(gap);
     const Characterization first = streamed(path, std::size_t{1} << 20U, 0, 1);
-    for (const std::size_t block :
-         {std::size_t{1} << 14U, std::size_t{70000}, std::size_t{3000000}})
+    for (const std::size_t block : {std::size_t{1} << 14U, std::size_t{70000}, std::size_t{3000000}})
       for (const int threads : {1, 2}) {
         CAPTURE(gap, block, threads);
         same_bits(streamed(path, block, threads, 1), first);

@@ -25,9 +25,7 @@ namespace {
 /// A raw log of doubles that goes with the object; `sample`: of value i, row by row.
 class RawLog {
  public:
-  RawLog(const char* name,
-         std::uint64_t rows,
-         const std::function<double(std::uint64_t)>& sample,
+  RawLog(const char* name, std::uint64_t rows, const std::function<double(std::uint64_t)>& sample,
          std::size_t channels = 1)
       : path_((std::filesystem::temp_directory_path() /
                (std::string("libchar_stretches_") + std::to_string(::getpid()) + name + ".f64"))
@@ -39,10 +37,10 @@ class RawLog {
                static_cast<std::streamsize>(samples.size() * sizeof(double)));
     std::string names;
     for (std::size_t c = 0; c < channels; ++c)
-      names += (c > 0 ? ", " : "") +
-               (R"({"name": "gyro)" + (c > 0 ? std::to_string(c) : "") + R"(", "unit": "deg/s"})");
-    std::ofstream(path_ + ".json") << R"({"dtype": "f64", "endian": "little", "channels": [)" +
-                                          names + R"(], "rate_hz": 200})";
+      names +=
+          (c > 0 ? ", " : "") + (R"({"name": "gyro)" + (c > 0 ? std::to_string(c) : "") + R"(", "unit": "deg/s"})");
+    std::ofstream(path_ + ".json") << R"({"dtype": "f64", "endian": "little", "channels": [)" + names +
+                                          R"(], "rate_hz": 200})";
   }
   ~RawLog() {
     std::filesystem::remove(path_);
@@ -57,11 +55,8 @@ class RawLog {
 };
 
 /// Of a stretch, a state for each channel: "NAME" of the first, "NAME.2" of the second.
-std::vector<NamedState> states_in(const std::string& path,
-                                  const CharacterizeOptions& options,
-                                  StretchRange range,
-                                  const std::string& identity,
-                                  const std::string& name) {
+std::vector<NamedState> states_in(const std::string& path, const CharacterizeOptions& options, StretchRange range,
+                                  const std::string& identity, const std::string& name) {
   std::vector<NamedState> states;
   characterize_stretch(path, options, range, identity, [&](const std::string& bytes) {
     const std::string number = states.empty() ? "" : "." + std::to_string(states.size() + 1);
@@ -71,8 +66,7 @@ std::vector<NamedState> states_in(const std::string& path,
 }
 
 /// The states of a log in so many stretches of about one length.
-std::vector<NamedState> states_of(const std::string& path,
-                                  std::uint64_t stretches,
+std::vector<NamedState> states_of(const std::string& path, std::uint64_t stretches,
                                   const CharacterizeOptions& options = {}) {
   const std::uint64_t leaves = leaves_of(read_log_head(path, options.reading).rows);
   std::vector<NamedState> states;
@@ -104,16 +98,14 @@ void agree(const Characterization& a, const Characterization& b, const Digits& d
     REQUIRE(x.quality.distinct_values == y.quality.distinct_values);
     REQUIRE(x.quality.findings == y.quality.findings);
     REQUIRE(x.quality.mean == Approx(y.quality.mean).epsilon(digits.mean));
-    REQUIRE(x.quality.standard_deviation ==
-            Approx(y.quality.standard_deviation).epsilon(digits.mean));
+    REQUIRE(x.quality.standard_deviation == Approx(y.quality.standard_deviation).epsilon(digits.mean));
     REQUIRE(x.trace.low == y.trace.low);
     REQUIRE(x.trace.high == y.trace.high);
     REQUIRE(x.allan.points.size() == y.allan.points.size());
     for (std::size_t i = 0; i < x.allan.points.size(); ++i) {
       CAPTURE(x.allan.points[i].m);
       REQUIRE(x.allan.points[i].terms == y.allan.points[i].terms);
-      REQUIRE(x.allan.points[i].deviation ==
-              Approx(y.allan.points[i].deviation).epsilon(digits.allan));
+      REQUIRE(x.allan.points[i].deviation == Approx(y.allan.points[i].deviation).epsilon(digits.allan));
     }
     REQUIRE(x.spectrum.segments == y.spectrum.segments);
     REQUIRE(x.spectrum.dropped == y.spectrum.dropped);
@@ -127,12 +119,9 @@ void agree(const Characterization& a, const Characterization& b, const Digits& d
   }
 }
 
-void equal_bits(const Characterization& a, const Characterization& b) {
-  agree(a, b, {0, 0, 0, 0});
-}
+void equal_bits(const Characterization& a, const Characterization& b) { agree(a, b, {0, 0, 0, 0}); }
 
-std::string refusal_of_states(std::span<const NamedState> states,
-                              const CharacterizeOptions& options = {}) {
+std::string refusal_of_states(std::span<const NamedState> states, const CharacterizeOptions& options = {}) {
   try {
     characterize_from_stretches(states, options);
   } catch (const Error& error) {
@@ -166,8 +155,7 @@ TEST_CASE("a log in stretches: an offset of 1e9 standard deviations, a drift, an
   options.spectrum.segment = 1 << 14U;
   options.spectrum.overlap = 0.75;
   const Characterization whole = as_stream(log.path(), options);
-  const Characterization joined =
-      characterize_from_stretches(states_of(log.path(), 3, options), options);
+  const Characterization joined = characterize_from_stretches(states_of(log.path(), 3, options), options);
   // Of the stream the blocks of the fit are shorter where they are not half a segment, and
   // quantized to 1e-7 of the noise.
   agree(joined, whole, {.allan = 1e-12, .mean = 1e-12, .spectrum = 1e-10, .fit = 0.3});
@@ -187,8 +175,7 @@ TEST_CASE("a log in stretches: missing samples, at boundaries and beyond them") 
   agree(joined, whole, {.allan = 1e-12, .mean = 1e-13, .spectrum = 1e-12, .fit = 0.05});
   REQUIRE(joined.channels[0].quality.beyond == 1);
   for (const std::uint64_t stretches : {1, 5}) {
-    const Characterization other =
-        characterize_from_stretches(states_of(log.path(), stretches), {});
+    const Characterization other = characterize_from_stretches(states_of(log.path(), stretches), {});
     equal_bits(other, joined);
     REQUIRE(one_line(*other.log.warnings.find("missing_cell"), "") ==
             one_line(*joined.log.warnings.find("missing_cell"), ""));
@@ -264,13 +251,10 @@ TEST_CASE("states of a channel that are missing or double are refused by name") 
     some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
     return refusal_of_states(some);
   };
-  REQUIRE_THAT(
-      without(1),
-      Catch::Contains(
-          "state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 in front of it"));
+  REQUIRE_THAT(without(1),
+               Catch::Contains("state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 in front of it"));
   REQUIRE_THAT(without(5),
-               Catch::Contains(
-                   "state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 behind it"));
+               Catch::Contains("state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 behind it"));
   const std::vector<NamedState> no_third = {all[0], all[1], all[3], all[4]};
   REQUIRE_THAT(refusal_of_states(no_third), Catch::Contains("no state is of channel 3 of 3"));
   std::vector<NamedState> twice = all;
@@ -288,27 +272,22 @@ TEST_CASE("logs in stretches as short as a sample, and what was not asked for") 
     REQUIRE(joined.channels[0].spectrum.value.empty() == (rows <= 5));
   }
   const RawLog log("wanted", kLeafSamples + 100000, sensor(0.3));
-  for (const Wanted wanted : {Wanted{true, false, false, false},
-                              Wanted{false, true, false, false},
-                              Wanted{false, false, true, false},
-                              Wanted{true, true, false, true}}) {
+  for (const Wanted wanted : {Wanted{true, false, false, false}, Wanted{false, true, false, false},
+                              Wanted{false, false, true, false}, Wanted{true, true, false, true}}) {
     CharacterizeOptions options;
     options.wanted = wanted;
-    agree(characterize_from_stretches(states_of(log.path(), 2, options), options),
-          as_stream(log.path(), options),
+    agree(characterize_from_stretches(states_of(log.path(), 2, options), options), as_stream(log.path(), options),
           {.fit = 0.3});  // without a spectrum a stream has shorter blocks
   }
 }
 
 TEST_CASE("a log of frequencies in stretches") {
   auto noise = sensor(0);
-  const RawLog log(
-      "frequency", kLeafSamples + 100000, [&](std::uint64_t i) { return 1e7 + 1e-3 * noise(i); });
+  const RawLog log("frequency", kLeafSamples + 100000, [&](std::uint64_t i) { return 1e7 + 1e-3 * noise(i); });
   CharacterizeOptions options;
   options.data = SampleKind::frequency;
   options.nominal_frequency = 1e7;
-  agree(characterize_from_stretches(states_of(log.path(), 2, options), options),
-        as_stream(log.path(), options),
+  agree(characterize_from_stretches(states_of(log.path(), 2, options), options), as_stream(log.path(), options),
         {.allan = 1e-11, .mean = 1e-9, .spectrum = 1e-10});
 }
 
@@ -320,8 +299,7 @@ struct TwoStates {
   std::vector<NamedState> states = states_of(log.path(), 2);
 };
 
-std::string refusal_of_stretch(const std::string& path,
-                               const CharacterizeOptions& options,
+std::string refusal_of_stretch(const std::string& path, const CharacterizeOptions& options,
                                StretchRange range = {0, 1}) {
   try {
     characterize_stretch(path, options, range, "x", [](const std::string&) {});
@@ -342,12 +320,9 @@ TEST_CASE("states that are missing, double, foreign, or of other settings are re
   REQUIRE_THAT(refusal_of_states({states.data() + 1, 1}),
                Catch::Contains("state1: error E0725: no state has the leaves 0 to 0 in front"));
   const std::vector<NamedState> twice = {states[0], states[1], {"copy", states[0].bytes}};
-  REQUIRE_THAT(refusal_of_states(twice),
-               Catch::Contains("copy: error E0725: covers leaf 0, which state0 does too"));
-  const std::vector<NamedState> foreign = {
-      states[0], states_in(two.log.path(), {}, {1, 2}, "log 2", "other")[0]};
-  REQUIRE_THAT(refusal_of_states(foreign),
-               Catch::Contains("other: error E0724: is of another log"));
+  REQUIRE_THAT(refusal_of_states(twice), Catch::Contains("copy: error E0725: covers leaf 0, which state0 does too"));
+  const std::vector<NamedState> foreign = {states[0], states_in(two.log.path(), {}, {1, 2}, "log 2", "other")[0]};
+  REQUIRE_THAT(refusal_of_states(foreign), Catch::Contains("other: error E0724: is of another log"));
   CharacterizeOptions options;
   options.spectrum.segment = 1 << 14U;
   REQUIRE_THAT(refusal_of_states(states, options), Catch::Contains("E0724"));
@@ -366,8 +341,7 @@ TEST_CASE("states that are cut or changed anywhere are refused, and never read")
     other[at] = static_cast<char>(other[at] ^ 1);
     const std::vector<NamedState> changed = {state_in_memory("bad", other), two.states[1]};
     REQUIRE_THAT(refusal_of_states(changed), Catch::Contains("bad: error E0723"));
-    const std::vector<NamedState> cut = {state_in_memory("bad", whole.substr(0, at)),
-                                         two.states[1]};
+    const std::vector<NamedState> cut = {state_in_memory("bad", whole.substr(0, at)), two.states[1]};
     REQUIRE_THAT(refusal_of_states(cut), Catch::Contains("bad: error E0723"));
   }
   REQUIRE(stretch_head(two.states[1]).range.first_leaf == 1);
@@ -423,8 +397,7 @@ TEST_CASE("logs and options that cannot be divided are refused in a sentence") {
                Catch::Contains("E0727: the log has 2 leaves of 1048576 samples"));
   options.quarter_segments = true;
   REQUIRE_THAT(refusal_of_stretch(path, options),
-               Catch::Contains("E0726") &&
-                   Catch::Contains("a quarter of the record takes all samples at once"));
+               Catch::Contains("E0726") && Catch::Contains("a quarter of the record takes all samples at once"));
   options = {};
   options.spectrum.segment = 100000;
   REQUIRE_THAT(refusal_of_stretch(path, options), Catch::Contains("do not divide a leaf"));

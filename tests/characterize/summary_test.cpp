@@ -16,9 +16,7 @@ using Catch::StartsWith;
 
 namespace {
 
-ChannelResult clean(const std::string& unit = "deg/s") {
-  return test::synthetic_channel("x", unit, {}, 1);
-}
+ChannelResult clean(const std::string& unit = "deg/s") { return test::synthetic_channel("x", unit, {}, 1); }
 
 Event step_of(double size, double at_s) {
   Event event;
@@ -46,10 +44,9 @@ Characterization white_noise(std::size_t n, unsigned seed, auto&& spoil) {
 }  // namespace
 
 TEST_CASE("judge: headline, badge and sentence agree on a log with spikes") {
-  const Characterization result =
-      white_noise(40000, 5, [](std::vector<double>& y, std::mt19937_64& generator) {
-        for (int k = 0; k < 100; ++k) y[generator() % y.size()] += k % 2 == 0 ? 20 : -20;
-      });
+  const Characterization result = white_noise(40000, 5, [](std::vector<double>& y, std::mt19937_64& generator) {
+    for (int k = 0; k < 100; ++k) y[generator() % y.size()] += k % 2 == 0 ? 20 : -20;
+  });
   const CharacterizationView view = characterization_view(result);
   CHECK(view.rating == Rating::caution);
   CHECK(view.channels[0].judgement.has("spikes_left_out"));
@@ -58,11 +55,10 @@ TEST_CASE("judge: headline, badge and sentence agree on a log with spikes") {
 }
 
 TEST_CASE("judge: headline, badge and sentence agree on a log with 3 % of its rows missing") {
-  const Characterization result =
-      white_noise(40000, 6, [](std::vector<double>& y, std::mt19937_64& generator) {
-        for (double& value : y)
-          if (generator() % 100 < 3) value = std::nan("");
-      });
+  const Characterization result = white_noise(40000, 6, [](std::vector<double>& y, std::mt19937_64& generator) {
+    for (double& value : y)
+      if (generator() % 100 < 3) value = std::nan("");
+  });
   const CharacterizationView view = characterization_view(result);
   CHECK(view.rating == Rating::caution);
   CHECK(view.channels[0].judgement.has("missing_samples"));
@@ -77,15 +73,13 @@ TEST_CASE("judge: a headline of nothing but good channels warns of none") {
   CHECK_THAT(view.verdict, EndsWith("agrees.") && !Contains("caution"));
 }
 
-TEST_CASE(
-    "summary: a channel that nothing speaks against is good, its terms in the field's units") {
+TEST_CASE("summary: a channel that nothing speaks against is good, its terms in the field's units") {
   const ChannelResult c = clean();
   CHECK(judge(c).rating == Rating::good);
   CHECK(judge(c).findings.empty());
-  CHECK_THAT(sentence_of(c),
-             StartsWith("Angle random walk N 0.3") && Contains(" deg/√h [") &&
-                 Contains(", bias instability B ") && Contains(" deg/h [") &&
-                 Contains(", rate random walk K ") && Contains(" deg/h/√h ["));
+  CHECK_THAT(sentence_of(c), StartsWith("Angle random walk N 0.3") && Contains(" deg/√h [") &&
+                                 Contains(", bias instability B ") && Contains(" deg/h [") &&
+                                 Contains(", rate random walk K ") && Contains(" deg/h/√h ["));
   CHECK_THAT(sentence_of(clean("m/s^2"), "m/s²"),
              StartsWith("Velocity random walk N ") && Contains("acceleration random walk K"));
   CHECK_THAT(sentence_of(clean(""), ""), StartsWith("White noise N ") && Contains(" U·√s ["));
@@ -102,13 +96,11 @@ TEST_CASE("summary: slow noise that is a Gauss-Markov process is not called unse
   c.fit->gauss_markov->sigma.status = c.fit->gauss_markov->tau_s.status = Status::detected;
   c.fit->gauss_markov->sigma.value = 0.02;
   c.fit->gauss_markov->tau_s.value = 60;
-  CHECK_THAT(
-      sentence_of(c),
-      Contains("a Gauss–Markov process of 0.02") && Contains(" deg/s with a correlation time of"));
+  CHECK_THAT(sentence_of(c),
+             Contains("a Gauss–Markov process of 0.02") && Contains(" deg/s with a correlation time of"));
 }
 
-TEST_CASE(
-    "summary: what may be next to nothing, cut off or nearly right is not simply good or bad") {
+TEST_CASE("summary: what may be next to nothing, cut off or nearly right is not simply good or bad") {
   ChannelResult c = clean();
   c.fit->term[2].ci95.low = 0;
   CHECK(judge(c).has("reaches_zero"));
@@ -116,8 +108,7 @@ TEST_CASE(
   c = clean();
   c.quality.findings = {finding("saturated", "5 samples stand at the end of the range")};
   CHECK(judge(c).rating == Rating::caution);
-  c.quality.findings = {
-      finding("much_saturated", "480 samples (48 %) stand at the end of the range")};
+  c.quality.findings = {finding("much_saturated", "480 samples (48 %) stand at the end of the range")};
   CHECK(judge(c).rating == Rating::bad);
   CHECK_THAT(sentence_of(c), Contains("480 samples (48 %) stand at the end of the range"));
 
@@ -147,8 +138,7 @@ TEST_CASE("summary: what was taken out, and what is doubtful, is never called go
   CHECK_THAT(sentence_of(c), Contains("2 steps and a warm-up were taken out."));
   c = clean();
   c.fit->term[1].status = c.fit->term[2].status = Status::undetermined;
-  CHECK(judge(c).rating ==
-        Rating::good);  // N holds, and the sentence says of B and K that they are undetermined
+  CHECK(judge(c).rating == Rating::good);  // N holds, and the sentence says of B and K that they are undetermined
   CHECK_THAT(sentence_of(c), Contains("], undetermined, rate random walk K"));
   c.fit->term[0].status = Status::undetermined;
   CHECK(judge(c).rating == Rating::caution);
@@ -169,25 +159,17 @@ TEST_CASE("summary: a misfit, a bad goodness, no fit are not to be used") {
   c.findings = {finding("motion", "The sensor moves."),
                 finding("no_fit", "no noise fit: the recording holds a signal throughout")};
   CHECK(judge(c).rating == Rating::bad);
-  CHECK_THAT(sentence_of(c),
-             Contains("No noise fit: the recording holds a signal throughout; the sensor moves."));
+  CHECK_THAT(sentence_of(c), Contains("No noise fit: the recording holds a signal throughout; the sensor moves."));
 }
 
-TEST_CASE(
-    "summary: findings are phrases, the worst first, and their sentences stand with the channel") {
+TEST_CASE("summary: findings are phrases, the worst first, and their sentences stand with the channel") {
   ChannelResult c = clean();
-  c.findings = {finding("strength_change",
-                        "The noise changes.",
-                        "the noise is 1.75 times as strong from 100 s on"),
-                finding("motion",
-                        "The sensor was moved or shaken in 2 stretches.",
-                        "moved or shaken in 2 stretches")};
+  c.findings = {finding("strength_change", "The noise changes.", "the noise is 1.75 times as strong from 100 s on"),
+                finding("motion", "The sensor was moved or shaken in 2 stretches.", "moved or shaken in 2 stretches")};
   CHECK(judge(c).rating == Rating::caution);
-  CHECK_THAT(
-      sentence_of(c),
-      Contains(
-          "But: the noise is 1.75 times as strong from 100 s on; moved or shaken in 2 stretches") &&
-          !Contains("The sensor was"));
+  CHECK_THAT(sentence_of(c),
+             Contains("But: the noise is 1.75 times as strong from 100 s on; moved or shaken in 2 stretches") &&
+                 !Contains("The sensor was"));
   c.findings[1].severity = Severity::bad;
   CHECK(judge(c).rating == Rating::bad);
   CHECK(judge(c).findings[0].code == "motion");

@@ -22,8 +22,7 @@ Recording warm_recording(double rate_hz, std::size_t n) {
   recording.info.channels = {{"gyr_x", "deg/s", false}, {"box", "degF", false}};
   recording.samples = {source.record(5e-3, 0, 1e-4), std::vector<double>(n)};
   for (std::size_t t = 0; t < n; ++t) {
-    const double celsius =
-        20 + 4 * std::sin(12.0 * static_cast<double>(t) / static_cast<double>(n));
+    const double celsius = 20 + 4 * std::sin(12.0 * static_cast<double>(t) / static_cast<double>(n));
     recording.samples[1][t] = celsius * 1.8 + 32;
     recording.samples[0][t] += 0.02 * celsius;
   }
@@ -66,8 +65,7 @@ TEST_CASE("temperature of a recording: refused where it is none or cannot be kep
   options.temperature = "*";
   CHECK(test::refusal(recording, options).find("E0702 several channels match this pattern") == 0);
   options.temperature = "gyr_x";
-  CHECK(test::refusal(recording, options) ==
-        "E0702 the channel gyr_x is in deg/s, which is no temperature");
+  CHECK(test::refusal(recording, options) == "E0702 the channel gyr_x is in deg/s, which is no temperature");
   Recording alone = recording;
   alone.info.channels.erase(alone.info.channels.begin());
   alone.samples.erase(alone.samples.begin());
@@ -85,8 +83,7 @@ TEST_CASE("temperature of a log: read beside the channels that were chosen, and 
   const Recording recording = warm_recording(10, 3'000);
   std::string text = "a,box [degF],b\n";
   for (std::size_t t = 0; t < 3'000; ++t)
-    text += std::to_string(recording.samples[0][t]) + "," +
-            std::to_string(recording.samples[1][t]) + ",1\n";
+    text += std::to_string(recording.samples[0][t]) + "," + std::to_string(recording.samples[1][t]) + ",1\n";
   const test::MemoryLog log(text);
   CharacterizeOptions options;
   options.reading.rate_hz = 10;

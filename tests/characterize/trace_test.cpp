@@ -21,8 +21,7 @@ std::vector<double> noise(std::size_t n) {
 
 Trace trace_in_pieces(const std::vector<double>& x, std::size_t piece) {
   TraceMeter meter;
-  for (std::size_t i = 0; i < x.size(); i += piece)
-    meter.push({x.data() + i, std::min(piece, x.size() - i)});
+  for (std::size_t i = 0; i < x.size(); i += piece) meter.push({x.data() + i, std::min(piece, x.size() - i)});
   return meter.finish();
 }
 
@@ -43,8 +42,7 @@ TEST_CASE("trace: extremes of each block, whatever the pieces, in a few hundred 
     for (std::size_t b = 0; b < trace.low.size(); ++b) {
       double low = INFINITY, high = -INFINITY;
       std::uint64_t missing = 0;
-      for (std::size_t i = b * trace.block; i < std::min<std::size_t>(n, (b + 1) * trace.block);
-           ++i) {
+      for (std::size_t i = b * trace.block; i < std::min<std::size_t>(n, (b + 1) * trace.block); ++i) {
         if (std::isnan(x[i])) ++missing;
         if (x[i] < low) low = x[i];
         if (x[i] > high) high = x[i];
@@ -58,14 +56,9 @@ TEST_CASE("trace: extremes of each block, whatever the pieces, in a few hundred 
     for (const std::size_t piece : {1u, 7u, 4096u}) {
       const Trace other = trace_in_pieces(x, piece);
       CHECK(other.block == trace.block);
-      CHECK(std::equal(
-          other.missing.begin(), other.missing.end(), trace.missing.begin(), trace.missing.end()));
-      CHECK(std::equal(
-          other.high.begin(),
-          other.high.end(),
-          trace.high.begin(),
-          trace.high.end(),
-          [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
+      CHECK(std::equal(other.missing.begin(), other.missing.end(), trace.missing.begin(), trace.missing.end()));
+      CHECK(std::equal(other.high.begin(), other.high.end(), trace.high.begin(), trace.high.end(),
+                       [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
     }
   }
 }
@@ -74,11 +67,9 @@ TEST_CASE("trace: parts joined are the record, whatever their length and that of
   for (const std::size_t leaf : {16u, 2048u, 16384u})
     for (const std::size_t n : {5u, 2048u, 2049u, 100003u, 16384u * 7 + 1}) {
       std::vector<double> x = noise(n);
-      if (n > 6000)
-        std::fill(x.begin() + 2000, x.begin() + 5000, std::numeric_limits<double>::quiet_NaN());
+      if (n > 6000) std::fill(x.begin() + 2000, x.begin() + 5000, std::numeric_limits<double>::quiet_NaN());
       const TraceMeter joined = test::joined_parts<TraceMeter>(
-          x,
-          leaf,
+          x, leaf,
           [](std::span<const double> part, bool) {
             TraceMeter meter;
             meter.push(part);
@@ -91,9 +82,7 @@ TEST_CASE("trace: parts joined are the record, whatever their length and that of
       REQUIRE(a.missing == b.missing);
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < a.low.size(); ++i)
-        if (std::isnan(a.low[i]) ? !std::isnan(b.low[i])
-                                 : a.low[i] != b.low[i] || a.high[i] != b.high[i])
-          ++wrong;
+        if (std::isnan(a.low[i]) ? !std::isnan(b.low[i]) : a.low[i] != b.low[i] || a.high[i] != b.high[i]) ++wrong;
       REQUIRE(wrong == 0);
     }
 }

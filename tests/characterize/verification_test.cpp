@@ -46,8 +46,7 @@ std::string recording(const test::TemporaryFolder& folder, std::uint64_t seed, d
   options.overwrite = true;
   const auto writer = open_log_writer(path, info, options);
   ArraySimulator simulator(s);
-  for (auto block = simulator.next(8192); !block.empty(); block = simulator.next(8192))
-    writer->write(block.first(1));
+  for (auto block = simulator.next(8192); !block.empty(); block = simulator.next(8192)) writer->write(block.first(1));
   writer->finish();
   return path;
 }

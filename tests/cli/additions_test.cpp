@@ -21,9 +21,7 @@ namespace {
 
 test::Ran run_with_additions(std::vector<std::string> words) {
   words.insert(words.begin(),
-               std::filesystem::path(test::program())
-                   .replace_filename("sensorchar_with_additions")
-                   .string());
+               std::filesystem::path(test::program()).replace_filename("sensorchar_with_additions").string());
   return test::run_words(words);
 }
 
@@ -68,8 +66,7 @@ TEST_CASE("an export target is a file and a line: list, work and messages have i
   const auto names = run_with_additions({"model", model, "--to", "names"});
   INFO(names.err);
   CHECK(names.out == "gyro_x\n");
-  CHECK_THAT(run_with_additions({"model", model, "--to", "name"}).err,
-             Contains("did you mean names?"));
+  CHECK_THAT(run_with_additions({"model", model, "--to", "name"}).err, Contains("did you mean names?"));
   CHECK(test::run({"model", model, "--to", "names"}).code == 2);
 }
 
@@ -88,15 +85,12 @@ TEST_CASE("an Allan statistic is a row: help, work, JSON and messages have it") 
   REQUIRE(a.at("tau_s") == b.at("tau_s"));
   for (std::size_t i = 0; i < a.at("tau_s").size(); ++i)
     CHECK(a.at("deviation")[i].get<double>() ==
-          Approx(b.at("deviation")[i].get<double>() * a.at("tau_s")[i].get<double>() /
-                 std::sqrt(3.0)));
-  CHECK_THAT(run_with_additions({"allan", log, "--type", "scaled-odev"}).err,
-             Contains("scaled-oadev"));
+          Approx(b.at("deviation")[i].get<double>() * a.at("tau_s")[i].get<double>() / std::sqrt(3.0)));
+  CHECK_THAT(run_with_additions({"allan", log, "--type", "scaled-odev"}).err, Contains("scaled-oadev"));
   CHECK(test::run({"allan", log, "--type", "scaled-oadev"}).code == 2);
 }
 
-TEST_CASE(
-    "the pages lack what was added, and nothing else: the comparison with the tables finds it") {
+TEST_CASE("the pages lack what was added, and nothing else: the comparison with the tables finds it") {
   const auto missing = [](const std::string& listed, const std::string& file) {
     const std::string page = test::slurp(test::source_folder() / "docs" / file);
     std::vector<std::string> names;
@@ -108,8 +102,7 @@ TEST_CASE(
     return names;
   };
   using Names = std::vector<std::string>;
-  CHECK(missing(run_with_additions({"replay", "--list"}).out, "replay.md") ==
-        Names{"last-channel"});
+  CHECK(missing(run_with_additions({"replay", "--list"}).out, "replay.md") == Names{"last-channel"});
   CHECK(missing(run_with_additions({"model", "--list"}).out, "exports.md") == Names{"names"});
   std::string help = run_with_additions({"allan", "--help"}).out;
   const std::string broken = "|\n      ";  // a long list goes on in the next line

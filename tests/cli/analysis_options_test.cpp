@@ -15,14 +15,8 @@ namespace {
 
 Json spectrum_settings(const std::vector<std::string>& more, const test::TemporaryFolder& folder) {
   const std::string out = (folder / "report").string();
-  std::vector<std::string> words = {"characterize",
-                                    test::fixture("imu_at_rest.csv").string(),
-                                    "-c",
-                                    "gyro_z",
-                                    "-o",
-                                    out,
-                                    "--force",
-                                    "--quiet"};
+  std::vector<std::string> words = {
+      "characterize", test::fixture("imu_at_rest.csv").string(), "-c", "gyro_z", "-o", out, "--force", "--quiet"};
   words.insert(words.end(), more.begin(), more.end());
   const auto ran = test::run(words);
   INFO(ran.err);
@@ -51,8 +45,7 @@ TEST_CASE("report.json says each reading option that was set") {
   const Json usual = spectrum_settings({}, folder);
   for (const char* key : {"units", "names", "encoding", "overflow_as_missing"})
     CHECK_FALSE(usual["config"]["reading"].contains(key));
-  const Json set =
-      spectrum_settings({"--units", "rad/s", "--encoding", "latin1", "--overflow", "nan"}, folder);
+  const Json set = spectrum_settings({"--units", "rad/s", "--encoding", "latin1", "--overflow", "nan"}, folder);
   CHECK(set["config"]["reading"]["units"] == Json({"rad/s"}));
   CHECK(set["config"]["reading"]["encoding"] == "latin1");
   CHECK(set["config"]["reading"]["overflow_as_missing"] == true);
@@ -83,8 +76,7 @@ TEST_CASE("a segment that cannot be is refused in the same words everywhere") {
   for (const char* verb : {"psd", "characterize"}) {
     const auto refused = [&](const std::string& segment, const std::string& rate = "") {
       std::vector<std::string> words = {verb, log, "--segment", segment};
-      if (verb == std::string("characterize"))
-        words.insert(words.end(), {"-o", (folder / "out").string()});
+      if (verb == std::string("characterize")) words.insert(words.end(), {"-o", (folder / "out").string()});
       if (!rate.empty()) words.insert(words.end(), {"--time-column", rate});
       const auto ran = test::run(words);
       CHECK(ran.code == 2);
@@ -103,17 +95,13 @@ TEST_CASE("every window of the library is offered by psd and by characterize") {
   const Json document = spectrum_settings({"--window", "hann_nonzero"}, folder);
   CHECK(document["config"]["spectrum"]["window"] == "hann_nonzero");
   for (const char* verb : {"psd", "characterize"})
-    CHECK_THAT(test::run({verb, "--help"}).out,
-               Contains("hann|rectangular|blackman_harris|flat_top|hann_nonzero"));
+    CHECK_THAT(test::run({verb, "--help"}).out, Contains("hann|rectangular|blackman_harris|flat_top|hann_nonzero"));
 }
 
-TEST_CASE(
-    "allan says which deviation a row is, and what a log beyond the memory allowed would take") {
+TEST_CASE("allan says which deviation a row is, and what a log beyond the memory allowed would take") {
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const auto table = test::run({"allan", log, "-c", "gyro_z", "--type", "mdev", "--taus", "1s"});
-  CHECK_THAT(
-      table.out,
-      Contains("edf,terms,curve\n") && Catch::EndsWith(",mdev\n") && Contains("\ngyro_z,deg/s,1,"));
+  CHECK_THAT(table.out, Contains("edf,terms,curve\n") && Catch::EndsWith(",mdev\n") && Contains("\ngyro_z,deg/s,1,"));
   const test::TemporaryFolder folder;
   const std::string longer = (folder / "long.f64").string();  // more than a leaf
   std::vector<double> samples((std::size_t{1} << 20U) + 1000);
@@ -128,8 +116,8 @@ TEST_CASE(
   std::ofstream(longer + ".json")
       << R"({"dtype": "f64", "endian": "little", "channels": [{"name": "a"}], "rate_hz": 100})";
   for (const char* verb : {"allan", "characterize"}) {
-    std::vector<std::string> words = {
-        verb, longer, "-c", "a", "--memory", "100KiB", "--taus", "1s,10s", "--segment", "5s"};
+    std::vector<std::string> words = {verb,     longer,   "-c",     "a",         "--memory",
+                                      "100KiB", "--taus", "1s,10s", "--segment", "5s"};
     if (verb == std::string("allan"))
       words.resize(words.size() - 2);
     else
@@ -137,10 +125,9 @@ TEST_CASE(
     const auto refused = test::run(words);
     CAPTURE(verb);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err,
-               Contains("error E0701: a curve at other times than octaves takes all samples at "
-                        "once: 8200 KiB, and 100 KiB are allowed") &&
-                   Contains("give --memory 8200KiB, or read less with --channel, --from, --to"));
+    CHECK_THAT(refused.err, Contains("error E0701: a curve at other times than octaves takes all samples at "
+                                     "once: 8200 KiB, and 100 KiB are allowed") &&
+                                Contains("give --memory 8200KiB, or read less with --channel, --from, --to"));
     *(std::find(words.begin(), words.end(), "--memory") + 1) = "8200KiB";
     CHECK(test::run(words).code == 0);
   }

@@ -47,8 +47,7 @@ std::vector<BadRow> bad_rows(const std::string& kind) {
   while (std::getline(in, line)) {
     std::istringstream cells(line);
     BadRow row;
-    for (std::string* cell :
-         {&row.name, &row.verdict, &row.code, &row.place, &row.options, &row.content})
+    for (std::string* cell : {&row.name, &row.verdict, &row.code, &row.place, &row.options, &row.content})
       std::getline(cells, *cell, '\t');
     if (row.options == "-") row.options.clear();
     rows.push_back(row);
@@ -69,8 +68,7 @@ std::string numbers(const std::string& text) {
       continue;
     }
     const bool integer = type[2 * (i % (type.size() / 2))] == 'i' && type[0] == 'i';
-    const double real =
-        integer && i % (type.size() / 2) == 0 ? 0 : std::strtod(word.c_str(), nullptr);
+    const double real = integer && i % (type.size() / 2) == 0 ? 0 : std::strtod(word.c_str(), nullptr);
     const auto whole = static_cast<std::int64_t>(std::strtoll(word.c_str(), nullptr, 10));
     if (integer)
       std::memcpy(eight, &whole, 8);
@@ -89,13 +87,11 @@ std::string npy_of(const std::string& content) {
   header.resize((header.size() + 11 + 63) / 64 * 64 - 11, ' ');
   header += '\n';
   const auto length = static_cast<std::uint16_t>(header.size());
-  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFFU) +
-         static_cast<char>(length >> 8U) + header + data;
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFFU) + static_cast<char>(length >> 8U) +
+         header + data;
 }
 
-void write(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
+void write(const fs::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 /// The files of the row, and the words that look at them; the first input is the last word of
 /// `words` before the options.
@@ -190,8 +186,8 @@ void check_account(const std::string& out) {
       return log["repairs"].contains(key) ? log["repairs"][key].get<std::uint64_t>() : 0;
     };
     CHECK(number("rows") == number("rows_used") + number("rows_dropped") + number("rows_outside"));
-    CHECK(number("rows_dropped") == repairs("duplicate_timestamp") + repairs("backward_timestamp") +
-                                        repairs("wild_stamp") + repairs("own_rows"));
+    CHECK(number("rows_dropped") ==
+          repairs("duplicate_timestamp") + repairs("backward_timestamp") + repairs("wild_stamp") + repairs("own_rows"));
     CHECK(number("samples") == number("rows_used") + number("missing_samples"));
   }
 }
@@ -204,8 +200,7 @@ TEST_CASE("every bad input of fixtures/bad gets its verdict, exit code, code and
   log << "t,x\n";
   for (int i = 0; i < 2000; ++i) log << 0.01 * i << ',' << (i * i) % 1009 << '\n';
   std::size_t count = 0;
-  for (const char* kind :
-       {"csv", "npy", "raw", "model", "json", "scene", "limits", "curve", "command"}) {
+  for (const char* kind : {"csv", "npy", "raw", "model", "json", "scene", "limits", "curve", "command"}) {
     for (const BadRow& row : bad_rows(kind)) {
       fs::remove_all(folder / "at");
       const fs::path at = folder / "at";
@@ -232,8 +227,8 @@ TEST_CASE("every bad input of fixtures/bad gets its verdict, exit code, code and
         check_error(row, ran);
         if (row.code != "E0206") CHECK(ran.out.empty());
       }
-      if (ran.code == 0 && (std::strcmp(kind, "csv") == 0 || std::strcmp(kind, "npy") == 0 ||
-                            std::strcmp(kind, "raw") == 0))
+      if (ran.code == 0 &&
+          (std::strcmp(kind, "csv") == 0 || std::strcmp(kind, "npy") == 0 || std::strcmp(kind, "raw") == 0))
         check_account(ran.out);
     }
   }

@@ -28,9 +28,7 @@ sensors:
 struct Replays {
   test::TemporaryFolder folder;
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  void make(const std::string& name,
-            std::vector<std::string> more,
-            const std::string& seed = "1") const {
+  void make(const std::string& name, std::vector<std::string> more, const std::string& seed = "1") const {
     std::string text = kComparedScene;
     text.replace(text.find("SEED"), 4, seed);
     std::ofstream(path(name + ".yaml")) << text;
@@ -40,9 +38,7 @@ struct Replays {
     INFO(ran.err);
     REQUIRE(ran.code == 0);
   }
-  test::Ran compare(const std::string& a,
-                    const std::string& b,
-                    std::vector<std::string> more = {}) const {
+  test::Ran compare(const std::string& a, const std::string& b, std::vector<std::string> more = {}) const {
     std::vector<std::string> words = {"compare", path(a), path(b)};
     words.insert(words.end(), more.begin(), more.end());
     return test::run(words);
@@ -83,11 +79,10 @@ TEST_CASE("compare: checks end with exit code 6 behind the result") {
   CHECK(replays.compare("a", "b", {"--fail-if", "mean:rmse+0%"}).code == 0);
   const auto failed = replays.compare("a", "b", {"--fail-if", "rmse+0.1%"});
   CHECK(failed.code == 6);
-  CHECK_THAT(failed.err,
-             Contains("E0924") && Contains("minque: rmse") && Contains("0.1 % is allowed"));
+  CHECK_THAT(failed.err, Contains("E0924") && Contains("minque: rmse") && Contains("0.1 % is allowed"));
   CHECK_THAT(failed.out, Contains("minque"));  // the table stands all the same
-  const auto several = replays.compare(
-      "a", "b", {"--json", "--fail-if", "rmse+0.1%", "--fail-if", "minque:regret+0.1%"});
+  const auto several =
+      replays.compare("a", "b", {"--json", "--fail-if", "rmse+0.1%", "--fail-if", "minque:regret+0.1%"});
   CHECK(several.code == 6);
   CHECK(libchar::parse_json(several.out, "stdout")["failed"].size() == 2);
   // Better is never a failure.
@@ -107,10 +102,8 @@ TEST_CASE("compare: unlike scenes are refused unless --unlike") {
   CHECK(refused.code == 3);
   CHECK(refused.out.empty());
   CHECK_THAT(refused.err,
-             Contains("E0921") && Contains("seed of the simulation: 1 in A, 2 in B") &&
-                 Contains("--unlike"));
-  CHECK_THAT(replays.compare("a", "window").err,
-             Contains("evaluation: 0 s to 60 s in A, 10 s to 50 s in B"));
+             Contains("E0921") && Contains("seed of the simulation: 1 in A, 2 in B") && Contains("--unlike"));
+  CHECK_THAT(replays.compare("a", "window").err, Contains("evaluation: 0 s to 60 s in A, 10 s to 50 s in B"));
   CHECK_THAT(replays.compare("a", "fault").err, Contains("number of faults: 0 in A, 1 in B"));
   const auto all_the_same = replays.compare("a", "seed", {"--unlike"});
   CHECK(all_the_same.code == 0);
@@ -127,29 +120,18 @@ TEST_CASE("compare: recordings are known by their content, wherever they stand")
       log += std::to_string(k) + "," + std::to_string(k % 7) + "," + std::to_string(k % 5) + "," +
              std::to_string(k % 3) + "\n";
     std::ofstream(path(name + "/log.csv")) << log;
-    std::ofstream(path(name + "/scene.yaml"))
-        << "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n";
-    REQUIRE(test::run({"replay",
-                       path(name + "/scene.yaml"),
-                       "-o",
-                       path(name + "/out"),
-                       "--algorithms",
-                       "mean"})
-                .code == 0);
+    std::ofstream(path(name + "/scene.yaml")) << "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n";
+    REQUIRE(test::run({"replay", path(name + "/scene.yaml"), "-o", path(name + "/out"), "--algorithms", "mean"}).code ==
+            0);
   }
   const auto like = test::run({"compare", path("one/out"), path("two/out")});
   INFO(like.err);
   CHECK(like.code == 0);
   CHECK_THAT(like.out, Contains("leave-one-out"));
   std::ofstream(path("two/log.csv"), std::ios::app) << "500,1,1,1\n";
-  REQUIRE(test::run({"replay",
-                     path("two/scene.yaml"),
-                     "-o",
-                     path("two/out"),
-                     "--algorithms",
-                     "mean",
-                     "--force"})
-              .code == 0);
+  REQUIRE(
+      test::run({"replay", path("two/scene.yaml"), "-o", path("two/out"), "--algorithms", "mean", "--force"}).code ==
+      0);
   const auto unlike = test::run({"compare", path("one/out"), path("two/out")});
   CHECK(unlike.code == 3);
   CHECK_THAT(unlike.err, Contains("contents of the log") && Contains("sha256"));
@@ -162,8 +144,7 @@ TEST_CASE("compare: bad input is one sentence with its place") {
   std::ofstream(replays.path("x.json")) << "{\"format\": \"characterization\", \"version\": 1}\n";
   const auto other = replays.compare("a", "x.json");
   CHECK(other.code == 3);
-  CHECK_THAT(other.err,
-             Contains("a/report.json") && Contains("E0771") && Contains("replay-report"));
+  CHECK_THAT(other.err, Contains("a/report.json") && Contains("E0771") && Contains("replay-report"));
   const auto turned = replays.compare("x.json", "a");
   CHECK(turned.code == 3);
   CHECK_THAT(turned.err, Contains("x.json") && Contains("fit is missing"));

@@ -71,16 +71,10 @@ class Device {
     std::ofstream(path("scene.yaml")) << replaced(scene, "FAULTS", "");
     std::ofstream(path("log.yaml")) << replaced(replaced(kScene, "SEED", "2"), "FAULTS", kFaults);
     std::ofstream(path("main.c")) << kMain;
-    run({"replay",
-         path("scene.yaml"),
-         "-o",
-         path("run"),
-         "--no-allan",
-         "--algorithms",
+    run({"replay", path("scene.yaml"), "-o", path("run"), "--no-allan", "--algorithms",
          "mean,inverse-variance,minque,virtual-sensor,least-squares,shrunk-least-squares,"
          "non-negative-least-squares,perceptron,median,neural-simplex",
-         "--set",
-         "minque.fault_detection=2"});
+         "--set", "minque.fault_detection=2"});
     run({"simulate", path("log.yaml"), "-o", path("log.csv")});
   }
   static std::string run(const std::vector<std::string>& words) {
@@ -95,36 +89,18 @@ class Device {
     std::vector<double> x, sd;
   };
   Estimates by_fuse(const std::string& algorithm) const {
-    run({"fuse",
-         path("log.csv"),
-         "--with",
-         path("run"),
-         "--algorithm",
-         algorithm,
-         "-o",
-         path("fused.npy"),
-         "--force",
+    run({"fuse", path("log.csv"), "--with", path("run"), "--algorithm", algorithm, "-o", path("fused.npy"), "--force",
          "--quiet"});
     const libchar::Recording fused = libchar::read_recording(path("fused.npy"));
     return {fused.samples[0], fused.samples[1]};
   }
   /// By the compiled file, on the samples of the log; also checks what it says of its state.
   Estimates by_c(const std::string& algorithm, const std::string& dtype) const {
-    const auto made = nlohmann::json::parse(run({"model",
-                                                 path("run"),
-                                                 "--to",
-                                                 "c",
-                                                 "--algorithm",
-                                                 algorithm,
-                                                 "--dtype",
-                                                 dtype,
-                                                 "-o",
-                                                 path("fusion.c"),
-                                                 "--force",
-                                                 "--json"}));
-    const std::string compile = fmt::format(
-        "gcc -std=c99 -Wall -Wextra -Werror -pedantic -O2 -o {0}/device {0}/main.c -lm 2> {0}/said",
-        folder.path().string());
+    const auto made = nlohmann::json::parse(run({"model", path("run"), "--to", "c", "--algorithm", algorithm, "--dtype",
+                                                 dtype, "-o", path("fusion.c"), "--force", "--json"}));
+    const std::string compile =
+        fmt::format("gcc -std=c99 -Wall -Wextra -Werror -pedantic -O2 -o {0}/device {0}/main.c -lm 2> {0}/said",
+                    folder.path().string());
     const int code = std::system(compile.c_str());
     INFO(test::slurp(path("said")));
     REQUIRE(code == 0);
@@ -134,14 +110,12 @@ class Device {
     for (std::size_t i = 0; i < n; ++i) {
       std::size_t column = 0;
       while (log.info.channels[column].name != sensors[i]) ++column;
-      for (std::size_t k = 0; k < log.samples[column].size(); ++k)
-        rows[k * n + i] = log.samples[column][k];
+      for (std::size_t k = 0; k < log.samples[column].size(); ++k) rows[k * n + i] = log.samples[column][k];
     }
     std::ofstream(path("rows"), std::ios::binary)
         .write(reinterpret_cast<const char*>(rows.data()), std::ssize(rows) * 8);
-    REQUIRE(std::system(
-                fmt::format("{0}/device < {0}/rows > {0}/out 2> {0}/bytes", folder.path().string())
-                    .c_str()) == 0);
+    REQUIRE(std::system(fmt::format("{0}/device < {0}/rows > {0}/out 2> {0}/bytes", folder.path().string()).c_str()) ==
+            0);
     CHECK(std::stoul(test::slurp(path("bytes"))) == made["state_bytes"]);
     CHECK_THAT(made["text"].get<std::string>(),
                Contains(fmt::format("State: {} bytes", made["state_bytes"].get<int>())));
@@ -175,9 +149,7 @@ double apart(const std::vector<double>& a, const std::vector<double>& b, std::si
 /// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the
 /// first 49 s none does; later the sensors walk away from what was learnt, and one fails. `from`:
 /// instant of the first value.
-void check_deviations(const std::vector<double>& fused,
-                      const std::vector<double>& c,
-                      double tolerance,
+void check_deviations(const std::vector<double>& fused, const std::vector<double>& c, double tolerance,
                       std::size_t from = 0) {
   constexpr std::size_t kAsLearnt = 4900;
   REQUIRE(fused.size() == c.size());
@@ -196,13 +168,8 @@ void check_deviations(const std::vector<double>& fused,
 
 TEST_CASE("model --to c: double has the bits of fuse, float six digits") {
   const Device device;
-  for (const char* algorithm : {"mean",
-                                "inverse-variance",
-                                "minque",
-                                "least-squares",
-                                "shrunk-least-squares",
-                                "non-negative-least-squares",
-                                "perceptron"}) {
+  for (const char* algorithm : {"mean", "inverse-variance", "minque", "least-squares", "shrunk-least-squares",
+                                "non-negative-least-squares", "perceptron"}) {
     INFO(algorithm);
     const Device::Estimates fused = device.by_fuse(algorithm), c = device.by_c(algorithm, "f64");
     CHECK(apart(fused.x, c.x) == 0);
@@ -212,8 +179,7 @@ TEST_CASE("model --to c: double has the bits of fuse, float six digits") {
   }
 }
 
-TEST_CASE(
-    "model --to c: minque takes out the sensor that fails, at the same instants as the library") {
+TEST_CASE("model --to c: minque takes out the sensor that fails, at the same instants as the library") {
   const Device device;
   const Device::Estimates c = device.by_c("minque", "f64");
   // Without the rule three units of bias would show in the estimate from 60 s to 80 s.
@@ -244,13 +210,7 @@ TEST_CASE("model --to c: the complementary filter") {
   Device device;
   device.sensors = {"gyro", "accel_x", "accel_z"};
   const std::string scene = (test::fixture("scenes") / "rv-2.5-tilt.yaml").string();
-  Device::run({"replay",
-               scene,
-               "-o",
-               device.path("run"),
-               "--force",
-               "--no-allan",
-               "--algorithms",
+  Device::run({"replay", scene, "-o", device.path("run"), "--force", "--no-allan", "--algorithms",
                "tilt-complementary,tilt-gyroscope"});
   Device::run({"simulate", scene, "-o", device.path("log.csv"), "--force"});
   for (const char* algorithm : {"tilt-complementary", "tilt-gyroscope"}) {
@@ -263,12 +223,10 @@ TEST_CASE("model --to c: the complementary filter") {
 TEST_CASE("model --to c: what has no form in C is refused, and those that have one are named") {
   const Device device;
   for (const char* algorithm : {"median", "neural-simplex"}) {
-    const auto refused =
-        test::run({"model", device.path("run"), "--to", "c", "--algorithm", algorithm});
+    const auto refused = test::run({"model", device.path("run"), "--to", "c", "--algorithm", algorithm});
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err,
-               Contains(std::string(algorithm) + " has no form in C") &&
-                   Contains("these have one: mean, inverse-variance, minque, virtual-sensor"));
+    CHECK_THAT(refused.err, Contains(std::string(algorithm) + " has no form in C") &&
+                                Contains("these have one: mean, inverse-variance, minque, virtual-sensor"));
   }
   const auto unknown = test::run({"model", device.path("run"), "--to", "c", "--algorithm", "meen"});
   CHECK_THAT(unknown.err, Contains("did you mean mean?"));

@@ -27,8 +27,7 @@ TEST_CASE("fit LOG gives the coefficients as a table and as JSON") {
   const Json document = parse_json(json.out, "stdout");
   CHECK(document["format"] == "noise-fit");
   CHECK(document["channels"][0]["name"] == "gx");
-  CHECK(document["channels"][0]["white_noise"]["value"].get<double>() ==
-        Approx(1e-2).epsilon(0.03));
+  CHECK(document["channels"][0]["white_noise"]["value"].get<double>() == Approx(1e-2).epsilon(0.03));
   CHECK(document["channels"][0]["random_walk"]["value"].is_null());
   const auto table = test::run({"fit", path, "--rate", "100"});
   CHECK(table.code == 0);
@@ -84,12 +83,9 @@ TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
   REQUIRE(open.code == 0);
   const Json to_the_end = parse_json(open.out, "stdout");
   CHECK(to_the_end["stretch_s"][0] == 20);
-  CHECK(to_the_end["stretch_s"][1].get<double>() ==
-        20 + to_the_end["channels"][0]["samples"].get<double>() / 100);
-  CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as asked.") !=
-        std::string::npos);
-  const auto warm = test::run(
-      {"fit", path, "--rate", "100", "--channel", "gx", "--temperature", "temp", "--json"});
+  CHECK(to_the_end["stretch_s"][1].get<double>() == 20 + to_the_end["channels"][0]["samples"].get<double>() / 100);
+  CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as asked.") != std::string::npos);
+  const auto warm = test::run({"fit", path, "--rate", "100", "--channel", "gx", "--temperature", "temp", "--json"});
   REQUIRE(warm.code == 0);
   const Json channels = parse_json(warm.out, "stdout")["channels"];
   REQUIRE(channels.size() == 1);
@@ -97,14 +93,13 @@ TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
   CHECK(temperature["channel"] == "temp");
   CHECK(temperature["coefficients"][0].get<double>() == Approx(0.1).epsilon(0.05));
   CHECK(temperature["without"].contains("random_walk"));
-  const std::vector<std::vector<std::string>> refused = {
-      {"--curve", "allan", "--still", "auto"},
-      {"--curve", "allan", "--temperature", "temp"},
-      {"--still", "40..20"},
-      {"--still", ".."},
-      {"--still", "soon"},
-      {"--still", "10..20", "--from", "5"},
-      {"--temperature", "gx"}};
+  const std::vector<std::vector<std::string>> refused = {{"--curve", "allan", "--still", "auto"},
+                                                         {"--curve", "allan", "--temperature", "temp"},
+                                                         {"--still", "40..20"},
+                                                         {"--still", ".."},
+                                                         {"--still", "soon"},
+                                                         {"--still", "10..20", "--from", "5"},
+                                                         {"--temperature", "gx"}};
   for (const auto& more : refused) {
     std::vector<std::string> words = {"fit", path, "--rate", "100"};
     words.insert(words.end(), more.begin(), more.end());
@@ -144,8 +139,8 @@ TEST_CASE("fit and characterize: no line of a library reaches stderr, whatever t
     file << "t[s]," << name << "\n";
     for (int k = 0; k < 1500; ++k) file << fmt::format("{:.2f},{:.17g}\n", 0.01 * k, signal(k));
     file.close();
-    for (const auto& words : {std::vector<std::string>{"fit", log},
-                              std::vector<std::string>{"characterize", log, "-o", log + ".out"}}) {
+    for (const auto& words :
+         {std::vector<std::string>{"fit", log}, std::vector<std::string>{"characterize", log, "-o", log + ".out"}}) {
       std::vector<std::string> all{test::program()};
       all.insert(all.end(), words.begin(), words.end());
       const auto done = test::run_words(all);
@@ -154,8 +149,7 @@ TEST_CASE("fit and characterize: no line of a library reaches stderr, whatever t
       // Every line is the program's own: FILE: …, or a channel and, indented, its findings.
       std::istringstream lines(done.err);
       for (std::string line; std::getline(lines, line);)
-        CHECK((line.starts_with(log) || line.starts_with(name + ":") || line.starts_with("  ") ||
-               line.empty()));
+        CHECK((line.starts_with(log) || line.starts_with(name + ":") || line.starts_with("  ") || line.empty()));
     }
   }
 }

@@ -34,9 +34,7 @@ struct Fleets {
     }
     return name;
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
   test::Ran refused(const std::vector<std::string>& words) const {
     test::Ran ran = run(words);
     CHECK(ran.code != 0);
@@ -58,8 +56,7 @@ TEST_CASE("fleet compare: a lot is compared with another one only") {
   fleets.made("c", {"d2.csv", "d0.csv"});
   const test::Ran ran = fleets.run({"compare", "b", "a"});
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.out,
-             Contains("2 devices of b and 2 devices of a") && Contains("told by all of them"));
+  CHECK_THAT(ran.out, Contains("2 devices of b and 2 devices of a") && Contains("told by all of them"));
   CHECK_THAT(fleets.refused({"compare", "a", "a"}).err, Contains("E0795"));
   CHECK_THAT(fleets.refused({"compare", "a", "./a/"}).err, Contains("E0795"));
   CHECK_THAT(fleets.refused({"compare", "a", "c"}).err, Contains("E0783") && Contains("d0 in a"));
@@ -69,8 +66,7 @@ TEST_CASE("fleet compare: batches by name, with commas too, and a device in one 
   const Fleets fleets(5);
   fleets.write("m.csv", kTwoBatches);
   fleets.made("f", {"m.csv"});
-  const test::Ran ran =
-      fleets.run({"compare", "f", "--batches", "1,x", "--batches", "2", "--json"});
+  const test::Ran ran = fleets.run({"compare", "f", "--batches", "1,x", "--batches", "2", "--json"});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
   CHECK(test::schema_fault(ran.out) == "");
@@ -80,10 +76,8 @@ TEST_CASE("fleet compare: batches by name, with commas too, and a device in one 
   CHECK_THAT(document["notes"][0].get<std::string>(), Contains("A1 (batch 1,x, batch 2)"));
   CHECK_THAT(fleets.refused({"compare", "f", "--batches", "2,2"}).err,
              Contains("a batch is compared with another one; got \"2\""));
-  CHECK_THAT(fleets.refused({"compare", "f", "--batches", "1,x,2"}).err,
-             Contains("--batches OLD --batches NEW"));
-  CHECK_THAT(fleets.refused({"compare", "f", "--batches", "2,3"}).err,
-             Contains("batch 1,x, batch 2"));
+  CHECK_THAT(fleets.refused({"compare", "f", "--batches", "1,x,2"}).err, Contains("--batches OLD --batches NEW"));
+  CHECK_THAT(fleets.refused({"compare", "f", "--batches", "2,3"}).err, Contains("batch 1,x, batch 2"));
 }
 
 TEST_CASE("fleet merge and the verbs for other reports: what a lot's report is") {
@@ -95,8 +89,7 @@ TEST_CASE("fleet merge and the verbs for other reports: what a lot's report is")
   REQUIRE(fleets.run({"merge", "f", "-o", "r"}).code == 0);
   for (const char* report : {"r", "r/lot.json"}) {
     const std::string path = (fleets.folder / report).string();
-    const test::Ran table = test::run({"report", path}),
-                    compared = test::run({"compare", path, path});
+    const test::Ran table = test::run({"report", path}), compared = test::run({"compare", path, path});
     CHECK(table.code == 3);
     CHECK_THAT(table.err, Contains("report of a lot of devices") && Contains("coefficients.csv"));
     CHECK(compared.code == 3);
@@ -110,8 +103,7 @@ TEST_CASE("fleet status and export: what comes next, in which folder") {
   CHECK_THAT(fleets.run({"export", "f", "--to", "parallel"}).out,
              Contains("2 units left") && Contains("next: cd f && sh fleet.parallel.sh"));
   REQUIRE(fleets.run({"run", "f"}).code == 0);
-  CHECK_THAT(fleets.run({"status", "f"}).out,
-             Contains("next: sensorchar fleet merge f -o report\n"));
+  CHECK_THAT(fleets.run({"status", "f"}).out, Contains("next: sensorchar fleet merge f -o report\n"));
   CHECK(fleets.run({"export", "f", "--to", "parallel"}).out ==
         "nothing is left, every unit has a result\nnext: sensorchar fleet merge f -o report\n");
   test::RunOptions inside;

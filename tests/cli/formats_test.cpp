@@ -56,16 +56,15 @@ void check_read(const Example& example, const Json& recording) {
   std::string channels;
   for (const Json& c : recording.at("channels")) {
     const std::string unit = c.at("unit").get<std::string>();
-    channels += (channels.empty() ? "" : ",") + c.at("name").get<std::string>() +
-                (unit.empty() ? "" : "[" + unit + "]");
+    channels +=
+        (channels.empty() ? "" : ",") + c.at("name").get<std::string>() + (unit.empty() ? "" : "[" + unit + "]");
   }
   CHECK(channels == example.expected.at("channels"));
   if (example.expected.count("rate") > 0)
     CHECK(recording.at("rate_hz").get<double>() == Approx(std::stod(example.expected.at("rate"))));
   CHECK(recording.at("samples") == std::stoi(example.expected.at("samples")));
   std::string repairs;
-  for (const auto& repair : recording.at("repairs").items())
-    repairs += (repairs.empty() ? "" : ",") + repair.key();
+  for (const auto& repair : recording.at("repairs").items()) repairs += (repairs.empty() ? "" : ",") + repair.key();
   CHECK(repairs == (example.expected.count("repairs") > 0 ? example.expected.at("repairs") : ""));
   const std::string guesses = recording.at("guesses").dump();
   CHECK((guesses == "[]") == (example.expected.count("guesses") == 0));

@@ -33,22 +33,14 @@ learning: [0, 10]
 struct FuseProgram {
   FuseProgram() {
     std::ofstream(path("scene.yaml")) << kFusedScene;
-    REQUIRE(test::run({"replay",
-                       path("scene.yaml"),
-                       "-o",
-                       path("run"),
-                       "--algorithms",
-                       "mean,least-squares,minque",
-                       "--estimates",
-                       "csv"})
+    REQUIRE(test::run({"replay", path("scene.yaml"), "-o", path("run"), "--algorithms", "mean,least-squares,minque",
+                       "--estimates", "csv"})
                 .code == 0);
     REQUIRE(test::run({"simulate", path("scene.yaml"), "-o", path("log.csv")}).code == 0);
   }
   std::string path(const std::string& name) const { return (folder / name).string(); }
   /// fuse LOG --with RUN -o OUT and more; files of the folder.
-  test::Ran fuse(const std::string& log,
-                 const std::string& with,
-                 const std::string& out,
+  test::Ran fuse(const std::string& log, const std::string& with, const std::string& out,
                  const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words = {"fuse", path(log), "--with", path(with), "-o", path(out)};
     words.insert(words.end(), more.begin(), more.end());
@@ -64,11 +56,9 @@ TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   const auto ran = bench.fuse("log.csv", "run", "fused.csv");
   INFO(ran.out + ran.err);
   REQUIRE(ran.code == 0);
-  CHECK_THAT(ran.out,
-             Contains("6000 instants at 100 Hz fused by") && Contains("100 % with an estimate"));
+  CHECK_THAT(ran.out, Contains("6000 instants at 100 Hz fused by") && Contains("100 % with an estimate"));
   CHECK_THAT(ran.out, Contains("wrote " + bench.path("fused.csv")));
-  const auto piped =
-      test::run({"fuse", bench.path("log.csv"), "--with", bench.path("run"), "-o", "-"});
+  const auto piped = test::run({"fuse", bench.path("log.csv"), "--with", bench.path("run"), "-o", "-"});
   CHECK(piped.code == 0);
   CHECK(piped.out == test::slurp(bench.path("fused.csv")));
   const libchar::Recording fused = libchar::read_recording(bench.path("fused.csv"));
@@ -80,16 +70,14 @@ TEST_CASE("fuse: a run applied to a log, as csv and npy, whole or not at all") {
   CHECK(fused.info.samples == 6000);
   CHECK(fused.info.time.rate_hz == Approx(100));
   // The replay's own estimates: its evaluation begins at 10 s.
-  const auto same =
-      bench.fuse("log.csv", "run/fusion.yaml", "same.npy", {"--algorithm", "least-squares"});
+  const auto same = bench.fuse("log.csv", "run/fusion.yaml", "same.npy", {"--algorithm", "least-squares"});
   REQUIRE(same.code == 0);
   const libchar::Recording npy = libchar::read_recording(bench.path("same.npy"));
   const libchar::Recording replayed = libchar::read_recording(bench.path("run/estimates.csv"));
   std::size_t column = 0;
   while (replayed.info.channels[column].name != "least-squares") ++column;
   REQUIRE(replayed.samples[column].size() == 5000);
-  for (std::size_t k = 0; k < 5000; ++k)
-    REQUIRE(npy.samples[0][1000 + k] == replayed.samples[column][k]);
+  for (std::size_t k = 0; k < 5000; ++k) REQUIRE(npy.samples[0][1000 + k] == replayed.samples[column][k]);
   // Nothing is overwritten, and what is refused leaves nothing.
   const auto again = bench.fuse("log.csv", "run", "fused.csv");
   CHECK(again.code == 5);

@@ -15,16 +15,13 @@ TEST_CASE("inspect says in one line what was understood, and marks guesses") {
   CHECK_THAT(ran.out, Contains("structured.npy: 7 channels, 200 Hz (jitter 0 s), 25 ms, 0 gaps\n"));
   CHECK_THAT(ran.out, Contains("  guessed: time unit: ns"));
   CHECK_THAT(ran.out, Contains("gyr_0") && Contains("kurtosis of differences"));
-  CHECK_THAT(
-      ran.out,
-      Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
+  CHECK_THAT(ran.out, Contains("next: sensorchar characterize ") && Contains("--time-column t --time-unit ns"));
 }
 
 TEST_CASE("people read flags, documents name the options of the library") {
   const std::string log = test::fixture("npy/structured.npy").string();
   const auto text = test::run({"inspect", log, "--rate", "100"});
-  CHECK_THAT(text.out,
-             Contains("guessed: time unit: ns") && Contains("(--time-unit says otherwise)"));
+  CHECK_THAT(text.out, Contains("guessed: time unit: ns") && Contains("(--time-unit says otherwise)"));
   CHECK_THAT(text.out, Contains("(--time-column none ignores the stamps)"));
   const auto json = test::run({"inspect", log, "--rate", "100", "--json"});
   CHECK_THAT(json.out, Contains("(`time_unit` says otherwise)"));
@@ -49,8 +46,7 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
   CHECK(document["input"][0]["bytes"] == 146);
   CHECK(document["findings"][0]["code"] == "infinite_value");
   const libchar::Json& recording = document["recordings"][0];
-  for (const char* key :
-       {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"})
+  for (const char* key : {"file", "sha256", "rows", "channels", "rate_hz", "jitter_s", "gaps", "repairs"})
     CHECK(recording.contains(key));
   CHECK(recording["rows"] == 9);
   CHECK(recording["rate_hz"] == 1500.0);
@@ -63,8 +59,7 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
 }
 
 TEST_CASE("several logs make one document, channels are chosen by repetition and by commas") {
-  const std::string a = test::fixture("npy/c_order.npy").string(),
-                    b = test::fixture("npy/big_endian_f4.npy").string();
+  const std::string a = test::fixture("npy/c_order.npy").string(), b = test::fixture("npy/big_endian_f4.npy").string();
   const auto ran = test::run({"inspect", "-c", "c0,c2", a, b, "-c", "c1", "--json"});
   REQUIRE(ran.code == 0);
   const libchar::Json document = libchar::parse_json(ran.out, "stdout");
@@ -107,9 +102,7 @@ TEST_CASE("one row with a stamp has no rate, and --rate would not give it one") 
   std::ofstream(log) << "t,x\n1.0,2.0\n";
   const auto ran = test::run({"inspect", log});
   CHECK(ran.code == 0);
-  CHECK_THAT(
-      ran.out,
-      Contains("next: one row with a time stamp gives no sampling rate") && !Contains("--rate"));
+  CHECK_THAT(ran.out, Contains("next: one row with a time stamp gives no sampling rate") && !Contains("--rate"));
 }
 
 TEST_CASE("a constant channel has no kurtosis") {
@@ -119,8 +112,7 @@ TEST_CASE("a constant channel has no kurtosis") {
   const auto ran = test::run({"inspect", log});
   CHECK_THAT(ran.out, Contains("constant"));
   const auto json = test::run({"inspect", "--json", log});
-  const libchar::Json channels =
-      libchar::parse_json(json.out, "stdout")["recordings"][0]["channels"];
+  const libchar::Json channels = libchar::parse_json(json.out, "stdout")["recordings"][0]["channels"];
   CHECK(channels[0]["difference_kurtosis"].is_null());
   CHECK(channels[1]["difference_kurtosis"].is_number());
 }
@@ -130,8 +122,7 @@ TEST_CASE("the suggested command names each list once, and works") {
   std::ofstream(folder / "x.csv") << "0,1,2\n0.1,2,1\n0.2,1,4\n0.3,2,2\n";
   test::RunOptions options;
   options.folder = folder.path().string();
-  const auto ran =
-      test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
+  const auto ran = test::run({"inspect", "x.csv", "--names", "a b,c", "--units", "deg/s,g"}, options);
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains(" --names 'a b,c' --units deg/s,g --time-column c0"));
 }

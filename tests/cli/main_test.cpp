@@ -35,11 +35,9 @@ TEST_CASE("one processor: nothing but the result, and the same") {
     for (const std::string& file : {log, table}) {
       INFO(verb << " " << file);
       const auto all = test::run({verb, file});
-      const auto one =
-          test::run_words({"/bin/sh",
-                           "-c",
-                           "taskset -c $(taskset -cp $$ | sed 's/.*: //; s/[,-].*//') " +
-                               test::program() + " " + verb + " " + file});
+      const auto one = test::run_words(
+          {"/bin/sh", "-c",
+           "taskset -c $(taskset -cp $$ | sed 's/.*: //; s/[,-].*//') " + test::program() + " " + verb + " " + file});
       CHECK(one.code == all.code);
       CHECK(one.err == all.err);
       CHECK(one.out == all.out);
@@ -52,9 +50,7 @@ TEST_CASE("closed streams: no message gets into a file that is written") {
   const std::string at = folder.path().string();
   const auto convert = [&](const std::string& out, const std::string& closed) {
     return test::run_words(
-        {"/bin/sh",
-         "-c",
-         test::program() + " convert " + at + "/log.csv -o " + at + "/" + out + closed});
+        {"/bin/sh", "-c", test::program() + " convert " + at + "/log.csv -o " + at + "/" + out + closed});
   };
   REQUIRE(convert("open.csv", "").err.find("warning") != std::string::npos);
   for (const char* closed : {" >&- 2>&-", " 2>&-", " <&- >&- 2>&-", " <&-"}) {
@@ -64,29 +60,27 @@ TEST_CASE("closed streams: no message gets into a file that is written") {
   }
 }
 
-TEST_CASE(
-    "slips on the command line are exit code 2, one line on stderr, with the nearest right word") {
+TEST_CASE("slips on the command line are exit code 2, one line on stderr, with the nearest right word") {
   struct Slip {
     std::vector<std::string> arguments;
     std::string says;
   };
-  const std::vector<Slip> slips = {
-      {{}, "which verb?"},
-      {{"inspcet", "a.csv"}, "did you mean inspect?"},
-      {{"--verison"}, "did you mean --version?"},
-      {{"inspect"}, "LOG is required"},
-      {{"inspect", "a.csv", "--time-unt", "s"}, "did you mean --time-unit?"},
-      {{"inspect", "a.csv", "--time-unit", "sec"}, "expected one of auto, s, ms, us, ns"},
-      {{"inspect", "a.csv", "--rate", "nan"}, "--rate"},
-      {{"inspect", "a.csv", "--rate", "-1"}, "--rate"},
-      {{"inspect", "a.csv", "--rate", "1e400"}, "--rate"},
-      {{"inspect", "a.csv", "--rate", "010"}, "got \"010\""},
-      {{"inspect", "a.csv", "--from", "3 parsecs"}, "a duration such as"},
-      {{"inspect", "a.csv", "--skip-rows", "-1"}, "expected a whole number"},
-      {{"inspect", "a.csv", "--threads", "1e3"}, "expected a whole number"},
-      {{"inspect", "a.csv", "--delimiter", "abc"}, "one character"},
-      {{"convert", "a.csv"}, "--output is required"},
-      {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"}};
+  const std::vector<Slip> slips = {{{}, "which verb?"},
+                                   {{"inspcet", "a.csv"}, "did you mean inspect?"},
+                                   {{"--verison"}, "did you mean --version?"},
+                                   {{"inspect"}, "LOG is required"},
+                                   {{"inspect", "a.csv", "--time-unt", "s"}, "did you mean --time-unit?"},
+                                   {{"inspect", "a.csv", "--time-unit", "sec"}, "expected one of auto, s, ms, us, ns"},
+                                   {{"inspect", "a.csv", "--rate", "nan"}, "--rate"},
+                                   {{"inspect", "a.csv", "--rate", "-1"}, "--rate"},
+                                   {{"inspect", "a.csv", "--rate", "1e400"}, "--rate"},
+                                   {{"inspect", "a.csv", "--rate", "010"}, "got \"010\""},
+                                   {{"inspect", "a.csv", "--from", "3 parsecs"}, "a duration such as"},
+                                   {{"inspect", "a.csv", "--skip-rows", "-1"}, "expected a whole number"},
+                                   {{"inspect", "a.csv", "--threads", "1e3"}, "expected a whole number"},
+                                   {{"inspect", "a.csv", "--delimiter", "abc"}, "one character"},
+                                   {{"convert", "a.csv"}, "--output is required"},
+                                   {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"}};
   for (const Slip& slip : slips) {
     const auto ran = test::run(slip.arguments);
     INFO(slip.says << " <- " << ran.err);
@@ -123,8 +117,8 @@ TEST_CASE("control characters in a file name do not reach the terminal") {
 
 TEST_CASE("a reader that goes away is no failure") {
   const std::string log = test::fixture("npy/c_order.npy").string();
-  const auto ran = test::run_words(
-      {"bash", "-c", "set -o pipefail; \"$0\" inspect \"$1\" --json | true", test::program(), log});
+  const auto ran =
+      test::run_words({"bash", "-c", "set -o pipefail; \"$0\" inspect \"$1\" --json | true", test::program(), log});
   CHECK(ran.code == 0);
   CHECK(ran.err.empty());
 }
@@ -137,10 +131,8 @@ TEST_CASE("a log from another program, by the shell's <(…), is read as text") 
     file << "t,x\n";
     for (int i = 0; i < 3000; ++i) file << 0.01 * i << ',' << (i * i) % 1009 << '\n';
   }
-  for (const char* script :
-       {R"("$0" inspect <(cat "$1") >/dev/null)",
-        R"("$0" convert <(cat "$1") -o "$2" --quiet)",
-        R"("$0" characterize <(cat "$1") -o "$2.report" --quiet >/dev/null)"}) {
+  for (const char* script : {R"("$0" inspect <(cat "$1") >/dev/null)", R"("$0" convert <(cat "$1") -o "$2" --quiet)",
+                             R"("$0" characterize <(cat "$1") -o "$2.report" --quiet >/dev/null)"}) {
     const auto ran = test::run_words({"bash", "-c", script, test::program(), log, out});
     INFO(script << ran.err);
     CHECK(ran.code == 0);
@@ -159,8 +151,8 @@ TEST_CASE("stopped by a signal: exit code 128 + signal and no output file") {
   const std::string fifo = (folder / "pipe").string();
   const std::string out = (folder / "out.npy").string();
   for (const char* data : {"x\\n", "x\\n1\\n2\\n"}) {
-    const auto ran = test::run_words(
-        {"bash", "-c", "rm -f \"$2\"; mkfifo \"$2\"; " + script, test::program(), out, fifo, data});
+    const auto ran =
+        test::run_words({"bash", "-c", "rm -f \"$2\"; mkfifo \"$2\"; " + script, test::program(), out, fifo, data});
     INFO(ran.err);
     CHECK(ran.code == 143);
     CHECK_FALSE(std::filesystem::exists(out));
@@ -178,18 +170,15 @@ TEST_CASE("a verb of two words: joined, listed where the second is missing, with
        {std::vector<std::string>{"fleet", "--help"}, {"help", "fleet"}, {"fleet", "help"}}) {
     const test::Ran page = test::run(words);
     CHECK(page.code == 0);
-    CHECK_THAT(page.out,
-               Catch::Contains("Usage: sensorchar fleet VERB") && Catch::Contains("fleet merge") &&
-                   !Catch::Contains("inspect"));
+    CHECK_THAT(page.out, Catch::Contains("Usage: sensorchar fleet VERB") && Catch::Contains("fleet merge") &&
+                             !Catch::Contains("inspect"));
   }
   CHECK(test::run({"fleet", "help", "run"}).out == test::run({"fleet", "run", "--help"}).out);
   // As it is typed: in usage, in hints, in documents.
   CHECK_THAT(test::run({"--help"}).out, Catch::Contains("fleet merge"));
-  CHECK_THAT(test::run({"fleet", "run", "--help"}).out,
-             Catch::Contains("Usage: sensorchar fleet run ["));
-  CHECK_THAT(test::run({"fleet", "run"}).err,
-             Catch::Contains("sensorchar fleet run: error E0205") &&
-                 Catch::Contains("hint: sensorchar fleet run --help"));
+  CHECK_THAT(test::run({"fleet", "run", "--help"}).out, Catch::Contains("Usage: sensorchar fleet run ["));
+  CHECK_THAT(test::run({"fleet", "run"}).err, Catch::Contains("sensorchar fleet run: error E0205") &&
+                                                  Catch::Contains("hint: sensorchar fleet run --help"));
   const test::TemporaryFolder folder;
   const std::string fleet = (folder / "F").string(), log = (folder / "a.csv").string();
   std::ofstream(log) << "t[s],x\n0,1\n1,2\n2,1\n";

@@ -22,9 +22,8 @@ struct ModelBench {
     return path(name);
   }
   std::string model(const std::string& channel, const std::string& rest) const {
-    return file(
-        channel + ".sensor.yaml",
-        "format: sensor-model\nversion: 1\nchannel: " + channel + "\nrate_hz: 200\n" + rest);
+    return file(channel + ".sensor.yaml",
+                "format: sensor-model\nversion: 1\nchannel: " + channel + "\nrate_hz: 200\n" + rest);
   }
   std::vector<std::string> imu(const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"model"};
@@ -51,8 +50,7 @@ TEST_CASE("model --to writes the file to stdout and what was replaced to stderr"
   CHECK_THAT(ran.out, Contains("\ngyroscope_noise_density: 0.0001745329252  #"));
   // 100e-6 g, one-sided: 9.80665e-4 / sqrt(2).
   CHECK_THAT(ran.out, Contains("\naccelerometer_noise_density: 0.00069343487"));
-  CHECK_THAT(ran.err,
-             Contains("the accelerometer's random_walk was not detected; its upper 95 % limit"));
+  CHECK_THAT(ran.err, Contains("the accelerometer's random_walk was not detected; its upper 95 % limit"));
   CHECK(test::run(bench.imu({"--to", "kalibr", "-q"})).err.empty());
 }
 
@@ -67,8 +65,7 @@ TEST_CASE("model -o writes a whole file, and overwrites only with --force") {
   CHECK(test::run(bench.imu({"--to", "vins", "-o", out, "--force"})).code == 0);
   CHECK_THAT(test::slurp(out), Contains("acc_n"));
   // An input is never overwritten.
-  const auto own =
-      test::run(bench.imu({"--to", "vins", "--force", "-o", bench.path("gyr_x.sensor.yaml")}));
+  const auto own = test::run(bench.imu({"--to", "vins", "--force", "-o", bench.path("gyr_x.sensor.yaml")}));
   CHECK(own.code == 5);
   CHECK_THAT(test::slurp(bench.path("gyr_x.sensor.yaml")), Contains("format: sensor-model"));
 }
@@ -76,8 +73,7 @@ TEST_CASE("model -o writes a whole file, and overwrites only with --force") {
 TEST_CASE("model --list names every target with its convention") {
   const auto list = test::run({"model", "--list"});
   CHECK(list.code == 0);
-  for (const char* part :
-       {"kalibr", "VINS-Mono, VINS-Fusion", "gyr_n = N sqrt(2 f)", "px4", "needs any sensor"})
+  for (const char* part : {"kalibr", "VINS-Mono, VINS-Fusion", "gyr_n = N sqrt(2 f)", "px4", "needs any sensor"})
     CHECK_THAT(list.out, Contains(part));
   const auto json = test::run({"model", "--list", "--json"});
   const Json document = parse_json(json.out, "stdout");
@@ -88,10 +84,9 @@ TEST_CASE("model --list names every target with its convention") {
 
 TEST_CASE("model FILE says what the model says, in everybody's units, and the sides") {
   const ModelBench bench;
-  const std::string file =
-      bench.model("gyro",
-                  "unit: deg/s\ndensity: one-sided\nwhite_noise: {value: 0.0135, unit: "
-                  "deg/s/√Hz}\nbias_instability: {upper95: 1.0e-3, status: not_detected}\n");
+  const std::string file = bench.model("gyro",
+                                       "unit: deg/s\ndensity: one-sided\nwhite_noise: {value: 0.0135, unit: "
+                                       "deg/s/√Hz}\nbias_instability: {upper95: 1.0e-3, status: not_detected}\n");
   const auto ran = test::run({"model", file});
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Contains("gyro [deg/s]: gyroscope, 200 Hz"));
@@ -103,8 +98,7 @@ TEST_CASE("model FILE says what the model says, in everybody's units, and the si
   const Json document = parse_json(json.out, "stdout");
   CHECK(document["format"] == "models");
   CHECK(document["input"][0]["sha256"].get<std::string>().size() == 64);
-  CHECK(document["models"][0]["white_noise"]["value"].get<double>() ==
-        Approx(0.0135 / std::sqrt(2)));
+  CHECK(document["models"][0]["white_noise"]["value"].get<double>() == Approx(0.0135 / std::sqrt(2)));
 }
 
 TEST_CASE("model --to --json carries text and notes") {
@@ -121,20 +115,16 @@ TEST_CASE("model --to --json carries text and notes") {
 
 TEST_CASE("model: options reach the numbers") {
   const ModelBench bench;
-  CHECK_THAT(test::run(bench.imu({"--to", "vins", "--gravity", "9.8"})).out,
-             Contains("\ng_norm: 9.8 "));
-  CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--topic", "/other"})).out,
-             Contains("\nrostopic: /other\n"));
+  CHECK_THAT(test::run(bench.imu({"--to", "vins", "--gravity", "9.8"})).out, Contains("\ng_norm: 9.8 "));
+  CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--topic", "/other"})).out, Contains("\nrostopic: /other\n"));
   CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--inflate", "10"})).out,
              Contains("\ngyroscope_noise_density: 0.001745329252 "));
-  CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--axes", "rms"})).out,
-             Contains("root mean square of x"));
+  CHECK_THAT(test::run(bench.imu({"--to", "kalibr", "--axes", "rms"})).out, Contains("root mean square of x"));
   CHECK_THAT(test::run(bench.imu({"--to", "sdf", "--correlation-time", "77"})).out,
              Contains("<dynamic_bias_correlation_time>77.0<"));
   CHECK_THAT(test::run(bench.imu({"--to", "airsim", "--airsim-tau", "300"})).out,
              Contains("\"GyroBiasStabilityTau\": 300.0"));
-  CHECK_THAT(test::run(bench.imu({"--to", "orbslam3", "--older"})).out,
-             Contains("IMU.Frequency: 200 "));
+  CHECK_THAT(test::run(bench.imu({"--to", "orbslam3", "--older"})).out, Contains("IMU.Frequency: 200 "));
 }
 
 TEST_CASE("model: what a channel is can be said with --axis") {
@@ -165,25 +155,19 @@ TEST_CASE("model: bad command lines and files") {
   CHECK(test::run(bench.imu({"--to", "kalibr", "--inflate", "nan"})).code == 2);
   CHECK(test::run({"model", bench.path("absent.yaml")}).code == 3);
   CHECK(test::run({"model", bench.file("log.csv", "t,x\n0,1\n"), "--to", "kalibr"}).code == 3);
-  const auto alone =
-      test::run({"model",
-                 bench.model("gyr_x", "unit: deg/s\nwhite_noise: {value: 0.6, unit: deg/√h}\n"),
-                 "--to",
-                 "kalibr"});
+  const auto alone = test::run(
+      {"model", bench.model("gyr_x", "unit: deg/s\nwhite_noise: {value: 0.6, unit: deg/√h}\n"), "--to", "kalibr"});
   CHECK(alone.code == 3);
   CHECK_THAT(alone.err, Contains("there is no accelerometer among gyr_x (gyroscope)"));
 }
 
-TEST_CASE(
-    "characterize, then model: the recording's SHA-256 and coefficients arrive at the consumer") {
+TEST_CASE("characterize, then model: the recording's SHA-256 and coefficients arrive at the consumer") {
   const ModelBench bench;
   const std::size_t n = 20000;
   test::NoiseSource source(n, 200, 5);
   std::vector<std::vector<double>> columns;
-  for (int i = 0; i < 6; ++i)
-    columns.push_back(source.record(i < 3 ? 1e-3 : 1e-2, 0, i < 3 ? 1e-3 : 1e-2));
-  std::string text =
-      "gyr_x[rad/s],gyr_y[rad/s],gyr_z[rad/s],acc_x[m/s^2],acc_y[m/s^2],acc_z[m/s^2]\n";
+  for (int i = 0; i < 6; ++i) columns.push_back(source.record(i < 3 ? 1e-3 : 1e-2, 0, i < 3 ? 1e-3 : 1e-2));
+  std::string text = "gyr_x[rad/s],gyr_y[rad/s],gyr_z[rad/s],acc_x[m/s^2],acc_y[m/s^2],acc_z[m/s^2]\n";
   for (std::size_t t = 0; t < n; ++t)
     for (std::size_t c = 0; c < 6; ++c) text += shortest(columns[c][t]) + (c < 5 ? "," : "\n");
   const std::string log = bench.file("imu.csv", text), out = bench.path("out");

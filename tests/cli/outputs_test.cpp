@@ -121,28 +121,23 @@ TEST_CASE("standard output as a file: its bytes go there, and the name stays wha
   CHECK_THAT(test::slurp(got), Catch::StartsWith("t[s],x\n0,0\n") && !Contains("rows"));
   CHECK(entries_of(folder.path()) == 3);
   // Into a pipe, .npy too: what it says at its beginning is right.
-  const auto piped = test::run_words({"bash",
-                                      "-c",
+  const auto piped = test::run_words({"bash", "-c",
                                       "\"$0\" convert \"$1\" --as npy -q -o /dev/stdout | cat > "
                                       "\"$2\" && \"$0\" inspect \"$2\" --rate 100",
-                                      test::program(),
-                                      log.string(),
-                                      (folder / "p.npy").string()});
+                                      test::program(), log.string(), (folder / "p.npy").string()});
   CHECK_THAT(piped.out, Contains("1 channel, 100 Hz (given), 20 s"));
 }
 
 TEST_CASE("files beside a pipe or device have no place") {
   const test::TemporaryFolder folder;
-  const fs::path log = folder / "log.csv", link = folder / "out.f64",
-                 model = folder / "m.sensor.yaml";
+  const fs::path log = folder / "log.csv", link = folder / "out.f64", model = folder / "m.sensor.yaml";
   write_log(log);
   std::ofstream(model) << kModel;
   fs::create_symlink("/proc/self/fd/1", link);
   const auto raw = test::run({"convert", log.string(), "-o", link.string()});
   CHECK(raw.code == 5);
   CHECK_THAT(raw.err, Contains("E0518") && Contains("sidecar"));
-  const auto scene =
-      test::run({"simulate", model.string(), "--samples", "5", "--as", "csv", "-o", link.string()});
+  const auto scene = test::run({"simulate", model.string(), "--samples", "5", "--as", "csv", "-o", link.string()});
   CHECK(scene.code == 2);
   CHECK_THAT(scene.err, Contains("--no-scene"));
   CHECK(entries_of(folder.path()) == 3);
@@ -193,8 +188,7 @@ exec 3> "$2"
 while [ ! -e "$3/a/report.json" ]; do sleep 0.02; done
 printf 't,x\n0,1\n1,2\n' >&3
 kill -TERM $pid; sleep 0.1; exec 3>&-; wait $pid)";
-  const auto ran = test::run_words(
-      {"bash", "-c", script, test::program(), log.string(), pipe.string(), out.string()});
+  const auto ran = test::run_words({"bash", "-c", script, test::program(), log.string(), pipe.string(), out.string()});
   INFO(ran.err);
   CHECK(ran.code == 143);
   CHECK_THAT(ran.err, Contains("stopped; what had been written before is whole"));
@@ -209,16 +203,10 @@ TEST_CASE("closed streams: every verb that writes gives the same bytes, no messa
   const std::string at = folder.path().string(), program = test::program();
   std::string array = "t[s],a[V],b[V],c[V]\n";
   for (int k = 0; k < 400; ++k)
-    array +=
-        fmt::format("{}.{:02},{},{},{}\n", k / 100, k % 100, k % 7, k % 7 + k % 3, k % 7 + k % 5);
+    array += fmt::format("{}.{:02},{},{},{}\n", k / 100, k % 100, k % 7, k % 7 + k % 3, k % 7 + k % 5);
   std::ofstream(folder / "array.csv") << array;
-  test::run_words({program,
-                   "replay",
-                   (folder / "array.csv").string(),
-                   "--sensors",
-                   "a,b,c",
-                   "-o",
-                   (folder / "learnt").string()});
+  test::run_words(
+      {program, "replay", (folder / "array.csv").string(), "--sensors", "a,b,c", "-o", (folder / "learnt").string()});
   for (const auto& [words, file] : std::vector<std::pair<std::string, std::string>>{
            {"replay array.csv --sensors a,b,c -o run --no-timing", "run/fusion.yaml"},
            {"fuse array.csv --with learnt --algorithm mean -o out.csv", "out.csv"},
@@ -231,8 +219,7 @@ TEST_CASE("closed streams: every verb that writes gives the same bytes, no messa
            {"model m.sensor.yaml -o out.txt", "out.txt"},
            {"simulate m.sensor.yaml --samples 100 -o out.csv", "out.csv"}}) {
     const auto bytes = [&, &words = words, &file = file](const std::string& closed) {
-      test::run_words(
-          {"/bin/sh", "-c", "cd " + at + " && " + program + " " + words + " --force" + closed});
+      test::run_words({"/bin/sh", "-c", "cd " + at + " && " + program + " " + words + " --force" + closed});
       const std::string text = test::slurp(folder / file);
       fs::remove_all(folder / file);
       return text;
@@ -260,12 +247,10 @@ TEST_CASE("standard output by -o -: a log goes there as CSV, what is said of it 
   CHECK(std::count(ran.out.begin(), ran.out.end(), '\n') == 101);
   ran = test::run({"simulate", model, "--duration", "1s", "-o", "-", "--json"});
   CHECK(ran.code == 2);
-  CHECK_THAT(ran.err,
-             Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
+  CHECK_THAT(ran.err, Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
 }
 
-TEST_CASE(
-    "standard output by -o -: several files do not go there, nor into a folder of that name") {
+TEST_CASE("standard output by -o -: several files do not go there, nor into a folder of that name") {
   const std::string csv = test::fixture("imu_at_rest.csv").string();
   const std::string scene = test::fixture("scenes/lever-arm.yaml").string();
   for (const std::vector<std::string>& command :
@@ -277,8 +262,7 @@ TEST_CASE(
     const auto ran = test::run(command);
     INFO(command.front() << ran.err);
     CHECK(ran.code == 2);
-    CHECK_THAT(ran.err,
-               Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
+    CHECK_THAT(ran.err, Catch::Contains("E0205") && Catch::Contains("standard output takes one document"));
     CHECK_FALSE(std::filesystem::exists("-"));
   }
 }

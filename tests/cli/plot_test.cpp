@@ -14,8 +14,7 @@ const std::string& plotted_report() {
   static const test::TemporaryFolder folder;
   static const std::string path = [] {
     const std::string out = (folder / "report").string();
-    const test::Ran ran =
-        test::run({"characterize", test::fixture("imu_at_rest.csv").string(), "-o", out});
+    const test::Ran ran = test::run({"characterize", test::fixture("imu_at_rest.csv").string(), "-o", out});
     INFO(ran.err);
     REQUIRE(ran.code == 0);
     return out;
@@ -53,8 +52,7 @@ TEST_CASE("plot gives the numbers, and reads what allan and psd print") {
   const test::TemporaryFolder folder;
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const std::string csv = (folder / "n.csv").string(), gp = (folder / "n.gp").string();
-  test::Ran ran =
-      test::run({"plot", plotted_report(), "-c", "gyro_z", "--csv", csv, "--gnuplot", gp});
+  test::Ran ran = test::run({"plot", plotted_report(), "-c", "gyro_z", "--csv", csv, "--gnuplot", gp});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
   CHECK_THAT(test::slurp(csv), Contains("series,fitted model,0.02,"));
@@ -68,16 +66,10 @@ TEST_CASE("plot gives the numbers, and reads what allan and psd print") {
       ran = test::run({"plot", curve, "-o", "-"});
       INFO(ran.err);
       CHECK(ran.code == 0);
-      CHECK_THAT(ran.out,
-                 Contains(std::string(verb) == "allan" ? "Averaging time" : "Frequency [Hz]"));
+      CHECK_THAT(ran.out, Contains(std::string(verb) == "allan" ? "Averaging time" : "Frequency [Hz]"));
     }
-  ran = test::run({"plot",
-                   plotted_report() + "/gyro_z.sensor.yaml",
-                   plotted_report() + "/curves.csv",
-                   "-c",
-                   "gyro_z",
-                   "-o",
-                   "-"});
+  ran = test::run(
+      {"plot", plotted_report() + "/gyro_z.sensor.yaml", plotted_report() + "/curves.csv", "-c", "gyro_z", "-o", "-"});
   INFO(ran.err);
   CHECK(ran.code == 0);
 }
@@ -123,8 +115,7 @@ TEST_CASE("allan and psd draw in the terminal, a plot for each unit") {
     INFO(ran.err);
     REQUIRE(ran.code == 0);
     CHECK_THAT(ran.out, !Contains("\x1b") && Contains("┤") && Contains("┬"));
-    CHECK_THAT(ran.out,
-               Contains(std::string(verb) == "allan" ? "deviation [deg/s]" : "PSD [(deg/s)²/Hz]"));
+    CHECK_THAT(ran.out, Contains(std::string(verb) == "allan" ? "deviation [deg/s]" : "PSD [(deg/s)²/Hz]"));
     CHECK_THAT(ran.out, Contains(std::string(verb) == "allan" ? "deviation [g]" : "PSD [g²/Hz]"));
     for (std::size_t at = 0; at < ran.out.size();) {
       const std::size_t end = ran.out.find('\n', at);

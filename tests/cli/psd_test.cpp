@@ -29,16 +29,14 @@ std::string write_log(const test::TemporaryFolder& folder) {
   const auto a = noise(20000, 1), b = noise(20000, 2);
   std::string text = "gyro_x[deg/s],plain\n";
   for (std::size_t i = 0; i < a.size(); ++i)
-    text += shortest(a[i]) + "," +
-            shortest(b[i] + std::sin(2 * M_PI * 12.3 * static_cast<double>(i) / 100)) + "\n";
+    text += shortest(a[i]) + "," + shortest(b[i] + std::sin(2 * M_PI * 12.3 * static_cast<double>(i) / 100)) + "\n";
   const std::string path = (folder / "log.csv").string();
   std::ofstream(path) << text;
   return path;
 }
 
 std::vector<double> second_column(std::vector<double> b) {
-  for (std::size_t i = 0; i < b.size(); ++i)
-    b[i] += std::sin(2 * M_PI * 12.3 * static_cast<double>(i) / 100);
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] += std::sin(2 * M_PI * 12.3 * static_cast<double>(i) / 100);
   return b;
 }
 
@@ -52,8 +50,7 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   options.sides = Sides::two;
   const Spectrum wanted = welch(second_column(noise(20000, 2)), 100, options);
 
-  const test::Ran csv =
-      test::run({"psd", log, "--rate", "100", "--segment", "1000", "--sides", "two"});
+  const test::Ran csv = test::run({"psd", log, "--rate", "100", "--segment", "1000", "--sides", "two"});
   REQUIRE(csv.code == 0);
   CHECK(csv.err == "");
   std::istringstream lines(csv.out);
@@ -66,22 +63,10 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
     REQUIRE(line.substr(line.rfind(',') + 1) == shortest(wanted.value[k]));
   }
   CHECK_FALSE(std::getline(lines, line));
-  CHECK(test::run({"psd", log, "--rate", "100", "--segment", "10s", "--sides", "two"}).out ==
-        csv.out);
+  CHECK(test::run({"psd", log, "--rate", "100", "--segment", "10s", "--sides", "two"}).out == csv.out);
 
-  const test::Ran whole = test::run({"psd",
-                                     log,
-                                     "--rate",
-                                     "100",
-                                     "--json",
-                                     "--scaling",
-                                     "lsd",
-                                     "--window",
-                                     "flat_top",
-                                     "--detrend",
-                                     "linear",
-                                     "-c",
-                                     "plain"});
+  const test::Ran whole = test::run({"psd", log, "--rate", "100", "--json", "--scaling", "lsd", "--window", "flat_top",
+                                     "--detrend", "linear", "-c", "plain"});
   REQUIRE(whole.code == 0);
   const Json document = parse_json(whole.out, "out");
   CHECK(document["format"] == "spectrum");
@@ -99,32 +84,20 @@ TEST_CASE("psd writes the library's spectrum as CSV and as JSON, whole and strea
   CHECK(channel["frequency_hz"].get<std::vector<double>>() == quarter.frequency_hz);
   CHECK(channel["value"].get<std::vector<double>>() == quarter.value);
   CHECK(channel["dof"].get<std::vector<double>>() == quarter.dof);
-  CHECK(channel["ci95"][7][0].get<double>() ==
-        Approx(IntervalFactors(0.95).interval(quarter, 7).first));
-  CHECK(channel["ci95"][7][1].get<double>() ==
-        Approx(IntervalFactors(0.95).interval(quarter, 7).second));
+  CHECK(channel["ci95"][7][0].get<double>() == Approx(IntervalFactors(0.95).interval(quarter, 7).first));
+  CHECK(channel["ci95"][7][1].get<double>() == Approx(IntervalFactors(0.95).interval(quarter, 7).second));
 }
 
 TEST_CASE("psd finds lines and bins on a logarithmic axis") {
   const test::TemporaryFolder folder;
   const std::string log = write_log(folder);
-  const test::Ran lines =
-      test::run({"psd", log, "--rate", "100Hz", "--segment", "2000", "--lines"});
+  const test::Ran lines = test::run({"psd", log, "--rate", "100Hz", "--segment", "2000", "--lines"});
   REQUIRE(lines.code == 0);
   REQUIRE(std::count(lines.out.begin(), lines.out.end(), '\n') == 2);
   CHECK(lines.out.starts_with("channel,unit,frequency_hz,amplitude,excess,width_hz\nplain,,12.3"));
-  const Json both = parse_json(test::run({"psd",
-                                          log,
-                                          "--rate",
-                                          "100",
-                                          "--segment",
-                                          "2000",
-                                          "--lines",
-                                          "--json",
-                                          "--log-bins",
-                                          "20"})
-                                   .out,
-                               "out");
+  const Json both = parse_json(
+      test::run({"psd", log, "--rate", "100", "--segment", "2000", "--lines", "--json", "--log-bins", "20"}).out,
+      "out");
   CHECK(both["channels"][0]["lines"].empty());
   CHECK(both["channels"][1]["lines"][0]["amplitude"].get<double>() == Approx(1).epsilon(0.05));
   CHECK(both["channels"][1]["value"].size() <= 20);
@@ -151,8 +124,7 @@ TEST_CASE("psd writes whole files, keeps old ones, and refuses what cannot be") 
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "4"}).code == 2);
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "x"}).code == 2);
   CHECK(test::run({"psd", log, "--rate", "100", "--overlap", "1"}).code == 2);
-  CHECK(test::run({"psd", log, "--rate", "100", "--window", "han"}).err.find("did you mean hann") !=
-        std::string::npos);
+  CHECK(test::run({"psd", log, "--rate", "100", "--window", "han"}).err.find("did you mean hann") != std::string::npos);
   CHECK(test::run({"psd", log, "--rate", "100", "--segment", "30000"}).code == 4);
   CHECK(test::run({"psd", (folder / "absent.csv").string(), "--rate", "100"}).code == 3);
 }

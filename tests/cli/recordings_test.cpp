@@ -15,12 +15,8 @@ using Catch::Contains;
 
 namespace {
 
-void write_log(const std::filesystem::path& path,
-               const std::string& unit,
-               double q,
-               std::uint64_t seed,
-               std::size_t samples = 4000,
-               double rate_hz = 50) {
+void write_log(const std::filesystem::path& path, const std::string& unit, double q, std::uint64_t seed,
+               std::size_t samples = 4000, double rate_hz = 50) {
   test::NoiseSource noise(samples, rate_hz, seed);
   const auto x = noise.record(q, 0, 0), y = noise.record(q, 0, 0);
   std::ofstream out(path);
@@ -32,17 +28,14 @@ void write_log(const std::filesystem::path& path,
 struct Logs {
   test::TemporaryFolder folder;
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  test::Ran characterize(const std::vector<std::string>& logs,
-                         const std::vector<std::string>& more) const {
+  test::Ran characterize(const std::vector<std::string>& logs, const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"characterize"};
     for (const std::string& log : logs) words.push_back(path(log));
     words.insert(words.end(), {"-o", path("out"), "--no-second-opinion"});
     words.insert(words.end(), more.begin(), more.end());
     return test::run(words);
   }
-  libchar::Json json(const std::string& name) const {
-    return libchar::parse_json(test::slurp(folder / name), name);
-  }
+  libchar::Json json(const std::string& name) const { return libchar::parse_json(test::slurp(folder / name), name); }
   /// No file below the results.
   bool nothing_written() const {
     if (!std::filesystem::exists(folder / "out")) return true;
@@ -102,8 +95,7 @@ TEST_CASE("characterize --pool: pages, numbers and a model of runs together") {
   CAPTURE(ran.err, ran.out);
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("3 runs, one sensor"));
-  for (const char* file :
-       {"runs.html", "runs.json", "gx.sensor.yaml", "a/report.html", "c/report.json"})
+  for (const char* file : {"runs.html", "runs.json", "gx.sensor.yaml", "a/report.html", "c/report.json"})
     CHECK(std::filesystem::file_size(logs.folder / "out" / file) > 500);
   const auto runs = logs.json("out/runs.json");
   const auto& white = runs.at("fit").at("channels").at(0).at("white_noise");
@@ -122,9 +114,7 @@ TEST_CASE("characterize --pool: pages, numbers and a model of runs together") {
   CHECK(again.code == 5);  // exists
   const auto compared = test::run({"compare", logs.path("out"), logs.path("out/a")});
   CHECK(compared.code == 0);
-  CHECK_THAT(
-      compared.out,
-      Contains("N: a or out, not distinguished") || Contains("N: out or a, not distinguished"));
+  CHECK_THAT(compared.out, Contains("N: a or out, not distinguished") || Contains("N: out or a, not distinguished"));
 }
 
 TEST_CASE(
@@ -135,15 +125,13 @@ TEST_CASE(
   write_log(logs.folder / "b.csv", "rad/s", 5e-3, 2);
   write_log(logs.folder / "c.csv", "deg/s", 5e-3, 3, 4000, 100);
   std::ofstream(logs.folder / "empty.csv") << "t[s],gx[deg/s],gy[deg/s]\n";
-  std::ofstream(logs.folder / "short.csv")
-      << "t[s],gx[deg/s],gy[deg/s]\n0,1,2\n0.02,1,3\n0.04,2,3\n";
+  std::ofstream(logs.folder / "short.csv") << "t[s],gx[deg/s],gy[deg/s]\n0,1,2\n0.02,1,3\n0.04,2,3\n";
   const auto refused = [&](const std::string& other, int code, const std::string& why) {
     const auto ran = logs.characterize({"a.csv", other}, {"--pool"});
     CAPTURE(other, ran.err);
     CHECK(ran.code == code);
     CHECK_THAT(ran.err, Contains(why));
-    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') <=
-          2);  // warnings of the log, the sentence
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') <= 2);  // warnings of the log, the sentence
     CHECK(logs.nothing_written());
   };
   refused("b.csv", 3, "one unit");
@@ -163,37 +151,31 @@ TEST_CASE("characterize --lot and a fleet of the same logs say the same") {
     names.push_back("imu" + std::to_string(i) + ".csv");
     const double by = louder.count(i) > 0 ? louder.at(i) : 1;
     // Some of them say it in another unit.
-    write_log(logs.folder / names.back(),
-              i % 4 == 1 ? "rad/s" : "deg/s",
-              (i % 4 == 1 ? std::numbers::pi / 180 : 1) * 5e-3 * by,
-              40 + i);
+    write_log(logs.folder / names.back(), i % 4 == 1 ? "rad/s" : "deg/s",
+              (i % 4 == 1 ? std::numbers::pi / 180 : 1) * 5e-3 * by, 40 + i);
   }
   const auto ran = logs.characterize(names, {"--lot"});
   CAPTURE(ran.err, ran.out);
   REQUIRE(ran.code == 0);
-  CHECK_THAT(ran.out,
-             Contains("9 devices. 2 devices stand out from their kind: ") &&
-                 Contains("gx, gy: recorded in deg/s, rad/s, compared in deg/s."));
+  CHECK_THAT(ran.out, Contains("9 devices. 2 devices stand out from their kind: ") &&
+                          Contains("gx, gy: recorded in deg/s, rad/s, compared in deg/s."));
   std::vector<std::string> plan = {"fleet", "plan", "-o", logs.path("f"), "--no-second-opinion"};
   for (const std::string& name : names) plan.push_back(logs.path(name));
   REQUIRE(test::run(plan).code == 0);
   REQUIRE(test::run({"fleet", "run", logs.path("f")}).code == 0);
   const auto merged = test::run({"fleet", "merge", logs.path("f"), "-o", logs.path("r")});
   REQUIRE(merged.code == 0);
-  CHECK(ran.out.substr(0, ran.out.find("\nwrote")) ==
-        merged.out.substr(0, merged.out.find("\nwrote")));
+  CHECK(ran.out.substr(0, ran.out.find("\nwrote")) == merged.out.substr(0, merged.out.find("\nwrote")));
   const auto lot = logs.json("out/lot.json");
   CHECK(said_of_lot(lot) == said_of_lot(logs.json("r/lot.json")));
-  CHECK(test::slurp(logs.folder / "out/coefficients.npz") ==
-        test::slurp(logs.folder / "r/coefficients.npz"));
+  CHECK(test::slurp(logs.folder / "out/coefficients.npz") == test::slurp(logs.folder / "r/coefficients.npz"));
   CHECK(test::schema_fault(test::slurp(logs.folder / "out/lot.json")) == "");
   for (const auto& q : lot.at("quantities")) {
     CHECK(q.at("members") == (q.at("of_kind") == true ? 18 : 9));
     if (q.at("what") != "white_noise" || q.at("of_kind") == true) continue;
     REQUIRE(q.at("outliers").size() == 2);
     for (const auto& o : q.at("outliers"))
-      CHECK(o.at("ratio").get<double>() ==
-            Approx(o.at("device") == "imu3" ? 1.9 : 2.3).epsilon(0.06));
+      CHECK(o.at("ratio").get<double>() == Approx(o.at("device") == "imu3" ? 1.9 : 2.3).epsilon(0.06));
   }
   const std::string page = test::slurp(logs.folder / "out/index.html");
   CHECK_THAT(page, Contains("imu3/report.html") && Contains("<h2>Allan curves</h2>"));
@@ -208,8 +190,7 @@ TEST_CASE("characterize --lot: limits hold for each log and for the lot") {
   std::ofstream(logs.folder / "sheet.yaml") << limits_text("0.5");
   const auto ran = logs.characterize(names, {"--lot", "--limits", logs.path("sheet.yaml")});
   CHECK(ran.code == 6);
-  CHECK_THAT(ran.out,
-             Contains("Of 2 devices held against limits, 1 fails one, 0 not decided, 1 keeps all"));
+  CHECK_THAT(ran.out, Contains("Of 2 devices held against limits, 1 fails one, 0 not decided, 1 keeps all"));
   CHECK(logs.json("out/lot.json").at("limits").at("failing") == 1);
   for (const char* report : {"out", "out/lot.json"})
     CHECK_THAT(test::run({"compare", logs.path(report), logs.path("out/a")}).err,
@@ -228,38 +209,25 @@ TEST_CASE("compare: recordings, reports and models, and checks of them") {
   const auto json = test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--json"});
   const auto document = libchar::parse_json(json.out, "stdout");
   CHECK(document.at("format") == "characterization-comparison");
-  CHECK(document.at("groups").at(0).at("terms").at(0).at("sensors").at(1).at("difference") ==
-        "larger");
-  CHECK(
-      document.at("groups").at(0).at("terms").at(0).at("sensors").at(1).at("ratio").get<double>() ==
-      Approx(1.6).epsilon(0.05));
+  CHECK(document.at("groups").at(0).at("terms").at(0).at("sensors").at(1).at("difference") == "larger");
+  CHECK(document.at("groups").at(0).at("terms").at(0).at("sensors").at(1).at("ratio").get<double>() ==
+        Approx(1.6).epsilon(0.05));
   CHECK(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--unlike"}).code == 2);
-  const auto failed = test::run(
-      {"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "gx:white_noise+10%"});
+  const auto failed = test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "gx:white_noise+10%"});
   CHECK(failed.code == 6);
   CHECK_THAT(failed.err, Contains("E0924") && Contains("gx: white_noise in b is 1."));
-  CHECK(
-      test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_noise+90%"})
-          .code == 0);
-  CHECK_THAT(
-      test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_nose+9%"})
-          .err,
-      Contains("E0922") && Contains("did you mean white_noise?"));
+  CHECK(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_noise+90%"}).code == 0);
+  CHECK_THAT(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--fail-if", "white_nose+9%"}).err,
+             Contains("E0922") && Contains("did you mean white_noise?"));
   CHECK_THAT(test::run({"compare", logs.path("out/a"), logs.path("out/b"), "--markdown"}).out,
              Contains("# Sensors compared"));
   // A recording, a report and a model in one call; the page next to them.
-  const auto mixed = test::run({"compare",
-                                logs.path("a.csv"),
-                                logs.path("out/b"),
-                                logs.path("out/a/gx.sensor.yaml"),
-                                "-o",
-                                logs.path("which.html")});
+  const auto mixed = test::run({"compare", logs.path("a.csv"), logs.path("out/b"), logs.path("out/a/gx.sensor.yaml"),
+                                "-o", logs.path("which.html")});
   CAPTURE(mixed.err);
   REQUIRE(mixed.code == 0);
   CHECK_THAT(mixed.out, Contains("gyro_x:") && Contains("  gx  "));
   CHECK_THAT(test::slurp(logs.folder / "which.html"), Contains("<svg") && Contains("lowest"));
-  CHECK(test::run({"plot", logs.path("a.csv"), logs.path("out/b"), "-o", logs.path("both.svg")})
-            .code == 0);
-  CHECK_THAT(test::run({"report", logs.path("a.csv"), logs.path("out/b"), "--latex"}).out,
-             Contains("tabular"));
+  CHECK(test::run({"plot", logs.path("a.csv"), logs.path("out/b"), "-o", logs.path("both.svg")}).code == 0);
+  CHECK_THAT(test::run({"report", logs.path("a.csv"), logs.path("out/b"), "--latex"}).out, Contains("tabular"));
 }

@@ -17,8 +17,7 @@ namespace {
 
 // Three sensors of a slow wave beside each other, gyro10 the noisy one; 20 s at 50 Hz.
 std::string array_log(char between = ',') {
-  std::string text =
-      fmt::format("t[s]{0}gyro10[deg/s]{0}gyro1[deg/s]{0}gyro2[deg/s]{0}truth[deg/s]\n", between);
+  std::string text = fmt::format("t[s]{0}gyro10[deg/s]{0}gyro1[deg/s]{0}gyro2[deg/s]{0}truth[deg/s]\n", between);
   std::uint32_t state = 1;
   const auto noise = [&] {
     state = state * 1664525U + 1013904223U;
@@ -26,13 +25,8 @@ std::string array_log(char between = ',') {
   };
   for (int k = 0; k < 1000; ++k) {
     const double truth = std::sin(0.02 * k);
-    text += fmt::format("{1:.2f}{0}{2:.5f}{0}{3:.5f}{0}{4:.5f}{0}{5:.5f}\n",
-                        between,
-                        0.02 * k,
-                        truth + noise(),
-                        truth + 0.1 * noise(),
-                        truth + 0.2 * noise(),
-                        truth);
+    text += fmt::format("{1:.2f}{0}{2:.5f}{0}{3:.5f}{0}{4:.5f}{0}{5:.5f}\n", between, 0.02 * k, truth + noise(),
+                        truth + 0.1 * noise(), truth + 0.2 * noise(), truth);
   }
   return text;
 }
@@ -55,8 +49,7 @@ struct RecordingBench {
     libchar::Json report = libchar::parse_json(test::slurp(folder / (out + "/report.json")), out);
     for (const char* key : {"command", "config", "verdict_with_costs", "scene"}) report.erase(key);
     for (auto& algorithm : report["algorithms"])
-      for (const char* key : {"ns_per_sample", "peak_bytes", "learning_s", "on_front"})
-        algorithm.erase(key);
+      for (const char* key : {"ns_per_sample", "peak_bytes", "learning_s", "on_front"}) algorithm.erase(key);
     report["measured"].erase("seconds");
     for (const char* page : {"report.html", "report.md"})  // command and times stand in them
       report["files_sha256"].erase(page);
@@ -66,49 +59,43 @@ struct RecordingBench {
 
 const std::vector<std::string> kWords = {"--sensors", "gyro*", "--reference", "truth"};
 
-std::vector<std::string> with(std::vector<std::string> words,
-                              const std::vector<std::string>& more) {
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 
 }  // namespace
 
-TEST_CASE(
-    "replay of a log: patterns, reference, reports, the scene it writes gives the same bytes") {
+TEST_CASE("replay of a log: patterns, reference, reports, the scene it writes gives the same bytes") {
   const RecordingBench bench;
-  const auto ran = RecordingBench::replay(bench.log,
-                                          with(kWords,
-                                               {"--learning",
-                                                "0..8",
-                                                "--rest",
-                                                "0..1",
-                                                "--align",
-                                                "delay,gain",
-                                                "--warm-up",
-                                                "0.5",
-                                                "--algorithms",
-                                                "mean,minque,least-squares",
-                                                "--set",
-                                                "minque.gamma=0.98",
-                                                "--fault",
-                                                "gyro2:bias=1@15..16",
-                                                "--estimates",
-                                                "csv",
-                                                "-o",
-                                                bench.path("one"),
-                                                "--write-scene",
-                                                bench.path("s.yaml")}));
+  const auto ran = RecordingBench::replay(bench.log, with(kWords, {"--learning",
+                                                                   "0..8",
+                                                                   "--rest",
+                                                                   "0..1",
+                                                                   "--align",
+                                                                   "delay,gain",
+                                                                   "--warm-up",
+                                                                   "0.5",
+                                                                   "--algorithms",
+                                                                   "mean,minque,least-squares",
+                                                                   "--set",
+                                                                   "minque.gamma=0.98",
+                                                                   "--fault",
+                                                                   "gyro2:bias=1@15..16",
+                                                                   "--estimates",
+                                                                   "csv",
+                                                                   "-o",
+                                                                   bench.path("one"),
+                                                                   "--write-scene",
+                                                                   bench.path("s.yaml")}));
   INFO(ran.out + ran.err);
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("array: 3 sensors, 600 instants at 50 Hz"));
   CHECK_THAT(test::slurp(bench.path("s.yaml")), Contains("recording: \"array.csv\""));
-  const auto again =
-      RecordingBench::replay(bench.path("s.yaml"), {"--estimates", "csv", "-o", bench.path("two")});
+  const auto again = RecordingBench::replay(bench.path("s.yaml"), {"--estimates", "csv", "-o", bench.path("two")});
   INFO(again.out + again.err);
   REQUIRE(again.code == 0);
-  CHECK(test::slurp(bench.path("one/estimates.csv")) ==
-        test::slurp(bench.path("two/estimates.csv")));
+  CHECK(test::slurp(bench.path("one/estimates.csv")) == test::slurp(bench.path("two/estimates.csv")));
   const auto one = bench.found("one");
   auto two = bench.found("two");
   REQUIRE(two["input"].size() == 2);
@@ -135,17 +122,8 @@ TEST_CASE("replay of a log: reading options as everywhere") {
   const double usual = rmse(bench.log, kWords);
   CHECK(usual > 0.05);
   CHECK(rmse(other, with(kWords, {"--delimiter", ";"})) == usual);
-  CHECK(rmse(nameless,
-             {"--header",
-              "no",
-              "--time-column",
-              "c0",
-              "--names",
-              "gyro10,gyro1,gyro2,truth",
-              "--sensors",
-              "gyro?,gyro10",
-              "--reference",
-              "truth"}) == Approx(usual).epsilon(1e-12));
+  CHECK(rmse(nameless, {"--header", "no", "--time-column", "c0", "--names", "gyro10,gyro1,gyro2,truth", "--sensors",
+                        "gyro?,gyro10", "--reference", "truth"}) == Approx(usual).epsilon(1e-12));
   CHECK(rmse(bench.log, with(kWords, {"--from", "4", "--to", "9"})) != usual);
 }
 
@@ -158,20 +136,17 @@ TEST_CASE("replay of a log: refusals name the option and leave nothing behind") 
     CHECK_FALSE(fs::exists(bench.folder / "out"));
     return ran.err;
   };
-  CHECK_THAT(refused(bench.log, {}),
-             Contains("--sensors: error E0749") && Contains("gyro10, gyro1, gyro2, truth"));
+  CHECK_THAT(refused(bench.log, {}), Contains("--sensors: error E0749") && Contains("gyro10, gyro1, gyro2, truth"));
   CHECK_THAT(refused(bench.log, {"--sensors", "acc*"}), Contains("E0320") && Contains("gyro10"));
   CHECK_THAT(refused(bench.log, {"--sensors", "gyro1,gyro2", "--reference", "gyro1"}),
              Contains("--reference: error E0749"));
   CHECK_THAT(refused(bench.log, with(kWords, {"--align", "phase"})), Contains("--align"));
-  CHECK_THAT(refused(bench.log, with(kWords, {"--align", "gain@rest"})),
-             Contains("no such window"));
+  CHECK_THAT(refused(bench.log, with(kWords, {"--align", "gain@rest"})), Contains("no such window"));
   CHECK_THAT(refused(bench.log, with(kWords, {"--align", "gain@0"})), Contains("--align"));
   CHECK_THAT(refused(bench.log, with(kWords, {"--model", "gyro1"})), Contains("SENSOR=FILE"));
   CHECK_THAT(refused(bench.log, with(kWords, {"--rest", "5"})), Contains("--rest"));
   // A scene says itself what it is made of; how it is replayed may be said on top.
-  const auto wrote =
-      RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.path("s.yaml")}));
+  const auto wrote = RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.path("s.yaml")}));
   REQUIRE(wrote.code == 0);
   CHECK_THAT(refused(bench.path("s.yaml"), {"--sensors", "gyro*"}),
              Contains("--sensors: error E0910") && Contains("is a scene"));
@@ -179,9 +154,7 @@ TEST_CASE("replay of a log: refusals name the option and leave nothing behind") 
   CHECK_THAT(RecordingBench::replay(bench.path("s.yaml"), {"--rest", "0..2", "--explain"}).out,
              Contains("at rest from 0 s to 2 s"));
   // It is not overwritten, and no input is.
-  CHECK(RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.path("s.yaml")}))
-            .code == 5);
-  CHECK(RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.log, "--force"}))
-            .code == 5);
+  CHECK(RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.path("s.yaml")})).code == 5);
+  CHECK(RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.log, "--force"})).code == 5);
   CHECK(test::slurp(bench.log) == array_log());
 }

@@ -67,13 +67,10 @@ std::size_t files_in(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE(
-    "replay: estimates written again over those of an earlier run stay, without them they go") {
+TEST_CASE("replay: estimates written again over those of an earlier run stay, without them they go") {
   const ReplayBench bench;
   const auto replayed = [&](std::vector<std::string> more) {
-    more.insert(
-        more.begin(),
-        {"replay", bench.scene, "-o", bench.path("out"), "--force", "--algorithms", "mean"});
+    more.insert(more.begin(), {"replay", bench.scene, "-o", bench.path("out"), "--force", "--algorithms", "mean"});
     return test::run(more);
   };
   for (int round = 0; round < 2; ++round) {
@@ -88,8 +85,7 @@ TEST_CASE(
 
 TEST_CASE("replay: four files, a table, and no progress on stderr") {
   const ReplayBench bench;
-  const auto ran =
-      bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minque,tilt-kalman"});
+  const auto ran = bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minque,tilt-kalman"});
   INFO(ran.out + ran.err);
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
@@ -112,8 +108,7 @@ TEST_CASE("replay: four files, a table, and no progress on stderr") {
   CHECK(mean["rmse"].get<double>() < mean["rmse_ci95"][1].get<double>());
   // A fifth of the run with an error of 1/4, and the mean's noise.
   const double noise = 0.25 * std::sqrt(100 * (1e-4 + 4e-4 + 9e-4 + 1e-4));
-  CHECK(mean["rmse"].get<double>() ==
-        Approx(std::sqrt(noise * noise + 0.2 * 0.0625)).epsilon(0.05));
+  CHECK(mean["rmse"].get<double>() == Approx(std::sqrt(noise * noise + 0.2 * 0.0625)).epsilon(0.05));
   CHECK(report["algorithms"][2]["status"] == "skipped");
   CHECK(report["algorithms"][2]["rmse"].is_null());
 }
@@ -124,8 +119,7 @@ TEST_CASE("replay: --json is the report itself, and the same scores come again")
   REQUIRE(first.code == 0);
   const auto printed = libchar::parse_json(first.out, "stdout");
   CHECK(printed == bench.report("out"));
-  const auto again =
-      bench.replay({"-o", bench.path("out"), "--json", "--algorithms", "mean", "--force"});
+  const auto again = bench.replay({"-o", bench.path("out"), "--json", "--algorithms", "mean", "--force"});
   REQUIRE(again.code == 0);
   const auto repeated = libchar::parse_json(again.out, "stdout");
   for (const char* key : {"rmse", "rmse_ci95", "regret", "inputs"})
@@ -184,14 +178,12 @@ TEST_CASE("replay: algorithms and their options from the command line") {
   const auto typo = bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minqe"});
   CHECK(typo.code == 2);
   CHECK_THAT(typo.err, Contains("E0853") && Contains("minque"));
-  const auto set = bench.replay(
-      {"-o", bench.path("out"), "--algorithms", "mean,minque", "--set", "minque.gamma=0.98"});
+  const auto set = bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minque", "--set", "minque.gamma=0.98"});
   INFO(set.err);
   REQUIRE(set.code == 0);
   CHECK(bench.report("out")["algorithms"][1]["options"]["gamma"] == 0.98);
   const auto refused = [&](const std::string& words) {
-    const auto ran =
-        bench.replay({"-o", bench.path("other"), "--algorithms", "mean,minque", "--set", words});
+    const auto ran = bench.replay({"-o", bench.path("other"), "--algorithms", "mean,minque", "--set", words});
     CHECK(ran.code == 2);
     CHECK(files_in(bench.folder / "other") == 0);
     return ran.err;
@@ -202,8 +194,7 @@ TEST_CASE("replay: algorithms and their options from the command line") {
   CHECK_THAT(refused("minque=0.9"), Contains("E0963"));
   CHECK_THAT(refused("gamma"), Contains("E0963"));
   CHECK_THAT(refused("median.gamma=1"), Contains("E0850"));
-  CHECK_THAT(refused("random-weighting.window=10"),
-             Contains("not among those that run") || Contains("E0850"));
+  CHECK_THAT(refused("random-weighting.window=10"), Contains("not among those that run") || Contains("E0850"));
 }
 
 TEST_CASE("replay: windows from the command line win over the scene's") {
@@ -260,12 +251,10 @@ TEST_CASE("replay: faults from the command line stand beside the scene's") {
   CHECK(two["algorithms"][0]["rmse"].get<double>() > with_one);
   // On top of a scene without its own.
   CHECK(faults({"--no-faults", "--fault", "a:stuck@45..50"})["faults"].size() == 1);
-  for (const auto& [words, says] : {std::pair{"e:stuck@1..2", "there is no such sensor"},
-                                    std::pair{"a:broken@1..2", "expected one of"},
-                                    std::pair{"a:bias@1..2", "needs a value"},
-                                    std::pair{"a:stuck=1@1..2", "takes no value"},
-                                    std::pair{"a:stuck@2..1", "to a later one"},
-                                    std::pair{"a:stuck", "SENSOR:KIND"}}) {
+  for (const auto& [words, says] :
+       {std::pair{"e:stuck@1..2", "there is no such sensor"}, std::pair{"a:broken@1..2", "expected one of"},
+        std::pair{"a:bias@1..2", "needs a value"}, std::pair{"a:stuck=1@1..2", "takes no value"},
+        std::pair{"a:stuck@2..1", "to a later one"}, std::pair{"a:stuck", "SENSOR:KIND"}}) {
     const auto ran = bench.replay({"-o", bench.path("no"), "--fault", words});
     CHECK(ran.code == 2);
     CHECK_THAT(ran.err, Contains("E0722") && Contains(says));
@@ -280,19 +269,13 @@ TEST_CASE("replay: FROM..TO has one answer of every option, which names it") {
       const auto ran = bench.replay({"--explain", option, before + wrong});
       INFO(option << " " << wrong);
       CHECK(ran.code == 2);
-      CHECK_THAT(ran.err,
-                 Catch::StartsWith(option + ": error E0") &&
-                     (Contains("from a time to a later one") || Contains("a duration such as")));
+      CHECK_THAT(ran.err, Catch::StartsWith(option + ": error E0") &&
+                              (Contains("from a time to a later one") || Contains("a duration such as")));
     }
   }
   for (const char* right : {"5..", "..10", "5s..end", "0.1min..0.2min"}) {
-    const auto ran = bench.replay({"--explain",
-                                   "--learning",
-                                   right,
-                                   "--evaluation",
-                                   right,
-                                   "--fault",
-                                   std::string("a:stuck@") + right});
+    const auto ran = bench.replay(
+        {"--explain", "--learning", right, "--evaluation", right, "--fault", std::string("a:stuck@") + right});
     INFO(right << " " << ran.err);
     CHECK(ran.code == 0);
   }
@@ -301,12 +284,8 @@ TEST_CASE("replay: FROM..TO has one answer of every option, which names it") {
 TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
   const ReplayBench bench;
   for (const std::string format : {"csv", "npy", "f64"}) {
-    const auto ran = bench.replay({"-o",
-                                   bench.path(format),
-                                   "--estimates",
-                                   format,
-                                   "--algorithms",
-                                   "mean,median,tilt-kalman"});
+    const auto ran =
+        bench.replay({"-o", bench.path(format), "--estimates", format, "--algorithms", "mean,median,tilt-kalman"});
     INFO(ran.err);
     REQUIRE(ran.code == 0);
     CHECK_THAT(ran.out, Contains("estimates." + format));
@@ -324,13 +303,11 @@ TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
     }
     // The scores of the report are those of the file.
     double squares = 0;
-    for (std::size_t k = 0; k < 5000; ++k)
-      squares += std::pow(log.samples[1][k] - log.samples[0][k], 2);
+    for (std::size_t k = 0; k < 5000; ++k) squares += std::pow(log.samples[1][k] - log.samples[0][k], 2);
     CHECK(std::sqrt(squares / 5000) ==
           Approx(bench.report(format)["algorithms"][0]["rmse"].get<double>()).epsilon(1e-9));
   }
-  const auto wrong =
-      bench.replay({"-o", bench.path("no"), "--estimates", "xlsx", "--algorithms", "mean"});
+  const auto wrong = bench.replay({"-o", bench.path("no"), "--estimates", "xlsx", "--algorithms", "mean"});
   CHECK((wrong.code == 2 || wrong.code == 5));
   CHECK(files_in(bench.folder / "no") == 0);
 }
@@ -338,8 +315,7 @@ TEST_CASE("replay: --estimates reads back: truth, then each algorithm") {
 TEST_CASE("replay: --no-skip changes no number") {
   const ReplayBench bench;
   REQUIRE(bench.replay({"-o", bench.path("a"), "--algorithms", "mean,median"}).code == 0);
-  REQUIRE(bench.replay({"-o", bench.path("b"), "--algorithms", "mean,median", "--no-skip"}).code ==
-          0);
+  REQUIRE(bench.replay({"-o", bench.path("b"), "--algorithms", "mean,median", "--no-skip"}).code == 0);
   const auto a = bench.report("a"), b = bench.report("b");
   for (std::size_t k = 0; k < 2; ++k)
     for (const char* key : {"label", "rmse", "rmse_ci95", "regret", "weights", "inputs"})
@@ -355,11 +331,11 @@ TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
   const ReplayBench bench;
   std::string log = "t,x,y,z\n";
   for (int k = 0; k < 2000; ++k)
-    log += std::to_string(k) + "," + std::to_string(k % 7) + "," + std::to_string(k % 5) + "," +
-           std::to_string(k % 3) + "\n";
+    log += std::to_string(k) + "," + std::to_string(k % 7) + "," + std::to_string(k % 5) + "," + std::to_string(k % 3) +
+           "\n";
   bench.file("log.csv", log);
-  const std::string scene = bench.file(
-      "recorded.yaml", "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n");
+  const std::string scene =
+      bench.file("recorded.yaml", "format: scene\nversion: 1\nrecording: log.csv\nsensors: [x, y, z]\n");
   const auto ran = ReplayBench::replay_of(scene, {"-o", bench.path("out"), "--algorithms", "mean"});
   INFO(ran.err);
   REQUIRE(ran.code == 0);
@@ -373,10 +349,8 @@ TEST_CASE("replay: a recording without reference is scored by leave-one-out") {
   CHECK(report["algorithms"][0]["rmse"].is_null());
   CHECK(report["algorithms"][0]["without_reference"]["leave_one_out_rms"].get<double>() > 0.5);
   // compare speaks of the same score.
-  const auto same =
-      test::run({"compare", bench.path("out/report.json"), bench.path("out/report.json")});
-  const double predictive =
-      report["algorithms"][0]["without_reference"]["predictive_rms"].get<double>();
+  const auto same = test::run({"compare", bench.path("out/report.json"), bench.path("out/report.json")});
+  const double predictive = report["algorithms"][0]["without_reference"]["predictive_rms"].get<double>();
   CHECK_THAT(same.out, Contains(fmt::format("{:.3g}", predictive)));
   CHECK(report["algorithms"][0]["inputs"].empty());
 }
@@ -395,16 +369,14 @@ TEST_CASE("replay: scenes that do not fit their files end with exit code 3 and w
     return ran.err;
   };
   CHECK_THAT(refused("recording: none.csv\nsensors: [left, right]\n"), Contains("none.csv"));
-  CHECK_THAT(refused("recording: log.csv\nsensors: [left, rihgt]\n"),
-             Contains("rihgt") && Contains("right"));
+  CHECK_THAT(refused("recording: log.csv\nsensors: [left, rihgt]\n"), Contains("rihgt") && Contains("right"));
   CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nreference: turth\n"),
              Contains("turth") && Contains("truth"));
   CHECK_THAT(refused("recording: log.csv\nsensor: [left]\n"), Contains("bad.yaml:4:1"));
   CHECK_THAT(refused("recording: ../log.csv\nsensors: [left, right]\n"), Contains("E0731"));
   CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nalgorithms: [mean, medain]\n"),
              Contains("bad.yaml:5:") && Contains("median"));
-  CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nevaluation: [10, 20]\n"),
-             Contains("evaluation"));
+  CHECK_THAT(refused("recording: log.csv\nsensors: [left, right]\nevaluation: [10, 20]\n"), Contains("evaluation"));
   CHECK(ReplayBench::replay_of(bench.path("absent.yaml"), {"-o", bench.path("out")}).code == 3);
   // A log is no scene: which of its channels are sensors is asked.
   const auto log = ReplayBench::replay_of(bench.path("log.csv"), {"-o", bench.path("out")});
@@ -426,20 +398,8 @@ TEST_CASE("replay: stopped by Ctrl-C: exit code 130 and nothing is left") {
   longer.replace(longer.find("6000"), 4, "60000000");
   const std::string scene = bench.file("long.yaml", longer);
   for (const char* signal : {"INT", "TERM"}) {
-    const auto ran = test::run_words({"timeout",
-                                      "--preserve-status",
-                                      "-s",
-                                      signal,
-                                      "0.7",
-                                      test::program(),
-                                      "replay",
-                                      scene,
-                                      "-o",
-                                      bench.path("out"),
-                                      "--estimates",
-                                      "csv",
-                                      "--algorithms",
-                                      "mean"});
+    const auto ran = test::run_words({"timeout", "--preserve-status", "-s", signal, "0.7", test::program(), "replay",
+                                      scene, "-o", bench.path("out"), "--estimates", "csv", "--algorithms", "mean"});
     INFO(ran.out + ran.err);
     CHECK(ran.code == (std::string(signal) == "INT" ? 130 : 143));
     CHECK(ran.out.empty());

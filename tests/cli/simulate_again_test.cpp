@@ -40,19 +40,13 @@ void same_again(const std::string& source, const std::string& log, std::vector<s
 
 TEST_CASE("simulate: seed, faults and true inputs are in the scene, which makes the log again") {
   const std::string scenes = (test::fixtures_folder() / "scenes").string() + "/";
-  same_again(
-      scenes + "rv-2.5-tilt.yaml",
-      "tilt.csv",
-      {"--samples", "2000", "--fault", "gyro:bias=0.1@1..2", "--seed", "18446744073709551615"});
-  same_again(scenes + "lever-arm.yaml",
-             "lever.npy",
-             {"--samples", "1500", "--no-truth", "--oversampling", "2"});
-  same_again(
-      scenes + "rv-3.3-uncalibrated.yaml", "array.csv", {"--duration", "2", "--no-time-column"});
+  same_again(scenes + "rv-2.5-tilt.yaml", "tilt.csv",
+             {"--samples", "2000", "--fault", "gyro:bias=0.1@1..2", "--seed", "18446744073709551615"});
+  same_again(scenes + "lever-arm.yaml", "lever.npy", {"--samples", "1500", "--no-truth", "--oversampling", "2"});
+  same_again(scenes + "rv-3.3-uncalibrated.yaml", "array.csv", {"--duration", "2", "--no-time-column"});
 }
 
-TEST_CASE(
-    "simulate: a true input from a log is read again, a scene without a simulation is refused") {
+TEST_CASE("simulate: a true input from a log is read again, a scene without a simulation is refused") {
   const test::TemporaryFolder folder;
   const auto path = [&](const char* name) { return (folder / name).string(); };
   std::ofstream(path("motion.csv")) << "t[s],rate\n0,1\n0.01,2\n0.02,3\n0.03,5\n";

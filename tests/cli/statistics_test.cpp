@@ -16,9 +16,7 @@ using libchar::Json;
 
 namespace {
 
-std::string fixture_log() {
-  return test::fixture("imu_at_rest.csv").string();
-}
+std::string fixture_log() { return test::fixture("imu_at_rest.csv").string(); }
 
 Json json_of(std::vector<std::string> words) {
   words.push_back("--json");
@@ -41,8 +39,7 @@ std::string three_clocks(const test::TemporaryFolder& folder, bool units) {
   double common = 0;
   for (int i = 0; i < 2000; ++i) {
     common += next();
-    file << i << ',' << common + next() << ',' << common + 2 * next() << ',' << common + 4 * next()
-         << '\n';
+    file << i << ',' << common + next() << ',' << common + 2 * next() << ',' << common + 4 * next() << '\n';
   }
   return path;
 }
@@ -66,25 +63,19 @@ TEST_CASE("allan: several statistics come from one reading, each as it comes alo
     CHECK(one["ci95"] == Json::array({nullptr, nullptr}));
     CHECK(one["edf"] == Json::array({nullptr, nullptr}));
   }
-  const auto table =
-      test::run({"allan", fixture_log(), "-c", "gyro_z", "--type", "mtie", "--taus", "1s"});
+  const auto table = test::run({"allan", fixture_log(), "-c", "gyro_z", "--type", "mtie", "--taus", "1s"});
   CHECK_THAT(table.out, Contains(",,,,,,49951,mtie\n"));
 }
 
-TEST_CASE(
-    "allan: the bias that was taken out stands beside the value, every time is every multiple") {
-  const Json total =
-      json_of({"allan", fixture_log(), "-c", "accel_z", "--type", "mtotdev", "--taus", "1s"});
+TEST_CASE("allan: the bias that was taken out stands beside the value, every time is every multiple") {
+  const Json total = json_of({"allan", fixture_log(), "-c", "accel_z", "--type", "mtotdev", "--taus", "1s"});
   CHECK(total["channels"][0]["bias"][0].get<double>() == Approx(0.73).margin(0.01));
-  const Json all =
-      json_of({"allan", fixture_log(), "-c", "accel_z", "--taus", "all", "--tau-max", "2s"});
+  const Json all = json_of({"allan", fixture_log(), "-c", "accel_z", "--taus", "all", "--tau-max", "2s"});
   CHECK(all["channels"][0]["m"].size() == 100);
-  CHECK_THAT(test::run({"allan", fixture_log(), "--type", "oadev,mtei"}).err,
-             Contains("did you mean mtie?"));
+  CHECK_THAT(test::run({"allan", fixture_log(), "--type", "oadev,mtei"}).err, Contains("did you mean mtie?"));
   CHECK(test::run({"allan", fixture_log(), "--type", "oadev,oadev"}).code == 2);
   CHECK(test::run({"allan", fixture_log(), "--type", "oadev,mdev", "--taus", "ten"}).code == 2);
-  CHECK(test::run({"characterize", fixture_log(), "-o", "/nowhere", "--type", "oadev,mdev"}).code ==
-        2);
+  CHECK(test::run({"characterize", fixture_log(), "-o", "/nowhere", "--type", "oadev,mdev"}).code == 2);
 }
 
 TEST_CASE("allan --hat: devices from their differences, by table and document") {
@@ -99,12 +90,10 @@ TEST_CASE("allan --hat: devices from their differences, by table and document") 
     CHECK(channel["variance_sd"][0].get<double>() > 0);
   }
   const auto table = test::run({"allan", three_clocks(folder, false), "--hat", "--taus", "1s"});
-  CHECK_THAT(table.out,
-             Contains("channel,unit,tau_s,deviation,variance,variance_sd,status,terms\na,s,1,"));
+  CHECK_THAT(table.out, Contains("channel,unit,tau_s,deviation,variance,variance_sd,status,terms\na,s,1,"));
   CHECK_THAT(test::run({"allan", three_clocks(folder, true), "--hat"}).err,
              Contains("E0870") && Contains("must be in one unit"));
-  CHECK_THAT(test::run({"allan", fixture_log(), "--hat", "-c", "gyro_z"}).err,
-             Contains("there are 1"));
+  CHECK_THAT(test::run({"allan", fixture_log(), "--hat", "-c", "gyro_z"}).err, Contains("there are 1"));
   CHECK(test::run({"allan", fixture_log(), "--hat", "--dynamic", "10s"}).code == 2);
   CHECK(test::run({"allan", fixture_log(), "--hat", "--type", "oadev,mdev"}).code == 2);
 }
@@ -117,45 +106,36 @@ TEST_CASE("allan --dynamic: a curve a window") {
   CHECK(windows[1]["from_s"] == 300.0);
   CHECK(windows[1]["time_s"] == 350.0);
   CHECK(windows[3]["deviation"].size() == windows[3]["tau_s"].size());
-  CHECK_THAT(test::run({"allan", fixture_log(), "--dynamic", "2000s"}).err,
-             Contains("--dynamic") && Contains("E0871"));
+  CHECK_THAT(test::run({"allan", fixture_log(), "--dynamic", "2000s"}).err, Contains("--dynamic") && Contains("E0871"));
 }
 
 TEST_CASE("psd: two channels, by median and in time") {
-  const Json cross =
-      json_of({"psd", fixture_log(), "--cross", "accel_z,gyro_z", "--segment", "1000"});
+  const Json cross = json_of({"psd", fixture_log(), "--cross", "accel_z,gyro_z", "--segment", "1000"});
   CHECK(cross["format"] == "cross-spectrum");
   CHECK(cross["first"]["name"] == "accel_z");  // as asked, not as in the log
   CHECK(cross["value_unit"] == "g*deg/s/Hz");
   CHECK(cross["coherence"].size() == 501);
-  const Json turned =
-      json_of({"psd", fixture_log(), "--coherence", "gyro_z,accel_z", "--segment", "1000"});
+  const Json turned = json_of({"psd", fixture_log(), "--coherence", "gyro_z,accel_z", "--segment", "1000"});
   CHECK(turned["coherence"] == cross["coherence"]);
   CHECK(turned["phase_rad"][5].get<double>() == -cross["phase_rad"][5].get<double>());
-  const auto table =
-      test::run({"psd", fixture_log(), "--coherence", "gyro_z,accel_z", "--segment", "1000"});
+  const auto table = test::run({"psd", fixture_log(), "--coherence", "gyro_z,accel_z", "--segment", "1000"});
   CHECK_THAT(table.out, Contains("frequency_hz,coherence,coherence_unbiased,significant\n"));
   CHECK_THAT(table.err, Contains("stays below"));
   const Json median = json_of({"psd", fixture_log(), "--average", "median", "--segment", "20s"});
   CHECK(median["average"] == "median");
   CHECK(median["channels"][0]["segment"] == 1000);
-  const Json gram =
-      json_of({"psd", fixture_log(), "-c", "gyro_z", "--spectrogram", "100s", "--overlap", "0"});
+  const Json gram = json_of({"psd", fixture_log(), "-c", "gyro_z", "--spectrogram", "100s", "--overlap", "0"});
   CHECK(gram["format"] == "spectrogram");
   CHECK(gram["channels"][0]["time_s"].size() == 10);
   CHECK(gram["channels"][0]["value"][9].size() == 2501);
 }
 
 TEST_CASE("psd: pairs that are none are refused in a sentence") {
-  CHECK_THAT(test::run({"psd", fixture_log(), "--cross", "gyro_z"}).err,
-             Contains("--cross") && Contains("E0873"));
-  CHECK_THAT(test::run({"psd", fixture_log(), "--coherence", "gyro_z,gyro_z"}).err,
-             Contains("E0873"));
-  CHECK_THAT(test::run({"psd", fixture_log(), "--coherence", "gyro_z,acel_z"}).err,
-             Contains("accel_z"));
-  CHECK_THAT(
-      test::run({"psd", fixture_log(), "--cross", "gyro_z,accel_z", "--segment", "50000"}).err,
-      Contains("E0874") && Contains("--segment"));
+  CHECK_THAT(test::run({"psd", fixture_log(), "--cross", "gyro_z"}).err, Contains("--cross") && Contains("E0873"));
+  CHECK_THAT(test::run({"psd", fixture_log(), "--coherence", "gyro_z,gyro_z"}).err, Contains("E0873"));
+  CHECK_THAT(test::run({"psd", fixture_log(), "--coherence", "gyro_z,acel_z"}).err, Contains("accel_z"));
+  CHECK_THAT(test::run({"psd", fixture_log(), "--cross", "gyro_z,accel_z", "--segment", "50000"}).err,
+             Contains("E0874") && Contains("--segment"));
   CHECK_THAT(test::run({"psd", fixture_log(), "--spectrogram", "60000"}).err, Contains("E0875"));
   CHECK(test::run({"psd", fixture_log(), "--cross", "a,b", "--spectrogram", "10s"}).code == 2);
 }

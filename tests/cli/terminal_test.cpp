@@ -34,9 +34,7 @@ std::size_t widest_line(const std::string& text) {
   return most;
 }
 
-nlohmann::json usage() {
-  return nlohmann::json::parse(test::run({"--generate", "json"}).out);
-}
+nlohmann::json usage() { return nlohmann::json::parse(test::run({"--generate", "json"}).out); }
 
 }  // namespace
 
@@ -50,12 +48,10 @@ TEST_CASE("help VERB is VERB --help, has every option and argument, and two exam
     CHECK(help.out == test::run({name, "--help"}).out);
     CHECK(help.out == test::run({name, "-h"}).out);
     for (const auto& option : verb["options"]) {
-      for (const auto& flag : option["flags"])
-        CHECK_THAT(help.out, Contains(flag.get<std::string>()));
+      for (const auto& flag : option["flags"]) CHECK_THAT(help.out, Contains(flag.get<std::string>()));
       CHECK_FALSE(option["help"].get<std::string>().empty());
     }
-    for (const auto& argument : verb["arguments"])
-      CHECK_THAT(help.out, Contains(argument["value"].get<std::string>()));
+    for (const auto& argument : verb["arguments"]) CHECK_THAT(help.out, Contains(argument["value"].get<std::string>()));
     CHECK(verb["examples"].size() >= 2);
     for (const auto& example : verb["examples"])
       CHECK_THAT(help.out, Contains("\n    " + example["command"].get<std::string>() + "\n"));
@@ -64,8 +60,7 @@ TEST_CASE("help VERB is VERB --help, has every option and argument, and two exam
   CHECK(test::run({"help"}).out == test::run({"--help"}).out);
 }
 
-TEST_CASE(
-    "help of a verb that is none, and artefacts that are none, are refused with the nearest") {
+TEST_CASE("help of a verb that is none, and artefacts that are none, are refused with the nearest") {
   const std::vector<std::pair<std::vector<std::string>, std::string>> slips = {
       {{"help", "alan"}, "did you mean allan?"},
       {{"help", "allan", "psd"}, "one argument too many"},
@@ -92,11 +87,7 @@ TEST_CASE("help and tables fit the width that is there") {
       {"fit", bench.log},
       {"characterize", bench.log, "-o", bench.path("report"), "--force"},
       {"model", bench.path("report/gyro_z.sensor.yaml")},
-      {"replay",
-       test::fixture("scenes/rv-2.5-tilt.yaml").string(),
-       "-o",
-       bench.path("tilt"),
-       "--force"},
+      {"replay", test::fixture("scenes/rv-2.5-tilt.yaml").string(), "-o", bench.path("tilt"), "--force"},
       {"help", "characterize"},
       {"help"}};
   for (const auto& words : commands)
@@ -124,12 +115,7 @@ TEST_CASE("quiet: nothing but errors where the results stand in files") {
   const TerminalBench bench;
   const std::vector<std::vector<std::string>> commands = {
       {"characterize", bench.log, "-o", bench.path("report")},
-      {"simulate",
-       bench.path("report/gyro_z.sensor.yaml"),
-       "--duration",
-       "60",
-       "-o",
-       bench.path("s.csv")},
+      {"simulate", bench.path("report/gyro_z.sensor.yaml"), "--duration", "60", "-o", bench.path("s.csv")},
       {"convert", bench.log, "-o", bench.path("log.npy")},
       {"replay", test::fixture("scenes/rv-2.5-tilt.yaml").string(), "-o", bench.path("tilt")}};
   for (auto words : commands) {
@@ -141,8 +127,7 @@ TEST_CASE("quiet: nothing but errors where the results stand in files") {
     CHECK(ran.err.empty());
   }
   CHECK_FALSE(test::run({"fit", bench.log, "--quiet"}).out.empty());  // it stands nowhere else
-  CHECK_FALSE(
-      test::run({"convert", bench.log, "-o", bench.path("log.npy"), "--quiet"}).err.empty());
+  CHECK_FALSE(test::run({"convert", bench.log, "-o", bench.path("log.npy"), "--quiet"}).err.empty());
 }
 
 TEST_CASE("colour: where it is asked for, never in a pipe, and the text is the same") {
@@ -154,13 +139,11 @@ TEST_CASE("colour: where it is asked for, never in a pipe, and the text is the s
   none.environment = {"NO_COLOR=1"};
   CHECK(test::run({"fit", bench.log}, none).out == plain.out);
   std::string coloured = test::run({"fit", bench.log, "--color", "always"}).out;
-  CHECK_THAT(coloured,
-             Contains("\x1b[32mdetected\x1b[0m") && Contains("\x1b[2mnot detected\x1b[0m"));
+  CHECK_THAT(coloured, Contains("\x1b[32mdetected\x1b[0m") && Contains("\x1b[2mnot detected\x1b[0m"));
   for (std::size_t at = coloured.find('\x1b'); at != std::string::npos; at = coloured.find('\x1b'))
     coloured.erase(at, coloured.find('m', at) + 1 - at);
   CHECK(coloured == plain.out);
-  CHECK_THAT(test::run({"inspect", "/nowhere", "--color", "always"}).err,
-             Contains("\x1b[31merror\x1b[0m"));
+  CHECK_THAT(test::run({"inspect", "/nowhere", "--color", "always"}).err, Contains("\x1b[31merror\x1b[0m"));
   const auto document = test::run({"fit", bench.log, "--json", "--color", "always"}).out;
   CHECK(document.find('\x1b') == std::string::npos);
 }
@@ -183,15 +166,13 @@ TEST_CASE("hints name flags of the verb only") {
     INFO(ran.err);
     CHECK(ran.code != 0);
     const std::size_t hint = ran.err.find("hint: ");
-    if (hint == std::string::npos || ran.err.find("sensorchar ", hint) != std::string::npos)
-      continue;
+    if (hint == std::string::npos || ran.err.find("sensorchar ", hint) != std::string::npos) continue;
     std::string flags;
     for (const auto& verb : all)
       if (verb["name"] == words[0])
         for (const auto& option : verb["options"])
           for (const auto& flag : option["flags"]) flags += flag.get<std::string>() + " ";
-    for (std::size_t at = ran.err.find("--", hint); at != std::string::npos;
-         at = ran.err.find("--", at + 2)) {
+    for (std::size_t at = ran.err.find("--", hint); at != std::string::npos; at = ran.err.find("--", at + 2)) {
       const std::size_t end = ran.err.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
       CHECK_THAT(flags, Contains(ran.err.substr(at, end - at) + " "));
     }
@@ -203,12 +184,10 @@ TEST_CASE("on a terminal an error of a text shows the line and marks the column"
   const std::string log = bench.path("broken.csv");
   std::ofstream(log) << "t,\xc3\xa4\n1,2\n2,\xc3\xbc"
                         "3\n";
-  const auto shown =
-      test::run_words({"script", "-qec", test::program() + " inspect " + log, "/dev/null"});
-  CHECK_THAT(shown.out,
-             Contains("  | 2,\xc3\xbc"
-                      "3") &&
-                 Contains("\n  |   ^"));
+  const auto shown = test::run_words({"script", "-qec", test::program() + " inspect " + log, "/dev/null"});
+  CHECK_THAT(shown.out, Contains("  | 2,\xc3\xbc"
+                                 "3") &&
+                            Contains("\n  |   ^"));
   CHECK_THAT(test::run({"inspect", log}).err, !Contains("  |"));  // a pipe gets one line
 }
 

@@ -47,8 +47,7 @@ TEST_CASE("verify: a changed result, a missing one, another log are said, exit 6
   CHECK_THAT(ran.err, Contains("E0520"));
   files::remove(model);
   CHECK_THAT(bench.verify().out, Contains("missing   " + model.string()));
-  REQUIRE(test::run({"characterize", bench.log, "-c", "gyro_z", "-o", bench.out, "--force"}).code ==
-          0);
+  REQUIRE(test::run({"characterize", bench.log, "-c", "gyro_z", "-o", bench.out, "--force"}).code == 0);
   CHECK(bench.verify().code == 0);
   bench.append(bench.log);
   ran = bench.verify();
@@ -83,8 +82,7 @@ TEST_CASE("verify --rerun: the same numbers, and the same bytes of tables and mo
   const std::string again = (bench.folder / "again").string();
   const auto ran = test::run({"verify", bench.out, "--rerun", again});
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.out,
-             Contains("same      every number") && Contains("same      gyro_z.sensor.yaml"));
+  CHECK_THAT(ran.out, Contains("same      every number") && Contains("same      gyro_z.sensor.yaml"));
   CHECK(files::exists(files::path(again) / "report.html"));
   // What stands already is not replaced.
   CHECK(test::run({"verify", bench.out, "--rerun", again}).code == 5);
@@ -116,20 +114,12 @@ TEST_CASE("verify --rerun: a document is no order") {
   };
   const std::string other = (bench.folder / "other").string();
   CHECK_THAT(refused({"sensorchar", "convert", bench.log, "-o", other}), Contains("E0205"));
-  CHECK_THAT(refused({"sensorchar", "replay", bench.log, "--write-scene", other}),
-             Contains("E0205"));
+  CHECK_THAT(refused({"sensorchar", "replay", bench.log, "--write-scene", other}), Contains("E0205"));
   CHECK_THAT(refused({}), Contains("E0205"));
   // Where the results go is said here, not there.
   auto document = original;
-  document["command"] = {"sensorchar",
-                         "characterize",
-                         bench.log,
-                         "-c",
-                         "gyro_z",
-                         "-o" + other,
-                         "--force",
-                         "--output",
-                         other};
+  document["command"] = {"sensorchar", "characterize", bench.log,  "-c", "gyro_z",
+                         "-o" + other, "--force",      "--output", other};
   std::ofstream(report) << document.dump();
   // No command that ran names its folder twice.
   CHECK(test::run({"verify", bench.out, "--rerun", (bench.folder / "third").string()}).code == 2);
@@ -142,8 +132,7 @@ TEST_CASE("verify --rerun: words count as their verb understands them") {
   const auto original = libchar::parse_json(test::slurp(report), "report");
   const std::string other = (bench.folder / "other").string();
   const std::string again = (bench.folder / "again").string();
-  const auto rerun = [&](const std::vector<std::string>& words,
-                         const std::vector<std::string>& more) {
+  const auto rerun = [&](const std::vector<std::string>& words, const std::vector<std::string>& more) {
     auto document = original;
     document["command"] = {"sensorchar", "characterize", bench.log, "-c", "gyro_z"};
     for (const std::string& word : words) document["command"].push_back(word);
@@ -163,6 +152,5 @@ TEST_CASE("verify --rerun: words count as their verb understands them") {
   const auto elsewhere = rerun({"-o", other, "--limits", "/etc/hostname"}, {});
   CHECK(elsewhere.code == 2);
   CHECK_THAT(elsewhere.err, Contains("E0523") && Contains("/etc/hostname"));
-  CHECK_THAT(rerun({"-o", other, "--limits", "/etc/hostname"}, {"--allow-read"}).err,
-             !Contains("E0523"));
+  CHECK_THAT(rerun({"-o", other, "--limits", "/etc/hostname"}, {"--allow-read"}).err, !Contains("E0523"));
 }

@@ -17,9 +17,7 @@ namespace {
 
 using Counts = std::map<std::string, std::uint64_t>;
 
-Counts counts_in(const libchar::Json& document) {
-  return document["measured"]["work"].get<Counts>();
-}
+Counts counts_in(const libchar::Json& document) { return document["measured"]["work"].get<Counts>(); }
 
 Counts counts_of(const std::vector<std::string>& words) {
   const auto ran = test::run(words);
@@ -49,9 +47,8 @@ TEST_CASE("work: a log is read once, and only what was asked for is computed") {
   const std::string log = test::fixture("imu_at_rest.csv");  // two channels, 50 000 rows
   const std::uint64_t rows = 50000;
   CHECK(counts_of({"inspect", log, "--json"}) == Counts{{"passes", 1}, {"rows", rows}});
-  CHECK(
-      counts_of({"psd", log, "--json"}) ==
-      Counts{{"passes", 1}, {"rows", rows}, {"segments", 14}, {"cosine_transforms", 4}});  // motion
+  CHECK(counts_of({"psd", log, "--json"}) ==
+        Counts{{"passes", 1}, {"rows", rows}, {"segments", 14}, {"cosine_transforms", 4}});  // motion
   CHECK(counts_of({"psd", log, "--json", "--channel", "gyro_z"}) ==
         Counts{{"passes", 1}, {"rows", rows}, {"segments", 7}, {"cosine_transforms", 2}});
   const test::TemporaryFolder folder;
@@ -103,11 +100,8 @@ TEST_CASE("work: a replay of one method fuses for it and its bounds alone") {
 
 TEST_CASE("work: what is simulated is counted, and nothing is fitted") {
   const test::TemporaryFolder folder;
-  const Counts counts = counts_of({"simulate",
-                                   test::fixture("scenes/lever-arm.yaml"),
-                                   "-o",
-                                   (folder / "x.npy").string(),
-                                   "--json"});
+  const Counts counts =
+      counts_of({"simulate", test::fixture("scenes/lever-arm.yaml"), "-o", (folder / "x.npy").string(), "--json"});
   CHECK(counts.at("simulated_samples") > 0);
   CHECK(counts.at("passes") == 1);
   CHECK(counts.size() == 2);
@@ -135,8 +129,7 @@ TEST_CASE("work: a digest is taken only where an output states it") {
     const auto ran = test::run(words);
     INFO(words[0] << " " << ran.err);
     CHECK(ran.code == 0);
-    if (words.back() == "--json")
-      CHECK(libchar::parse_json(ran.out, "stdout")["input"][0]["sha256"].is_string());
+    if (words.back() == "--json") CHECK(libchar::parse_json(ran.out, "stdout")["input"][0]["sha256"].is_string());
     return child_seconds() - before;
   };
   const double hashed_s = run_s({"inspect", "--json"});

@@ -18,16 +18,13 @@ int main(int argc, char** argv) {
   const libchar::Recording recording = libchar::simulate(model, options);
   const libchar::NoiseFit fit = libchar::fit(recording.channel(0), options.rate_hz);
   // A ramp of slope 1: tau / sqrt 2. The white noise that was put in, to a digit.
-  std::printf(
-      "%.6f %.1f", curve.points.at(0).deviation, fit[libchar::Term::white].value.value_or(0));
+  std::printf("%.6f %.1f", curve.points.at(0).deviation, fit[libchar::Term::white].value.value_or(0));
   // Readers and figures link libraries of their own, which the package has to name as well.
-  for (int i = 1; i < argc; ++i)
-    std::printf(" %zu", libchar::read_recording(argv[i]).samples.size());
+  for (int i = 1; i < argc; ++i) std::printf(" %zu", libchar::read_recording(argv[i]).samples.size());
   std::printf("\n");
   libchar::FigureSource source;
   source.curves.push_back(libchar::source_curve("ramp", "m", curve));
-  const auto format =
-      libchar::draws_with_cairo() ? libchar::FigureFormat::pdf : libchar::FigureFormat::svg;
+  const auto format = libchar::draws_with_cairo() ? libchar::FigureFormat::pdf : libchar::FigureFormat::svg;
   libchar::Findings warnings;
   const libchar::Chart figure = libchar::make_figure({&source, 1}, {});
   return libchar::draw_figure(figure, format, {}, warnings).empty() ? 1 : 0;

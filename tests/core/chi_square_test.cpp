@@ -12,15 +12,9 @@ using namespace libchar;
 namespace {
 
 // 1 - p of the table, as the nearest double (1 - 0.999999 in double has only ten digits).
-const std::map<std::string, double> kUpperTail = {{"0.999999", 1e-6},
-                                                  {"0.999", 1e-3},
-                                                  {"0.995", 5e-3},
-                                                  {"0.99", 1e-2},
-                                                  {"0.975", 2.5e-2},
-                                                  {"0.95", 5e-2},
-                                                  {"0.9", 0.1},
-                                                  {"0.8415", 0.1585},
-                                                  {"0.75", 0.25}};
+const std::map<std::string, double> kUpperTail = {{"0.999999", 1e-6}, {"0.999", 1e-3},    {"0.995", 5e-3},
+                                                  {"0.99", 1e-2},     {"0.975", 2.5e-2},  {"0.95", 5e-2},
+                                                  {"0.9", 0.1},       {"0.8415", 0.1585}, {"0.75", 0.25}};
 
 }  // namespace
 

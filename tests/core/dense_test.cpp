@@ -18,9 +18,7 @@ MatrixXd hilbert(Eigen::Index n) {
   return h;
 }
 
-MatrixXd inverse_of_hilbert_3() {
-  return (MatrixXd(3, 3) << 9, -36, 30, -36, 192, -180, 30, -180, 180).finished();
-}
+MatrixXd inverse_of_hilbert_3() { return (MatrixXd(3, 3) << 9, -36, 30, -36, 192, -180, 30, -180, 180).finished(); }
 
 bool close(const MatrixXd& a, const MatrixXd& b, double digits) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&

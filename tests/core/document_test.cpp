@@ -20,8 +20,7 @@ std::string refusal(const std::string& text) {
   return "";
 }
 
-std::string schema_refusal(const std::string& text,
-                           const std::function<void(const MapReader&)>& read) {
+std::string schema_refusal(const std::string& text, const std::function<void(const MapReader&)>& read) {
   const Document document = parse_yaml_document(text, "f");
   try {
     read(MapReader(document, "f", "", {"alpha", "beta", "list"}));
@@ -57,8 +56,7 @@ TEST_CASE("document: what YAML allows and nobody means is refused with its place
   CHECK(refusal("").starts_with("f:1:1"));
   CHECK(refusal("version: 1\nchannels:\n\tgx: 1\n").starts_with("f:3:1"));
   CHECK(refusal("version: 1\n" + std::string(1100, 'k') + ": 1\n").starts_with("f:2:1"));
-  CHECK(refusal(std::string(400, '[') + std::string(400, ']')).find("64 levels") !=
-        std::string::npos);
+  CHECK(refusal(std::string(400, '[') + std::string(400, ']')).find("64 levels") != std::string::npos);
   CHECK(refusal("version: 1\nchannels: {gx: {N: 1.0e-").starts_with("f:2:"));
 }
 
@@ -70,14 +68,13 @@ TEST_CASE("document: text that is no UTF-8, and text of the largest size, are to
 }
 
 TEST_CASE("document: whole numbers of either sign stay whole") {
-  const Json j = as_json(parse_yaml_document(
-      "a: -3\nb: -9223372036854775808\nc: 18446744073709551615\nd: 0\ne: -1.0\n", "f"));
+  const Json j =
+      as_json(parse_yaml_document("a: -3\nb: -9223372036854775808\nc: 18446744073709551615\nd: 0\ne: -1.0\n", "f"));
   CHECK(j.dump() == R"({"a":-3,"b":-9223372036854775808,"c":18446744073709551615,"d":0,"e":-1.0})");
 }
 
 TEST_CASE("document: JSON gives the same tree") {
-  const Document json =
-      parse_json_document(R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})", "f.json");
+  const Document json = parse_json_document(R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})", "f.json");
   CHECK(as_json(json).dump() == R"({"a":1,"b":[{"x":2.5,"y":"no"}],"c":true})");
   CHECK(json.find("a")->value.whole);
   CHECK_FALSE(json.find("b")->value.list[0].find("x")->value.whole);
@@ -85,8 +82,7 @@ TEST_CASE("document: JSON gives the same tree") {
 
 TEST_CASE("document: JSON knows the places of its keys and values") {
   const Document json = parse_json_document(
-      "\xEF\xBB\xBF{\"a\": -1.5e3, \"b\":\n [true,{\"q\\\"\": \"x\\\\\"}, null,7],\n\"c\":[]}\n",
-      "f");
+      "\xEF\xBB\xBF{\"a\": -1.5e3, \"b\":\n [true,{\"q\\\"\": \"x\\\\\"}, null,7],\n\"c\":[]}\n", "f");
   const auto place = [](const auto& node) { return std::pair(node.line, node.column); };
   CHECK(place(json) == std::pair(1, 1));
   CHECK(place(*json.find("a")) == std::pair(1, 2));
@@ -109,25 +105,21 @@ TEST_CASE("schema: refusals name place, key and the nearest valid key") {
   const auto number = [](const MapReader& m) { m.number("alpha", kNotNegative); };
   CHECK(schema_refusal("alpha: 1\nbetta: 2\n", number) ==
         "f:2:1: error E0540: unknown key; got \"betta\"; hint: did you mean beta?");
-  for (const char* value :
-       {"010", "1:30", ".inf", ".nan", "1e400", "-1e-3", "1,5", "1e-3 rad/s", "[1]", "true"}) {
+  for (const char* value : {"010", "1:30", ".inf", ".nan", "1e400", "-1e-3", "1,5", "1e-3 rad/s", "[1]", "true"}) {
     INFO(value);
-    CHECK(schema_refusal(std::string("beta: 1\nalpha: ") + value + "\n", number)
-              .starts_with("f:2:8: error"));
+    CHECK(schema_refusal(std::string("beta: 1\nalpha: ") + value + "\n", number).starts_with("f:2:8: error"));
   }
   CHECK(schema_refusal("alpha: 1e-05\n", number).empty());
   CHECK(schema_refusal("beta: 1\n", number).find("alpha is missing") != std::string::npos);
   CHECK(schema_refusal("alpha: null\n", number).find("alpha is missing") != std::string::npos);
   const auto list = [](const MapReader& m) { m.list("list"); };
   CHECK(schema_refusal("list: [1, 2]\n", list).empty());
-  CHECK(schema_refusal("alpha: 1\nlist: 3\n", list)
-            .starts_with("f:2:7: error E0541: list: expected a list"));
+  CHECK(schema_refusal("alpha: 1\nlist: 3\n", list).starts_with("f:2:7: error E0541: list: expected a list"));
   // A refusal quotes what stands there, and stands where that is.
   const auto refuse = [](const MapReader& m) { m.refuse("alpha", "no", "hint"); };
   CHECK_THAT(schema_refusal("beta: 1\nalpha: hello\n", refuse),
              Catch::StartsWith("f:2:8") && Catch::Contains("alpha: no; got \"hello\""));
-  CHECK_THAT(schema_refusal("beta: 1\n", refuse),
-             Catch::StartsWith("f:1:1") && !Catch::Contains("got"));
+  CHECK_THAT(schema_refusal("beta: 1\n", refuse), Catch::StartsWith("f:1:1") && !Catch::Contains("got"));
   CHECK_FALSE(schema_refusal("alpha: 1.0\n", [](const MapReader& m) { m.count("alpha"); }).empty());
   CHECK(schema_refusal("alpha: 18446744073709551615\n", [](const MapReader& m) {
           CHECK(m.count("alpha") == 18446744073709551615ULL);
@@ -135,8 +127,7 @@ TEST_CASE("schema: refusals name place, key and the nearest valid key") {
   CHECK(schema_refusal("alpha: scael\n", [](const MapReader& m) {
           m.word("alpha", {"scale", "bias"});
         }).find("did you mean scale?") != std::string::npos);
-  CHECK_FALSE(
-      schema_refusal("alpha: [2, 1]\n", [](const MapReader& m) { m.interval("alpha"); }).empty());
+  CHECK_FALSE(schema_refusal("alpha: [2, 1]\n", [](const MapReader& m) { m.interval("alpha"); }).empty());
 }
 
 TEST_CASE("schema: another format and a newer version are refused by name") {

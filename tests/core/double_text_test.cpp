@@ -34,8 +34,7 @@ void check_read(const std::string& text) {
   CHECK(a.ec == b.ec);
   CHECK(a.ptr == b.ptr);
   if (b.ec == std::errc())
-    CHECK((std::bit_cast<std::uint64_t>(ours) == std::bit_cast<std::uint64_t>(theirs) ||
-           std::isnan(theirs)));
+    CHECK((std::bit_cast<std::uint64_t>(ours) == std::bit_cast<std::uint64_t>(theirs) || std::isnan(theirs)));
 }
 
 std::vector<double> odd_values() {
@@ -69,8 +68,7 @@ std::vector<double> odd_values() {
   std::mt19937_64 random(20);
   for (int i = 0; i < 20000; ++i) {
     values.push_back(std::bit_cast<double>(random()));
-    values.push_back(static_cast<double>(random() % 2000000) *
-                     std::pow(10.0, static_cast<int>(random() % 40) - 20));
+    values.push_back(static_cast<double>(random() % 2000000) * std::pow(10.0, static_cast<int>(random() % 40) - 20));
   }
   return values;
 }

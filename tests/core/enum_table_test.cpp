@@ -9,8 +9,8 @@ enum class Side { one, two, both };
 }  // namespace
 
 template <>
-inline constexpr auto libchar::enum_table<Fruit> =
-    std::to_array<libchar::EnumWord<Fruit>>({{Fruit::pear, "pear"}, {Fruit::apple, "apple"}});
+inline constexpr auto libchar::enum_table<Fruit> = std::to_array<libchar::EnumWord<Fruit>>({{Fruit::pear, "pear"},
+                                                                                            {Fruit::apple, "apple"}});
 
 template <>
 inline constexpr auto libchar::enum_table<Side> = libchar::enum_words<Side, "one-sided two both">;

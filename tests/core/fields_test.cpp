@@ -21,8 +21,8 @@ enum class Socket { e14, e27 };
 }  // namespace
 
 template <>
-inline constexpr auto libchar::enum_table<Socket> =
-    std::to_array<EnumWord<Socket>>({{Socket::e27, "E27"}, {Socket::e14, "E14"}});
+inline constexpr auto libchar::enum_table<Socket> = std::to_array<EnumWord<Socket>>({{Socket::e27, "E27"},
+                                                                                     {Socket::e14, "E14"}});
 
 namespace {
 
@@ -52,8 +52,7 @@ const Fields<Lamp>& lamp_fields() {
 
 const Fields<Room>& room_fields() {
   static const Fields<Room> rows = {
-      field<&Room::name>("name",
-                         {.meaning = "unique", .written = Written::always, .required = true}),
+      field<&Room::name>("name", {.meaning = "unique", .written = Written::always, .required = true}),
       field<&Room::doors>("doors", {.comment = "for {name}", .written = Written::always}),
       empty_line<Room>(),
       field<&Room::height_m>("height_m", {.range = kPositive}),
@@ -97,8 +96,7 @@ TEST_CASE("fields: what is written reads back, in YAML and in JSON") {
         "name: \"hall\"\ndoors: 1  # for people\n\nheight_m: 0.1\nwidths_m: [1.0, "
         "0.3333333333333333]\nlamp: {power_w: 7.0, colour: green}\nlight: green  # the usual "
         "one\nopen: true\n");
-  CHECK(
-      yaml_of(entries, "  ", false).starts_with("  name: \"hall\"\n  doors: 1\n  height_m: 0.1\n"));
+  CHECK(yaml_of(entries, "  ", false).starts_with("  name: \"hall\"\n  doors: 1\n  height_m: 0.1\n"));
   for (const bool json : {false, true}) {
     const Room back = json ? read(dump_json(json_of(entries)), "f.json") : read(yaml);
     CHECK(back.name == room.name);
@@ -112,15 +110,14 @@ TEST_CASE("fields: what is written reads back, in YAML and in JSON") {
 TEST_CASE("fields: what is as usual is not written, and absent keys leave what is there") {
   CHECK(yaml_of(entries_of(room_fields(), Room{})) == "name: \"\"\ndoors: 1  # for {name}\n");
   CHECK(read("name: a\n").lamp == Lamp{});
-  CHECK(json_of(entries_of(selected(room_fields(), {"open", "doors"}, Written::always), Room{}))
-            .dump() == R"({"open":false,"doors":1})");
+  CHECK(json_of(entries_of(selected(room_fields(), {"open", "doors"}, Written::always), Room{})).dump() ==
+        R"({"open":false,"doors":1})");
 }
 
 TEST_CASE("fields: refusals name line, column and the nearest key or word") {
   CHECK(field_refusal("doors: 2\n") == "f.yaml:1:1: error E0542: name is missing");
-  CHECK(
-      field_refusal("name: a\nlamp: {powr_w: 1}\n") ==
-      "f.yaml:2:8: error E0540: unknown key in lamp; got \"powr_w\"; hint: did you mean power_w?");
+  CHECK(field_refusal("name: a\nlamp: {powr_w: 1}\n") ==
+        "f.yaml:2:8: error E0540: unknown key in lamp; got \"powr_w\"; hint: did you mean power_w?");
   CHECK(field_refusal("{\"name\": \"a\",\n \"light\": \"gren\"}", "f.json")
             .starts_with("f.json:2:11: error E0544: light: expected one of red, green"));
   CHECK(field_refusal("name: a\nheight_m: 0\n").starts_with("f.yaml:2:11: error E0543"));
@@ -147,12 +144,10 @@ TEST_CASE("fields: yes and no may have words of their own") {
 TEST_CASE("fields: the words of an enum with a table need no second list") {
   Room room = read("name: a\nsocket: E14\n");
   CHECK(room.socket == Socket::e14);
-  CHECK(yaml_of(entries_of(selected(room_fields(), {"socket"}, Written::always), room)) ==
-        "socket: E14\n");
-  CHECK(field_refusal("name: a\nsocket: E17\n")
-            .starts_with("f.yaml:2:9: error E0544: socket: expected one of E27, E14"));
-  CHECK(markdown_table(selected(room_fields(), {"socket"}, Written::always))
-            .ends_with("| `socket` | E27, E14 |  |\n"));
+  CHECK(yaml_of(entries_of(selected(room_fields(), {"socket"}, Written::always), room)) == "socket: E14\n");
+  CHECK(
+      field_refusal("name: a\nsocket: E17\n").starts_with("f.yaml:2:9: error E0544: socket: expected one of E27, E14"));
+  CHECK(markdown_table(selected(room_fields(), {"socket"}, Written::always)).ends_with("| `socket` | E27, E14 |  |\n"));
 }
 
 TEST_CASE("fields: the table of a page has a row a key") {
@@ -182,19 +177,16 @@ struct Meter {
   int turns = 0;
 };
 
-bool has_weight(const Reading& reading) {
-  return reading.ci95.high > 0;
-}
+bool has_weight(const Reading& reading) { return reading.ci95.high > 0; }
 
 const Fields<Reading>& reading_rows() {
-  static const Fields<Reading> rows =
-      joined(always(Fields<Reading>{
-                 field<&Reading::time_s>("time_s"),
-                 field<&Reading::value>("value"),
-                 field<&Reading::sure>("sure"),
-                 field<&Reading::ci95>("ci95", {.known = when<has_weight>}),
-             }),
-             {field<&Reading::weight>("weight")});
+  static const Fields<Reading> rows = joined(always(Fields<Reading>{
+                                                 field<&Reading::time_s>("time_s"),
+                                                 field<&Reading::value>("value"),
+                                                 field<&Reading::sure>("sure"),
+                                                 field<&Reading::ci95>("ci95", {.known = when<has_weight>}),
+                                             }),
+                                             {field<&Reading::weight>("weight")});
   return rows;
 }
 
@@ -207,9 +199,8 @@ const Fields<Meter>& meter_fields() {
       list_of<&Meter::lamps>("lamps", always(lamp_fields())),
       maybe_part<&Meter::spare>("spare", always(lamp_fields())),
       field<&Meter::pauses_s>("pauses_s"),
-      field<&Meter::turns>("turns",
-                           {.written = Written::if_known,
-                            .known = when<[](const Meter& meter) { return meter.turns != 0; }>}),
+      field<&Meter::turns>(
+          "turns", {.written = Written::if_known, .known = when<[](const Meter& meter) { return meter.turns != 0; }>}),
       computed<[](const Meter& meter) { return std::uint64_t{meter.lamps.size()}; }>("count"),
   });
   return rows;
@@ -231,11 +222,10 @@ TEST_CASE("fields: lists, columns and parts that need not be there read back to 
   meter.lamps = {{7, Colour::green}, {}};
   meter.pauses_s = {{1, 2}, {NAN, NAN}};
   const Json json = json_of(entries_of(meter_fields(), meter, {{"unit", "deg"}}));
-  CHECK(json.dump() ==
-        R"({"name":"m","unit":"deg","offset":null,"time_s":[0.1,0.2],)"
-        R"("value":[0.3333333333333333,null],"sure":[true,false],"ci95":[[0.25,null],null],)"
-        R"("lamps":[{"power_w":7.0,"colour":"green"},{"power_w":5.0,"colour":"red"}],)"
-        R"("spare":null,"pauses_s":[[1.0,2.0],null],"count":2})");
+  CHECK(json.dump() == R"({"name":"m","unit":"deg","offset":null,"time_s":[0.1,0.2],)"
+                       R"("value":[0.3333333333333333,null],"sure":[true,false],"ci95":[[0.25,null],null],)"
+                       R"("lamps":[{"power_w":7.0,"colour":"green"},{"power_w":5.0,"colour":"red"}],)"
+                       R"("spare":null,"pauses_s":[[1.0,2.0],null],"count":2})");
   const Meter back = read_meter(dump_json(json));
   CHECK(back.readings[0] == meter.readings[0]);
   CHECK(std::isnan(back.readings[1].value));
@@ -270,16 +260,13 @@ TEST_CASE("fields: columns of different lengths and other values are refused wit
 
 TEST_CASE("fields: the schema says types, words and what is always there") {
   const Json schema = schema_of(meter_fields().rows);
-  CHECK(
-      schema["required"].dump() ==
-      R"(["name","unit","offset","time_s","value","sure","ci95","lamps","spare","pauses_s","count"])");
+  CHECK(schema["required"].dump() ==
+        R"(["name","unit","offset","time_s","value","sure","ci95","lamps","spare","pauses_s","count"])");
   CHECK(schema["properties"]["unit"].dump() == R"({"type":"string"})");
   CHECK(schema["properties"]["sure"].dump() == R"({"type":"array","items":{"type":"boolean"}})");
   CHECK(schema["properties"]["spare"]["type"].dump() == R"(["object","null"])");
-  CHECK(schema["properties"]["lamps"]["items"]["properties"]["colour"]["enum"].dump() ==
-        R"(["red","green"])");
-  CHECK(schema["properties"]["lamps"]["items"]["properties"]["power_w"]["description"] ==
-        "at 230 V, in W");
+  CHECK(schema["properties"]["lamps"]["items"]["properties"]["colour"]["enum"].dump() == R"(["red","green"])");
+  CHECK(schema["properties"]["lamps"]["items"]["properties"]["power_w"]["description"] == "at 230 V, in W");
   CHECK(schema["properties"]["turns"].dump() == R"({"type":"integer"})");
 }
 
@@ -316,8 +303,7 @@ TEST_CASE("fields: rows of a base class, lists of lists, and what null says in a
   gauge.series = {{1, NAN}, {}};
   gauge.ci95 = {-INFINITY, 2};
   const Json json = document_of(gauge_fields(), gauge);
-  CHECK(json.dump() ==
-        R"({"level":null,"most":null,"series":[[1.0,null],[]],"note":null,"ci95":[null,2.0]})");
+  CHECK(json.dump() == R"({"level":null,"most":null,"series":[[1.0,null],[]],"note":null,"ci95":[null,2.0]})");
   const Document document = parse_document(dump_json(json), "g.json");
   NamedGauge back;
   read_fields(gauge_fields(), MapReader(document, "g.json", ""), back);

@@ -25,50 +25,18 @@ TEST_CASE("the ends of each range of unusual characters become _, their neighbou
     append_utf8(character, code);
     return file_name_for("x" + character) == "x" + character;
   };
-  for (const std::uint32_t code : {0x80U,
-                                   0xA0U,
-                                   0xADU,
-                                   0x61CU,
-                                   0x1680U,
-                                   0x180EU,
-                                   0x2000U,
-                                   0x2010U,
-                                   0x206FU,
-                                   0x3000U,
-                                   0xE000U,
-                                   0xF000U,
-                                   0xF8FFU,
-                                   0xFEFFU,
-                                   0xFFF0U,
-                                   0xFFFFU}) {
+  for (const std::uint32_t code : {0x80U, 0xA0U, 0xADU, 0x61CU, 0x1680U, 0x180EU, 0x2000U, 0x2010U, 0x206FU, 0x3000U,
+                                   0xE000U, 0xF000U, 0xF8FFU, 0xFEFFU, 0xFFF0U, 0xFFFFU}) {
     INFO(std::hex << code);
     CHECK_FALSE(stays(code));
   }
-  for (const std::uint32_t code : {0xA1U,
-                                   0xACU,
-                                   0xAEU,
-                                   0x61BU,
-                                   0x61DU,
-                                   0x167FU,
-                                   0x1681U,
-                                   0x180DU,
-                                   0x180FU,
-                                   0x1FFFU,
-                                   0x2070U,
-                                   0x2FFFU,
-                                   0x3001U,
-                                   0xD7FFU,
-                                   0xF900U,
-                                   0xFEFEU,
-                                   0xFF00U,
-                                   0xFFEFU}) {
+  for (const std::uint32_t code : {0xA1U, 0xACU, 0xAEU, 0x61BU, 0x61DU, 0x167FU, 0x1681U, 0x180DU, 0x180FU, 0x1FFFU,
+                                   0x2070U, 0x2FFFU, 0x3001U, 0xD7FFU, 0xF900U, 0xFEFEU, 0xFF00U, 0xFFEFU}) {
     INFO(std::hex << code);
     CHECK(stays(code));
   }
-  for (const char* character : {"x\U00010000", "x\U000DFFFF"})
-    CHECK(file_name_for(character) == character);
-  for (const char* character : {"x\U000E0000", "x\U0010FFFF"})
-    CHECK(file_name_for(character) == "x_");
+  for (const char* character : {"x\U00010000", "x\U000DFFFF"}) CHECK(file_name_for(character) == character);
+  for (const char* character : {"x\U000E0000", "x\U0010FFFF"}) CHECK(file_name_for(character) == "x_");
 }
 
 TEST_CASE("names are cut to 100 bytes between characters") {

@@ -10,9 +10,8 @@ using namespace libchar;
 TEST_CASE("findings: the table is in the order of its codes, and each says what it is") {
   const auto kinds = finding_kinds();
   REQUIRE(kinds.size() > 100);
-  CHECK(std::is_sorted(kinds.begin(), kinds.end(), [](const FindingKind& a, const FindingKind& b) {
-    return a.code < b.code;
-  }));
+  CHECK(std::is_sorted(kinds.begin(), kinds.end(),
+                       [](const FindingKind& a, const FindingKind& b) { return a.code < b.code; }));
   for (const FindingKind& kind : kinds) {
     CAPTURE(kind.code);
     CHECK_FALSE(kind.title.empty());
@@ -49,8 +48,8 @@ TEST_CASE("findings: cases of one code are counted, with their first three place
 }
 
 TEST_CASE("findings: the worst first, in their order otherwise") {
-  const std::vector<Finding> all = worst_first(
-      {finding("gap", "a"), finding("motion", "b"), finding("no_fit", "c"), finding("spiky", "d")});
+  const std::vector<Finding> all =
+      worst_first({finding("gap", "a"), finding("motion", "b"), finding("no_fit", "c"), finding("spiky", "d")});
   CHECK(all[0].code == "no_fit");
   CHECK(all[1].code == "motion");
   CHECK(all[2].code == "spiky");

@@ -24,15 +24,13 @@ std::string json_refusal(const std::string& text) {
   return "accepted";
 }
 
-bool starts(const std::string& text, const std::string& front) {
-  return text.rfind(front, 0) == 0;
-}
+bool starts(const std::string& text, const std::string& front) { return text.rfind(front, 0) == 0; }
 
 }  // namespace
 
 TEST_CASE("JSON that is right is read, in order, with and without a byte order mark") {
-  const Json j = parse_json(
-      "\xEF\xBB\xBF{\"b\": [1, -2, 0.5, 1e-400, true, null], \"a\": {\"a\": \"\\u00b0\"}}\n", "f");
+  const Json j =
+      parse_json("\xEF\xBB\xBF{\"b\": [1, -2, 0.5, 1e-400, true, null], \"a\": {\"a\": \"\\u00b0\"}}\n", "f");
   CHECK(j.begin().key() == "b");
   CHECK(j["b"][2] == 0.5);
   CHECK(j["b"][3] == 0.0);
@@ -44,8 +42,7 @@ TEST_CASE("JSON that is right is read, in order, with and without a byte order m
 TEST_CASE("JSON that readers usually let through is refused with its place") {
   CHECK(starts(json_refusal("{\"a\":1,\"a\":2}"), "f.json:1:8"));
   CHECK(starts(json_refusal("{\"a\":{\"b\":1},\n \"a\":2}"), "f.json:2:"));
-  CHECK(json_refusal("{\"a\":{\"b\":1},\"c\":{\"b\":1}}") ==
-        "accepted");  // the same key in two objects is fine
+  CHECK(json_refusal("{\"a\":{\"b\":1},\"c\":{\"b\":1}}") == "accepted");  // the same key in two objects is fine
   CHECK(starts(json_refusal("{\"N\":1e400}"), "f.json:1:6"));
   CHECK(starts(json_refusal("[-1e400]"), "f.json:1:2"));
   CHECK(starts(json_refusal("1e400"), "f.json:1:1"));
@@ -71,37 +68,24 @@ TEST_CASE("JSON that readers usually let through is refused with its place") {
 }
 
 TEST_CASE("depth and size have limits") {
-  CHECK(json_refusal(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") !=
-        std::string::npos);
+  CHECK(json_refusal(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") != std::string::npos);
   CHECK(json_refusal(std::string(100'000, '[')).find("deeper than 64") != std::string::npos);
-  CHECK(json_refusal("\"" + std::string(std::size_t{17} << 20U, 'a') + "\"").find("limit") !=
-        std::string::npos);
+  CHECK(json_refusal("\"" + std::string(std::size_t{17} << 20U, 'a') + "\"").find("limit") != std::string::npos);
 }
 
 TEST_CASE("the bad JSON files end as their table says") {
-  for (const char* name : {"002_dup",
-                           "003_1e400",
-                           "004_NaN",
-                           "005_u64",
-                           "006_bad_utf8",
-                           "007_lone_surrogate",
-                           "008_trailing",
-                           "009_comment",
-                           "010_trunc"}) {
+  for (const char* name : {"002_dup", "003_1e400", "004_NaN", "005_u64", "006_bad_utf8", "007_lone_surrogate",
+                           "008_trailing", "009_comment", "010_trunc"}) {
     CAPTURE(name);
-    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) !=
-          "accepted");
+    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) != "accepted");
   }
   for (const char* name : {"000_control", "011_bom"})
-    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) ==
-          "accepted");
+    CHECK(json_refusal(test::slurp(test::known(std::string("badinputs/json/") + name + ".json"))) == "accepted");
 }
 
 TEST_CASE("documents are written so that they read back to the same bits") {
-  Json j = {{"x", 0.1},
-            {"tiny", 5e-324},
-            {"big", 1.7976931348623157e308},
-            {"list", {1.0 / 3, -0.0, 123456789012345678}}};
+  Json j = {
+      {"x", 0.1}, {"tiny", 5e-324}, {"big", 1.7976931348623157e308}, {"list", {1.0 / 3, -0.0, 123456789012345678}}};
   const std::string text = dump_json(j);
   CHECK(text.back() == '\n');
   CHECK(parse_json(text, "f") == j);
@@ -110,8 +94,7 @@ TEST_CASE("documents are written so that they read back to the same bits") {
   CHECK_THROWS(dump_json(Json{{"x", std::numeric_limits<double>::infinity()}}));
 }
 
-TEST_CASE(
-    "strings that are not UTF-8 are written escaped, also as keys, and nothing else is touched") {
+TEST_CASE("strings that are not UTF-8 are written escaped, also as keys, and nothing else is touched") {
   Json j;
   j["bad"] = {"\xB0 deg", "° fine\n"};
   j["k\xFF"] = 1;
@@ -123,10 +106,8 @@ TEST_CASE(
 
 TEST_CASE("one string that is not UTF-8 is found wherever it stands, and no other is touched") {
   const std::string fine = "\"°\" \\ \n";
-  for (const Json& j : {Json(Json::array({fine, Json::array({1, "\xB0"})})),
-                        Json{{"a", {{"b", fine}, {"c", "\xB0"}}}},
-                        Json::array({Json{{"a", 1}, {"\xB0", fine}}}),
-                        Json("\xB0")}) {
+  for (const Json& j : {Json(Json::array({fine, Json::array({1, "\xB0"})})), Json{{"a", {{"b", fine}, {"c", "\xB0"}}}},
+                        Json::array({Json{{"a", 1}, {"\xB0", fine}}}), Json("\xB0")}) {
     const std::string text = dump_json(j);
     CHECK_THAT(text, Catch::Contains("\\\\xB0"));
     CHECK_THAT(text, !Catch::Contains("\xEF\xBF\xBD"));

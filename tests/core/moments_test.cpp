@@ -70,8 +70,7 @@ TEST_CASE("NIST StRD univariate sets within half a digit of what binary64 input 
     const auto y = strd(row.name);
     REQUIRE(y.size() == row.n);
     const Moments m = of(y);
-    const double mean_digits = lre(m.mean(), row.mean),
-                 deviation_digits = lre(m.standard_deviation(), row.deviation);
+    const double mean_digits = lre(m.mean(), row.mean), deviation_digits = lre(m.standard_deviation(), row.deviation);
     CHECK(mean_digits >= row.mean_digits);
     CHECK(deviation_digits >= row.deviation_digits);
   }
@@ -101,8 +100,7 @@ TEST_CASE("moments of every order agree with sums in long double") {
   const Moments m = of(x);
   CHECK(m.mean() == Approx(static_cast<double>(mean)).epsilon(1e-15));
   CHECK(m.variance() == Approx(static_cast<double>(m2 / (n - 1))).epsilon(1e-14));
-  CHECK(m.skewness() ==
-        Approx(static_cast<double>(std::sqrt(n) * m3 / std::pow(m2, 1.5L))).epsilon(1e-10));
+  CHECK(m.skewness() == Approx(static_cast<double>(std::sqrt(n) * m3 / std::pow(m2, 1.5L))).epsilon(1e-10));
   CHECK(m.kurtosis() == Approx(static_cast<double>(n * m4 / (m2 * m2))).epsilon(1e-12));
   CHECK(m.minimum() == *std::min_element(x.begin(), x.end()));
   CHECK(m.maximum() == *std::max_element(x.begin(), x.end()));
@@ -116,8 +114,7 @@ TEST_CASE("the bits do not depend on how samples are pushed, missing ones includ
   CHECK(whole.missing() == 5);
   for (const std::size_t block : {1U, 2U, 7U, 63U, 4095U, 4096U, 4097U, 10'000U}) {
     Moments m;
-    for (std::size_t i = 0; i < x.size(); i += block)
-      m.push({x.data() + i, std::min(block, x.size() - i)});
+    for (std::size_t i = 0; i < x.size(); i += block) m.push({x.data() + i, std::min(block, x.size() - i)});
     CAPTURE(block);
     CHECK(m.count() == whole.count());
     CHECK(m.missing() == whole.missing());
@@ -151,8 +148,7 @@ TEST_CASE("none, one, constant and only missing samples give numbers, not NaN") 
 
 TEST_CASE("moments: deviations of any size that a double has, also where they change on the way") {
   std::vector<double> plain(10000);
-  for (std::size_t i = 0; i < plain.size(); ++i)
-    plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
+  for (std::size_t i = 0; i < plain.size(); ++i) plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
   const auto of = [](const std::vector<double>& y) {
     Moments moments;
     moments.push(y);
@@ -164,8 +160,7 @@ TEST_CASE("moments: deviations of any size that a double has, also where they ch
     std::vector<double> scaled = plain;
     for (double& y : scaled) y = std::ldexp(y, power);
     const Moments moments = of(scaled);
-    CHECK(std::ldexp(moments.standard_deviation(), -power) ==
-          Approx(expected.standard_deviation()).epsilon(1e-14));
+    CHECK(std::ldexp(moments.standard_deviation(), -power) == Approx(expected.standard_deviation()).epsilon(1e-14));
     CHECK(moments.kurtosis() == Approx(expected.kurtosis()).epsilon(1e-12));
     CHECK(moments.skewness() == Approx(expected.skewness()).margin(1e-12));
     CHECK(std::ldexp(moments.mean(), -power) == Approx(expected.mean()).margin(1e-14));
@@ -174,6 +169,5 @@ TEST_CASE("moments: deviations of any size that a double has, also where they ch
   spike[8000] = 1e300;
   CHECK(of(spike).standard_deviation() == Approx(1e300 / std::sqrt(10000.0)).epsilon(1e-3));
   CHECK(of(spike).kurtosis() == Approx(10000.0).epsilon(1e-3));
-  CHECK(of({1e308, -1e308, 1e308, -1e308}).standard_deviation() ==
-        Approx(1e308 * std::sqrt(4 / 3.0)).epsilon(1e-14));
+  CHECK(of({1e308, -1e308, 1e308, -1e308}).standard_deviation() == Approx(1e308 * std::sqrt(4 / 3.0)).epsilon(1e-14));
 }

@@ -25,14 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void put_text(const fs::path& path, const std::string& text) {
-  std::ofstream(path) << text;
-}
+void put_text(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
 std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
-    names.insert(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
   return names;
 }
 
@@ -62,8 +59,7 @@ TEST_CASE("a document that is not replaced removes nothing, and no name leads ou
   fs::create_directory(folder / "in");
   put_text(folder / "outside.txt", "outside");
   put_text(folder / "in" / "mine.txt", "mine");
-  put_text(folder / "in" / "report.json",
-           R"({"files": ["report.json", "../outside.txt", "..", "", ".", 3]})");
+  put_text(folder / "in" / "report.json", R"({"files": ["report.json", "../outside.txt", "..", "", ".", 3]})");
   put_text(folder / "in" / "runs.json", R"({"files": ["runs.json", "mine.txt"]})");
   CHECK(write_outputs(set_of(folder / "in", {}), folder / "in", {}, true).empty());
   CHECK(fs::exists(folder / "outside.txt"));
@@ -88,23 +84,18 @@ TEST_CASE("an input of the run is not removed as an earlier run's file") {
   const test::TemporaryFolder folder;
   write_outputs(set_of(folder.path(), {"b.yaml"}), folder.path(), {}, false);
   const std::string input = (folder / "b.yaml").string();
-  CHECK(test::code_of([&] {
-          write_outputs(set_of(folder.path(), {}), folder.path(), {input}, true);
-        }) == "E0504");
+  CHECK(test::code_of([&] { write_outputs(set_of(folder.path(), {}), folder.path(), {input}, true); }) == "E0504");
   CHECK(fs::exists(input));
 }
 
-TEST_CASE(
-    "a run that was killed between two names is finished by the next, and read by nobody before") {
+TEST_CASE("a run that was killed between two names is finished by the next, and read by nobody before") {
   const test::TemporaryFolder folder;
   write_outputs(set_of(folder.path(), {"a.yaml", "b.yaml"}), folder.path(), {}, false);
   // As left by a kill after the first of two names: a.yaml is new, report.json and the removal of b.yaml are to come.
   put_text(folder / "a.yaml", "new a");
   put_text(folder / "report.json.libchar-tmp-1-0", R"({"files": ["report.json", "a.yaml"]})");
-  journal_file(
-      folder.path(),
-      {{{"a.yaml.libchar-tmp-1-0", "a.yaml"}, {"report.json.libchar-tmp-1-0", "report.json"}},
-       {"b.yaml"}})
+  journal_file(folder.path(),
+               {{{"a.yaml.libchar-tmp-1-0", "a.yaml"}, {"report.json.libchar-tmp-1-0", "report.json"}}, {"b.yaml"}})
       .write();
   CHECK(test::code_of([&] { refuse_interrupted(folder.path()); }) == "E0516");
   finish_journal(folder.path());
@@ -116,11 +107,8 @@ TEST_CASE(
 
 TEST_CASE("a journal that leads out of its folder, or is none, is refused") {
   const test::TemporaryFolder folder;
-  for (const char* text : {R"({"rename": [["a", "../b"]], "remove": []})",
-                           R"({"rename": [], "remove": [".."]})",
-                           R"({"rename": 3})",
-                           "",
-                           "{"}) {
+  for (const char* text : {R"({"rename": [["a", "../b"]], "remove": []})", R"({"rename": [], "remove": [".."]})",
+                           R"({"rename": 3})", "", "{"}) {
     put_text(folder / ".libchar-outputs.json", text);
     CHECK(test::code_of([&] { finish_journal(folder.path()); }) == "E0514");
   }
@@ -185,8 +173,7 @@ TEST_CASE("one of a pair that an interrupted run has left is not read, its neigh
   CHECK_NOTHROW(refuse_interrupted(folder / "other.bin"));
 }
 
-TEST_CASE(
-    "the next run that replaces a file removes what a killed one of this place has left of it") {
+TEST_CASE("the next run that replaces a file removes what a killed one of this place has left of it") {
   const test::TemporaryFolder folder;
   const std::string here = "a.csv.libchar-tmp-" + detail::place_of_process();
   put_text(folder / (here + "-999999999-0"), "litter");
@@ -194,15 +181,13 @@ TEST_CASE(
     put_text(folder / other, "not ours");
   write_whole_file((folder / "a.csv").string(), "new");
   write_whole_file((folder / "a.csv").string(), "newer", true);
-  CHECK(names_in(folder.path()) == std::set<std::string>{"a.csv",
-                                                         "a.csv.libchar-tmp-mine",
-                                                         "a.csv.libchar-tmp-0123456789abcdef-7-0"});
+  CHECK(names_in(folder.path()) ==
+        std::set<std::string>{"a.csv", "a.csv.libchar-tmp-mine", "a.csv.libchar-tmp-0123456789abcdef-7-0"});
 }
 
 TEST_CASE("a temporary file of another place is litter when it is old and nobody holds it") {
   const test::TemporaryFolder folder;
-  const fs::path other = folder / "a.csv.libchar-tmp-0123456789abcdef-7-0",
-                 earlier = folder / "a.csv.libchar-tmp-7-0";
+  const fs::path other = folder / "a.csv.libchar-tmp-0123456789abcdef-7-0", earlier = folder / "a.csv.libchar-tmp-7-0";
   for (const fs::path& file : {other, earlier}) {
     put_text(file, "x");
     detail::remove_litter(folder.path().string());
@@ -225,8 +210,7 @@ TEST_CASE("a file being written is locked until it has its name") {
   WholeFile file(path, true);
   file.write("new");
   file.prepare();
-  CHECK(detail::owner_by_name(fs::path(file.temporary()).filename().string())->place ==
-        detail::place_of_process());
+  CHECK(detail::owner_by_name(fs::path(file.temporary()).filename().string())->place == detail::place_of_process());
   const int other = ::open(file.temporary().c_str(), O_RDWR | O_CLOEXEC);
   CHECK(detail::lock_whole_file(other) == detail::Lock::of_another);
   ::close(other);
@@ -294,9 +278,8 @@ TEST_CASE("who waits for a folder is told whose it is, and a lock that a kill ha
       const detail::FolderLock second(folder.path(), 0.01);
       FAIL("both");
     } catch (const Error& error) {
-      CHECK_THAT(
-          error.problem().what,
-          Catch::Contains("process " + std::to_string(::getpid())) && Catch::Contains("since 2"));
+      CHECK_THAT(error.problem().what,
+                 Catch::Contains("process " + std::to_string(::getpid())) && Catch::Contains("since 2"));
     }
   }
   CHECK(names_in(folder.path()).empty());
@@ -305,8 +288,7 @@ TEST_CASE("who waits for a folder is told whose it is, and a lock that a kill ha
   CHECK(names_in(folder.path()).empty());
 }
 
-TEST_CASE(
-    "a lock is no way to somebody's file: links and other names of one are left as they are") {
+TEST_CASE("a lock is no way to somebody's file: links and other names of one are left as they are") {
   const test::TemporaryFolder folder;
   put_text(folder / "mine", "mine");
   fs::create_symlink("mine", folder / detail::kLockFile);
@@ -332,7 +314,6 @@ TEST_CASE("killed at any moment, the next run leaves a whole set and no litter")
     if (trial % 3 != 0) ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     write_outputs(set_of(folder.path(), {"both.yaml", "last.yaml"}), folder.path(), {}, true);
-    CHECK(names_in(folder.path()) ==
-          std::set<std::string>{"both.yaml", "last.yaml", "report.json"});
+    CHECK(names_in(folder.path()) == std::set<std::string>{"both.yaml", "last.yaml", "report.json"});
   }
 }

@@ -18,8 +18,7 @@ TEST_CASE("parallel: each index once, in ranges that cover all") {
     parallel::for_each(3, count + 3, [&](std::size_t i) { ++seen[i]; });
     for (std::size_t i = 0; i < seen.size(); ++i) CHECK(seen[i] == (i >= 3 ? 1 : 0));
     std::atomic<std::size_t> covered = 0;
-    parallel::over_ranges(
-        0, count, 10, [&](std::size_t begin, std::size_t end) { covered += end - begin; });
+    parallel::over_ranges(0, count, 10, [&](std::size_t begin, std::size_t end) { covered += end - begin; });
     CHECK(covered == count);
   }
 }
@@ -27,9 +26,8 @@ TEST_CASE("parallel: each index once, in ranges that cover all") {
 TEST_CASE("parallel: both, isolated, in a pool of any size") {
   for (const int threads : {0, 1, 2, 100}) {
     std::atomic<int> done = 0;
-    parallel::Threads(threads).run([&] {
-      parallel::isolated([&] { parallel::both([&] { done += 1; }, [&] { done += 10; }); });
-    });
+    parallel::Threads(threads).run(
+        [&] { parallel::isolated([&] { parallel::both([&] { done += 1; }, [&] { done += 10; }); }); });
     CHECK(done == 11);
   }
   const parallel::OneThread one;
@@ -46,14 +44,8 @@ TEST_CASE("parallel: a stream is read and taken in order") {
          read.push_back(static_cast<int>(next));
          return &items[next++];
        },
-       .first =
-           [&](void* item) {
-             first.push_back(static_cast<int>(static_cast<int*>(item) - items.data()));
-           },
-       .work =
-           [&](void* item) {
-             *static_cast<int*>(item) = static_cast<int>(static_cast<int*>(item) - items.data());
-           },
+       .first = [&](void* item) { first.push_back(static_cast<int>(static_cast<int*>(item) - items.data())); },
+       .work = [&](void* item) { *static_cast<int*>(item) = static_cast<int>(static_cast<int*>(item) - items.data()); },
        .last = [&](void* item) { taken.push_back(*static_cast<int*>(item)); }});
   REQUIRE(taken.size() == items.size());
   CHECK(read == taken);
@@ -61,14 +53,12 @@ TEST_CASE("parallel: a stream is read and taken in order") {
 }
 
 TEST_CASE("parallel: what work throws is thrown where it was asked for") {
-  CHECK_THROWS_AS(parallel::for_each(0,
-                                     10,
+  CHECK_THROWS_AS(parallel::for_each(0, 10,
                                      [](std::size_t i) {
                                        if (i == 7) throw std::runtime_error("seven");
                                      }),
                   std::runtime_error);
-  CHECK_THROWS_AS(parallel::both([] {}, [] { throw std::runtime_error("other"); }),
-                  std::runtime_error);
+  CHECK_THROWS_AS(parallel::both([] {}, [] { throw std::runtime_error("other"); }), std::runtime_error);
   auto beside = parallel::beside([]() -> int { throw std::runtime_error("beside"); });
   CHECK_THROWS_AS(beside.get(), std::runtime_error);
   auto answer = parallel::beside([] { return 42; });

@@ -39,13 +39,11 @@ TEST_CASE("patterns: many stars cost no exponential time") {
 }
 
 TEST_CASE("patterns: names in the order in which people count") {
-  std::vector<std::string> names = {
-      "gyro10", "gyro2", "gyro1", "gyro", "acc3", "gyro02", "imu2_x10", "imu2_x9", "imu10_x1"};
+  std::vector<std::string> names = {"gyro10", "gyro2",    "gyro1",   "gyro",    "acc3",
+                                    "gyro02", "imu2_x10", "imu2_x9", "imu10_x1"};
   std::sort(names.begin(), names.end(), comes_before);
-  CHECK(
-      names ==
-      std::vector<std::string>{
-          "acc3", "gyro", "gyro1", "gyro02", "gyro2", "gyro10", "imu2_x9", "imu2_x10", "imu10_x1"});
+  CHECK(names == std::vector<std::string>{"acc3", "gyro", "gyro1", "gyro02", "gyro2", "gyro10", "imu2_x9", "imu2_x10",
+                                          "imu10_x1"});
   // A strict order, long numbers too.
   CHECK_FALSE(comes_before("a1", "a1"));
   CHECK(comes_before("a99999999999999999999998", "a99999999999999999999999"));

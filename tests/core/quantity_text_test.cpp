@@ -47,28 +47,12 @@ TEST_CASE("typed numbers are decimal, finite and in range") {
   CHECK(parse_number("1e-3") == 1e-3);
   CHECK(parse_number("0", 0, 100) == 0);
   CHECK(parse_number("100", 0, 100) == 100);
-  for (const char* bad : {"",
-                          "+",
-                          "-",
-                          "--5",
-                          "+-5",
-                          "nan",
-                          "inf",
-                          "-inf",
-                          "0x10",
-                          "010",
-                          "-010",
-                          "1e400",
-                          "1 000",
-                          "5x",
-                          "1,5",
-                          " 5",
-                          "e5"})
+  for (const char* bad : {"", "+", "-", "--5", "+-5", "nan", "inf", "-inf", "0x10", "010", "-010", "1e400", "1 000",
+                          "5x", "1,5", " 5", "e5"})
     CHECK_FALSE(refusal_of(kNumber, bad).empty());
   CHECK_THAT(refusal_of(kPercent, "100.5"), Catch::Contains("a number from 0 to 100"));
   CHECK_THAT(refusal_of(kPercent, "-0.1"), Catch::Contains("a number from 0 to 100"));
-  CHECK_THAT(refusal_of([](const char* t) { parse_number(t, 1); }, "0"),
-             Catch::Contains("a number not below 1"));
+  CHECK_THAT(refusal_of([](const char* t) { parse_number(t, 1); }, "0"), Catch::Contains("a number not below 1"));
   CHECK_THAT(refusal_of([](const char* t) { parse_number(t, -1e308 * 10, 7); }, "8"),
              Catch::Contains("a number not above 7") || Catch::Contains("from"));
 }
@@ -78,13 +62,11 @@ TEST_CASE("typed counts are digits, nothing else") {
   CHECK(parse_count("18446744073709551615") == UINT64_MAX);
   CHECK(parse_count("1", 1, 8) == 1);
   CHECK(parse_count("8", 1, 8) == 8);
-  for (const char* bad :
-       {"", "-1", "+1", "01", "00", "1e6", "1.0", "1_000", "18446744073709551616"})
+  for (const char* bad : {"", "-1", "+1", "01", "00", "1e6", "1.0", "1_000", "18446744073709551616"})
     CHECK_FALSE(refusal_of(kCount, bad).empty());
   CHECK_THAT(refusal_of(kFew, "0"), Catch::Contains("a whole number from 1 to 8"));
   CHECK_THAT(refusal_of(kFew, "9"), Catch::Contains("a whole number from 1 to 8"));
-  CHECK_THAT(refusal_of([](const char* t) { parse_count(t, 2); }, "1"),
-             Catch::Contains("a whole number not below 2"));
+  CHECK_THAT(refusal_of([](const char* t) { parse_count(t, 2); }, "1"), Catch::Contains("a whole number not below 2"));
 }
 
 TEST_CASE("typed durations, rates and sizes have their units") {
@@ -135,12 +117,8 @@ TEST_CASE("a range has two ends, and one that is left out is open") {
   const struct {
     const char* text;
     double low, high;
-  } rows[] = {{"10..600", 10, 600},
-              {"10s..end", 10, open},
-              {"1min..2min", 60, 120},
-              {"50..", 50, open},
-              {"..50", 0, 50},
-              {"250ms..1h", 0.25, 3600}};
+  } rows[] = {{"10..600", 10, 600}, {"10s..end", 10, open}, {"1min..2min", 60, 120},
+              {"50..", 50, open},   {"..50", 0, 50},        {"250ms..1h", 0.25, 3600}};
   for (const auto& row : rows) {
     INFO(row.text);
     const Interval range = parse_range(row.text);
@@ -155,8 +133,7 @@ TEST_CASE("a range has two ends, and one that is left out is open") {
     CHECK_THROWS_WITH(parse_range(text), Catch::Contains("E0201"));
   }
   CHECK_THROWS_WITH(parse_range("1s..2s", RangeOf::rate_hz), Catch::Contains("E0201"));
-  const Interval above = parse_range("1..", RangeOf::number),
-                 below = parse_range("..-2.5", RangeOf::number);
+  const Interval above = parse_range("1..", RangeOf::number), below = parse_range("..-2.5", RangeOf::number);
   CHECK(above.low == 1);
   CHECK(std::isinf(above.high));
   CHECK(below.low == -std::numeric_limits<double>::infinity());

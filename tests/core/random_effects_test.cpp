@@ -64,8 +64,7 @@ TEST_CASE("random effects: intervals cover, with a spread and without") {
     }
 }
 
-TEST_CASE(
-    "random effects: values closer than their uncertainties do not bound the spread by nothing") {
+TEST_CASE("random effects: values closer than their uncertainties do not bound the spread by nothing") {
   const std::vector<double> y = {1, 1, 1, 1}, v(4, 1.0);
   const RandomEffects r = random_effects(y, v);
   CHECK(r.spread == 0);
@@ -95,8 +94,7 @@ TEST_CASE("outliers: at most 1 % of lots without one have one, and one that is t
         const auto outliers = find_outliers(lot.value, lot.variance);
         found += !outliers.empty() && outliers[0].index == 2;
       }
-      CHECK(false_alarms <=
-            (count > 20 ? 4 : 9));  // 1 %, and four standard deviations of a Poisson count
+      CHECK(false_alarms <= (count > 20 ? 4 : 9));  // 1 %, and four standard deviations of a Poisson count
       // Of four, three are left to say what is usual: Student's t of two degrees of freedom.
       if (count > 4) CHECK(found >= 0.98 * lots);
     }
@@ -148,8 +146,7 @@ TEST_CASE(
         false_alarms += !find_outliers(lot.value, lot.variance).empty();
         for (const std::size_t k : {2, 30, 45}) lot.value[k] += k == 45 ? -30 : 30;
         const auto outliers = find_outliers(lot.value, lot.variance);
-        found +=
-            outliers.size() == 3 && outliers[0].index + outliers[1].index + outliers[2].index == 77;
+        found += outliers.size() == 3 && outliers[0].index + outliers[1].index + outliers[2].index == 77;
       }
       CHECK(false_alarms <= 12);  // 1 % and four standard deviations of a Poisson count
       CHECK(found >= 0.97 * lots);

@@ -16,9 +16,7 @@ struct Taker final : BlockTaker {
     samples.insert(samples.end(), block.begin(), block.end());
     return true;
   }
-  void push(std::span<const double> more) override {
-    samples.insert(samples.end(), more.begin(), more.end());
-  }
+  void push(std::span<const double> more) override { samples.insert(samples.end(), more.begin(), more.end()); }
   void take_power(std::vector<double> sums) override { power = std::move(sums); }
 };
 

@@ -16,9 +16,7 @@ using namespace libchar;
 
 namespace {
 
-std::filesystem::path strd_folder() {
-  return test::shared_folder() / "oracle/strd";
-}
+std::filesystem::path strd_folder() { return test::shared_folder() / "oracle/strd"; }
 
 /// Rows of the table at the end: behind the last line that begins with "Data:", or from a line on
 /// (rules of minus signs apart).
@@ -40,52 +38,32 @@ double off(double value, double certified) {
   return relative > 0 ? std::min(15.0, -std::log10(relative)) : 15.0;
 }
 
-double number_in(const nlohmann::ordered_json& text) {
-  return std::stod(text.get<std::string>());
-}
+double number_in(const nlohmann::ordered_json& text) { return std::stod(text.get<std::string>()); }
 
 /// The columns that the model's words name: powers of x, x alone, or one and all x.
-Eigen::MatrixXd design_of(const std::vector<std::vector<double>>& rows,
-                          const std::string& model,
+Eigen::MatrixXd design_of(const std::vector<std::vector<double>>& rows, const std::string& model,
                           std::size_t coefficients) {
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()),
-                      static_cast<Eigen::Index>(coefficients));
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(coefficients));
   for (Eigen::Index i = 0; i < out.rows(); ++i) {
     const std::vector<double>& row = rows[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < out.cols(); ++j)
-      out(i, j) = model.starts_with("polynomial") ? std::pow(row[1], static_cast<double>(j))
+      out(i, j) = model.starts_with("polynomial")                   ? std::pow(row[1], static_cast<double>(j))
                   : model.find("no intercept") != std::string::npos ? row[1]
                   : j == 0                                          ? 1
-                           : row[static_cast<std::size_t>(j)];
+                                                                    : row[static_cast<std::size_t>(j)];
   }
   return out;
 }
 
 /// Digits that reliability is asked of a scaled QR (Eigen 3.4, double).
-const std::map<std::string, double> kLinearDigits = {{"Norris", 12},
-                                                     {"Pontius", 12},
-                                                     {"NoInt1", 14},
-                                                     {"NoInt2", 14},
-                                                     {"Longley", 10.5},
-                                                     {"Filip", 7},
-                                                     {"Wampler1", 9},
-                                                     {"Wampler2", 12},
-                                                     {"Wampler3", 9},
-                                                     {"Wampler4", 8},
-                                                     {"Wampler5", 6}};
+const std::map<std::string, double> kLinearDigits = {
+    {"Norris", 12},  {"Pontius", 12},  {"NoInt1", 14},  {"NoInt2", 14},  {"Longley", 10.5}, {"Filip", 7},
+    {"Wampler1", 9}, {"Wampler2", 12}, {"Wampler3", 9}, {"Wampler4", 8}, {"Wampler5", 6}};
 
 /// Half a digit below what exact arithmetic on the rounded decimals gives, of mean squares between and within.
-const std::map<std::string, double> kAnovaDigits = {{"SiRstvt", 12.6},
-                                                    {"AtmWtAgt", 9.7},
-                                                    {"SmLs01t", 14},
-                                                    {"SmLs02t", 12.9},
-                                                    {"SmLs03t", 12.4},
-                                                    {"SmLs04t", 9.4},
-                                                    {"SmLs05t", 9.4},
-                                                    {"SmLs06t", 9.4},
-                                                    {"SmLs07t", 3.4},
-                                                    {"SmLs08t", 3.4},
-                                                    {"SmLs09t", 3.4}};
+const std::map<std::string, double> kAnovaDigits = {
+    {"SiRstvt", 12.6}, {"AtmWtAgt", 9.7}, {"SmLs01t", 14},  {"SmLs02t", 12.9}, {"SmLs03t", 12.4}, {"SmLs04t", 9.4},
+    {"SmLs05t", 9.4},  {"SmLs06t", 9.4},  {"SmLs07t", 3.4}, {"SmLs08t", 3.4},  {"SmLs09t", 3.4}};
 
 nlohmann::ordered_json certified() {
   return nlohmann::ordered_json::parse(test::slurp(strd_folder() / "certified.json"));

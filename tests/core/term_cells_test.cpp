@@ -22,8 +22,7 @@ TEST_CASE("term cells: a density says its sides, a floor that it is one") {
   CHECK(n.title == "Angle random walk");
   CHECK(said(n.own) == "0.004000 deg/s·√s");
   CHECK(n.own.low + " … " + n.own.high == "0.003970 … 0.004030");
-  CHECK(said(n.field) ==
-        "0.2400 deg/√h, 0.005657 deg/s/√Hz one-sided, 6.981×10⁻⁵ rad/s/√Hz two-sided");
+  CHECK(said(n.field) == "0.2400 deg/√h, 0.005657 deg/s/√Hz one-sided, 6.981×10⁻⁵ rad/s/√Hz two-sided");
   CHECK(said(headline(n)) == "0.2400 deg/√h");
   const TermCells b = term_cells(detected(0.004, 0.0036, 0.0044), Term::flicker, "deg/s");
   CHECK(said(b.field) == "14.4 deg/h, 9.57 deg/h floor");
@@ -64,8 +63,7 @@ TEST_CASE("term cells: a limit stays one in every unit, an interval without an e
   CHECK(said(cells.field) == "≤ 3.60 deg/h, ≤ 2.39 deg/h floor");
   CHECK(cells.own.low.empty());
   CHECK(status_words(cells.status) == "not detected");
-  const ShownValue open =
-      shown_value(detected(2, 1, std::numeric_limits<double>::infinity()), 1, "s");
+  const ShownValue open = shown_value(detected(2, 1, std::numeric_limits<double>::infinity()), 1, "s");
   CHECK(interval_brackets(open) == "[1.0, no end]");
   const ShownValue small = shown_value(detected(9.968e-5, 9.906e-5, 1.003e-4), 1, "g");
   CHECK(small.value + " " + small.low == "9.968×10⁻⁵ 9.906×10⁻⁵");

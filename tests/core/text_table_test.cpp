@@ -55,6 +55,5 @@ TEST_CASE("a table fits any width from 44 characters on, and loses no cell") {
 }
 
 TEST_CASE("a narrow table is cut into several, each with the first column and its heads") {
-  CHECK(text_table({{"a", "bbbb", "cccc"}, {"1", "2", "3"}}, "", false, 8) ==
-        "a  bbbb\n1     2\na  cccc\n1     3\n");
+  CHECK(text_table({{"a", "bbbb", "cccc"}, {"1", "2", "3"}}, "", false, 8) == "a  bbbb\n1     2\na  cccc\n1     3\n");
 }

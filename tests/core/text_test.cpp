@@ -25,13 +25,11 @@ TEST_CASE("the first and the last of each range of invisible characters are esca
     const char *text, *shown;
   };
   for (const Row& row :
-       {Row{"\x1F", "\\x1F"},       Row{"\x20", "\x20"},        Row{"\x7E", "\x7E"},
-        Row{"\x7F", "\\x7F"},       Row{"\u009F", "\\x9F"},     Row{"\u00A0", "\u00A0"},
-        Row{"\u0100", "\u0100"},    Row{"\u061C", "\\u{061C}"}, Row{"\u200A", "\u200A"},
-        Row{"\u200B", "\\u{200B}"}, Row{"\u200F", "\\u{200F}"}, Row{"\u2010", "\u2010"},
-        Row{"\u2027", "\u2027"},    Row{"\u2028", "\\u{2028}"}, Row{"\u202E", "\\u{202E}"},
-        Row{"\u202F", "\u202F"},    Row{"\u2060", "\\u{2060}"}, Row{"\u2069", "\\u{2069}"},
-        Row{"\u206A", "\u206A"},    Row{"\uFEFF", "\\u{FEFF}"}})
+       {Row{"\x1F", "\\x1F"},       Row{"\x20", "\x20"},        Row{"\x7E", "\x7E"},        Row{"\x7F", "\\x7F"},
+        Row{"\u009F", "\\x9F"},     Row{"\u00A0", "\u00A0"},    Row{"\u0100", "\u0100"},    Row{"\u061C", "\\u{061C}"},
+        Row{"\u200A", "\u200A"},    Row{"\u200B", "\\u{200B}"}, Row{"\u200F", "\\u{200F}"}, Row{"\u2010", "\u2010"},
+        Row{"\u2027", "\u2027"},    Row{"\u2028", "\\u{2028}"}, Row{"\u202E", "\\u{202E}"}, Row{"\u202F", "\u202F"},
+        Row{"\u2060", "\\u{2060}"}, Row{"\u2069", "\\u{2069}"}, Row{"\u206A", "\u206A"},    Row{"\uFEFF", "\\u{FEFF}"}})
     CHECK(printable(row.text) == row.shown);
 }
 
@@ -52,8 +50,7 @@ TEST_CASE("numbers read back to the same double, in YAML as numbers") {
   CHECK(shortest_yaml(200) == "200.0");
   CHECK(shortest_yaml(1e-5) == "1.0e-05");
   CHECK(parse_double(shortest(1.0 / 3)) == 1.0 / 3);
-  for (const char* bad :
-       {"1,5", "0x1p3", "1.5abc", "1e400", "1e-400", "", " 1", "+1", "nan", "inf"})
+  for (const char* bad : {"1,5", "0x1p3", "1.5abc", "1e400", "1e-400", "", " 1", "+1", "nan", "inf"})
     CHECK_FALSE(parse_double(bad));
 }
 

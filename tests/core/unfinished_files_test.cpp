@@ -38,8 +38,7 @@ std::size_t files_in(const std::filesystem::path& folder) {
 
 TEST_CASE("what is unfinished when a signal ends the program is removed, what has a name stays") {
   const test::TemporaryFolder folder;
-  const std::string done = (folder.path() / "done").string(),
-                    other = (folder.path() / "other").string();
+  const std::string done = (folder.path() / "done").string(), other = (folder.path() / "other").string();
   CHECK(discarded_by_child([&] {
           WholeFile file(other);
           file.write("half");
@@ -50,8 +49,7 @@ TEST_CASE("what is unfinished when a signal ends the program is removed, what ha
         }) == static_cast<int>(Discarded::nothing_written));
   CHECK(files_in(folder.path()) == 0);
 
-  CHECK(discarded_by_child([&] { write_whole_file(done, "whole"); }) ==
-        static_cast<int>(Discarded::some_written));
+  CHECK(discarded_by_child([&] { write_whole_file(done, "whole"); }) == static_cast<int>(Discarded::some_written));
   CHECK(files_in(folder.path()) == 1);
 }
 

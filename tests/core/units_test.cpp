@@ -83,16 +83,8 @@ TEST_CASE("both encodings of micro are the same unit, and case tells apart what 
 }
 
 TEST_CASE("what is no unit is none") {
-  for (const char* text : {"",
-                           " ",
-                           "furlong",
-                           "deg/s/s/s",
-                           "|",
-                           "deg/s|dps",
-                           "0 deg/s",
-                           "1/0 deg/s",
-                           "nan deg/s",
-                           "deg/s\n"}) {
+  for (const char* text :
+       {"", " ", "furlong", "deg/s/s/s", "|", "deg/s|dps", "0 deg/s", "1/0 deg/s", "nan deg/s", "deg/s\n"}) {
     CAPTURE(text);
     CHECK_FALSE(find_unit(text));
   }
@@ -114,17 +106,14 @@ TEST_CASE("habitual units: 1 deg/s·√s is 60 deg/√h, and a datasheet's densi
   CHECK(white[1].reading == Reading::one_sided);
   CHECK(white[2].reading == Reading::two_sided);
   CHECK(habitual_units("bias_instability", "deg/s")[1].reading == Reading::floor);
-  CHECK(habitual_units("white_noise", "rad/s")[0].factor ==
-        Approx(60 * 180 / std::numbers::pi).epsilon(1e-14));
+  CHECK(habitual_units("white_noise", "rad/s")[0].factor == Approx(60 * 180 / std::numbers::pi).epsilon(1e-14));
   CHECK(habitual_units("bias_instability", "deg/s")[0].factor == Approx(3600).epsilon(1e-14));
   CHECK(habitual_units("random_walk", "deg/s")[0].factor == Approx(3600.0 * 60).epsilon(1e-14));
   CHECK(habitual_units("quantization", "deg/s")[0].factor == Approx(3600).epsilon(1e-14));
   CHECK(habitual_units("rate_ramp", "deg/s")[0].factor == Approx(3600.0 * 3600).epsilon(1e-14));
-  CHECK(habitual_units("white_noise", "m/s^2")[1].factor ==
-        Approx(1e6 / 9.80665 * std::numbers::sqrt2).epsilon(1e-14));
+  CHECK(habitual_units("white_noise", "m/s^2")[1].factor == Approx(1e6 / 9.80665 * std::numbers::sqrt2).epsilon(1e-14));
   CHECK(habitual_units("white_noise", "g")[0].factor == Approx(60 * 9.80665).epsilon(1e-14));
-  CHECK(habitual_units("bias_instability", "m/s^2")[1].factor ==
-        Approx(1e6 / 9.80665 * 0.66428247034).epsilon(1e-9));
+  CHECK(habitual_units("bias_instability", "m/s^2")[1].factor == Approx(1e6 / 9.80665 * 0.66428247034).epsilon(1e-9));
   const auto pressure = habitual_units("white_noise", "hPa");
   REQUIRE(pressure.size() == 1);
   CHECK(pressure[0].factor == Approx(std::numbers::sqrt2).epsilon(1e-14));

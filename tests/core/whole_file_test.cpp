@@ -19,8 +19,7 @@ using namespace libchar;
 namespace {
 
 std::size_t entries(const test::TemporaryFolder& folder) {
-  return static_cast<std::size_t>(
-      std::distance(std::filesystem::directory_iterator(folder.path()), {}));
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder.path()), {}));
 }
 
 template <typename Work>
@@ -92,8 +91,7 @@ TEST_CASE("folders, missing folders and a full device are errors of output") {
   CHECK(kind_of([&] { WholeFile((folder / "no/such/folder").string()); }) == ErrorKind::output);
   CHECK(kind_of([&] { WholeFile(""); }) == ErrorKind::output);
   CHECK(kind_of([] { write_whole_file("/dev/full", "x", true); }) == ErrorKind::output);
-  CHECK(kind_of([] { write_whole_file("/dev/full", std::string(1'000'000, 'x')); }) ==
-        ErrorKind::output);
+  CHECK(kind_of([] { write_whole_file("/dev/full", std::string(1'000'000, 'x')); }) == ErrorKind::output);
   CHECK_NOTHROW(write_whole_file("/dev/null", "x"));
   CHECK(entries(folder) == 0);
 }
@@ -108,8 +106,7 @@ TEST_CASE("a file that grows past the limit fails, leaves the old one and nothin
   small.rlim_cur = 100'000;
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
-  const ErrorKind kind =
-      kind_of([&] { write_whole_file(path, std::string(1'000'000, 'x'), true); });
+  const ErrorKind kind = kind_of([&] { write_whole_file(path, std::string(1'000'000, 'x'), true); });
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   CHECK(kind == ErrorKind::output);
@@ -205,12 +202,11 @@ TEST_CASE("a pipe is not opened to see whether it could be, and cannot be gone b
   CHECK(::read(reader, got, sizeof got) == 4);
   CHECK(std::string(got) == "1234");
   std::atomic<bool> written = false;
-  std::thread drain(
-      [&] {  // nothing to read does not mean that nothing will come: the writer may not have begun
-        char bytes[65536];
-        while (!written)
-          if (::read(reader, bytes, sizeof bytes) <= 0) std::this_thread::yield();
-      });
+  std::thread drain([&] {  // nothing to read does not mean that nothing will come: the writer may not have begun
+    char bytes[65536];
+    while (!written)
+      if (::read(reader, bytes, sizeof bytes) <= 0) std::this_thread::yield();
+  });
   {
     WholeFile large(pipe);
     large.write(std::string(1'000'000, 'x'));

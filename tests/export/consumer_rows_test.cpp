@@ -38,10 +38,7 @@ TEST_CASE("consumer rows: the report shows the number that the file holds") {
     CAPTURE(target, key);
     const double written = test::number_after(test::exported(target, models).text, key);
     const std::string value = shown.at(std::string(consumer) + "/" + key);
-    CHECK(std::set{number_text(written, 2),
-                   number_text(written, 3),
-                   number_text(written, 4),
-                   number_text(written, 5)}
+    CHECK(std::set{number_text(written, 2), number_text(written, 3), number_text(written, 4), number_text(written, 5)}
               .count(value) == 1);
   };
   check("kalibr", "Kalibr, EuRoC, OpenVINS", "gyroscope_random_walk");

@@ -73,9 +73,7 @@ std::vector<SensorModel> device() {
   return test::imu({known(kGyroQ), {}, known(kGyroK)}, {known(kAccQ), {}, known(kAccK)}, kRate);
 }
 
-YAML::Node opencv_yaml(const std::string& text) {
-  return YAML::Load(text.substr(text.find('\n') + 1));
-}
+YAML::Node opencv_yaml(const std::string& text) { return YAML::Load(text.substr(text.find('\n') + 1)); }
 
 }  // namespace
 
@@ -88,27 +86,18 @@ TEST_CASE("simulated: Kalibr, EuRoC and OpenVINS make the densities discrete") {
     const double rate = (file["update_rate"] ? file["update_rate"] : file["rate_hz"]).as<double>();
     const double root_dt = std::sqrt(1.0 / rate);
     const auto rule = [&](const char* density, const char* walk) {
-      return Discrete{
-          file[density].as<double>() / root_dt, file[walk].as<double>() * root_dt, 1, rate};
+      return Discrete{file[density].as<double>() / root_dt, file[walk].as<double>() * root_dt, 1, rate};
     };
     recovers(rule("gyroscope_noise_density", "gyroscope_random_walk"), kGyroQ, kGyroK, ++seed);
-    recovers(
-        rule("accelerometer_noise_density", "accelerometer_random_walk"), kAccQ, kAccK, ++seed);
+    recovers(rule("accelerometer_noise_density", "accelerometer_random_walk"), kAccQ, kAccK, ++seed);
   }
 }
 
-TEST_CASE(
-    "simulated: ORB-SLAM3 multiplies by the root of the frequency and divides the walks by it") {
+TEST_CASE("simulated: ORB-SLAM3 multiplies by the root of the frequency and divides the walks by it") {
   const YAML::Node file = opencv_yaml(exported("orbslam3", device()).text);
   const double root = std::sqrt(file["IMU.Frequency"].as<double>());
-  recovers({file["IMU.NoiseGyro"].as<double>() * root, file["IMU.GyroWalk"].as<double>() / root},
-           kGyroQ,
-           kGyroK,
-           11);
-  recovers({file["IMU.NoiseAcc"].as<double>() * root, file["IMU.AccWalk"].as<double>() / root},
-           kAccQ,
-           kAccK,
-           12);
+  recovers({file["IMU.NoiseGyro"].as<double>() * root, file["IMU.GyroWalk"].as<double>() / root}, kGyroQ, kGyroK, 11);
+  recovers({file["IMU.NoiseAcc"].as<double>() * root, file["IMU.AccWalk"].as<double>() / root}, kAccQ, kAccK, 12);
 }
 
 TEST_CASE("simulated: ROVIO's and FAST-LIO's filters believe of a second what the record has") {
@@ -119,10 +108,8 @@ TEST_CASE("simulated: ROVIO's and FAST-LIO's filters believe of a second what th
   const YAML::Node fast = YAML::Load(exported("fast-lio", device()).text)["mapping"];
   const auto of_rovio = [&](const char* key) { return std::sqrt(number_after(rovio, key)); };
   const auto of_fast = [&](const char* key) { return std::sqrt(fast[key].as<double>()); };
-  recovers(
-      {of_rovio("att_0") / std::sqrt(dt), of_rovio("gyb_0") * std::sqrt(dt)}, kGyroQ, kGyroK, 121);
-  recovers(
-      {of_rovio("vel_0") / std::sqrt(dt), of_rovio("acb_0") * std::sqrt(dt)}, kAccQ, kAccK, 122);
+  recovers({of_rovio("att_0") / std::sqrt(dt), of_rovio("gyb_0") * std::sqrt(dt)}, kGyroQ, kGyroK, 121);
+  recovers({of_rovio("vel_0") / std::sqrt(dt), of_rovio("acb_0") * std::sqrt(dt)}, kAccQ, kAccK, 122);
   recovers({of_fast("gyr_cov"), of_fast("b_gyr_cov") * dt}, kGyroQ, kGyroK, 123);
   recovers({of_fast("acc_cov"), of_fast("b_acc_cov") * dt}, kAccQ, kAccK, 124);
 }
@@ -130,16 +117,10 @@ TEST_CASE("simulated: ROVIO's and FAST-LIO's filters believe of a second what th
 TEST_CASE("simulated: Basalt's std are densities") {
   const Json file = parse_json(exported("basalt", device()).text, "c")["value0"];
   const double root = std::sqrt(file["imu_update_rate"].get<double>());
-  recovers({file["gyro_noise_std"][1].get<double>() * root,
-            file["gyro_bias_std"][1].get<double>() / root},
-           kGyroQ,
-           kGyroK,
-           21);
-  recovers({file["accel_noise_std"][2].get<double>() * root,
-            file["accel_bias_std"][2].get<double>() / root},
-           kAccQ,
-           kAccK,
-           22);
+  recovers({file["gyro_noise_std"][1].get<double>() * root, file["gyro_bias_std"][1].get<double>() / root}, kGyroQ,
+           kGyroK, 21);
+  recovers({file["accel_noise_std"][2].get<double>() * root, file["accel_bias_std"][2].get<double>() / root}, kAccQ,
+           kAccK, 22);
 }
 
 TEST_CASE("simulated: GTSAM divides the covariance by the step, and multiplies that of the bias") {
@@ -147,14 +128,10 @@ TEST_CASE("simulated: GTSAM divides the covariance by the step, and multiplies t
   const double dt = 1 / kRate;
   recovers({std::sqrt(number_after(file, "p->gyroscopeCovariance") / dt),
             std::sqrt(number_after(file, "p->biasOmegaCovariance") * dt)},
-           kGyroQ,
-           kGyroK,
-           31);
+           kGyroQ, kGyroK, 31);
   recovers({std::sqrt(number_after(file, "p->accelerometerCovariance") / dt),
             std::sqrt(number_after(file, "p->biasAccCovariance") * dt)},
-           kAccQ,
-           kAccK,
-           32);
+           kAccQ, kAccK, 32);
 }
 
 TEST_CASE("simulated: ROS covariances are variances of a sample") {
@@ -169,14 +146,10 @@ TEST_CASE("simulated: MATLAB, double-sided") {
   const double scale = 1;
   recovers({number_after(file, "'NoiseDensity") * std::sqrt(kRate / scale),
             number_after(file, "'RandomWalk") / std::sqrt(kRate / scale)},
-           kGyroQ,
-           kGyroK,
-           51);
+           kGyroQ, kGyroK, 51);
   recovers({number_after(accel, "'NoiseDensity") * std::sqrt(kRate / scale),
             number_after(accel, "'RandomWalk") / std::sqrt(kRate / scale)},
-           kAccQ,
-           kAccK,
-           52);
+           kAccQ, kAccK, 52);
 }
 
 TEST_CASE("simulated: AirSim's random walk of density stability over root tau") {
@@ -184,12 +157,10 @@ TEST_CASE("simulated: AirSim's random walk of density stability over root tau") 
   const auto number = [&](const char* key) { return imu[key].get<double>(); };
   const double root_dt = std::sqrt(1 / kRate), degree = M_PI / 180;
   const double arw = number("AngularRandomWalk") / std::sqrt(3600.0) * degree;
-  const double stability =
-      number("GyroBiasStability") / 3600 * degree / std::sqrt(number("GyroBiasStabilityTau"));
+  const double stability = number("GyroBiasStability") / 3600 * degree / std::sqrt(number("GyroBiasStabilityTau"));
   recovers({arw / root_dt, stability * root_dt}, kGyroQ, kGyroK, 61);
   const double vrw = number("VelocityRandomWalk") * 9.80665 / 1e3;
-  const double drift =
-      number("AccelBiasStability") * 1e-6 * 9.80665 / std::sqrt(number("AccelBiasStabilityTau"));
+  const double drift = number("AccelBiasStability") * 1e-6 * 9.80665 / std::sqrt(number("AccelBiasStabilityTau"));
   recovers({vrw / root_dt, drift * root_dt}, kAccQ, kAccK, 62);
 }
 
@@ -209,15 +180,10 @@ TEST_CASE("simulated: the prediction step of PX4 EKF2 and ArduPilot EK3") {
 namespace {
 
 // The exact step of an Ornstein-Uhlenbeck bias, as Gazebo and RotorS take it.
-Discrete ornstein_uhlenbeck(double white_sd,
-                            double driving,
-                            double correlation_s,
-                            double rate_hz = kRate) {
+Discrete ornstein_uhlenbeck(double white_sd, double driving, double correlation_s, double rate_hz = kRate) {
   const double dt = 1 / rate_hz;
-  return {white_sd,
-          std::sqrt(-driving * driving * correlation_s / 2 * std::expm1(-2 * dt / correlation_s)),
-          std::exp(-dt / correlation_s),
-          rate_hz};
+  return {white_sd, std::sqrt(-driving * driving * correlation_s / 2 * std::expm1(-2 * dt / correlation_s)),
+          std::exp(-dt / correlation_s), rate_hz};
 }
 
 // The bias alone: its Allan deviation at tau, with a standard deviation of about 1 %.
@@ -234,26 +200,19 @@ double simulated_adev(const Discrete& rule, double tau_s, std::uint64_t seed) {
 
 TEST_CASE("simulated: Gazebo's stddev a sample and Ornstein-Uhlenbeck bias, RotorS' densities") {
   const std::string sdf = exported("sdf", device()).text;
-  recovers(ornstein_uhlenbeck(number_after(sdf, "stddev"),
-                              number_after(sdf, "dynamic_bias_stddev"),
+  recovers(ornstein_uhlenbeck(number_after(sdf, "stddev"), number_after(sdf, "dynamic_bias_stddev"),
                               number_after(sdf, "dynamic_bias_correlation_time")),
-           kGyroQ,
-           kGyroK,
-           81);
+           kGyroQ, kGyroK, 81);
   const std::string rotors = exported("rotors", device()).text;
   const double root_dt = std::sqrt(1 / kRate);
   recovers(ornstein_uhlenbeck(number_after(rotors, "gyroscopeNoiseDensity") / root_dt,
                               number_after(rotors, "gyroscopeBiasRandomWalk"),
                               number_after(rotors, "gyroscopeBiasCorrelationTime")),
-           kGyroQ,
-           kGyroK,
-           82);
+           kGyroQ, kGyroK, 82);
   recovers(ornstein_uhlenbeck(number_after(rotors, "accelerometerNoiseDensity") / root_dt,
                               number_after(rotors, "accelerometerRandomWalk"),
                               number_after(rotors, "accelerometerBiasCorrelationTime")),
-           kAccQ,
-           kAccK,
-           83);
+           kAccQ, kAccK, 83);
 }
 
 namespace {
@@ -262,9 +221,8 @@ namespace {
 constexpr double kGyroSigma = 0.02, kGyroTau = 30, kAccSigma = 0.3, kAccTau = 12;
 
 std::vector<SensorModel> with_process() {
-  auto models = test::imu({known(kGyroQ), at_most(1e-3), at_most(1e-4)},
-                          {known(kAccQ), at_most(1e-2), at_most(1e-3)},
-                          kRate);
+  auto models =
+      test::imu({known(kGyroQ), at_most(1e-3), at_most(1e-4)}, {known(kAccQ), at_most(1e-2), at_most(1e-3)}, kRate);
   for (SensorModel& m : models) {
     const bool gyro = m.unit == "rad/s";
     m.gauss_markov = {gyro ? kGyroSigma : kAccSigma, gyro ? kGyroTau : kAccTau, {}, {}};
@@ -283,20 +241,13 @@ void keeps(double driving, double correlation_s, double sigma, double tau_s) {
 TEST_CASE("a Gauss-Markov process goes to who has one, by the rule of each") {
   const double degree = M_PI / 180;
   const std::string sdf = exported("sdf", with_process()).text;
-  keeps(number_after(sdf, "dynamic_bias_stddev"),
-        number_after(sdf, "dynamic_bias_correlation_time"),
-        kGyroSigma,
+  keeps(number_after(sdf, "dynamic_bias_stddev"), number_after(sdf, "dynamic_bias_correlation_time"), kGyroSigma,
         kGyroTau);
   const std::string rotors = exported("rotors", with_process()).text;
-  keeps(number_after(rotors, "accelerometerRandomWalk"),
-        number_after(rotors, "accelerometerBiasCorrelationTime"),
-        kAccSigma,
-        kAccTau);
+  keeps(number_after(rotors, "accelerometerRandomWalk"), number_after(rotors, "accelerometerBiasCorrelationTime"),
+        kAccSigma, kAccTau);
   const std::string pegasus = exported("pegasus", with_process()).text;
-  keeps(number_after(pegasus, "random_walk"),
-        number_after(pegasus, "bias_correlation_time"),
-        kGyroSigma,
-        kGyroTau);
+  keeps(number_after(pegasus, "random_walk"), number_after(pegasus, "bias_correlation_time"), kGyroSigma, kGyroTau);
   const std::string gnss = exported("gnss-ins-sim", with_process()).text;
   CHECK(number_after(gnss, "'gyro_b_stability") * degree / 3600 == Approx(kGyroSigma));
   CHECK(number_after(gnss, "'accel_b_corr") == Approx(kAccTau));
@@ -341,8 +292,7 @@ TEST_CASE(
   auto models = with_process();
   for (SensorModel& m : models)
     if (m.unit == "rad/s") m.noise[2] = known(driving);
-  CHECK(number_after(exported("kalibr", models).text, "gyroscope_random_walk") ==
-        Approx(std::sqrt(2.0) * driving));
+  CHECK(number_after(exported("kalibr", models).text, "gyroscope_random_walk") == Approx(std::sqrt(2.0) * driving));
   ExportOptions longer;
   longer.correlation_s = 120;
   const std::string rotors = exported("rotors", with_process(), longer).text;
@@ -353,22 +303,15 @@ TEST_CASE(
 TEST_CASE("simulated: the steps of Pegasus and NaveGo give the coefficients back") {
   const std::string pegasus = exported("pegasus", device()).text;
   const double root_dt = std::sqrt(1 / kRate);
-  recovers(ornstein_uhlenbeck(number_after(pegasus, "noise_density") / root_dt,
-                              number_after(pegasus, "random_walk"),
+  recovers(ornstein_uhlenbeck(number_after(pegasus, "noise_density") / root_dt, number_after(pegasus, "random_walk"),
                               number_after(pegasus, "bias_correlation_time")),
-           kGyroQ,
-           kGyroK,
-           84);
+           kGyroQ, kGyroK, 84);
   const std::string navego = exported("navego", device()).text;
   const double corr = number_after(navego, "imu.gb_corr");
   const double sigma = number_after(navego, "imu.gb_dyn") * M_PI / 180;
   recovers({number_after(navego, "imu.arw") / 60 * M_PI / 180 / root_dt,
-            sigma * std::sqrt(1 - std::exp(-2 / kRate / corr)),
-            std::exp(-1 / kRate / corr),
-            kRate},
-           kGyroQ,
-           kGyroK,
-           85);
+            sigma * std::sqrt(1 - std::exp(-2 / kRate / corr)), std::exp(-1 / kRate / corr), kRate},
+           kGyroQ, kGyroK, 85);
 }
 
 namespace {
@@ -376,10 +319,8 @@ namespace {
 // gnss-ins-sim after the correction of its issue 19; numbers of the gyroscope in deg/h and
 // deg/sqrt(h).
 Discrete gnss_ins_sim(double white, double stability, double correlation_s, double rate_hz) {
-  return {white * std::sqrt(rate_hz),
-          stability * std::sqrt(1 - std::exp(-2 / (rate_hz * correlation_s))),
-          1 - 1 / rate_hz / correlation_s,
-          rate_hz};
+  return {white * std::sqrt(rate_hz), stability * std::sqrt(1 - std::exp(-2 / (rate_hz * correlation_s))),
+          1 - 1 / rate_hz / correlation_s, rate_hz};
 }
 
 }  // namespace
@@ -387,50 +328,33 @@ Discrete gnss_ins_sim(double white, double stability, double correlation_s, doub
 TEST_CASE("simulated: gnss-ins-sim's steady bias in deg/h") {
   const std::string file = exported("gnss-ins-sim", device()).text;
   const double degree = M_PI / 180;
-  recovers(gnss_ins_sim(number_after(file, "'gyro_arw") * degree / 60,
-                        number_after(file, "'gyro_b_stability") * degree / 3600,
-                        number_after(file, "'gyro_b_corr"),
-                        kRate),
-           kGyroQ,
-           kGyroK,
-           91);
-  recovers(gnss_ins_sim(number_after(file, "'accel_vrw") / 60,
-                        number_after(file, "'accel_b_stability"),
-                        number_after(file, "'accel_b_corr"),
-                        kRate),
-           kAccQ,
-           kAccK,
-           92);
+  recovers(
+      gnss_ins_sim(number_after(file, "'gyro_arw") * degree / 60,
+                   number_after(file, "'gyro_b_stability") * degree / 3600, number_after(file, "'gyro_b_corr"), kRate),
+      kGyroQ, kGyroK, 91);
+  recovers(gnss_ins_sim(number_after(file, "'accel_vrw") / 60, number_after(file, "'accel_b_stability"),
+                        number_after(file, "'accel_b_corr"), kRate),
+           kAccQ, kAccK, 92);
 }
 
 TEST_CASE("simulated: the maximum that stands for flicker reaches its floor where it should") {
-  auto models = test::imu(
-      {known(1e-4), known(1e-2), at_most(1e-5)}, {known(1e-3), known(0.1), at_most(1e-4)}, 20);
+  auto models = test::imu({known(1e-4), known(1e-2), at_most(1e-5)}, {known(1e-3), known(0.1), at_most(1e-4)}, 20);
   ExportOptions options;
   options.floor_tau_s = 5;
   const double gyroscope_floor = 0.66428 * 1e-2, accelerometer_floor = 0.66428 * 0.1;
   const std::string sdf = exported("sdf", models, options).text;
   const double tolerance = 0.04;  // four standard deviations
-  CHECK(simulated_adev(ornstein_uhlenbeck(0,
-                                          number_after(sdf, "dynamic_bias_stddev"),
-                                          number_after(sdf, "dynamic_bias_correlation_time"),
-                                          20),
-                       5,
-                       101) == Approx(gyroscope_floor).epsilon(tolerance));
+  CHECK(simulated_adev(ornstein_uhlenbeck(0, number_after(sdf, "dynamic_bias_stddev"),
+                                          number_after(sdf, "dynamic_bias_correlation_time"), 20),
+                       5, 101) == Approx(gyroscope_floor).epsilon(tolerance));
   const std::string rotors = exported("rotors", models, options).text;
-  CHECK(simulated_adev(ornstein_uhlenbeck(0,
-                                          number_after(rotors, "accelerometerRandomWalk"),
-                                          number_after(rotors, "accelerometerBiasCorrelationTime"),
-                                          20),
-                       5,
-                       102) == Approx(accelerometer_floor).epsilon(tolerance));
+  CHECK(simulated_adev(ornstein_uhlenbeck(0, number_after(rotors, "accelerometerRandomWalk"),
+                                          number_after(rotors, "accelerometerBiasCorrelationTime"), 20),
+                       5, 102) == Approx(accelerometer_floor).epsilon(tolerance));
   const std::string gnss = exported("gnss-ins-sim", models, options).text;
-  CHECK(simulated_adev(gnss_ins_sim(0,
-                                    number_after(gnss, "'gyro_b_stability") * M_PI / 180 / 3600,
-                                    number_after(gnss, "'gyro_b_corr"),
-                                    20),
-                       5,
-                       103) == Approx(gyroscope_floor).epsilon(tolerance));
+  CHECK(simulated_adev(gnss_ins_sim(0, number_after(gnss, "'gyro_b_stability") * M_PI / 180 / 3600,
+                                    number_after(gnss, "'gyro_b_corr"), 20),
+                       5, 103) == Approx(gyroscope_floor).epsilon(tolerance));
 }
 
 namespace {
@@ -442,8 +366,7 @@ std::pair<double, double> vins_belief(double acc_n, double acc_w, double dt, int
   double vv = 0, vb = 0, bb = 0;
   for (int i = 0; i < n; ++i) {
     // v' = v - b dt + dt/2 n0 + dt/2 n1;  b' = b + dt w
-    const double next_vv =
-        vv - 2 * dt * vb + dt * dt * bb + 2 * (dt / 2) * (dt / 2) * acc_n * acc_n;
+    const double next_vv = vv - 2 * dt * vb + dt * dt * bb + 2 * (dt / 2) * (dt / 2) * acc_n * acc_n;
     const double next_vb = vb - dt * bb;
     bb += dt * dt * acc_w * acc_w;
     vv = next_vv;
@@ -474,17 +397,14 @@ std::pair<double, double> vins_truth(double q, double k, double dt, int n, std::
 
 }  // namespace
 
-TEST_CASE(
-    "simulated: VINS believes what is true with N sqrt(2f) and K sqrt(f), and with nothing else") {
+TEST_CASE("simulated: VINS believes what is true with N sqrt(2f) and K sqrt(f), and with nothing else") {
   const double q = 2e-3, k = 1e-3, f = 200;
-  const std::string file =
-      exported("vins", test::imu({known(q), {}, known(k)}, {known(q), {}, known(k)}, f)).text;
+  const std::string file = exported("vins", test::imu({known(q), {}, known(k)}, {known(q), {}, known(k)}, f)).text;
   const auto truth = vins_truth(q, k, 1 / f, 200, 111);
   CHECK(truth.first == Approx(2e-3).epsilon(0.02));
   CHECK(truth.second == Approx(1e-3).epsilon(0.02));
   for (const char* sensor : {"acc", "gyr"}) {
-    const double n = number_after(file, std::string(sensor) + "_n"),
-                 w = number_after(file, std::string(sensor) + "_w");
+    const double n = number_after(file, std::string(sensor) + "_n"), w = number_after(file, std::string(sensor) + "_w");
     CHECK(vins_belief(n, 0, 1 / f, 200).first == Approx(truth.first).epsilon(0.02));
     CHECK(vins_belief(n, w, 1 / f, 200).second == Approx(truth.second).epsilon(0.02));
   }

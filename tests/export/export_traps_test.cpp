@@ -31,24 +31,19 @@ TEST_CASE("trap 1: %YAML:1.0 is the first line for OpenCV readers and absent for
 
 TEST_CASE("trap 2: every real has a decimal point") {
   // Values whose shortest text has none: 1e-05, 2e-05, 1, 3, and a rate of 200.
-  const auto models =
-      test::imu({known(1e-5), known(2e-5), known(3e-5)}, {known(1), known(2), known(3)});
+  const auto models = test::imu({known(1e-5), known(2e-5), known(3e-5)}, {known(1), known(2), known(3)});
   const std::regex number_1_1(R"([-+]?[0-9][0-9_]*\.[0-9]*([eE][-+][0-9]+)?)");
   const std::regex word(R"((?:: |\[|, |>|\* )([-+]?[0-9][-+0-9.eE]*)(?=[\],\s;)<]|$))");
-  for (const char* target :
-       {"kalibr", "euroc", "openvins", "orbslam3", "vins", "ros", "gtsam", "sdf", "rotors"}) {
+  for (const char* target : {"kalibr", "euroc", "openvins", "orbslam3", "vins", "ros", "gtsam", "sdf", "rotors"}) {
     std::string text = exported(target, models).text;
     // The head of an XML file is one comment.
     if (has(text, "<?xml")) text.erase(0, text.find("-->"));
     std::istringstream lines(text);
     std::size_t seen = 0;
     for (std::string line; std::getline(lines, line);) {
-      if (line.starts_with("#") || has(line, "cols:") || has(line, "rows:") ||
-          has(line, "always_on"))
-        continue;
+      if (line.starts_with("#") || has(line, "cols:") || has(line, "rows:") || has(line, "always_on")) continue;
       const std::string plain = line.substr(0, std::min(line.find("  #"), line.find("<!--")));
-      for (std::sregex_iterator it(plain.begin(), plain.end(), word), end; it != end;
-           ++it, ++seen) {
+      for (std::sregex_iterator it(plain.begin(), plain.end(), word), end; it != end; ++it, ++seen) {
         CAPTURE(target, line);
         CHECK(std::regex_match((*it)[1].str(), number_1_1));
       }
@@ -63,8 +58,7 @@ TEST_CASE("trap 3: VINS wants N sqrt(2f) and K sqrt(f), and the derivation stand
   const auto models = test::imu({known(2e-3), {}, known(1e-3)}, {known(2e-3), {}, known(1e-3)});
   const std::string text = exported("vins", models).text;
   CHECK(number_after(text, "acc_n") == Approx(0.04));
-  CHECK(number_after(text, "acc_n") / 2e-3 ==
-        Approx(20));  // the factor by which N itself is too small
+  CHECK(number_after(text, "acc_n") / 2e-3 == Approx(20));  // the factor by which N itself is too small
   CHECK(number_after(text, "acc_w") == Approx(1e-3 * std::sqrt(200)));
   CHECK(has(text, "the midpoint integration takes the two"));
   CHECK(has(text, "n = N sqrt(2 f)"));
@@ -109,27 +103,14 @@ TEST_CASE("trap 5: Gazebo turns the sign of the constant bias, so a stated one g
 }
 
 TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {
-  const auto si = test::imu({known(1e-3), known(1e-4), known(1e-5)},
-                            {known(9.80665e-3), known(9.80665e-4), known(9.80665e-5)});
+  const auto si =
+      test::imu({known(1e-3), known(1e-4), known(1e-5)}, {known(9.80665e-3), known(9.80665e-4), known(9.80665e-5)});
   const double degrees = 180 / M_PI;
-  const auto habit = test::imu(
-      {known(1e-3 * degrees * 3600), known(1e-4 * degrees * 3600), known(1e-5 * degrees * 3600)},
-      {known(1), known(0.1), known(0.01)},
-      200,
-      "deg/h",
-      "mg");
-  for (const char* target : {"kalibr",
-                             "vins",
-                             "gtsam",
-                             "ros",
-                             "sdf",
-                             "rotors",
-                             "gnss-ins-sim",
-                             "pegasus",
-                             "kf-gins",
-                             "navego",
-                             "px4",
-                             "orbslam3"}) {
+  const auto habit =
+      test::imu({known(1e-3 * degrees * 3600), known(1e-4 * degrees * 3600), known(1e-5 * degrees * 3600)},
+                {known(1), known(0.1), known(0.01)}, 200, "deg/h", "mg");
+  for (const char* target : {"kalibr", "vins", "gtsam", "ros", "sdf", "rotors", "gnss-ins-sim", "pegasus", "kf-gins",
+                             "navego", "px4", "orbslam3"}) {
     CAPTURE(target);
     // Ten digits of every number agree, and nothing else differs.
     CHECK(exported(target, si).text == exported(target, habit).text);
@@ -152,22 +133,16 @@ TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {
 TEST_CASE("trap 7: a data sheet's density is one-sided, its angle random walk is not") {
   const auto sheet = [](const std::string& white) {
     return parse_sensor_model(
-        "format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: 100\n" + white +
-            "\n",
-        "sheet.yaml");
+        "format: sensor-model\nversion: 1\nchannel: gyro\nunit: deg/s\nrate_hz: 100\n" + white + "\n", "sheet.yaml");
   };
   const auto density = [&](const std::string& white) {
     return number_after(exported("matlab", {sheet(white)}).text, "'NoiseDensity") * 180 / M_PI;
   };
   // ADIS16448: 0.0135 deg/s/sqrt(Hz) and 0.66 deg/sqrt(h).
-  CHECK(density("density: one-sided\nwhite_noise: {value: 0.0135, unit: deg/s/√Hz}") ==
-        Approx(0.0135 / std::sqrt(2)));
-  CHECK(density("density: two-sided\nwhite_noise: {value: 0.0135, unit: deg/s/√Hz}") ==
-        Approx(0.0135));
-  CHECK(density("density: one-sided\nwhite_noise: {value: 0.66, unit: deg/√h}") ==
-        Approx(0.66 / 60));
-  CHECK_THROWS_WITH(sheet("white_noise: {value: 0.0135, unit: deg/s/√Hz}"),
-                    Contains("one-sided or two-sided"));
+  CHECK(density("density: one-sided\nwhite_noise: {value: 0.0135, unit: deg/s/√Hz}") == Approx(0.0135 / std::sqrt(2)));
+  CHECK(density("density: two-sided\nwhite_noise: {value: 0.0135, unit: deg/s/√Hz}") == Approx(0.0135));
+  CHECK(density("density: one-sided\nwhite_noise: {value: 0.66, unit: deg/√h}") == Approx(0.66 / 60));
+  CHECK_THROWS_WITH(sheet("white_noise: {value: 0.0135, unit: deg/s/√Hz}"), Contains("one-sided or two-sided"));
 }
 
 TEST_CASE("trap 8: B is never taken for K") {
@@ -223,8 +198,7 @@ TEST_CASE("trap: hostile channel names stay inside comments") {
     CHECK_FALSE(has(text, "\n%YAML:1.0\nx"));
     CHECK_FALSE(has(text, "\\\n"));
     CHECK(first_invalid_utf8(text) == std::string::npos);
-    if (!json)
-      CHECK(std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; }));
+    if (!json) CHECK(std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; }));
   }
   CHECK(YAML::Load(exported("kalibr", models).text).size() == 6);
 }
@@ -234,13 +208,11 @@ TEST_CASE("a topic is no place for YAML") {
   options.topic = "/imu0\nevil: 1";
   CHECK_THROWS_WITH(exported("kalibr", test::euroc_imu(), options), Contains("`topic`"));
   options.topic = "/camera/imu_1";
-  CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"]
-            .as<std::string>() == "/camera/imu_1");
+  CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"].as<std::string>() ==
+        "/camera/imu_1");
   for (const char* name : {"~", "on", "imu"}) {
     options.topic = name;
-    CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"]
-              .as<std::string>() == name);
-    CHECK(has(exported("kalibr", test::euroc_imu(), options).text,
-              std::string("rostopic: \"") + name + '"'));
+    CHECK(YAML::Load(exported("kalibr", test::euroc_imu(), options).text)["rostopic"].as<std::string>() == name);
+    CHECK(has(exported("kalibr", test::euroc_imu(), options).text, std::string("rostopic: \"") + name + '"'));
   }
 }

@@ -35,8 +35,7 @@ double number_after(const std::string& text, const std::string& key) {
   for (const char c : key) escaped += std::string(c == '.' ? "\\" : "") + c;
   const std::regex pattern(
       "(?:^|[\\s<'\">])" + escaped +
-      "(?:>|'?:\\s*(?:np\\.array\\()?\\[?|', \\[?| = [A-Za-z_0-9:]+ \\* | = \\[|\": \\[?\\s*|\\s)" +
-      kNumber);
+      "(?:>|'?:\\s*(?:np\\.array\\()?\\[?|', \\[?| = [A-Za-z_0-9:]+ \\* | = \\[|\": \\[?\\s*|\\s)" + kNumber);
   std::smatch match;
   if (!std::regex_search(text, match, pattern)) {
     FAIL("no number behind " << key << " in\n" << text);
@@ -50,8 +49,7 @@ double number_after(const std::string& text, const std::string& key) {
 namespace {
 
 // The message of the refusal, empty when there was none.
-std::string refusal(const std::string& target,
-                    const std::vector<SensorModel>& models,
+std::string refusal(const std::string& target, const std::vector<SensorModel>& models,
                     const ExportOptions& options = {}) {
   try {
     exported(target, models, options);
@@ -87,24 +85,18 @@ TEST_CASE("known answers: LIO-SAM, OKVIS, maplab take densities, ROVIO and FAST-
   const double rows[][4] = {{2.0e-3, 3.0e-3, 1.6968e-4, 1.9393e-5}};
   const char* keys[][5] = {{"lio-sam", "imuAccNoise", "imuAccBiasN", "imuGyrNoise", "imuGyrBiasN"},
                            {"okvis", "sigma_a_c", "sigma_aw_c", "sigma_g_c", "sigma_gw_c"},
-                           {"maplab",
-                            "acc_noise_density",
-                            "acc_bias_random_walk_noise_density",
-                            "gyro_noise_density",
+                           {"maplab", "acc_noise_density", "acc_bias_random_walk_noise_density", "gyro_noise_density",
                             "gyro_bias_random_walk_noise_density"}};
   for (const auto& one : keys)
     for (std::size_t k = 0; k < 4; ++k)
-      CHECK(number_after(exported(one[0], test::euroc_imu()).text, one[k + 1]) ==
-            Approx(rows[0][k]));
+      CHECK(number_after(exported(one[0], test::euroc_imu()).text, one[k + 1]) == Approx(rows[0][k]));
   const char* squares[][5] = {{"rovio", "vel_0", "acb_1", "att_2", "gyb_0"},
                               {"fast-lio", "acc_cov", "b_acc_cov", "gyr_cov", "b_gyr_cov"}};
   for (std::size_t k = 0; k < 4; ++k) {
     const double square = rows[0][k] * rows[0][k];
-    CHECK(number_after(exported("rovio", test::euroc_imu()).text, squares[0][k + 1]) ==
-          Approx(square));
+    CHECK(number_after(exported("rovio", test::euroc_imu()).text, squares[0][k + 1]) == Approx(square));
     // A variance of a sample at 200 Hz.
-    CHECK(number_after(exported("fast-lio", test::euroc_imu()).text, squares[1][k + 1]) ==
-          Approx(200 * square));
+    CHECK(number_after(exported("fast-lio", test::euroc_imu()).text, squares[1][k + 1]) == Approx(200 * square));
   }
   ExportOptions older;
   older.older = true;
@@ -170,8 +162,7 @@ TEST_CASE("known answers: GTSAM") {
 }
 
 TEST_CASE("known answers: AirSim") {
-  const Json imu = parse_json(exported("airsim", test::euroc_imu()).text,
-                              "settings.json")["DefaultSensors"]["Imu"];
+  const Json imu = parse_json(exported("airsim", test::euroc_imu()).text, "settings.json")["DefaultSensors"]["Imu"];
   CHECK(imu["AngularRandomWalk"].get<double>() == Approx(0.58332).epsilon(1e-5));
   CHECK(imu["VelocityRandomWalk"].get<double>() == Approx(0.20394).epsilon(2e-5));
   CHECK(imu["GyroBiasStabilityTau"].get<double>() == 500);
@@ -180,8 +171,8 @@ TEST_CASE("known answers: AirSim") {
   CHECK(imu["AccelBiasStability"].get<double>() == Approx(8652.579).epsilon(1e-6));
   ExportOptions options;
   options.bias_tau_s = 125;
-  const Json other = parse_json(exported("airsim", test::euroc_imu(), options).text,
-                                "settings.json")["DefaultSensors"]["Imu"];
+  const Json other =
+      parse_json(exported("airsim", test::euroc_imu(), options).text, "settings.json")["DefaultSensors"]["Imu"];
   CHECK(other["GyroBiasStability"].get<double>() == Approx(89.445 / 2).epsilon(1e-5));
 }
 
@@ -211,8 +202,7 @@ TEST_CASE("known answers: Basalt, ROS, MATLAB, PX4, gnss-ins-sim, RotorS") {
   CHECK(number_after(rotors, "gyroscopeTurnOnBiasSigma") == 0);
 }
 
-TEST_CASE(
-    "the table: every target writes version, recording and formula, and is in the documentation") {
+TEST_CASE("the table: every target writes version, recording and formula, and is in the documentation") {
   const std::string page = test::slurp(test::source_folder().string() + "/docs/exports.md");
   std::set<std::string> names;
   CHECK(export_targets().size() == 25);
@@ -223,10 +213,9 @@ TEST_CASE(
     CHECK(has(made.text, std::string(version())));
     CHECK(has(made.text, std::string(64, 'a')));
     if (target.name != "json") CHECK(has(made.text, "formula"));
-    CHECK(has(page,
-              "| `" + std::string(target.name) + "` | " + std::string(target.title) + " | " +
-                  std::string(target.convention) + " | " + needs_text(target.needs) + " | `" +
-                  std::string(target.file) + "` |"));
+    CHECK(has(page, "| `" + std::string(target.name) + "` | " + std::string(target.title) + " | " +
+                        std::string(target.convention) + " | " + needs_text(target.needs) + " | `" +
+                        std::string(target.file) + "` |"));
   }
 }
 
@@ -245,16 +234,15 @@ TEST_CASE("terms that the consumer has no word for are named") {
   models[1].noise[3] = known(1e-6);
   const std::string b = "not in this file: bias_instability of gyr_x, acc_y",
                     qz = "not in this file: quantization of acc_x";
-  const std::set<std::string> with_b = {
-      "sdf", "rotors", "gnss-ins-sim", "pegasus", "kf-gins", "navego", "matlab", "json"};
+  const std::set<std::string> with_b = {"sdf",     "rotors", "gnss-ins-sim", "pegasus",
+                                        "kf-gins", "navego", "matlab",       "json"};
   for (const ExportTarget& target : export_targets()) {
     CAPTURE(target.name);
     const Export made = export_models(target, models);
     CHECK(has(made.text, b) == !with_b.contains(std::string(target.name)));
     CHECK(has(made.text, qz) == (target.name != "json"));
     CHECK(has(made.text, "not in this file: random_walk of gyr_x, acc_x") == (target.terms == "N"));
-    CHECK((std::find(made.notes.begin(), made.notes.end(), qz) != made.notes.end()) ==
-          (target.name != "json"));
+    CHECK((std::find(made.notes.begin(), made.notes.end(), qz) != made.notes.end()) == (target.name != "json"));
   }
 }
 
@@ -276,8 +264,7 @@ TEST_CASE("an unknown target is refused with the nearest") {
   CHECK_THROWS_WITH(find_export_target("unity"), Contains("targets are kalibr"));
 }
 
-TEST_CASE(
-    "axes: the largest by default, with the spread in a comment, rms and one axis on request") {
+TEST_CASE("axes: the largest by default, with the spread in a comment, rms and one axis on request") {
   auto models = test::euroc_imu();
   models[2].noise[0] = known(3e-4);  // gyr_y
   CHECK(number_after(exported("kalibr", models).text, "gyroscope_noise_density") == 3e-4);
@@ -289,8 +276,7 @@ TEST_CASE(
   options.axes = AxisChoice::y;
   CHECK(number_after(exported("kalibr", models, options).text, "gyroscope_noise_density") == 3e-4);
   options.axes = AxisChoice::z;
-  CHECK(number_after(exported("kalibr", models, options).text, "gyroscope_noise_density") ==
-        Approx(1.6968e-4));
+  CHECK(number_after(exported("kalibr", models, options).text, "gyroscope_noise_density") == Approx(1.6968e-4));
   // A consumer with three numbers gets three, unless one is asked for.
   const auto std_of = [&](const ExportOptions& o) {
     return parse_json(exported("basalt", models, o).text, "c.json")["value0"]["gyro_noise_std"];
@@ -310,8 +296,8 @@ TEST_CASE("inflation: on request only, before squaring, and said") {
   CHECK(number_after(made.text, "p->accelerometerCovariance") == Approx(4.0e-4));
   CHECK(has(made.text, "multiplied by 10.0"));
   CHECK_FALSE(has(exported("gtsam", test::euroc_imu()).text, "multiplied"));
-  CHECK(number_after(exported("ros", test::euroc_imu(), options).text,
-                     "linear_acceleration_covariance") == Approx(8e-2));
+  CHECK(number_after(exported("ros", test::euroc_imu(), options).text, "linear_acceleration_covariance") ==
+        Approx(8e-2));
   options.inflate = 0;
   CHECK(has(refusal("kalibr", test::euroc_imu(), options), "`inflate`"));
 }
@@ -321,8 +307,7 @@ TEST_CASE(
     "optional") {
   auto models = test::euroc_imu();
   for (SensorModel& m : models) m.noise[2] = at_most(m.unit == "rad/s" ? 5e-6 : 4e-4);
-  for (const char* target :
-       {"kalibr", "euroc", "openvins", "orbslam3", "basalt", "vins", "gtsam"}) {
+  for (const char* target : {"kalibr", "euroc", "openvins", "orbslam3", "basalt", "vins", "gtsam"}) {
     const Export made = exported(target, models);
     CAPTURE(target, made.text);
     CHECK(has(made.text, "upper 95 % limit"));
@@ -332,8 +317,7 @@ TEST_CASE(
   CHECK(number_after(exported("px4", models).text, "EKF2_GYR_B_NOISE") == Approx(5e-5));
   const Json airsim = parse_json(exported("airsim", models).text, "s.json");
   CHECK(airsim["DefaultSensors"]["Imu"]["GyroBiasStability"] == 0.0);
-  CHECK(
-      has(airsim["sensorchar"]["comments"]["GyroBiasStability"].get<std::string>(), "taken as 0"));
+  CHECK(has(airsim["sensorchar"]["comments"]["GyroBiasStability"].get<std::string>(), "taken as 0"));
   CHECK(number_after(exported("rotors", models).text, "gyroscopeRandomWalk") == 0);
   CHECK(number_after(exported("rotors", models).text, "gyroscopeBiasCorrelationTime") > 0);
   CHECK_FALSE(has(exported("sdf", models).text, "dynamic_bias_stddev"));
@@ -367,8 +351,7 @@ TEST_CASE("groups: missing, double and nameless axes are refused with the remedy
 
   auto twice = models;
   twice.push_back(test::model("gx", "rad/s", {known(1), known(1), known(1)}));
-  CHECK(
-      has(refusal("kalibr", twice), "two models claim the x axis of the gyroscope: gyr_x and gx"));
+  CHECK(has(refusal("kalibr", twice), "two models claim the x axis of the gyroscope: gyr_x and gx"));
   CHECK(has(refusal("kalibr", twice), "`axis` gx=gy"));
 
   auto nameless = models;
@@ -383,8 +366,7 @@ TEST_CASE("groups: missing, double and nameless axes are refused with the remedy
   named.axis = {{"column 3", "wx"}};
   CHECK(has(refusal("kalibr", nameless, named), "no such place"));
 
-  CHECK(has(refusal("kalibr", {models[0], models[2], models[4]}),
-            "there is no accelerometer among gyr_x (gyroscope)"));
+  CHECK(has(refusal("kalibr", {models[0], models[2], models[4]}), "there is no accelerometer among gyr_x (gyroscope)"));
   CHECK(has(refusal("kalibr", {}), "no models"));
 }
 
@@ -402,8 +384,7 @@ TEST_CASE("groups: an unknown or wrong unit says which one is needed") {
   auto models = test::euroc_imu();
   models[0].unit = "";
   models[0].kind = "gyroscope";
-  CHECK(has(refusal("kalibr", models),
-            "its model names no unit, a gyroscope needs one of angular rate"));
+  CHECK(has(refusal("kalibr", models), "its model names no unit, a gyroscope needs one of angular rate"));
   CHECK(has(refusal("kalibr", models), "write unit: rad/s or deg/s into the model file"));
   models[0].unit = "m/s^2";
   CHECK(has(refusal("kalibr", models), "gyr_x"));
@@ -418,9 +399,8 @@ TEST_CASE("what has no place in the file is left out and said, ROS says what is 
   models.push_back(test::model("temp", "degC", {known(0.1), {}, {}}, 1));
   models.push_back(test::model("mag_x", "uT", {known(0.1), {}, {}}, 100));
   const Export kalibr = exported("kalibr", models);
-  CHECK(kalibr.notes == std::vector<std::string>{
-                            "temp: a thermometer has no place in a file for Kalibr; left out",
-                            "mag_x: a magnetometer has no place in a file for Kalibr; left out"});
+  CHECK(kalibr.notes == std::vector<std::string>{"temp: a thermometer has no place in a file for Kalibr; left out",
+                                                 "mag_x: a magnetometer has no place in a file for Kalibr; left out"});
   const Export ros = exported("ros", {models[0], models[2], models[4]});
   CHECK(YAML::Load(ros.text)["linear_acceleration_covariance"][0].as<double>() == -1);
   CHECK(YAML::Load(ros.text)["angular_velocity_covariance"][0].as<double>() > 0);
@@ -431,17 +411,14 @@ TEST_CASE("magnetometers and barometers where the consumer has a place for them"
   for (const char* axis : {"x", "y", "z"})
     models.push_back(test::model(std::string("mag_") + axis, "uT", {known(0.02), {}, {}}, 100));
   models.push_back(test::model("pressure", "hPa", {known(0.003), {}, {}}, 50));
-  CHECK(YAML::Load(exported("ros", models).text)["magnetic_field_covariance"][4].as<double>() ==
-        Approx(4e-14));
+  CHECK(YAML::Load(exported("ros", models).text)["magnetic_field_covariance"][4].as<double>() == Approx(4e-14));
   CHECK(number_after(exported("gnss-ins-sim", models).text, "'mag_std") == Approx(0.2));
   CHECK(has(exported("matlab", models).text,
             "mag = magparams('NoiseType', 'double-sided', ...\n    'NoiseDensity', 0.02)"));
   const std::string sdf = exported("sdf", models).text;
   CHECK(number_after(sdf.substr(sdf.find("<magnetometer>")), "stddev") == Approx(2e-7));
-  CHECK(number_after(sdf.substr(sdf.find("<air_pressure>")), "stddev") ==
-        Approx(0.3 * std::sqrt(50)));
-  CHECK(number_after(exported("sdf", {models.back()}).text, "stddev") ==
-        Approx(0.3 * std::sqrt(50)));
+  CHECK(number_after(sdf.substr(sdf.find("<air_pressure>")), "stddev") == Approx(0.3 * std::sqrt(50)));
+  CHECK(number_after(exported("sdf", {models.back()}).text, "stddev") == Approx(0.3 * std::sqrt(50)));
 }
 
 TEST_CASE("flicker becomes the Gauss-Markov bias with the same maximum") {
@@ -456,8 +433,8 @@ TEST_CASE("flicker becomes the Gauss-Markov bias with the same maximum") {
   // The exact Allan deviation of the process at tau is the floor, and it is a maximum.
   const auto adev = [&](double t) {
     const double r = t / process.correlation_s;
-    return process.driving * std::sqrt(process.correlation_s / r *
-                                       (1 - (3 - 4 * std::exp(-r) + std::exp(-2 * r)) / (2 * r)));
+    return process.driving *
+           std::sqrt(process.correlation_s / r * (1 - (3 - 4 * std::exp(-r) + std::exp(-2 * r)) / (2 * r)));
   };
   CHECK(adev(tau) == Approx(std::sqrt(2 * M_LN2 / M_PI) * 1e-4).epsilon(1e-9));
   CHECK(adev(0.9 * tau) < adev(tau));
@@ -542,8 +519,7 @@ TEST_CASE("a misfit is refused, or goes with a sentence, generic JSON keeps the 
   }
 }
 
-TEST_CASE(
-    "a bad finding is refused with its remedy, a caution goes with its sentence, a note does not") {
+TEST_CASE("a bad finding is refused with its remedy, a caution goes with its sentence, a note does not") {
   std::vector<SensorModel> models = test::euroc_imu();
   Finding moved = finding("motion", "The sensor was moved or shaken in 1 stretch.");
   models[0].findings = {moved, finding("heavy_tails", "Tails are heavy.")};

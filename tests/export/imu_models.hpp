@@ -27,9 +27,7 @@ struct Levels {
   libchar::Coefficient q, b, k;
 };
 
-inline libchar::SensorModel model(const std::string& channel,
-                                  const std::string& unit,
-                                  const Levels& levels,
+inline libchar::SensorModel model(const std::string& channel, const std::string& unit, const Levels& levels,
                                   double rate_hz = 200) {
   libchar::SensorModel m;
   m.channel = channel;
@@ -48,9 +46,7 @@ inline libchar::SensorModel model(const std::string& channel,
 }
 
 /// gyr_x … acc_z, in rad/s and m/s^2 unless said otherwise.
-inline std::vector<libchar::SensorModel> imu(const Levels& gyroscope,
-                                             const Levels& accelerometer,
-                                             double rate_hz = 200,
+inline std::vector<libchar::SensorModel> imu(const Levels& gyroscope, const Levels& accelerometer, double rate_hz = 200,
                                              const std::string& gyroscope_unit = "rad/s",
                                              const std::string& accelerometer_unit = "m/s^2") {
   std::vector<libchar::SensorModel> out;
@@ -63,19 +59,15 @@ inline std::vector<libchar::SensorModel> imu(const Levels& gyroscope,
 
 /// The numbers of the EuRoC data sets (ADIS16448; Burri et al. 2016).
 inline std::vector<libchar::SensorModel> euroc_imu() {
-  return imu({known(1.6968e-4), at_most(2e-5), known(1.9393e-5)},
-             {known(2.0e-3), at_most(2e-4), known(3.0e-3)});
+  return imu({known(1.6968e-4), at_most(2e-5), known(1.9393e-5)}, {known(2.0e-3), at_most(2e-4), known(3.0e-3)});
 }
 
-inline libchar::Export exported(const std::string& target,
-                                const std::vector<libchar::SensorModel>& models,
+inline libchar::Export exported(const std::string& target, const std::vector<libchar::SensorModel>& models,
                                 const libchar::ExportOptions& options = {}) {
   return libchar::export_models(libchar::find_export_target(target), models, options);
 }
 
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The number behind `key` and one of ": ", ">", " = …* ", "', ", " " in a file of any target.
 double number_after(const std::string& text, const std::string& key);

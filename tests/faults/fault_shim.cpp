@@ -56,39 +56,11 @@ enum Kind {
   kGrow,
   kKinds
 };
-constexpr const char* kNames[kKinds] = {"write",
-                                        "open",
-                                        "read",
-                                        "fsync",
-                                        "rename",
-                                        "link",
-                                        "close",
-                                        "stat",
-                                        "mmap",
-                                        "unlink",
-                                        "mkdir",
-                                        "malloc",
-                                        "thread",
-                                        "kill",
-                                        "shrink",
-                                        "grow"};
+constexpr const char* kNames[kKinds] = {"write", "open",   "read",  "fsync",  "rename", "link", "close",  "stat",
+                                        "mmap",  "unlink", "mkdir", "malloc", "thread", "kill", "shrink", "grow"};
 // What these fail with in life: a full disk, too many files, a broken disk, no memory.
-constexpr int kErrors[kKinds] = {ENOSPC,
-                                 EMFILE,
-                                 EIO,
-                                 EIO,
-                                 EACCES,
-                                 EACCES,
-                                 EIO,
-                                 EACCES,
-                                 ENOMEM,
-                                 EACCES,
-                                 EACCES,
-                                 ENOMEM,
-                                 EAGAIN,
-                                 0,
-                                 0,
-                                 0};
+constexpr int kErrors[kKinds] = {ENOSPC, EMFILE, EIO,    EIO,    EACCES, EACCES, EIO, EACCES,
+                                 ENOMEM, EACCES, EACCES, ENOMEM, EAGAIN, 0,      0,   0};
 
 std::atomic<long> counts[kKinds];
 std::atomic<bool> armed{false}, came_about{false};
@@ -157,13 +129,9 @@ void write_counts() {
   char text[1024];
   int length = ::snprintf(text, sizeof text, "came_about %d\n", came_about ? 1 : 0);
   for (int k = 0; k < kKinds; ++k)
-    length += ::snprintf(text + length,
-                         sizeof text - static_cast<size_t>(length),
-                         "%s %ld\n",
-                         kNames[k],
-                         counts[k].load());
-  const long file =
-      ::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    length +=
+        ::snprintf(text + length, sizeof text - static_cast<size_t>(length), "%s %ld\n", kNames[k], counts[k].load());
+  const long file = ::syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) return;
   ::syscall(SYS_write, file, text, length);
   ::syscall(SYS_close, file);
@@ -187,15 +155,9 @@ int counted_main(int argc, char** argv, char** environment) {
 
 extern "C" {
 
-int __libc_start_main(int (*entry)(int, char**, char**),
-                      int argc,
-                      char** argv,
-                      void (*init)(),
-                      void (*fini)(),
-                      void (*rtld_fini)(),
-                      void* stack_end) {
-  using Start =
-      int (*)(int (*)(int, char**, char**), int, char**, void (*)(), void (*)(), void (*)(), void*);
+int __libc_start_main(int (*entry)(int, char**, char**), int argc, char** argv, void (*init)(), void (*fini)(),
+                      void (*rtld_fini)(), void* stack_end) {
+  using Start = int (*)(int (*)(int, char**, char**), int, char**, void (*)(), void (*)(), void (*)(), void*);
   program = entry;
   const auto start = reinterpret_cast<Start>(::dlsym(RTLD_NEXT, "__libc_start_main"));
   return start(counted_main, argc, argv, init, fini, rtld_fini, stack_end);
@@ -225,9 +187,7 @@ ssize_t pwrite64(int file, const void* data, size_t size, off64_t offset) {
   if (fails(kWrite)) return -1;
   return ::syscall(SYS_pwrite64, file, data, size, offset);
 }
-ssize_t pwrite(int file, const void* data, size_t size, off_t offset) {
-  return pwrite64(file, data, size, offset);
-}
+ssize_t pwrite(int file, const void* data, size_t size, off_t offset) { return pwrite64(file, data, size, offset); }
 ssize_t writev(int file, const iovec* parts, int count) {
   changes();
   if (fails(kWrite)) return -1;
@@ -249,9 +209,7 @@ ssize_t pread64(int file, void* data, size_t size, off64_t offset) {
   if (fails(kRead)) return -1;
   return ::syscall(SYS_pread64, file, data, size, offset);
 }
-ssize_t pread(int file, void* data, size_t size, off_t offset) {
-  return pread64(file, data, size, offset);
-}
+ssize_t pread(int file, void* data, size_t size, off_t offset) { return pread64(file, data, size, offset); }
 ssize_t readv(int file, const iovec* parts, int count) {
   if (fails(kRead)) return -1;
   return ::syscall(SYS_readv, file, parts, count);
@@ -271,26 +229,16 @@ static mode_t mode_of(int flags, va_list more) {
   const mode_t mode = mode_of(flags, more); \
   va_end(more);                             \
   return opened(FOLDER, path, flags, mode)
-int open(const char* path, int flags, ...) {
-  OPENING(AT_FDCWD);
-}
-int open64(const char* path, int flags, ...) {
-  OPENING(AT_FDCWD);
-}
-int openat(int folder, const char* path, int flags, ...) {
-  OPENING(folder);
-}
-int openat64(int folder, const char* path, int flags, ...) {
-  OPENING(folder);
-}
+int open(const char* path, int flags, ...) { OPENING(AT_FDCWD); }
+int open64(const char* path, int flags, ...) { OPENING(AT_FDCWD); }
+int openat(int folder, const char* path, int flags, ...) { OPENING(folder); }
+int openat64(int folder, const char* path, int flags, ...) { OPENING(folder); }
 FILE* fopen64(const char* path, const char* mode) {
   const auto real = real_one(&::fopen64, "fopen64");
   if (mode[0] != 'r') changes();
   return fails(kOpen) ? nullptr : real(path, mode);
 }
-FILE* fopen(const char* path, const char* mode) {
-  return fopen64(path, mode);
-}
+FILE* fopen(const char* path, const char* mode) { return fopen64(path, mode); }
 
 int fsync(int file) {
   changes();
@@ -304,9 +252,7 @@ int ftruncate(int file, off_t size) {
   changes();
   return fails(kWrite) ? -1 : static_cast<int>(::syscall(SYS_ftruncate, file, size));
 }
-int ftruncate64(int file, off64_t size) {
-  return ftruncate(file, size);
-}
+int ftruncate64(int file, off64_t size) { return ftruncate(file, size); }
 
 int rename(const char* from, const char* to) {
   changes();
@@ -363,26 +309,18 @@ STAT(lstat, (const char* path, struct stat* out), (path, out))
 STAT(lstat64, (const char* path, struct stat64* out), (path, out))
 STAT(fstat, (int file, struct stat* out), (file, out))
 STAT(fstat64, (int file, struct stat64* out), (file, out))
-STAT(fstatat,
-     (int folder, const char* path, struct stat* out, int flags),
-     (folder, path, out, flags))
-STAT(fstatat64,
-     (int folder, const char* path, struct stat64* out, int flags),
-     (folder, path, out, flags))
+STAT(fstatat, (int folder, const char* path, struct stat* out, int flags), (folder, path, out, flags))
+STAT(fstatat64, (int folder, const char* path, struct stat64* out, int flags), (folder, path, out, flags))
 
 void* mmap(void* address, size_t size, int protection, int flags, int file, off_t offset) {
   if (fails(kMmap)) return MAP_FAILED;
-  return reinterpret_cast<void*>(
-      ::syscall(SYS_mmap, address, size, protection, flags, file, offset));
+  return reinterpret_cast<void*>(::syscall(SYS_mmap, address, size, protection, flags, file, offset));
 }
 void* mmap64(void* address, size_t size, int protection, int flags, int file, off64_t offset) {
   return mmap(address, size, protection, flags, file, offset);
 }
 
-int pthread_create(pthread_t* thread,
-                   const pthread_attr_t* attributes,
-                   void* (*work)(void*),
-                   void* argument) {
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*work)(void*), void* argument) {
   const auto real = real_one(&::pthread_create, "pthread_create");
   return fails(kThread) ? EAGAIN : real(thread, attributes, work, argument);
 }

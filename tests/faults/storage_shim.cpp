@@ -49,9 +49,7 @@ mode_t mode_of(int flags, va_list more) {
   return (flags & (O_CREAT | __O_TMPFILE)) != 0 ? static_cast<mode_t>(va_arg(more, int)) : 0;
 }
 
-bool may_write(int file) {
-  return (::syscall(SYS_fcntl, file, F_GETFL, 0) & O_ACCMODE) != O_RDONLY;
-}
+bool may_write(int file) { return (::syscall(SYS_fcntl, file, F_GETFL, 0) & O_ACCMODE) != O_RDONLY; }
 
 /// Whether a lock is refused, with errno.
 bool refused(int file, bool exclusive) {
@@ -74,18 +72,10 @@ extern "C" {
   const mode_t mode = mode_of(flags, more); \
   va_end(more);                             \
   return opened(FOLDER, path, flags, mode)
-int open(const char* path, int flags, ...) {
-  OPENING(AT_FDCWD);
-}
-int open64(const char* path, int flags, ...) {
-  OPENING(AT_FDCWD);
-}
-int openat(int folder, const char* path, int flags, ...) {
-  OPENING(folder);
-}
-int openat64(int folder, const char* path, int flags, ...) {
-  OPENING(folder);
-}
+int open(const char* path, int flags, ...) { OPENING(AT_FDCWD); }
+int open64(const char* path, int flags, ...) { OPENING(AT_FDCWD); }
+int openat(int folder, const char* path, int flags, ...) { OPENING(folder); }
+int openat64(int folder, const char* path, int flags, ...) { OPENING(folder); }
 
 int flock(int file, int operation) {
   if ((operation & LOCK_UN) == 0 && refused(file, (operation & LOCK_EX) != 0)) return -1;
@@ -93,8 +83,7 @@ int flock(int file, int operation) {
 }
 
 static int controlled(int file, int command, void* argument) {
-  const bool locks = command == F_SETLK || command == F_SETLKW || command == F_OFD_SETLK ||
-                     command == F_OFD_SETLKW;
+  const bool locks = command == F_SETLK || command == F_SETLKW || command == F_OFD_SETLK || command == F_OFD_SETLKW;
   if (locks) {
     const auto type = static_cast<struct flock*>(argument)->l_type;
     if (type != F_UNLCK && refused(file, type == F_WRLCK)) return -1;

@@ -29,8 +29,7 @@ std::string svg_of_chart(const Chart& chart, const DrawingOptions& options = {})
 
 std::size_t times(const std::string& text, const std::string& part) {
   std::size_t out = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-    ++out;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++out;
   return out;
 }
 
@@ -75,9 +74,8 @@ TEST_CASE("points that are not reliable are hollow, and the interval is a band")
 TEST_CASE("in grey no piece has a colour") {
   DrawingOptions options;
   options.grey = true;
-  const Chart chart = allan_of({test::figure_curve("a", "deg/s"),
-                                test::figure_curve("b", "deg/s"),
-                                test::figure_curve("c", "deg/s")});
+  const Chart chart =
+      allan_of({test::figure_curve("a", "deg/s"), test::figure_curve("b", "deg/s"), test::figure_curve("c", "deg/s")});
   const std::string svg = svg_of_chart(chart, options);
   for (std::size_t at = svg.find("=\"#"); at != std::string::npos; at = svg.find("=\"#", at + 1)) {
     const std::string hex = svg.substr(at + 3, 6);
@@ -89,8 +87,7 @@ TEST_CASE("in grey no piece has a colour") {
 }
 
 TEST_CASE("no text stands beyond the page, whatever the names, sizes and values") {
-  SourceCurve huge =
-      test::figure_curve("a channel with a name that is longer than any column", "deg/s");
+  SourceCurve huge = test::figure_curve("a channel with a name that is longer than any column", "deg/s");
   for (auto* values : {&huge.y, &huge.low95, &huge.high95})
     for (double& v : *values) v *= 1e17;
   for (const double width : {85.0, 178.0, 40.0}) {
@@ -99,11 +96,9 @@ TEST_CASE("no text stands beyond the page, whatever the names, sizes and values"
     options.legend = LegendPlace::below;
     FigureOptions wanted;
     wanted.title = "A title that says rather much about what is to be seen in the figure below it";
-    const std::string svg =
-        svg_of_chart(allan_of({huge, test::figure_curve("another", "deg/s")}, wanted), options);
+    const std::string svg = svg_of_chart(allan_of({huge, test::figure_curve("another", "deg/s")}, wanted), options);
     const double page = width * 72 / 25.4;
-    for (std::size_t at = svg.find("<text x=\""); at != std::string::npos;
-         at = svg.find("<text x=\"", at + 1)) {
+    for (std::size_t at = svg.find("<text x=\""); at != std::string::npos; at = svg.find("<text x=\"", at + 1)) {
       const double x = std::stod(svg.substr(at + 9));
       CHECK(x >= 0);
       CHECK(x <= page);
@@ -129,8 +124,7 @@ TEST_CASE("a PDF embeds its fonts, has one page of the size, its texts as texts 
   }
   const test::TemporaryFolder folder;
   Findings warnings;
-  const std::string pdf =
-      draw_figure(allan_of({test::figure_curve("g", "deg/s")}), FigureFormat::pdf, {}, warnings);
+  const std::string pdf = draw_figure(allan_of({test::figure_curve("g", "deg/s")}), FigureFormat::pdf, {}, warnings);
   CHECK(pdf.starts_with("%PDF-"));
   CHECK_THAT(pdf, !Contains("CreationDate"));
   const std::string path = (folder / "f.pdf").string();
@@ -141,8 +135,7 @@ TEST_CASE("a PDF embeds its fonts, has one page of the size, its texts as texts 
     return;
   }
   std::size_t rows = 0;
-  for (std::size_t at = fonts.find("TrueType"); at != std::string::npos;
-       at = fonts.find("TrueType", at + 1)) {
+  for (std::size_t at = fonts.find("TrueType"); at != std::string::npos; at = fonts.find("TrueType", at + 1)) {
     ++rows;
     // emb, sub, uni
     CHECK_THAT(fonts.substr(at, fonts.find('\n', at) - at), Contains("yes yes yes"));
@@ -163,8 +156,8 @@ TEST_CASE("a PNG is as large as its resolution says, and says it") {
   options.width_mm = 25.4 * 3;
   options.height_mm = 25.4 * 2;
   options.dpi = 100;
-  const std::string png = draw_figure(
-      allan_of({test::figure_curve("g", "deg/s")}), FigureFormat::png, options, warnings);
+  const std::string png =
+      draw_figure(allan_of({test::figure_curve("g", "deg/s")}), FigureFormat::png, options, warnings);
   REQUIRE(png.size() > 60);
   const auto number = [&](std::size_t at) {
     std::uint32_t out = 0;
@@ -184,9 +177,7 @@ TEST_CASE(
   SourceCurve curve = test::figure_curve("g", "deg/s");
   std::mt19937_64 random(1);
   std::lognormal_distribution<double> values(0, 1);
-  for (auto* column :
-       {&curve.x, &curve.y, &curve.low95, &curve.high95, &curve.low68, &curve.high68})
-    column->clear();
+  for (auto* column : {&curve.x, &curve.y, &curve.low95, &curve.high95, &curve.low68, &curve.high68}) column->clear();
   curve.unreliable.clear();
   for (std::size_t i = 0; i < kPoints; ++i) {
     curve.x.push_back(values(random));
@@ -231,12 +222,8 @@ TEST_CASE("the numbers of a figure, as a table and as a script that gnuplot runs
   const std::string script = (folder / "f.gp").string(), out = (folder / "f.svg").string();
   std::ofstream(script) << figure_gnuplot(chart, {});
   // Without a locale gnuplot warns of its own degree sign.
-  const test::Ran ran = test::run_words({"env",
-                                         "LC_ALL=C.UTF-8",
-                                         "gnuplot",
-                                         "-e",
-                                         "set terminal svg; set output '" + out + "'",
-                                         script});
+  const test::Ran ran =
+      test::run_words({"env", "LC_ALL=C.UTF-8", "gnuplot", "-e", "set terminal svg; set output '" + out + "'", script});
   if (ran.code == 127) {
     std::puts("SKIPPED: gnuplot is not installed");
     return;

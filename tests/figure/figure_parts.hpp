@@ -28,8 +28,7 @@ inline SourceCurve figure_curve(const std::string& channel, const std::string& u
   return c;
 }
 
-inline FigureSource figure_source_of(std::vector<SourceCurve> curves,
-                                     const std::string& name = "a") {
+inline FigureSource figure_source_of(std::vector<SourceCurve> curves, const std::string& name = "a") {
   FigureSource out;
   out.file = name + "/report.json";
   out.name = name;

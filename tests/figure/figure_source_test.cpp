@@ -12,9 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-std::string written(const test::TemporaryFolder& folder,
-                    const std::string& name,
-                    const std::string& text) {
+std::string written(const test::TemporaryFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = (folder / name).string();
   std::ofstream(path) << text;
   return path;
@@ -24,37 +22,33 @@ std::string written(const test::TemporaryFolder& folder,
 
 TEST_CASE("tables of curves are read with their intervals and units") {
   const test::TemporaryFolder folder;
-  const FigureSource allan = read_figure_source(
-      written(folder,
-              "a.csv",
-              "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n"
-              "x,deg/s,1,0.5,0.4,0.6,0.3,0.7,10,9,mdev\nx,deg/s,2,0.3,,,,,,4,mdev\n"));
+  const FigureSource allan =
+      read_figure_source(written(folder, "a.csv",
+                                 "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n"
+                                 "x,deg/s,1,0.5,0.4,0.6,0.3,0.7,10,9,mdev\nx,deg/s,2,0.3,,,,,,4,mdev\n"));
   REQUIRE(allan.curves.size() == 1);
   CHECK(allan.curves[0].statistic == "Modified Allan deviation");
   CHECK(allan.curves[0].y == std::vector<double>{0.5, 0.3});
   CHECK(allan.curves[0].high95[0] == 0.7);
   CHECK(std::isnan(allan.curves[0].high95[1]));
   CHECK(allan.name == "a");
-  const FigureSource wide = read_figure_source(
-      written(folder, "p.csv", "frequency_hz,x[(deg/s)²/Hz],y[g²/Hz]\n0,1,2\n0.5,3,4\n1,5,6\n"));
+  const FigureSource wide =
+      read_figure_source(written(folder, "p.csv", "frequency_hz,x[(deg/s)²/Hz],y[g²/Hz]\n0,1,2\n0.5,3,4\n1,5,6\n"));
   REQUIRE(wide.curves.size() == 2);
   CHECK(wide.curves[0].statistic == "One-sided PSD");
   CHECK(wide.curves[0].unit == "deg/s");
   CHECK(wide.curves[1].y == std::vector<double>{4, 6});
-  const FigureSource variances =
-      read_figure_source(written(folder, "v.csv", "tau,avar\n1,0.04\n10,0.01\n"));
+  const FigureSource variances = read_figure_source(written(folder, "v.csv", "tau,avar\n1,0.04\n10,0.01\n"));
   CHECK(variances.curves[0].y == std::vector<double>{0.2, 0.1});
 }
 
 TEST_CASE("a model gives its Allan curve and its spectrum") {
   const test::TemporaryFolder folder;
-  const FigureSource model =
-      read_figure_source(written(folder,
-                                 "m.sensor.yaml",
-                                 "format: sensor-model\nversion: 1\nchannel: g\n"
-                                 "unit: deg/s\nrate_hz: 100\ndensity: two-sided\n"
-                                 "white_noise: {value: 0.01}\n"
-                                 "random_walk: {value: 0.001}\n"));
+  const FigureSource model = read_figure_source(written(folder, "m.sensor.yaml",
+                                                        "format: sensor-model\nversion: 1\nchannel: g\n"
+                                                        "unit: deg/s\nrate_hz: 100\ndensity: two-sided\n"
+                                                        "white_noise: {value: 0.01}\n"
+                                                        "random_walk: {value: 0.001}\n"));
   REQUIRE(model.curves.size() == 2);
   CHECK(model.name == "m");
   const SourceCurve& allan = model.curves[0];
@@ -79,14 +73,8 @@ TEST_CASE("what is no curve is refused with what to do") {
       {"empty.csv", "", "E0975", "is it a log?"},
       {"scene.yaml", "format: scene\nversion: 1\n", "E0975", "sensorchar replay"},
       {"x.json", "[1, 2", "E06", "x.json"},
-      {"newer.json",
-       "{\"format\": \"allan\", \"version\": 99, \"channels\": []}",
-       "E05",
-       "version"},
-      {"none.json",
-       "{\"format\": \"allan\", \"version\": 1, \"channels\": []}",
-       "E0975",
-       "no curve"},
+      {"newer.json", "{\"format\": \"allan\", \"version\": 99, \"channels\": []}", "E05", "version"},
+      {"none.json", "{\"format\": \"allan\", \"version\": 1, \"channels\": []}", "E0975", "no curve"},
       {"bad.csv", "tau_s,deviation\n1,x\n", "E0311", "a number"},
       {"wide.csv", "frequency_hz,x[g²/Hz]\n1,2\n2\n", "E0311", "a number"},
   };

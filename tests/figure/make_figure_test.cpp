@@ -18,13 +18,9 @@ using Catch::Contains;
 
 namespace {
 
-FigureSource source_of(const Json& report) {
-  return parse_figure_source(dump_json(report), "folder/report.json");
-}
+FigureSource source_of(const Json& report) { return parse_figure_source(dump_json(report), "folder/report.json"); }
 
-Chart chart_of(const FigureSource& source,
-               const std::string& kind,
-               std::vector<std::string> channels = {}) {
+Chart chart_of(const FigureSource& source, const std::string& kind, std::vector<std::string> channels = {}) {
   FigureOptions options;
   options.kind = kind;
   options.channels = std::move(channels);
@@ -64,32 +60,26 @@ TEST_CASE("every kind is drawn of a report, or says why it has none") {
     const std::string name = of_log.curves[0].channel;
     Chart chart;
     try {
-      chart =
-          chart_of(source,
-                   std::string(kind.word),
-                   kind.of_replay ? std::vector<std::string>{} : std::vector<std::string>{name});
+      chart = chart_of(source, std::string(kind.word),
+                       kind.of_replay ? std::vector<std::string>{} : std::vector<std::string>{name});
     } catch (const Error& error) {
       // A replay made from formulas has no run that was recorded; nothing else may lack.
       INFO(error.what());
       CHECK(error.problem().code == "E0978");
-      CHECK((kind.word == "timeline" || kind.word == "error" || kind.word == "residuals" ||
-             kind.word == "trace"));
+      CHECK((kind.word == "timeline" || kind.word == "error" || kind.word == "residuals" || kind.word == "trace"));
       continue;
     }
     Findings warnings;
     CHECK(draw_figure(chart, FigureFormat::svg, {}, warnings).size() > 1000);
     // and of the other kind of report it is refused
-    CHECK_THROWS_WITH(chart_of(kind.of_replay ? of_log : of_replay, std::string(kind.word)),
-                      Contains("E0978"));
+    CHECK_THROWS_WITH(chart_of(kind.of_replay ? of_log : of_replay, std::string(kind.word)), Contains("E0978"));
   }
 }
 
 TEST_CASE("curves of several devices are told apart by file, by channel, or by both") {
   const FigureSource both[] = {
-      test::figure_source_of({test::figure_curve("x", "deg/s"), test::figure_curve("y", "deg/s")},
-                             "one"),
-      test::figure_source_of({test::figure_curve("x", "°/s"), test::figure_curve("y", "deg/s")},
-                             "two")};
+      test::figure_source_of({test::figure_curve("x", "deg/s"), test::figure_curve("y", "deg/s")}, "one"),
+      test::figure_source_of({test::figure_curve("x", "°/s"), test::figure_curve("y", "deg/s")}, "two")};
   FigureSource named[] = {both[0], both[1]};
   named[1].curves[0].unit = "deg/s";
   FigureOptions options;
@@ -119,8 +109,8 @@ TEST_CASE("files of one name are told apart by their folders") {
 }
 
 TEST_CASE("several statistics of one channel are drawn together, told apart by their names") {
-  FigureSource source = test::figure_source_of(
-      {test::figure_curve("gyro_x", "deg/s"), test::figure_curve("gyro_x", "deg/s")});
+  FigureSource source =
+      test::figure_source_of({test::figure_curve("gyro_x", "deg/s"), test::figure_curve("gyro_x", "deg/s")});
   source.curves[1].statistic = "Modified Allan deviation";
   Chart chart = chart_of(source, "allan");
   REQUIRE(chart.series.size() == 2);
@@ -136,15 +126,13 @@ TEST_CASE("several statistics of one channel are drawn together, told apart by t
   CHECK(chart.series[3].name == "gyro_y, Modified Allan deviation");
   source.curves[1].statistic = "Time deviation";
   source.curves[1].value_unit = "deg";
-  CHECK_THROWS_WITH(chart_of(source, "allan"),
-                    Contains("E0976") && Contains("Time deviation in deg"));
+  CHECK_THROWS_WITH(chart_of(source, "allan"), Contains("E0976") && Contains("Time deviation in deg"));
 }
 
 TEST_CASE("what does not go together is refused in a sentence") {
-  const FigureSource mixed = test::figure_source_of(
-      {test::figure_curve("gyro", "deg/s"), test::figure_curve("accel", "g")});
-  CHECK_THROWS_WITH(chart_of(mixed, "allan"),
-                    Contains("E0976") && Contains("gyro in deg/s") && Contains("accel in g"));
+  const FigureSource mixed =
+      test::figure_source_of({test::figure_curve("gyro", "deg/s"), test::figure_curve("accel", "g")});
+  CHECK_THROWS_WITH(chart_of(mixed, "allan"), Contains("E0976") && Contains("gyro in deg/s") && Contains("accel in g"));
   CHECK_THROWS_WITH(chart_of(mixed, "allan", {"gyroo"}), Contains("E0977") && Contains("gyro"));
   CHECK_THROWS_WITH(chart_of(mixed, "psd"), Contains("E0978") && Contains("no spectrum"));
   CHECK_THROWS_WITH(chart_of(mixed, "alan"), Contains("E0978") && Contains("allan"));
@@ -157,16 +145,14 @@ TEST_CASE("what does not go together is refused in a sentence") {
   options.x_range = Interval{-1, 10};
   CHECK_THROWS_WITH(make_figure({&mixed, 1}, options), Contains("E0981"));
   FigureSource many = test::figure_source_of({});
-  for (int i = 0; i < 40; ++i)
-    many.curves.push_back(test::figure_curve("c" + std::to_string(i), "g"));
+  for (int i = 0; i < 40; ++i) many.curves.push_back(test::figure_curve("c" + std::to_string(i), "g"));
   CHECK_THROWS_WITH(chart_of(many, "allan"), Contains("E0984"));
 }
 
 TEST_CASE("a report that was damaged is refused with its place") {
   Json report = json_report(test::synthetic_imu());
   report["allan"]["channels"][0]["deviation"].erase(0);
-  CHECK_THROWS_WITH(source_of(report),
-                    Contains("E0982") && Contains("allan.channels[0].deviation"));
+  CHECK_THROWS_WITH(source_of(report), Contains("E0982") && Contains("allan.channels[0].deviation"));
   report = json_report(test::synthetic_imu());
   report["allan"]["channels"][0]["tau_s"][3] = "x";
   CHECK_THROWS_WITH(source_of(report), Contains("E0982") && Contains("a number was expected"));
@@ -184,8 +170,8 @@ TEST_CASE("names that try to become part of the drawing stay names") {
     FigureSource one = test::figure_source_of({curve, curve});
     one.curves[1].channel = "beside";
     Findings warnings;
-    const std::string svg = draw_figure(
-        chart_of(one, curve.is_allan ? "allan" : "psd"), FigureFormat::svg, {}, warnings);
+    const std::string svg =
+        draw_figure(chart_of(one, curve.is_allan ? "allan" : "psd"), FigureFormat::svg, {}, warnings);
     CHECK_THAT(svg, !Contains("<script") && !Contains("<img") && !Contains("\x01"));
   }
 }
@@ -193,8 +179,7 @@ TEST_CASE("names that try to become part of the drawing stay names") {
 TEST_CASE("docs/plots.md has a row for each figure and for nothing else") {
   const std::string page = test::slurp(test::source_folder() / "docs/plots.md");
   std::string rows, kinds;
-  for (std::size_t at = page.find("\n| `"); at != std::string::npos;
-       at = page.find("\n| `", at + 1)) {
+  for (std::size_t at = page.find("\n| `"); at != std::string::npos; at = page.find("\n| `", at + 1)) {
     const std::string word = page.substr(at + 4, page.find('`', at + 4) - at - 4);
     if (!word.starts_with("--")) rows += word + " ";
   }

@@ -32,8 +32,7 @@ bool has_dots(const std::string& line) {
 
 TEST_CASE("a curve in a terminal is as wide as it, has decades at both axes and no escapes") {
   for (const std::size_t columns : {40U, 80U, 133U}) {
-    const std::string text =
-        terminal_figure(terminal_chart({test::figure_curve("g", "deg/s")}), {columns, 16, false});
+    const std::string text = terminal_figure(terminal_chart({test::figure_curve("g", "deg/s")}), {columns, 16, false});
     for (const std::string& line : terminal_lines(text)) CHECK(width_of(line) <= columns);
     CHECK_THAT(text, !Contains("\x1b"));
     CHECK_THAT(text, Contains("Overlapping Allan deviation [deg/s]") && Contains("Averaging time"));
@@ -64,8 +63,7 @@ TEST_CASE("dots stand where the curve is") {
 }
 
 TEST_CASE("several curves have letters, and colours where they are wanted") {
-  const Chart chart =
-      terminal_chart({test::figure_curve("one", "g"), test::figure_curve("two", "g")});
+  const Chart chart = terminal_chart({test::figure_curve("one", "g"), test::figure_curve("two", "g")});
   const std::string plain = terminal_figure(chart, {80, 16, false});
   CHECK_THAT(plain, Contains(" a one   b two\n") && !Contains("\x1b"));
   const std::string coloured = terminal_figure(chart, {80, 16, true});

@@ -47,8 +47,7 @@ std::vector<double> moving_average(const std::vector<double>& u, std::size_t m) 
 // y_t = b u_t + a1 y_{t-1} + a2 y_{t-2}, of unit gain at f = 0.
 std::vector<double> two_poles(const std::vector<double>& u, double a1, double a2) {
   std::vector<double> y(u.size(), 0.0);
-  for (std::size_t t = 2; t < u.size(); ++t)
-    y[t] = (1 - a1 - a2) * u[t] + a1 * y[t - 1] + a2 * y[t - 2];
+  for (std::size_t t = 2; t < u.size(); ++t) y[t] = (1 - a1 - a2) * u[t] + a1 * y[t - 1] + a2 * y[t - 2];
   return y;
 }
 
@@ -64,10 +63,7 @@ const std::vector<Case>& cases() {
   static const std::vector<Case> all = {
       {"boxcar 2", [](const auto& u) { return moving_average(u, 2); }, Kind::boxcar, 2},
       {"boxcar 4", [](const auto& u) { return moving_average(u, 4); }, Kind::boxcar, 4},
-      {"Bartlett 4",
-       [](const auto& u) { return moving_average(moving_average(u, 4), 4); },
-       Kind::bartlett,
-       4},
+      {"Bartlett 4", [](const auto& u) { return moving_average(moving_average(u, 4), 4); }, Kind::bartlett, 4},
       {"boxcar 16", [](const auto& u) { return moving_average(u, 16); }, Kind::boxcar, 16},
       {"resonance", [](const auto& u) { return two_poles(u, 1.2, -0.75); }, Kind::measured, 0},
   };
@@ -144,8 +140,7 @@ TEST_CASE("a filter is named or described, and Q, B and K are those of the noise
   }
 }
 
-TEST_CASE(
-    "a swaying floor's peaks are left out one by one, and Q, B and K stand on both sides of them") {
+TEST_CASE("a swaying floor's peaks are left out one by one, and Q, B and K stand on both sides of them") {
   // Frequency, times of white noise's density at the peak, quality; as under the accelerometers of
   // ADIS16405.
   const std::vector<std::array<double, 3>> peaks = {
@@ -172,8 +167,7 @@ TEST_CASE(
   int wide = 0, close = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
-    const NoiseFit fit = fit_record(
-        sway(filtered_record(seed, [](const auto& u) { return u; }), seed), kRate, nullptr);
+    const NoiseFit fit = fit_record(sway(filtered_record(seed, [](const auto& u) { return u; }), seed), kRate, nullptr);
     wide += fit.band.top_hz > 6;
     const Coefficient& white = fit[Term::white];
     REQUIRE(white.value);
@@ -195,8 +189,7 @@ TEST_CASE("the Allan curve of a fit with a shape is the measured one, from the f
     const AllanCurve curve = allan_deviation(y, 1 / kRate);
     for (const AllanPoint& point : curve.points) {
       if (point.tau_s > 20) break;
-      const double model =
-          std::sqrt(shaped_allan_variance(fit, static_cast<double>(point.m), curve.dt_s));
+      const double model = std::sqrt(shaped_allan_variance(fit, static_cast<double>(point.m), curve.dt_s));
       CAPTURE(point.tau_s);
       CHECK(model == Approx(point.deviation).epsilon(0.03 + 0.06 * std::sqrt(point.tau_s / 20)));
     }
@@ -217,9 +210,7 @@ TEST_CASE("where no band passes every value is a misfit, its interval as wide as
     values += term.status == Status::misfit;
   }
   CHECK(values > 0);
-  const auto width = [](const NoiseFit& f) {
-    return std::log(f[Term::white].ci95.high / f[Term::white].ci95.low);
-  };
+  const auto width = [](const NoiseFit& f) { return std::log(f[Term::white].ci95.high / f[Term::white].ci95.low); };
   CHECK(width(fit) > 5 * width(clean));
   CHECK(std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& one) {
     return one.sentence.find("no coefficient is borne out") != std::string::npos;
@@ -249,9 +240,7 @@ std::vector<double> process(std::size_t n, double sigma, double tau_s, test::Gau
   return y;
 }
 
-bool says(const NoiseFit& fit, std::string_view code) {
-  return has(fit.findings, code);
-}
+bool says(const NoiseFit& fit, std::string_view code) { return has(fit.findings, code); }
 
 }  // namespace
 

@@ -75,8 +75,7 @@ TEST_CASE("spikes, missing samples, a line and a drift at once are answered toge
     Record y = source.record(1e-3, 1e-2, 5e-3);
     const double sd = 1e-3 * std::sqrt(200.0);
     for (std::size_t t = 0; t < n; ++t)
-      y[t] += 0.5 * sd * std::sin(2 * M_PI * 0.250123 * static_cast<double>(t)) +
-              5e-6 * static_cast<double>(t);
+      y[t] += 0.5 * sd * std::sin(2 * M_PI * 0.250123 * static_cast<double>(t)) + 5e-6 * static_cast<double>(t);
     for (std::size_t t = 500; t < n; t += 997) y[t] += t % 2 == 0 ? 20 * sd : -20 * sd;
     y = with_missing(std::move(y), 0.01, 1, 30 + static_cast<std::uint64_t>(r));
     const NoiseFit fit = fit_record(y, 200, nullptr);

@@ -22,18 +22,14 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
   };
   constexpr std::size_t kCoverageSamples = 32768;
   constexpr int kRecords = 150;
-  for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 1e-2},
-                             Scene{"c", 1000, 1e-3, 4e-3, 0},
-                             Scene{"e", 200, 5e-3, 0, 2e-2},
-                             Scene{"d", 200, 5e-3, 0, 0}}) {
+  for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 1e-2}, Scene{"c", 1000, 1e-3, 4e-3, 0},
+                             Scene{"e", 200, 5e-3, 0, 2e-2}, Scene{"d", 200, 5e-3, 0, 0}}) {
     test::NoiseSource source(kCoverageSamples, scene.rate_hz, 77);
     test::Gaussian starts(1);
     const std::array<double, 3> truth = {scene.q, scene.b, scene.k};
     const TermSet present = {true, scene.b > 0, scene.k > 0, false, false};
-    const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0},
-                                  scene.rate_hz,
-                                  kCoverageSamples,
-                                  present);
+    const auto bound = cramer_rao({scene.q * scene.q, scene.b * scene.b, scene.k * scene.k, 0, 0}, scene.rate_hz,
+                                  kCoverageSamples, present);
     std::array<double, 3> square{}, covered{};
     int false_terms = 0, remedies = 0;
     for (int r = 0; r < kRecords; ++r) {
@@ -50,8 +46,7 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
           any_false = any_false || c.status != Status::not_detected;
           continue;
         }
-        square[i] +=
-            std::pow((c.value.value_or(0) - truth[i]) / (*bound[i] * truth[i]), 2) / kRecords;
+        square[i] += std::pow((c.value.value_or(0) - truth[i]) / (*bound[i] * truth[i]), 2) / kRecords;
         covered[i] += c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1.0 / kRecords : 0.0;
       }
       false_terms += any_false ? 1 : 0;
@@ -69,8 +64,8 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
     const std::array<double, 3> wanted = {0.90, 0.88, 0.85};
     for (std::size_t i = 0; i < 3; ++i) {
       if (!present[i]) continue;
-      INFO(scene.name << " " << kTermNames[i].letter << " bound " << *bound[i] << " efficiency "
-                      << 1 / square[i] << " coverage " << covered[i]);
+      INFO(scene.name << " " << kTermNames[i].letter << " bound " << *bound[i] << " efficiency " << 1 / square[i]
+                      << " coverage " << covered[i]);
       if (*bound[i] <= 0.13) CHECK(1 / square[i] > wanted[i] * (1 - 3 * std::sqrt(2.0 / kRecords)));
       CHECK(covered[i] > 0.95 - 3 * std::sqrt(0.95 * 0.05 / kRecords));
     }
@@ -91,8 +86,7 @@ TEST_CASE("coverage near the limit: of everything that is said, and of what is c
   std::array<int, 3> covered{}, detected{}, detected_covered{};
   for (int r = 0; r < kNearRecords; ++r) {
     const std::vector<double> y = source.record(truth[0], truth[1], truth[2]);
-    const NoiseFit fit =
-        fit_power_bins(power_bins(y, kNearRate), kNearRate, kNearSamples, nullptr, options);
+    const NoiseFit fit = fit_power_bins(power_bins(y, kNearRate), kNearRate, kNearSamples, nullptr, options);
     for (std::size_t i = 0; i < 3; ++i) {
       const Coefficient& c = fit.term[i];
       const int inside = c.ci95.low <= truth[i] && truth[i] <= c.ci95.high ? 1 : 0;
@@ -103,8 +97,8 @@ TEST_CASE("coverage near the limit: of everything that is said, and of what is c
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    INFO(kTermNames[i].letter << ": " << covered[i] << " of " << kNearRecords << ", detected "
-                              << detected_covered[i] << " of " << detected[i]);
+    INFO(kTermNames[i].letter << ": " << covered[i] << " of " << kNearRecords << ", detected " << detected_covered[i]
+                              << " of " << detected[i]);
     CHECK(covered[i] >= 0.93 * kNearRecords);
     CHECK(detected_covered[i] >= 0.95 * detected[i] - 3 * std::sqrt(0.95 * 0.05 * detected[i]));
   }

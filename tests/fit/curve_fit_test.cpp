@@ -101,8 +101,7 @@ TEST_CASE("scaling a curve scales the coefficients") {
   const NoiseFit million = fit_curve(curve);
   for (std::size_t i = 0; i < kTerms; ++i) {
     REQUIRE(one.term[i].status == million.term[i].status);
-    if (one.term[i].value)
-      CHECK(*million.term[i].value == Approx(1e6 * *one.term[i].value).epsilon(1e-9));
+    if (one.term[i].value) CHECK(*million.term[i].value == Approx(1e6 * *one.term[i].value).epsilon(1e-9));
   }
 }
 
@@ -154,8 +153,7 @@ TEST_CASE("with the length of the record, a curve in another unit has the same i
   }
 }
 
-TEST_CASE(
-    "with the length of the record, white noise at long times is known as well as weights tell") {
+TEST_CASE("with the length of the record, white noise at long times is known as well as weights tell") {
   // Generalised least squares of one term: the variance of ln theta is 1 / (1' C^-1 1), C that of
   // the logarithms of chi-squares. The points stand where these are in the mean.
   DigitisedCurve curve;
@@ -176,8 +174,7 @@ TEST_CASE(
   Eigen::MatrixXd c = allan_covariance(record, white);
   for (Eigen::Index i = 0; i < c.rows(); ++i)
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
-      const double yi = curve.y[static_cast<std::size_t>(i)],
-                   yj = curve.y[static_cast<std::size_t>(j)];
+      const double yi = curve.y[static_cast<std::size_t>(i)], yj = curve.y[static_cast<std::size_t>(j)];
       c(i, j) /= yi * yi * yj * yj;
     }
   Eigen::VectorXd wider(c.rows());
@@ -190,8 +187,7 @@ TEST_CASE(
   const NoiseFit fit = fit_curve(curve);
   REQUIRE(fit[Term::white].value);
   CHECK(*fit[Term::white].value == Approx(2).epsilon(2e-3));
-  CHECK(fit[Term::white].relative_sd ==
-        Approx(0.5 / std::sqrt(test::inverse(c).sum())).epsilon(0.05));
+  CHECK(fit[Term::white].relative_sd == Approx(0.5 / std::sqrt(test::inverse(c).sum())).epsilon(0.05));
 }
 
 TEST_CASE("residuals that go together are fewer points, and widen the intervals") {
@@ -267,8 +263,7 @@ TEST_CASE("a curve whose fast end is a filter's is fitted from where the terms h
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       // A low-pass of .03 s takes white noise away below it; a point is known to 1e-3·2^(i/2).
       const double sd = std::min(0.5, 1e-3 * std::exp2(0.5 * static_cast<double>(i)));
-      curve.y[i] *=
-          std::exp(sd * gauss()) / std::sqrt(1 + 0.03 / curve.x[i] * std::exp(-curve.x[i] / 0.03));
+      curve.y[i] *= std::exp(sd * gauss()) / std::sqrt(1 + 0.03 / curve.x[i] * std::exp(-curve.x[i] / 0.03));
       curve.relative_sd.push_back(sd);
     }
     const NoiseFit fit = fit_curve(curve);
@@ -298,18 +293,15 @@ TEST_CASE("a curve that no half of its points lets the terms describe is a misfi
   CHECK(fit[Term::white].relative_sd > 0.03);  // of the scatter, not of the stated 1 %
 }
 
-TEST_CASE(
-    "a curve of very many points is fitted in groups of neighbours, as well as point by point") {
+TEST_CASE("a curve of very many points is fitted in groups of neighbours, as well as point by point") {
   const Mixture theta = {25e-6, 1e-6, 1e-8, 0, 0};
   test::Gaussian gauss(6);
   DigitisedCurve curve;
   const std::size_t points = 20'000;
   for (std::size_t k = 0; k < points; ++k) {
-    const double tau =
-        0.01 * std::pow(1e6, static_cast<double>(k) / static_cast<double>(points - 1));
+    const double tau = 0.01 * std::pow(1e6, static_cast<double>(k) / static_cast<double>(points - 1));
     double variance = 0;
-    for (std::size_t i = 0; i < kTerms; ++i)
-      variance += theta[i] * allan_asymptote(static_cast<Term>(i), tau);
+    for (std::size_t i = 0; i < kTerms; ++i) variance += theta[i] * allan_asymptote(static_cast<Term>(i), tau);
     curve.x.push_back(tau);
     curve.y.push_back(std::sqrt(variance) * (1 + 0.01 * gauss()));
   }
@@ -339,8 +331,7 @@ TEST_CASE(
   for (std::size_t k = 1; k <= points; ++k) {
     const double f = 1e-3 * static_cast<double>(k);
     double density = 0;
-    for (std::size_t i = 0; i < kTerms; ++i)
-      density += theta[i] * spectrum_asymptote(static_cast<Term>(i), f, 1);
+    for (std::size_t i = 0; i < kTerms; ++i) density += theta[i] * spectrum_asymptote(static_cast<Term>(i), f, 1);
     spectrum.x.push_back(f);
     spectrum.y.push_back(density);
   }
@@ -384,8 +375,8 @@ TEST_CASE("six real IMUs: no worse than the fit that imu_utils drew through the 
         all.threshold = 0;
         const double ours = rms_log10(fit_curve(curve, all)), before = rms_log10(curve.y, theirs),
                      decided = rms_log10(fit_curve(curve));
-        INFO(imu << " " << kind << " " << axis << ": all terms " << ours << ", decided " << decided
-                 << ", imu_utils " << before);
+        INFO(imu << " " << kind << " " << axis << ": all terms " << ours << ", decided " << decided << ", imu_utils "
+                 << before);
         CHECK(ours <= before * (1 + 1e-6));
         CHECK(decided <= before * 1.03);
       }
@@ -424,8 +415,7 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
       const NoiseFit stated = fit_curve(curve);
       std::ostringstream text;
       for (const NoiseFit* fit : {&alone, &weighted}) {
-        for (const Coefficient& c : fit->term)
-          text << c.value.value_or(0) << " +- " << 100 * c.relative_sd << " %  ";
+        for (const Coefficient& c : fit->term) text << c.value.value_or(0) << " +- " << 100 * c.relative_sd << " %  ";
         text << "rms " << rms_log10(*fit) << " p " << fit->goodness.p << "\n";
       }
       UNSCOPED_INFO(name << " " << channel << "\n" << text.str());
@@ -455,23 +445,11 @@ TEST_CASE("curve fit: the last point, of one degree of freedom, does not cost th
   curve.is_allan = true;
   curve.rate_hz = 50;
   curve.duration_s = 655.36;
-  curve.y = {0.028384912662016183,
-             0.0201666242149949,
-             0.014336609073978795,
-             0.010340885477686195,
-             0.007535873408079156,
-             0.005730703986629833,
-             0.0046904531606539596,
-             0.0038848008492038816,
-             0.0038544451062532676,
-             0.0037902404156662586,
-             0.0039199454342896635,
-             0.004983208741737993,
-             0.006349367336126262,
-             0.007326185593137345,
-             0.001430713310431877};
-  for (std::size_t k = 0; k < curve.y.size(); ++k)
-    curve.x.push_back(0.02 * std::pow(2.0, static_cast<double>(k)));
+  curve.y = {0.028384912662016183,  0.0201666242149949,    0.014336609073978795,  0.010340885477686195,
+             0.007535873408079156,  0.005730703986629833,  0.0046904531606539596, 0.0038848008492038816,
+             0.0038544451062532676, 0.0037902404156662586, 0.0039199454342896635, 0.004983208741737993,
+             0.006349367336126262,  0.007326185593137345,  0.001430713310431877};
+  for (std::size_t k = 0; k < curve.y.size(); ++k) curve.x.push_back(0.02 * std::pow(2.0, static_cast<double>(k)));
   const NoiseFit fit = fit_curve(curve);
   CHECK(fit.band.whole);
   CHECK(fit.goodness.p > 0.02);

@@ -39,13 +39,8 @@ TEST_CASE("a header that only a table of curves has") {
   CHECK(of("channel;Tau [s];avar\na;1;2\n") == "allan");
   CHECK(of("frequency_hz,psd\n1,2\n") == "psd");
   CHECK(of("curve,channel,x,value\noadev,a,1,2\n") == "allan or psd");
-  for (const char* log : {"x,value\n1,2\n",
-                          "t,frequency\n1,2\n",
-                          "frequency,temperature\n1,2\n",
-                          "tau,x\n1,2\n",
-                          "1,2\n3,4\n",
-                          "",
-                          "\x01\x02"})
+  for (const char* log : {"x,value\n1,2\n", "t,frequency\n1,2\n", "frequency,temperature\n1,2\n", "tau,x\n1,2\n",
+                          "1,2\n3,4\n", "", "\x01\x02"})
     CHECK(of(log).empty());
   CHECK(curve_in_header((folder / "absent.csv").string()).empty());
   CHECK(curve_in_header(folder.path().string()).empty());
@@ -53,8 +48,7 @@ TEST_CASE("a header that only a table of curves has") {
 
 TEST_CASE("a published table with a channel column gives one curve a channel") {
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
-  const auto table =
-      read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 6);
   const NamedCurve& first = table->curves[0];
@@ -66,8 +60,7 @@ TEST_CASE("a published table with a channel column gives one curve a channel") {
 }
 
 TEST_CASE("names of columns as people write them, with units, quotes, BOM, other delimiters") {
-  const auto table =
-      read("\xEF\xBB\xBF# made by hand\r\n\"Tau [s]\";\"AVAR\"\r\n0.1;4\r\n0.2;2\r\n\r\n", true);
+  const auto table = read("\xEF\xBB\xBF# made by hand\r\n\"Tau [s]\";\"AVAR\"\r\n0.1;4\r\n0.2;2\r\n\r\n", true);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 1);
   CHECK_FALSE(table->curves[0].curve.root);
@@ -113,30 +106,25 @@ TEST_CASE("a table of bare numbers is not a named one") {
 }
 
 TEST_CASE("rows that do not fit are named with their place") {
-  CHECK(fault_of("tau_s,adev\n1,2\n2,x1\n").find("curve.csv:3:3: error E0311") !=
-        std::string::npos);
+  CHECK(fault_of("tau_s,adev\n1,2\n2,x1\n").find("curve.csv:3:3: error E0311") != std::string::npos);
   CHECK(fault_of("tau_s,adev\n1,2,3\n").find("curve.csv:2:1: error E0304") != std::string::npos);
   CHECK(fault_of("tau_s,adev\n").find("holds no Allan curve") != std::string::npos);
 }
 
 TEST_CASE("relative and absolute errors are read, whatever they are called") {
-  const auto sd = [](const std::string& text) {
-    return read(text, true)->curves.at(0).curve.relative_sd;
-  };
+  const auto sd = [](const std::string& text) { return read(text, true)->curves.at(0).curve.relative_sd; };
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau;adev;Relative error [%]\n1;2;25\n2;1;50\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,adev,error\n1,2,0.5\n2,1,0.5\n") == std::vector<double>{0.25, 0.5});
-  CHECK(sd("tau_s,adev,low68,high68\n1,2,1.5,2.5\n2,1,0.75,1.75\n") ==
-        std::vector<double>{0.25, 0.5});
+  CHECK(sd("tau_s,adev,low68,high68\n1,2,1.5,2.5\n2,1,0.75,1.75\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,avar,low68,high68\n1,2,1,3\n2,1,0.5,2.5\n") == std::vector<double>{0.25, 0.5});
   CHECK(sd("tau_s,avar,rel_err\n1,4,0.5\n2,1,1\n") ==
-        std::vector<double>{0.25, 0.5});  // of the variance: twice that of its root
+        std::vector<double>{0.25, 0.5});                      // of the variance: twice that of its root
   CHECK(sd("tau_s,adev,rel_err\n1,2,0.25\n2,1,\n").empty());  // not for every point: for none
 }
 
 TEST_CASE("the relative errors of a published table are read") {
   NEEDS_SHARED("data/avarcurve_navchip_published.csv");
-  const auto table =
-      read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
+  const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
   CHECK(table->curves[0].curve.relative_sd.at(0) == 0.0005674816915767);
 }

@@ -36,14 +36,10 @@ NoiseFit fit_of(const std::vector<double>& y) {
 }
 
 bool says_cycle(const NoiseFit& fit) {
-  return std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& one) {
-    return one.code == "cycle";
-  });
+  return std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& one) { return one.code == "cycle"; });
 }
 
-bool within(const Coefficient& white) {
-  return white.ci95.low <= kWhiteOfCycles && kWhiteOfCycles <= white.ci95.high;
-}
+bool within(const Coefficient& white) { return white.ci95.low <= kWhiteOfCycles && kWhiteOfCycles <= white.ci95.high; }
 
 }  // namespace
 
@@ -73,9 +69,8 @@ TEST_CASE("cycles: a heating cycle is named, and B and K are not its") {
       const NoiseFit fit = fit_of(y);
       INFO(period << " s, height " << height);
       REQUIRE(says_cycle(fit));
-      const auto one = std::find_if(fit.findings.begin(), fit.findings.end(), [](const Finding& f) {
-        return f.code == "cycle";
-      });
+      const auto one =
+          std::find_if(fit.findings.begin(), fit.findings.end(), [](const Finding& f) { return f.code == "cycle"; });
       CHECK(1 / one->where.frequency_hz[0].low == Approx(period).epsilon(0.01));
       CHECK(within(fit[Term::white]));
       CHECK(fit[Term::flicker].status == Status::not_detected);
@@ -103,13 +98,12 @@ TEST_CASE("cycles: a heating without a steady period leaves N, and limits of B a
       y[t] += wall;
     }
     const NoiseFit fit = fit_of(y);
-    const auto hump = std::find_if(fit.findings.begin(), fit.findings.end(), [](const Finding& f) {
-      return f.code == "hump" || f.code == "cycle";
-    });
-    right += hump != fit.findings.end() && within(fit[Term::white]) && !fit[Term::flicker].value &&
-                     !fit[Term::walk].value
-                 ? 1
-                 : 0;
+    const auto hump = std::find_if(fit.findings.begin(), fit.findings.end(),
+                                   [](const Finding& f) { return f.code == "hump" || f.code == "cycle"; });
+    right +=
+        hump != fit.findings.end() && within(fit[Term::white]) && !fit[Term::flicker].value && !fit[Term::walk].value
+            ? 1
+            : 0;
   }
   CHECK(right >= kRecords - 1);
 }
@@ -119,13 +113,11 @@ TEST_CASE("cycles: noise of every colour, steps and warm-ups have none") {
   test::NoiseSource source(kSamples, kCycleRate, 342);
   int said = 0;
   for (int r = 0; r < 60; ++r) {
-    std::vector<double> y =
-        source.record(kWhiteOfCycles, r % 3 == 1 ? 0.05 : 0, r % 3 == 2 ? 0.1 : 0);
+    std::vector<double> y = source.record(kWhiteOfCycles, r % 3 == 1 ? 0.05 : 0, r % 3 == 2 ? 0.1 : 0);
     if (r % 4 == 1)
       for (std::size_t t = kSamples / 3; t < kSamples; ++t) y[t] += 0.5;
     if (r % 4 == 2)
-      for (std::size_t t = 0; t < kSamples; ++t)
-        y[t] += 2 * std::exp(-static_cast<double>(t) / 3000);
+      for (std::size_t t = 0; t < kSamples; ++t) y[t] += 2 * std::exp(-static_cast<double>(t) / 3000);
     said += says_cycle(fit_of(y)) ? 1 : 0;
   }
   CHECK(said == 0);

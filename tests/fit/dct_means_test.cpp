@@ -11,8 +11,7 @@ namespace {
 
 double basis(std::size_t k, std::size_t t, std::size_t n) {
   return std::sqrt(2.0 / static_cast<double>(n)) *
-         std::cos(M_PI * static_cast<double>(k) * (static_cast<double>(t) + 0.5) /
-                  static_cast<double>(n));
+         std::cos(M_PI * static_cast<double>(k) * (static_cast<double>(t) + 0.5) / static_cast<double>(n));
 }
 
 /// E[c_k^2] by the double sum over a covariance function of the lag.
@@ -20,8 +19,7 @@ template <typename Covariance>
 double brute_force(std::size_t k, std::size_t n, Covariance&& g) {
   double sum = 0;
   for (std::size_t s = 0; s < n; ++s) {
-    for (std::size_t t = 0; t < n; ++t)
-      sum += basis(k, s, n) * basis(k, t, n) * g(s > t ? s - t : t - s);
+    for (std::size_t t = 0; t < n; ++t) sum += basis(k, s, n) * basis(k, t, n) * g(s > t ? s - t : t - s);
   }
   return sum;
 }

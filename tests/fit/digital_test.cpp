@@ -36,15 +36,13 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
     CHECK(test::digital_faults(y, kDigitalRate).findings.empty());
     for (const double step : {0.01, 0.1, 0.3, 0.7}) {
       INFO("seed " << seed << ", step " << step);
-      CHECK(test::digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma)
-                .findings.empty());
+      CHECK(test::digital_faults(rounded(y, step * kSigma), kDigitalRate, step * kSigma).findings.empty());
     }
   }
 }
 
 TEST_CASE("digital: two levels, a counter and a lone spike have no rails") {
-  std::vector<double> square(kDigitalSamples), counter(kDigitalSamples),
-      spike(kDigitalSamples, 1.0);
+  std::vector<double> square(kDigitalSamples), counter(kDigitalSamples), spike(kDigitalSamples, 1.0);
   for (std::size_t t = 0; t < kDigitalSamples; ++t) {
     square[t] = t / 500 % 2 == 0 ? 1 : -1;
     counter[t] = static_cast<double>(t % 256);
@@ -64,13 +62,11 @@ TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   CHECK_FALSE(faults.rails[0].high);
   CHECK(faults.rails[1].value == 2.2 * kSigma);
   CHECK(faults.rails[1].share == Approx(clipped / kDigitalSamples));
-  CHECK(faults.findings[1].sentence.find("stand at the largest value, 0.110 deg/s") !=
-        std::string::npos);
+  CHECK(faults.findings[1].sentence.find("stand at the largest value, 0.110 deg/s") != std::string::npos);
 
   std::vector<double> one = noise(41);
   for (double& value : one) value = std::min(value, 2 * kSigma);
-  const DigitalFaults coarse =
-      test::digital_faults(rounded(one, 0.1 * kSigma), kDigitalRate, 0.1 * kSigma);
+  const DigitalFaults coarse = test::digital_faults(rounded(one, 0.1 * kSigma), kDigitalRate, 0.1 * kSigma);
   REQUIRE(coarse.rails.size() == 1);
   CHECK(coarse.rails[0].high);
 }
@@ -95,8 +91,7 @@ TEST_CASE("digital: values that are recorded several times") {
 }
 
 TEST_CASE("digital: a converter's step above the noise") {
-  const std::vector<double> y =
-      test::NoiseSource(kDigitalSamples, kDigitalRate, 43).record(5e-3, 0, 1e-2);
+  const std::vector<double> y = test::NoiseSource(kDigitalSamples, kDigitalRate, 43).record(5e-3, 0, 1e-2);
   for (const double ratio : {1.5, 2.5}) {
     const double step = ratio * kSigma;
     const DigitalFaults faults = test::digital_faults(rounded(y, step), kDigitalRate, step);
@@ -106,8 +101,7 @@ TEST_CASE("digital: a converter's step above the noise") {
     CHECK(faults.staircase->noise == Approx(kSigma).epsilon(0.1));
     CHECK(faults.rails.empty());
   }
-  const DigitalFaults coarse =
-      test::digital_faults(rounded(y, 10 * kSigma), kDigitalRate, 10 * kSigma);
+  const DigitalFaults coarse = test::digital_faults(rounded(y, 10 * kSigma), kDigitalRate, 10 * kSigma);
   REQUIRE(coarse.staircase.has_value());
   CHECK(coarse.staircase->bounded);
 }
@@ -117,8 +111,7 @@ TEST_CASE("digital: a clean recording of a real sensor") {
   const test::Array array = test::npy(test::shared("data/static_adis16405_run1.npy"));
   for (std::size_t axis = 0; axis < 6; ++axis) {
     INFO("axis " << axis);
-    const DigitalFaults faults =
-        test::digital_faults(array.column(axis), 100, axis < 3 ? 0.05 : 1.0 / 300);
+    const DigitalFaults faults = test::digital_faults(array.column(axis), 100, axis < 3 ? 0.05 : 1.0 / 300);
     CHECK(faults.rails.empty());
     CHECK_FALSE(faults.held.has_value());
   }

@@ -36,9 +36,7 @@ NoiseFit fit_at_ends(const std::vector<double>& y, bool clock) {
   return fit_record(y, 1, nullptr, options);
 }
 
-const Coefficient& of(const NoiseFit& fit, Term term) {
-  return fit.term[static_cast<std::size_t>(term)];
-}
+const Coefficient& of(const NoiseFit& fit, Term term) { return fit.term[static_cast<std::size_t>(term)]; }
 
 }  // namespace
 

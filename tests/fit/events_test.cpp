@@ -21,10 +21,7 @@ using namespace libchar;
 namespace {
 
 /// E c_k^2 of a mixture for n means of `per_point` samples.
-std::vector<double> mixture_powers(const Mixture& theta,
-                                   std::uint64_t n,
-                                   std::uint64_t per_point,
-                                   double rate_hz) {
+std::vector<double> mixture_powers(const Mixture& theta, std::uint64_t n, std::uint64_t per_point, double rate_hz) {
   return at_every_k(n, 1, [&](double k, std::span<double> out) {
     const std::array<double, kTerms> unit = mean_unit_powers(k, n, per_point, 1 / rate_hz);
     out[0] = std::inner_product(theta.begin(), theta.end(), unit.begin(), 0.0);
@@ -46,8 +43,7 @@ EventSearch search(const std::vector<double>& y) {
 }
 
 void add_step(std::vector<double>& y, double at_s, double size) {
-  for (auto t = static_cast<std::size_t>(std::lround(at_s * kEventRate)); t < y.size(); ++t)
-    y[t] += size;
+  for (auto t = static_cast<std::size_t>(std::lround(at_s * kEventRate)); t < y.size(); ++t) y[t] += size;
 }
 
 FitOptions all_terms() {
@@ -79,8 +75,7 @@ TEST_CASE("events: the closed forms are the transforms of the shapes") {
     agrees({EventKind::warm_up, 0, 0, 40}, [&](double i) { return std::exp(-i / (40 * m)); });
     agrees({EventKind::ramp}, [&](double i) { return i / (n * m - 1); });
     // Eleven points missing, bridged from point 100 to point 112.
-    agrees({EventKind::step, 101, 11},
-           [&](double i) { return std::clamp((std::floor(i / m) - 100) / 12, 0.0, 1.0); });
+    agrees({EventKind::step, 101, 11}, [&](double i) { return std::clamp((std::floor(i / m) - 100) / 12, 0.0, 1.0); });
   }
 }
 
@@ -143,8 +138,7 @@ TEST_CASE("events: the scan's scores are those of one regression a place") {
   test::NoiseSource source(n, kEventRate, 3);
   const std::vector<double> y = source.record(kQ, kB, 10 * kK);
   const std::vector<double> c = coefficients_of(y);
-  std::vector<double> weight =
-      mixture_powers({kQ * kQ, kB * kB, 1e2 * kK * kK, 0, 0}, n, 1, kEventRate);
+  std::vector<double> weight = mixture_powers({kQ * kQ, kB * kB, 1e2 * kK * kK, 0, 0}, n, 1, kEventRate);
   for (double& w : weight) w = 1 / w;
   for (const bool beside_ramp : {false, true}) {
     std::vector<EventShape> shapes;
@@ -156,8 +150,7 @@ TEST_CASE("events: the scan's scores are those of one regression a place") {
       with.push_back({EventKind::step, static_cast<double>(at)});
       const Regression fit = regress(with, {n, 1}, c, weight);
       INFO("ramp " << beside_ramp << ", at " << at);
-      CHECK(scan.score[at] ==
-            Approx(fit.size(fit.size.size() - 1) / fit.sd(with.size() - 1)).epsilon(1e-8));
+      CHECK(scan.score[at] == Approx(fit.size(fit.size.size() - 1) / fit.sd(with.size() - 1)).epsilon(1e-8));
     }
     CHECK(scan.score[3] == 0);
   }
@@ -170,8 +163,7 @@ TEST_CASE("events: clean records have none") {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     test::NoiseSource source(kEventSamples, kEventRate, 100 + s);
     for (int r = 0; r < 30; ++r)
-      alarms +=
-          search(source.record(scenes[s][0], scenes[s][1], scenes[s][2])).events.empty() ? 0 : 1;
+      alarms += search(source.record(scenes[s][0], scenes[s][1], scenes[s][2])).events.empty() ? 0 : 1;
   }
   CHECK(alarms <= 3);  // one in a hundred of 150 records: four and more are chance once in fifteen
 }
@@ -309,8 +301,7 @@ TEST_CASE("events: a ramp has a sign and an honest interval") {
     for (const Event& event : found.events) {
       if (event.kind != EventKind::ramp) continue;
       ++told;
-      covered +=
-          std::abs(event.slope - slope) < 2.5 * event.sd / (kEventSamples / kEventRate) ? 1 : 0;
+      covered += std::abs(event.slope - slope) < 2.5 * event.sd / (kEventSamples / kEventRate) ? 1 : 0;
     }
   }
   CHECK(told >= kRecords - 1);
@@ -386,10 +377,7 @@ TEST_CASE("events: a filter's slope is no event, and a step behind a filter is o
       if (size == 0)
         alarms += search_result.events.empty() ? 0 : 1;
       else
-        found +=
-            search_result.events.size() == 1 && std::abs(search_result.events[0].at_s - 800) < 1
-                ? 1
-                : 0;
+        found += search_result.events.size() == 1 && std::abs(search_result.events[0].at_s - 800) < 1 ? 1 : 0;
     }
   }
   CHECK(alarms <= 1);
@@ -403,8 +391,7 @@ TEST_CASE("events: humps that the noise does not describe are no events") {
     std::vector<double> y = source.record(kQ, kB, kK);
     double x = 0, v = 0;  // a floor that sways at .56 Hz
     for (double& value : y) {
-      v += -0.0352 * x - 0.02 * v / kEventRate * 100 * 0.05 +
-           source.gauss()() * 0.3 * kEventSigma / 100;
+      v += -0.0352 * x - 0.02 * v / kEventRate * 100 * 0.05 + source.gauss()() * 0.3 * kEventSigma / 100;
       x += v / kEventRate * 3.5;
       value += x;
     }
@@ -428,8 +415,7 @@ TEST_CASE("events: jumps between two levels are telegraph noise, steps of unlike
   CHECK(found.telegraph->jumps <= jumps);
   CHECK(found.telegraph->dwell_s > 20);
   CHECK(found.findings.back().sentence.find("random telegraph noise") != std::string::npos);
-  for (int i = 1; i <= 7; ++i)
-    add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kEventSigma);
+  for (int i = 1; i <= 7; ++i) add_step(unlike, 120 * i, (i % 2 == 0 ? -1 : 1) * (1 + 1.5 * i) * kEventSigma);
   const EventSearch steps = search(unlike);
   CHECK(steps.events.size() >= 6);
   CHECK_FALSE(steps.telegraph.has_value());
@@ -467,17 +453,13 @@ TEST_CASE("events: pauses are none, and a step inside a session has its own time
 
 TEST_CASE("events: sessions of any length have offsets that can be told, also the last ones") {
   test::Gaussian gauss(12);
-  for (const std::vector<std::size_t>& sessions : {std::vector<std::size_t>{4001, 2003, 1},
-                                                   {4001, 1, 3, 2003},
-                                                   {1, 3000, 5},
-                                                   {3011, 7, 1, 1}}) {
+  for (const std::vector<std::size_t>& sessions :
+       {std::vector<std::size_t>{4001, 2003, 1}, {4001, 1, 3, 2003}, {1, 3000, 5}, {3011, 7, 1, 1}}) {
     std::vector<double> record;
     for (const std::size_t length : sessions) {
-      if (!record.empty())
-        record.insert(record.end(), 2000, std::numeric_limits<double>::quiet_NaN());
+      if (!record.empty()) record.insert(record.end(), 2000, std::numeric_limits<double>::quiet_NaN());
       const double offset = 20 * gauss();
-      for (std::size_t i = 0; i < length; ++i)
-        record.push_back(offset + gauss() + (i > 1500 ? 5 : 0));
+      for (std::size_t i = 0; i < length; ++i) record.push_back(offset + gauss() + (i > 1500 ? 5 : 0));
     }
     const EventSearch found = find_events(event_series(record, 100), fitted_powers());
     INFO(sessions.size() << " sessions, the first of " << sessions[0]);

@@ -34,24 +34,21 @@ std::vector<PowerBin> noise_free(const Mixture& theta, double rate_hz) {
 TEST_CASE("noise-free bins give their coefficients back to nine digits") {
   const Mixture theta = {1e-6, 1e-4, 25e-6, 0, 0};
   const NoiseFit fit = fit_power_bins(noise_free(theta, 200), 200, 30000, nullptr);
-  for (std::size_t i = 0; i < 3; ++i)
-    CHECK(fit.term[i].value.value() == Approx(std::sqrt(theta[i])).epsilon(1e-9));
+  for (std::size_t i = 0; i < 3; ++i) CHECK(fit.term[i].value.value() == Approx(std::sqrt(theta[i])).epsilon(1e-9));
   CHECK(fit.converged);
   CHECK(fit.remedies.empty());
 }
 
 TEST_CASE("the deviance residual and its slope") {
-  for (const double u :
-       {1e-3, 0.5, 0.98999, 0.9901, 1 - 1e-9, 1.0, 1 + 1e-9, 1.0099, 1.0101, 3.0, 50.0}) {
+  for (const double u : {1e-3, 0.5, 0.98999, 0.9901, 1 - 1e-9, 1.0, 1 + 1e-9, 1.0099, 1.0101, 3.0, 50.0}) {
     const long double d = static_cast<long double>(u) - 1;
     const auto r = deviance_residual(u, 1, 8);
     if (u != 1)
-      CHECK(r.value * r.value == Approx(static_cast<double>(8 * (d - std::log1p(d))))
-                                     .epsilon(u > 0.9 && u < 1.1 ? 1e-7 : 1e-12));
+      CHECK(r.value * r.value ==
+            Approx(static_cast<double>(8 * (d - std::log1p(d)))).epsilon(u > 0.9 && u < 1.1 ? 1e-7 : 1e-12));
     const double h = 1e-6;
-    const double slope =
-        (deviance_residual(u, 1 + h, 8).value - deviance_residual(u, 1 - h, 8).value) /
-        (std::log1p(h) - std::log1p(-h));
+    const double slope = (deviance_residual(u, 1 + h, 8).value - deviance_residual(u, 1 - h, 8).value) /
+                         (std::log1p(h) - std::log1p(-h));
     CHECK(r.slope == Approx(slope).epsilon(1e-7));
   }
 }
@@ -82,8 +79,7 @@ TEST_CASE("bins do not depend on how samples are pushed, blocks and gaps include
   for (std::size_t from = 0, n = 1; from < y.size(); from += n, n = n * 3 % 701 + 1) {
     pieces.push(std::span<const double>(y).subspan(from, std::min(n, y.size() - from)));
   }
-  const auto a = power_bins(powers_of(whole.finish(true)), 10),
-             b = power_bins(powers_of(pieces.finish(true)), 10);
+  const auto a = power_bins(powers_of(whole.finish(true)), 10), b = power_bins(powers_of(pieces.finish(true)), 10);
   REQUIRE(a.size() == b.size());
   for (std::size_t j = 0; j < a.size(); ++j) {
     CHECK(a[j].energy == b[j].energy);
@@ -150,11 +146,9 @@ TEST_CASE("bounds: the table of the theory, and the length for 10 %") {
   CHECK(100 * *bound[0] == Approx(0.350).epsilon(0.01));
   CHECK(100 * *bound[1] == Approx(0.646).epsilon(0.01));
   CHECK(100 * *bound[2] == Approx(8.40).epsilon(0.01));
-  const auto white =
-      cramer_rao({25e-6, 0, 0, 0, 0}, 200, 200000, {true, false, false, false, false});
+  const auto white = cramer_rao({25e-6, 0, 0, 0, 0}, 200, 200000, {true, false, false, false, false});
   CHECK(*white[0] == Approx(1 / std::sqrt(2 * 199999.0)).epsilon(1e-6));
-  const NoiseFit fit =
-      fit_power_bins(noise_free({1e-6, 1e-4, 25e-6, 0, 0}, 200), 200, 30000, nullptr);
+  const NoiseFit fit = fit_power_bins(noise_free({1e-6, 1e-4, 25e-6, 0, 0}, 200), 200, 30000, nullptr);
   const double seconds = fit[Term::flicker].seconds_for_10_percent.value();
   CHECK(*cramer_rao(fit.theta, 200, seconds * 200, all)[1] == Approx(0.1).epsilon(0.01));
 }
@@ -165,8 +159,7 @@ TEST_CASE("what cannot be fitted is refused in a sentence") {
   CHECK_THROWS_AS(fit_record(std::vector<double>{}, 10, nullptr), Error);
   FitOptions none;
   none.terms = {};
-  CHECK_THROWS_AS(fit_record(test::NoiseSource(100, 1, 1).record(1, 0, 0), 1, nullptr, none),
-                  Error);
+  CHECK_THROWS_AS(fit_record(test::NoiseSource(100, 1, 1).record(1, 0, 0), 1, nullptr, none), Error);
 }
 
 TEST_CASE("an absent term has no value, only a limit, in the JSON too") {

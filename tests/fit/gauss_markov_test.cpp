@@ -20,13 +20,10 @@ namespace {
 
 double cosine(std::size_t k, std::size_t t, std::size_t n) {
   return std::sqrt(2.0 / static_cast<double>(n)) *
-         std::cos(M_PI * static_cast<double>(k) * (static_cast<double>(t) + 0.5) /
-                  static_cast<double>(n));
+         std::cos(M_PI * static_cast<double>(k) * (static_cast<double>(t) + 0.5) / static_cast<double>(n));
 }
 
-double lag(std::size_t a, std::size_t b) {
-  return std::abs(static_cast<double>(a) - static_cast<double>(b));
-}
+double lag(std::size_t a, std::size_t b) { return std::abs(static_cast<double>(a) - static_cast<double>(b)); }
 
 std::vector<double> terms_record(std::uint64_t seed, std::size_t n, double rate, Mixture c) {
   NoiseDesign design;
@@ -43,9 +40,7 @@ NoiseFit fit_of(const std::vector<double>& y, double rate) {
   return fit_record(y, rate, &curve);
 }
 
-bool in_model(const NoiseFit& fit) {
-  return fit.gauss_markov && fit.gauss_markov->in_model;
-}
+bool in_model(const NoiseFit& fit) { return fit.gauss_markov && fit.gauss_markov->in_model; }
 
 bool says(const NoiseFit& fit, const std::string& words) {
   for (const Finding& one : fit.findings)
@@ -63,21 +58,18 @@ TEST_CASE(
       // sigma^2 = 1: K^2 = 2 / tau; the next term of the series is between 1/2 and 3/4 of T/tau.
       const double tau = 3, dt = across * tau / m, x = dt / tau;
       CHECK(gauss_markov_allan_variance(tau, m, dt) ==
-            Approx(x * (2 * m * m + 1) / (3 * m) * (1 - 0.625 * across))
-                .epsilon(0.2 * across + 1e-12));
+            Approx(x * (2 * m * m + 1) / (3 * m) * (1 - 0.625 * across)).epsilon(0.2 * across + 1e-12));
     }
 }
 
-TEST_CASE(
-    "transform means of a Gauss-Markov process agree with the double sum over its covariance") {
+TEST_CASE("transform means of a Gauss-Markov process agree with the double sum over its covariance") {
   const std::size_t n = 48;
   for (const double step : {3.0, 0.2, 0.01, 1e-5})
     for (const std::size_t k : {1U, 2U, 7U, 30U, 47U}) {
       CAPTURE(step, k);
       double sum = 0;
       for (std::size_t s = 0; s < n; ++s)
-        for (std::size_t t = 0; t < n; ++t)
-          sum += cosine(k, s, n) * cosine(k, t, n) * std::exp(-step * lag(s, t));
+        for (std::size_t t = 0; t < n; ++t) sum += cosine(k, s, n) * cosine(k, t, n) * std::exp(-step * lag(s, t));
       CHECK(gauss_markov_dct_mean(static_cast<double>(k), n, step) == Approx(sum).epsilon(1e-9));
     }
 }
@@ -116,8 +108,7 @@ TEST_CASE("Allan variance and spectrum of a Gauss-Markov process") {
   // The integral of the density over all frequencies is the variance.
   double power = 0;
   const int nodes = 200000;
-  for (int i = 0; i < nodes; ++i)
-    power += 2 * gauss_markov_spectrum(2.0, 5.0 * (i + 0.5) / nodes, dt) * 5.0 / nodes;
+  for (int i = 0; i < nodes; ++i) power += 2 * gauss_markov_spectrum(2.0, 5.0 * (i + 0.5) / nodes, dt) * 5.0 / nodes;
   CHECK(power == Approx(1).epsilon(1e-6));
 }
 
@@ -140,8 +131,7 @@ TEST_CASE("a Gauss-Markov process of 200 correlation times is found, not read as
     CHECK(says(fit, "Gauss-Markov"));
     // The model's curve is that of the process: flat top at 1.9 tau.
     CHECK(shaped_allan_variance(fit, 1200, 0.1) ==
-          Approx(q * q / 120 + sigma * sigma * gauss_markov_allan_variance(tau, 1200, 0.1))
-              .epsilon(0.5));
+          Approx(q * q / 120 + sigma * sigma * gauss_markov_allan_variance(tau, 1200, 0.1)).epsilon(0.5));
   }
   CHECK(covered >= 31);  // of 40; 38 expected, and sigma and tau of a record miss together
   CHECK(passes >= 19);

@@ -48,8 +48,8 @@ Distance distance(const std::vector<PowerBin>& bins, double white, double walk) 
   Distance out;
   for (const PowerBin& bin : bins) {
     if (bin.dof < 8) continue;
-    const double model = white * bin.unit[static_cast<std::size_t>(Term::white)] +
-                         walk * bin.unit[static_cast<std::size_t>(Term::walk)];
+    const double model =
+        white * bin.unit[static_cast<std::size_t>(Term::white)] + walk * bin.unit[static_cast<std::size_t>(Term::walk)];
     out.chi2 += std::pow(bin.energy / model - 1, 2) * bin.dof / 2;
     out.bins += 1;
   }
@@ -102,8 +102,7 @@ TEST_CASE("mean series: bins of a long one have the expectations of white noise 
   // blocks' coefficients.
   const double step = 2e-5;
   for (const unsigned seed : {3U, 4U, 5U}) {
-    const std::vector<PowerBin> bins =
-        series_bins(white_walk_means(kMostMeans + 3 * kMeansBlock + 12345, step, seed));
+    const std::vector<PowerBin> bins = series_bins(white_walk_means(kMostMeans + 3 * kMeansBlock + 12345, step, seed));
     const Distance right = distance(bins, 1 / kRateHz, step * step * kRateHz);
     CAPTURE(seed, right.chi2, right.bins);
     REQUIRE(right.bins > 60);
@@ -138,33 +137,24 @@ TEST_CASE(
     const std::size_t cut = part == 9 ? count / 3 : count;
     one.runs.push_back({0, cut * kPerMean, 0, {from, from + cut}, {}, 0, cut * kPerMean});
     if (cut < count)
-      one.runs.push_back({5000,
-                          (count - cut) * kPerMean,
-                          0,
-                          {from + cut, from + count},
-                          {},
-                          0,
-                          (count - cut) * kPerMean});
+      one.runs.push_back(
+          {5000, (count - cut) * kPerMean, 0, {from + cut, from + count}, {}, 0, (count - cut) * kPerMean});
     settle_means(one, part << 24U);
     REQUIRE(one.runs.size() == 1);
     part == 0 ? void(all = std::move(one)) : join(all, std::move(one));
   }
-  const Distance right =
-      distance(power_bins(powers_of(std::move(all)), kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
+  const Distance right = distance(power_bins(powers_of(std::move(all)), kRateHz), 1 / kRateHz, 4e-10 * kRateHz);
   CAPTURE(right.chi2, right.bins);
   REQUIRE(right.bins > 100);
   REQUIRE(right.chi2 < right.bins + 5 * std::sqrt(2 * right.bins));
 }
 
-TEST_CASE(
-    "mean series: a gap longer than a hundredth of what is in front begins a segment of its own") {
+TEST_CASE("mean series: a gap longer than a hundredth of what is in front begins a segment of its own") {
   const std::vector<double> means = white_walk_means(kMeansBlock, 0, 8);
   PowerSums sums;
   const std::size_t half = kMeansBlock / 2;
-  sums.runs.push_back(
-      {0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}, 0, half * kPerMean});
-  sums.runs.push_back(
-      {50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}, 0, half * kPerMean});
+  sums.runs.push_back({0, half * kPerMean, 0, {means.begin(), means.begin() + half}, {}, 0, half * kPerMean});
+  sums.runs.push_back({50000, half * kPerMean, 0, {means.begin() + half, means.end()}, {}, 0, half * kPerMean});
   PowerSums later = sums;
   settle_means(sums, 0);
   REQUIRE(sums.runs.size() == 2);

@@ -20,9 +20,7 @@ constexpr double kMotionRate = 100;
 constexpr std::size_t kMotionSamples = 100'000;
 constexpr double kMotionQ = 5e-3, kMotionB = 5e-3, kMotionK = 1.5e-3, kMotionSigma = 0.05;
 
-Motion motion_of(const std::vector<double>& y) {
-  return find_motion(event_series(y, kMotionRate));
-}
+Motion motion_of(const std::vector<double>& y) { return find_motion(event_series(y, kMotionRate)); }
 
 /// Student's t with five degrees of freedom, unit variance.
 double student(test::Gaussian& gauss) {
@@ -37,10 +35,8 @@ double student(test::Gaussian& gauss) {
 }  // namespace
 
 TEST_CASE("motion: records of noise have none, and none of their strength changes") {
-  const std::array<std::array<double, 3>, 4> scenes = {{{kMotionQ, 0, 0},
-                                                        {kMotionQ, kMotionB, kMotionK},
-                                                        {kMotionQ, 0, 20 * kMotionK},
-                                                        {0, 0, kMotionK}}};
+  const std::array<std::array<double, 3>, 4> scenes = {
+      {{kMotionQ, 0, 0}, {kMotionQ, kMotionB, kMotionK}, {kMotionQ, 0, 20 * kMotionK}, {0, 0, kMotionK}}};
   int alarms = 0;
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     test::NoiseSource source(kMotionSamples, kMotionRate, 200 + s);
@@ -76,8 +72,7 @@ TEST_CASE("motion: a change of strength has its instant and its factor") {
   test::NoiseSource source(kMotionSamples, kMotionRate, 32);
   for (const double factor : {1.4, 2.0, 0.5}) {
     std::vector<double> y = source.record(0, kMotionB, kMotionK);
-    for (std::size_t t = 0; t < y.size(); ++t)
-      y[t] += kMotionSigma * source.gauss()() * (t >= 60'000 ? factor : 1);
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += kMotionSigma * source.gauss()() * (t >= 60'000 ? factor : 1);
     const Motion motion = motion_of(y);
     INFO("factor " << factor);
     REQUIRE(motion.changes.size() == 1);
@@ -129,8 +124,7 @@ TEST_CASE("motion: a handled stretch is found, and the longest still one") {
   test::NoiseSource source(kMotionSamples, kMotionRate, 33);
   std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);
   for (std::size_t t = 30'000; t < 34'000; ++t)
-    y[t] += 20 * kMotionSigma *
-            std::sin(2 * std::numbers::pi * 1.3 * static_cast<double>(t) / kMotionRate);
+    y[t] += 20 * kMotionSigma * std::sin(2 * std::numbers::pi * 1.3 * static_cast<double>(t) / kMotionRate);
   const Motion motion = motion_of(y);
   REQUIRE(motion.moving_s.size() == 1);
   CHECK(motion.moving_s[0].low <= 300);
@@ -172,8 +166,8 @@ TEST_CASE("motion: a recording in motion throughout is called one") {
   double strength = 0;
   for (std::size_t t = 0; t < y.size(); ++t) {
     strength += -strength * 0.001 + 0.05 * source.gauss()();
-    y[t] += 20 * kMotionSigma * std::exp(strength) *
-            std::sin(2 * std::numbers::pi * static_cast<double>(t) / kMotionRate);
+    y[t] +=
+        20 * kMotionSigma * std::exp(strength) * std::sin(2 * std::numbers::pi * static_cast<double>(t) / kMotionRate);
   }
   const Motion motion = motion_of(y);
   CHECK(motion.whole);
@@ -202,10 +196,8 @@ TEST_CASE("motion: a staircase and a short record are not judged") {
 
 TEST_CASE("motion: a gyroscope that was turned by hand lay still for 39 s before") {
   NEEDS_SHARED("data/tilt_broad_02_undisturbed_slow_rotation_B.npy");
-  const test::Array array =
-      test::npy(test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy"));
-  const std::optional<Interval> still =
-      find_motion(event_series(array.column(2), 2000 / 7.0)).still_s;
+  const test::Array array = test::npy(test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy"));
+  const std::optional<Interval> still = find_motion(event_series(array.column(2), 2000 / 7.0)).still_s;
   REQUIRE(still.has_value());
   CHECK(still->low == 0);
   CHECK(still->high == Approx(39).margin(1));

@@ -22,11 +22,9 @@ TEST_CASE("power bins: every coefficient of the record counts once, wherever it 
   test::Gaussian gauss(3);
   std::vector<double> record(160000);
   for (double& y : record) y = gauss();
-  for (const std::size_t samples :
-       {700UL, 32768UL, 32800UL, 50000UL, 65536UL, 120000UL, 160000UL}) {
+  for (const std::size_t samples : {700UL, 32768UL, 32800UL, 50000UL, 65536UL, 120000UL, 160000UL}) {
     double count = 0;
-    for (const PowerBin& bin :
-         bins_in_blocks({record.begin(), record.begin() + static_cast<std::ptrdiff_t>(samples)}))
+    for (const PowerBin& bin : bins_in_blocks({record.begin(), record.begin() + static_cast<std::ptrdiff_t>(samples)}))
       count += bin.dof;
     CAPTURE(samples);
     // The mean is none of them, and where the ways of a long record meet a few are left out: up to

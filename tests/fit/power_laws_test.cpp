@@ -21,8 +21,7 @@ std::vector<double> power_law(std::uint64_t seed, int alpha, std::size_t n) {
   test::Gaussian normal(seed);
   const double d = -alpha / 2.0;
   std::vector<double> h(n, 1.0), w(n), y(n, 0.0);
-  for (std::size_t k = 1; k < n; ++k)
-    h[k] = h[k - 1] * (static_cast<double>(k) - 1 + d) / static_cast<double>(k);
+  for (std::size_t k = 1; k < n; ++k) h[k] = h[k - 1] * (static_cast<double>(k) - 1 + d) / static_cast<double>(k);
   for (double& v : w) v = normal();
   for (std::size_t t = 0; t < n; ++t)
     for (std::size_t k = 0; k <= t; ++k) y[t] += h[k] * w[t - k];
@@ -34,13 +33,11 @@ std::vector<double> power_law(std::uint64_t seed, int alpha, std::size_t n) {
 TEST_CASE("transform means of flicker phase noise") {
   const std::size_t n = 5000;
   std::vector<double> covariance(n);
-  for (std::size_t j = 0; j < n; ++j)
-    covariance[j] = -4 / M_PI / (4 * static_cast<double>(j * j) - 1);
+  for (std::size_t j = 0; j < n; ++j) covariance[j] = -4 / M_PI / (4 * static_cast<double>(j * j) - 1);
   const std::vector<double> exact = dct_means_of_covariance(covariance);
   for (const std::size_t k : {1U, 2U, 3U, 10U, 100U, 2500U, 4999U}) {
     CAPTURE(k);
-    CHECK(flicker_phase_dct_mean(static_cast<double>(k), n, 1) ==
-          Approx(exact[k - 1]).epsilon(k == 1 ? 5e-3 : 1e-3));
+    CHECK(flicker_phase_dct_mean(static_cast<double>(k), n, 1) == Approx(exact[k - 1]).epsilon(k == 1 ? 5e-3 : 1e-3));
   }
   // Means of samples: the same bins as differences of every fourth phase reading.
   PowerBin bin;
@@ -79,8 +76,7 @@ TEST_CASE("each of the five power laws gets its own coefficient") {
       const std::vector<PowerLaw> laws = power_laws(fit);
       REQUIRE(laws.size() == 5);
       CHECK(fit[Term::ramp].status == Status::not_fitted);
-      const std::vector<double> unit = {
-          8 * M_PI * M_PI, 4 * M_PI, 2, 1 / M_PI, 1 / (2 * M_PI * M_PI)};
+      const std::vector<double> unit = {8 * M_PI * M_PI, 4 * M_PI, 2, 1 / M_PI, 1 / (2 * M_PI * M_PI)};
       bool others = false;
       for (std::size_t i = 0; i < 5; ++i) {
         CAPTURE(alpha, seed, laws[i].alpha, laws[i].name);

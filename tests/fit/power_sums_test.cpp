@@ -30,8 +30,7 @@ std::vector<double> white_walk(std::size_t n, double offset, double walk_step = 
 
 PowerSums power_in_parts(const std::vector<double>& y) {
   return test::joined_parts<PowerSums>(
-      y,
-      kLeafOfFour,
+      y, kLeafOfFour,
       [](std::span<const double> part, bool last) {
         PowerPart one;
         one.push(part);
@@ -64,18 +63,13 @@ std::vector<std::uint64_t> series_of(const std::vector<double>& y) {
 }
 
 void blank(std::vector<double>& y, std::size_t from, std::size_t to) {
-  std::fill(y.begin() + static_cast<std::ptrdiff_t>(from),
-            y.begin() + static_cast<std::ptrdiff_t>(to),
-            std::nan(""));
+  std::fill(y.begin() + static_cast<std::ptrdiff_t>(from), y.begin() + static_cast<std::ptrdiff_t>(to), std::nan(""));
 }
 
 }  // namespace
 
 TEST_CASE("power sums: parts of a clean record are the record, whatever the length of the last") {
-  for (const std::size_t n : {std::size_t{9},
-                              std::size_t{5000},
-                              kLeafOfFour + 1,
-                              3 * kLeafOfFour + 40000,
+  for (const std::size_t n : {std::size_t{9}, std::size_t{5000}, kLeafOfFour + 1, 3 * kLeafOfFour + 40000,
                               5 * kLeafOfFour + PowerPart::kBlock + 700})
     check_bins(white_walk(n, 0.3), 1e-12);
 }
@@ -97,8 +91,7 @@ TEST_CASE("power sums: a long gap ends a segment, also when two parts share it")
   REQUIRE(series_of(part) == std::vector<std::uint64_t>{256});  // twice
 }
 
-TEST_CASE(
-    "power sums: of white noise with missing samples, the mean of every bin is its variance") {
+TEST_CASE("power sums: of white noise with missing samples, the mean of every bin is its variance") {
   std::vector<double> y = white_walk(6 * kLeafOfFour + 1234, 0.3, 0);
   std::mt19937_64 engine(3);
   for (double& x : y)

@@ -12,9 +12,7 @@ using namespace libchar;
 
 namespace {
 
-double density(double x) {
-  return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi);
-}
+double density(double x) { return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi); }
 
 /// Of z ~ N(mean, 1) reported when z > c, the share whose lower limit is below the mean.
 double share_below(double mean, double c) {
@@ -46,8 +44,7 @@ TEST_CASE("selected lower limits: zero at the threshold, the plain limit far fro
   CHECK(selected_rise(INFINITY, 5.41) == kTwoSided95);
 }
 
-TEST_CASE(
-    "the value in the model of all terms is right on average where a neighbour is not detected") {
+TEST_CASE("the value in the model of all terms is right on average where a neighbour is not detected") {
   constexpr std::size_t n = 16384;
   constexpr double kFlicker = 0.15, kWalk = 0.003;
   test::NoiseSource source(n, 1, 77);
@@ -87,7 +84,6 @@ TEST_CASE("where all terms are reported the model of all terms is that of the re
     CHECK(fit[term].status == Status::detected);
     REQUIRE(fit[term].in_all);
     CHECK(fit[term].in_all->square == Approx(*fit[term].value * *fit[term].value).epsilon(1e-6));
-    CHECK(fit[term].in_all->sd ==
-          Approx(2 * fit[term].relative_sd * fit[term].in_all->square).epsilon(0.03));
+    CHECK(fit[term].in_all->sd == Approx(2 * fit[term].relative_sd * fit[term].in_all->square).epsilon(0.03));
   }
 }

@@ -31,8 +31,7 @@ std::vector<PowerBin> by_blocks(const std::vector<double>& x, std::size_t& taken
   std::span<const double> rest = x;
   for (taken = 0; rest.size() >= kBlock; rest = rest.subspan(kBlock)) {
     const auto piece = rest.first(kBlock);
-    const bool whole =
-        std::none_of(piece.begin(), piece.end(), [](double v) { return std::isnan(v); });
+    const bool whole = std::none_of(piece.begin(), piece.end(), [](double v) { return std::isnan(v); });
     if (!blocks.offer(piece, whole)) continue;
     ++taken;
     const auto c = dct.transform(piece);
@@ -82,8 +81,7 @@ TEST_CASE("after a missing sample the blocks no longer fit and are transformed b
 
 TEST_CASE("a long gap between taken blocks starts a new segment") {
   auto x = walk(8 * kBlock + 10);
-  for (std::size_t t = 2 * kBlock; t < 4 * kBlock; ++t)
-    x[t] = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t t = 2 * kBlock; t < 4 * kBlock; ++t) x[t] = std::numeric_limits<double>::quiet_NaN();
   std::size_t taken = 0;
   const auto bins = by_blocks(x, taken);
   CHECK(taken == 6);

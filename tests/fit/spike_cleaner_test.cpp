@@ -139,9 +139,7 @@ Record telegraph(std::size_t n, std::uint64_t seed) {
   return y;
 }
 
-Record flicker(std::size_t n, std::uint64_t seed) {
-  return test::NoiseSource(n, 100, seed).record(0, 1, 0);
-}
+Record flicker(std::size_t n, std::uint64_t seed) { return test::NoiseSource(n, 100, seed).record(0, 1, 0); }
 
 Record with_spikes(std::size_t n, std::uint64_t seed, double share, double size) {
   Record y = white(n, seed);
@@ -191,15 +189,9 @@ TEST_CASE("the first and the last rows, pairs and runs of wild rows") {
     const char* name;
     std::size_t from, count;
   };
-  for (const Fault fault : {Fault{"first", 0, 1},
-                            Fault{"first ten", 0, 10},
-                            Fault{"second", 1, 1},
-                            Fault{"pair", 20000, 2},
-                            Fault{"ten", 8190, 10},
-                            Fault{"sixteen", 777, 16},
-                            Fault{"last", n - 1, 1},
-                            Fault{"last but one", n - 2, 1},
-                            Fault{"last ten", n - 10, 10}}) {
+  for (const Fault fault : {Fault{"first", 0, 1}, Fault{"first ten", 0, 10}, Fault{"second", 1, 1},
+                            Fault{"pair", 20000, 2}, Fault{"ten", 8190, 10}, Fault{"sixteen", 777, 16},
+                            Fault{"last", n - 1, 1}, Fault{"last but one", n - 2, 1}, Fault{"last ten", n - 10, 10}}) {
     Record y = white(n, 11, 981);  // an accelerometer at 9.81 that writes zeros
     for (std::size_t t = fault.from; t < fault.from + fault.count; ++t) y[t] = 0;
     const Outcome found = outcome(y);
@@ -289,8 +281,7 @@ TEST_CASE("what is found does not depend on how the samples are pushed") {
     CHECK(other->count.log_size == whole.count.log_size);
     bool same = true;
     for (std::size_t t = 0; t < y.size(); ++t)
-      same &= std::isnan(whole.cleaned[t]) ? std::isnan(other->cleaned[t])
-                                           : whole.cleaned[t] == other->cleaned[t];
+      same &= std::isnan(whole.cleaned[t]) ? std::isnan(other->cleaned[t]) : whole.cleaned[t] == other->cleaned[t];
     CHECK(same);
   }
 }

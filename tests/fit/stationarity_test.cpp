@@ -36,9 +36,7 @@ Record louder_between(unsigned seed, double factor, double from, double to) {
   return y;
 }
 
-Stationarity of(const Record& y) {
-  return fit_record(y, kSteadyRate, nullptr).stationarity;
-}
+Stationarity of(const Record& y) { return fit_record(y, kSteadyRate, nullptr).stationarity; }
 
 }  // namespace
 
@@ -78,16 +76,14 @@ TEST_CASE("stationarity: the spread is that of the stretches") {
     const double log_factor = 0.06 * normal();
     sum += log_factor;
     squares += log_factor * log_factor;
-    for (std::size_t t = s * kSteadySamples / 16; t < (s + 1) * kSteadySamples / 16; ++t)
-      y[t] *= std::exp(log_factor);
+    for (std::size_t t = s * kSteadySamples / 16; t < (s + 1) * kSteadySamples / 16; ++t) y[t] *= std::exp(log_factor);
   }
   const double sd = std::sqrt((squares - sum * sum / 16) / 15);
   const Stationarity found = of(y);
   REQUIRE_FALSE(found.steady);
   CHECK(found.spread[0].relative_sd == Approx(sd).epsilon(0.15));
   // Student's t of fifteen degrees of freedom, and the mean of sixteen.
-  CHECK(spread_reach(found, 0.01) ==
-        Approx(2.1314 * std::sqrt(17.0 / 16) * found.spread[0].relative_sd).epsilon(1e-4));
+  CHECK(spread_reach(found, 0.01) == Approx(2.1314 * std::sqrt(17.0 / 16) * found.spread[0].relative_sd).epsilon(1e-4));
   CHECK(spread_reach(found, 1e6) == spread_reach(found, found.spread.back().tau_s));
 }
 
@@ -101,10 +97,8 @@ TEST_CASE("stationarity: scale and offset change nothing, and time reversed is t
   REQUIRE(again.spread.size() == found.spread.size());
   REQUIRE(back.spread.size() == found.spread.size());
   for (std::size_t i = 0; i < found.spread.size(); ++i) {
-    CHECK(again.spread[i].relative_sd ==
-          Approx(found.spread[i].relative_sd).epsilon(1e-3).margin(1e-5));
-    CHECK(back.spread[i].relative_sd ==
-          Approx(found.spread[i].relative_sd).epsilon(0.05).margin(0.01));
+    CHECK(again.spread[i].relative_sd == Approx(found.spread[i].relative_sd).epsilon(1e-3).margin(1e-5));
+    CHECK(back.spread[i].relative_sd == Approx(found.spread[i].relative_sd).epsilon(0.05).margin(0.01));
   }
 }
 

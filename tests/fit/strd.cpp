@@ -23,9 +23,8 @@ T strd_model(const std::string& name, const T* b, const double* x) {
   if (family == "Chwirut") return exp(-b[0] * v) / (b[1] + b[2] * v);
   if (name == "DanWood") return b[0] * pow(T(v), b[1]);
   if (name == "ENSO")
-    return b[0] + b[1] * cos(2 * kPi * v / 12) + b[2] * sin(2 * kPi * v / 12) +
-           b[4] * cos(2 * kPi * v / b[3]) + b[5] * sin(2 * kPi * v / b[3]) +
-           b[7] * cos(2 * kPi * v / b[6]) + b[8] * sin(2 * kPi * v / b[6]);
+    return b[0] + b[1] * cos(2 * kPi * v / 12) + b[2] * sin(2 * kPi * v / 12) + b[4] * cos(2 * kPi * v / b[3]) +
+           b[5] * sin(2 * kPi * v / b[3]) + b[7] * cos(2 * kPi * v / b[6]) + b[8] * sin(2 * kPi * v / b[6]);
   if (name == "Eckerle4") return b[0] / b[1] * exp(-0.5 * (v - b[2]) * (v - b[2]) / (b[1] * b[1]));
   if (family == "Gauss")
     return b[0] * exp(-b[1] * v) + b[2] * exp(-(v - b[3]) * (v - b[3]) / (b[4] * b[4])) +
@@ -33,8 +32,7 @@ T strd_model(const std::string& name, const T* b, const double* x) {
   if (name == "Hahn1" || name == "Thurber")
     return (b[0] + v * (b[1] + v * (b[2] + v * b[3]))) / (1.0 + v * (b[4] + v * (b[5] + v * b[6])));
   if (name == "Kirby2") return (b[0] + v * (b[1] + v * b[2])) / (1.0 + v * (b[3] + v * b[4]));
-  if (family == "Lanczos")
-    return b[0] * exp(-b[1] * v) + b[2] * exp(-b[3] * v) + b[4] * exp(-b[5] * v);
+  if (family == "Lanczos") return b[0] * exp(-b[1] * v) + b[2] * exp(-b[3] * v) + b[4] * exp(-b[5] * v);
   if (name == "MGH09") return b[0] * (v * v + v * b[1]) / (v * v + v * b[2] + b[3]);
   if (name == "MGH10") return b[0] * exp(b[1] / (v + b[2]));
   if (name == "MGH17") return b[0] + b[1] * exp(-v * b[3]) + b[2] * exp(-v * b[4]);
@@ -65,13 +63,9 @@ struct StrdResidual {
   }
 };
 
-void add_residuals(const StrdProblem& problem,
-                   const std::vector<double>& scale,
-                   double* u,
-                   ceres::Problem& to) {
+void add_residuals(const StrdProblem& problem, const std::vector<double>& scale, double* u, ceres::Problem& to) {
   for (const StrdRow& row : problem.rows) {
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<StrdResidual, 4>(
-        new StrdResidual{&problem, &row, scale});
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<StrdResidual, 4>(new StrdResidual{&problem, &row, scale});
     cost->AddParameterBlock(static_cast<int>(scale.size()));
     cost->SetNumResiduals(1);
     to.AddResidualBlock(cost, nullptr, u);
@@ -87,9 +81,7 @@ ceres::Solver::Options settings(bool own) {
 
 }  // namespace
 
-StrdSolution solved(const StrdProblem& problem,
-                    const std::vector<double>& start,
-                    bool own_settings) {
+StrdSolution solved(const StrdProblem& problem, const std::vector<double>& start, bool own_settings) {
   const libchar::SilentGlog silent;
   StrdSolution out{start, {}, INFINITY};
   ceres::Problem as_given;
@@ -103,8 +95,7 @@ StrdSolution solved(const StrdProblem& problem,
   add_residuals(problem, out.b, ones.data(), in_shares);
   ceres::Covariance covariance(libchar::exact_covariance_options());
   const std::vector<std::pair<const double*, const double*>> wanted = {{ones.data(), ones.data()}};
-  if (!covariance.Compute(wanted, &in_shares) ||
-      !covariance.GetCovarianceBlock(ones.data(), ones.data(), block.data()))
+  if (!covariance.Compute(wanted, &in_shares) || !covariance.GetCovarianceBlock(ones.data(), ones.data(), block.data()))
     return out;
   const double s2 = 2 * out.cost / static_cast<double>(problem.rows.size() - start.size());
   for (std::size_t i = 0; i < start.size(); ++i)

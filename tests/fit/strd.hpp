@@ -26,9 +26,7 @@ struct StrdSolution {
 };
 
 /// With our settings, or with Ceres' own.
-StrdSolution solved(const StrdProblem& problem,
-                    const std::vector<double>& start,
-                    bool own_settings = true);
+StrdSolution solved(const StrdProblem& problem, const std::vector<double>& start, bool own_settings = true);
 
 /// Our tolerances: function, gradient, parameter.
 std::array<double, 3> solver_tolerances();

@@ -90,8 +90,7 @@ TEST_CASE("NIST's 54 nonlinear problems to six digits, standard errors to four")
   for (const StrdProblem& problem : problems)
     for (const int start : {0, 1}) {
       CAPTURE(problem.name, start + 1);
-      const StrdSolution found =
-          best_of_starts(problem, problem.starts[static_cast<std::size_t>(start)]);
+      const StrdSolution found = best_of_starts(problem, problem.starts[static_cast<std::size_t>(start)]);
       const double digits = digits_of(found.b, problem.certified);
       CHECK(digits >= 6);
       // Lanczos1 was made without noise: its residuals, 1e-13 of the data, are rounding.

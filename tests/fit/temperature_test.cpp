@@ -26,8 +26,7 @@ constexpr double kWarmQ = 5e-3, kWarmB = 5e-3;
 TEST_CASE("temperature: a record that it does not move is left alone") {
   // 3 of 1200 in a longer run (docs/theory/events.md); 1 % is promised.
   int alarms = 0;
-  for (const Weather kind :
-       {Weather::drifting, Weather::daily, Weather::warming, Weather::cycling}) {
+  for (const Weather kind : {Weather::drifting, Weather::daily, Weather::warming, Weather::cycling}) {
     test::NoiseSource source(kWarmSamples, kWarmRate, 107 + static_cast<unsigned>(kind));
     for (const double k : {0.0, 1e-3}) {
       for (int i = 0; i < 10; ++i) {
@@ -66,9 +65,8 @@ TEST_CASE("temperature: what it does is found with its lag, and the walk stays w
     with += fit.theta[2];
     without += std::pow(effect.without[2].value.value_or(0), 2);
     CHECK(fit.remedies.back().kind == "temperature");
-    CHECK(std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& s) {
-      return s.sentence.find("With temperature left in, K would be") == 0;
-    }));
+    CHECK(std::any_of(fit.findings.begin(), fit.findings.end(),
+                      [](const Finding& s) { return s.sentence.find("With temperature left in, K would be") == 0; }));
   }
   CHECK(covered >= kRecords - 1);
   CHECK(lag_covered >= kRecords - 1);
@@ -133,8 +131,7 @@ TEST_CASE("temperature: one that says nothing is refused in a sentence") {
     }
     return std::string();
   };
-  for (std::size_t i = 10'000; i < 20'000; ++i)
-    t.samples[i] = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 10'000; i < 20'000; ++i) t.samples[i] = std::numeric_limits<double>::quiet_NaN();
   CHECK(what().find("is missing for 16.7 min from 1000 s on") != std::string::npos);
   t.samples.assign(kWarmSamples, 21.5);
   CHECK(what().find("is constant, 21.5 throughout") != std::string::npos);

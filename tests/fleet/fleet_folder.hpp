@@ -20,16 +20,14 @@ inline void write_file(const std::filesystem::path& path, const std::string& byt
 }
 
 /// DIR/d0.csv …: two channels of noise at 100 Hz, other numbers in each.
-inline std::vector<std::string> write_logs(const std::filesystem::path& folder,
-                                           std::size_t count,
+inline std::vector<std::string> write_logs(const std::filesystem::path& folder, std::size_t count,
                                            std::size_t rows = 600) {
   std::vector<std::string> logs;
   for (std::size_t d = 0; d < count; ++d) {
     Gaussian gauss(d + 1);
     std::string text = "t[s],gx[deg/s],gy[deg/s]\n";
     for (std::size_t k = 0; k < rows; ++k)
-      text +=
-          fmt::format("{:.2f},{:.6f},{:.6f}\n", static_cast<double>(k) / 100, gauss(), 2 * gauss());
+      text += fmt::format("{:.2f},{:.6f},{:.6f}\n", static_cast<double>(k) / 100, gauss(), 2 * gauss());
     logs.push_back((folder / fmt::format("d{}.csv", d)).string());
     write_file(logs.back(), text);
   }
@@ -37,11 +35,8 @@ inline std::vector<std::string> write_logs(const std::filesystem::path& folder,
 }
 
 /// Rows of channels c0, c1… of float64 in numpy's format; noise, another one in each channel.
-inline std::string write_rows(const std::filesystem::path& path,
-                              std::size_t channels,
-                              std::size_t rows) {
-  std::string head = fmt::format(
-      "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, channels);
+inline std::string write_rows(const std::filesystem::path& path, std::size_t channels, std::size_t rows) {
+  std::string head = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, channels);
   head.resize(117, ' ');
   head += '\n';
   std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
@@ -49,19 +44,15 @@ inline std::string write_rows(const std::filesystem::path& path,
   Gaussian gauss(channels);
   std::vector<double> values;
   for (std::size_t k = 0; k < rows; ++k)
-    for (std::size_t c = 0; c < channels; ++c)
-      values.push_back(static_cast<double>(c + 1) * gauss());
+    for (std::size_t c = 0; c < channels; ++c) values.push_back(static_cast<double>(c + 1) * gauss());
   bytes.append(reinterpret_cast<const char*>(values.data()), 8 * values.size());
   write_file(path, bytes);
   return path.string();
 }
 
 /// One channel of float64 in numpy's format: a log that is divided.
-inline std::string write_long_log(const std::filesystem::path& path,
-                                  std::uint64_t seed,
-                                  std::size_t rows) {
-  std::string head =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", rows);
+inline std::string write_long_log(const std::filesystem::path& path, std::uint64_t seed, std::size_t rows) {
+  std::string head = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", rows);
   head.resize(117, ' ');
   head += '\n';
   std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
@@ -75,8 +66,7 @@ inline std::string write_long_log(const std::filesystem::path& path,
   return path.string();
 }
 
-inline libchar::FleetPlan planned(const std::vector<std::string>& logs,
-                                  const libchar::FleetPlanOptions& options = {}) {
+inline libchar::FleetPlan planned(const std::vector<std::string>& logs, const libchar::FleetPlanOptions& options = {}) {
   return libchar::plan_fleet(libchar::manifest_of_logs(logs), options);
 }
 

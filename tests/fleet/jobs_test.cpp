@@ -97,8 +97,7 @@ TEST_CASE("an export has a list of tasks for each job, and the engine's own file
   for (std::size_t k = 0; k < 12; ++k) CHECK_THAT(tasks, Contains(task_file(k) + "\n"));
   const std::string slurm = test::slurp(folder / "fleet.slurm.sh");
   CHECK_THAT(slurm, Contains("--mem=151M") && Contains("--dependency=\"afterany$before\""));
-  CHECK_THAT(test::slurp(folder / "fleet.slurm.element.sh"),
-             Contains("sensorchar fleet run --quiet --threads 1"));
+  CHECK_THAT(test::slurp(folder / "fleet.slurm.element.sh"), Contains("sensorchar fleet run --quiet --threads 1"));
   CHECK_THAT(test::slurp(folder / "Snakefile"), Contains("\"mem_mb\": 151"));
 }
 
@@ -113,21 +112,17 @@ TEST_CASE("workers call the program by a path with any letters, or by a command 
   status.missing = {5, 6};
   const auto jobs = jobs_of(plan, status, options);
   REQUIRE(jobs.size() == 1);
-  const std::string expected =
-      fmt::format("fleet run --quiet --threads 1 {} {}\n", task_file(5), task_file(6));
+  const std::string expected = fmt::format("fleet run --quiet --threads 1 {} {}\n", task_file(5), task_file(6));
   const fs::path program = folder / "my {} 'bin' $x" / "sensor{char}";
   write_program(program, calls);
   write_program(folder / "plain" / "sensorchar", calls);
   const std::string line = fmt::format("env A=1 '{}'", (folder / "plain" / "sensorchar").string());
   const std::string slurm =
-      fmt::format("cd '{}' && SLURM_ARRAY_TASK_ID=1 sh fleet.slurm.element.sh jobs/array-1.txt",
-                  fleet.string());
+      fmt::format("cd '{}' && SLURM_ARRAY_TASK_ID=1 sh fleet.slurm.element.sh jobs/array-1.txt", fleet.string());
   const std::map<std::string, std::string> starts = {
       {"slurm", slurm},
       {"parallel", fmt::format("sh '{}/fleet.parallel.sh' 2> /dev/null", fleet.string())},
-      {"snakemake",
-       fmt::format("cd '{}' && snakemake --cores 1 > log 2>&1 || cat log jobs/*.log",
-                   fleet.string())}};
+      {"snakemake", fmt::format("cd '{}' && snakemake --cores 1 > log 2>&1 || cat log jobs/*.log", fleet.string())}};
   for (const Engine& engine : engines()) {
     if (engine.name != "slurm" && !is_there(engine.name)) continue;
     for (const std::string& one : {program.string(), line}) {
@@ -140,17 +135,15 @@ TEST_CASE("workers call the program by a path with any letters, or by a command 
     }
   }
   if (is_there("parallel")) {  // another machine begins in another folder
-    test::write_file(folder / "ssh",
-                     fmt::format("#!/bin/bash\nshift\n[ \"$1\" = -- ] && shift\ncd '{}'\n"
-                                 "export SHELL=/bin/sh  # as sshd does\nexec bash -c \"$*\"\n",
-                                 folder.path().string()));
+    test::write_file(folder / "ssh", fmt::format("#!/bin/bash\nshift\n[ \"$1\" = -- ] && shift\ncd '{}'\n"
+                                                 "export SHELL=/bin/sh  # as sshd does\nexec bash -c \"$*\"\n",
+                                                 folder.path().string()));
     fs::permissions(folder / "ssh", fs::perms::owner_all);
     export_jobs(jobs, engines()[2], fleet, options);
     fs::remove(calls);
     CHECK(std::system(fmt::format("PARALLEL_SSH='{}' sh '{}/fleet.parallel.sh' --sshlogin 1/worker "
                                   "2> /dev/null",
-                                  (folder / "ssh").string(),
-                                  fleet.string())
+                                  (folder / "ssh").string(), fleet.string())
                           .c_str()) == 0);
     CHECK(test::slurp(calls) == expected);
   }

@@ -26,15 +26,14 @@ const std::string kHead = "format: fleet-manifest\nversion: 1\n";
 }  // namespace
 
 TEST_CASE("a manifest: defaults, what an entry sets over them, paths from its folder") {
-  const Manifest m =
-      parse_manifest(kHead +
-                         "defaults: {type: imu-x, batch: b1, limits: sheet.yaml, options: "
-                         "{reading: {rate_hz: 200}}}\n"
-                         "devices:\n"
-                         "  - {device: A01, log: a/01.npy, temperature_c: 25}\n"
-                         "  - {log: /logs/02.npy, batch: b2, options: {reading: {rate_hz: 100}}}\n"
-                         "  - {device: A03, log: ../c.csv, options: {reading: {rate_hz: 200}}}\n",
-                     "/fleet/line7.yaml");
+  const Manifest m = parse_manifest(kHead +
+                                        "defaults: {type: imu-x, batch: b1, limits: sheet.yaml, options: "
+                                        "{reading: {rate_hz: 200}}}\n"
+                                        "devices:\n"
+                                        "  - {device: A01, log: a/01.npy, temperature_c: 25}\n"
+                                        "  - {log: /logs/02.npy, batch: b2, options: {reading: {rate_hz: 100}}}\n"
+                                        "  - {device: A03, log: ../c.csv, options: {reading: {rate_hz: 200}}}\n",
+                                    "/fleet/line7.yaml");
   REQUIRE(m.devices.size() == 3);
   CHECK(m.devices[0].log == "/fleet/a/01.npy");
   CHECK(m.devices[0].type == "imu-x");
@@ -66,15 +65,13 @@ TEST_CASE("a table is a manifest too: commas or semicolons, quotes, empty cells,
 
 TEST_CASE("tables are separated by tabs too, and their quotation marks are doubled") {
   const Manifest m = parse_manifest(
-      "device\tlog\ttype\nA, 1\ta.csv\t\n \"A \"\"1\"\", x\" \t\"C:\\b.csv\"\t5\" gauge\n",
-      "/fleet/line7.tsv");
+      "device\tlog\ttype\nA, 1\ta.csv\t\n \"A \"\"1\"\", x\" \t\"C:\\b.csv\"\t5\" gauge\n", "/fleet/line7.tsv");
   REQUIRE(m.devices.size() == 2);
   CHECK(m.devices[0].device == "A, 1");
   CHECK(m.devices[1].device == "A \"1\", x");
   CHECK(m.devices[1].log == "/fleet/C:\\b.csv");
   CHECK(m.devices[1].type == "5\" gauge");
-  const Manifest commas =
-      parse_manifest("\"device\",log\n\"A \"\"1\"\", x\",a.csv\n\"\"\"\",b.csv\n", "/t.CSV");
+  const Manifest commas = parse_manifest("\"device\",log\n\"A \"\"1\"\", x\",a.csv\n\"\"\"\",b.csv\n", "/t.CSV");
   CHECK(commas.devices[0].device == "A \"1\", x");
   CHECK(commas.devices[1].device == "\"");
 }
@@ -84,8 +81,7 @@ TEST_CASE("heads of a table are refused where they stand") {
              Contains("t.csv:2:1") && Contains("Device") && Contains("did you mean device?"));
   CHECK_THAT(refusal("device\tfile\nA\ta.csv\n", "t.tsv"),
              Contains("t.tsv:1:1") && Contains("file") && Contains("device, log, type"));
-  CHECK_THAT(refusal("device,batch\nA,b\n", "t.csv"),
-             Contains("t.csv:1:1") && Contains("columns.log is missing"));
+  CHECK_THAT(refusal("device,batch\nA,b\n", "t.csv"), Contains("t.csv:1:1") && Contains("columns.log is missing"));
 }
 
 TEST_CASE("what is wrong with a manifest is said with its place") {
@@ -96,14 +92,10 @@ TEST_CASE("what is wrong with a manifest is said with its place") {
   CHECK_THAT(refusal(kHead + "devices: []\n"), Contains("no device"));
   CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, temperature_c: hot}\n"),
              Contains("temperature_c") && Contains("line7.yaml:4"));
-  CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, options: {reading: {rate: 5}}}\n"),
-             Contains("rate"));
-  CHECK_THAT(refusal("device,log\nA,a.csv,3\n", "t.csv"),
-             Contains("t.csv:2:1: error E0781: 3 cells under 2 heads"));
-  CHECK_THAT(refusal("device,log,log\n", "t.csv"),
-             Contains("t.csv:1:1") && Contains("stands twice"));
-  CHECK_THAT(refusal("device,log\nA,\xE4.csv\n", "t.csv"),
-             Contains("UTF-8") && Contains("t.csv:2"));
+  CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, options: {reading: {rate: 5}}}\n"), Contains("rate"));
+  CHECK_THAT(refusal("device,log\nA,a.csv,3\n", "t.csv"), Contains("t.csv:2:1: error E0781: 3 cells under 2 heads"));
+  CHECK_THAT(refusal("device,log,log\n", "t.csv"), Contains("t.csv:1:1") && Contains("stands twice"));
+  CHECK_THAT(refusal("device,log\nA,\xE4.csv\n", "t.csv"), Contains("UTF-8") && Contains("t.csv:2"));
   CHECK_THAT(refusal("device,log\n\"A,a.csv\n", "t.csv"), Contains("not closed"));
   CHECK_THAT(refusal("device,log,temperature_c\nA,a.csv,25 °C\n", "t.csv"),
              Contains("write the number alone: it is in °C"));

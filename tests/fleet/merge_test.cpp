@@ -21,17 +21,14 @@ std::string report_of_fleets(const std::vector<std::string>& folders, const fs::
   refuse_common_logs(fleets);
   std::vector<DeviceRecord> records;
   for (const PlannedFleet& one : fleets)
-    for (DeviceRecord& record : merged_records(one.plan, one.folder, {false, to}))
-      records.push_back(std::move(record));
+    for (DeviceRecord& record : merged_records(one.plan, one.folder, {false, to})) records.push_back(std::move(record));
   const FleetLot lot = fleet_lot(records);
   std::string out;
   for (const OutputFile& file : test::written_fleet({records, &lot, "", {}, {}})) out += file.text;
   return out;
 }
 
-std::string fleet_in(const fs::path& folder,
-                     const std::vector<std::string>& logs,
-                     const FleetPlanOptions& options) {
+std::string fleet_in(const fs::path& folder, const std::vector<std::string>& logs, const FleetPlanOptions& options) {
   const FleetPlan plan = test::planned(logs, options);
   write_plan(plan, folder);
   test::run_all(plan, folder);
@@ -60,8 +57,7 @@ TEST_CASE("fleets in any order give the bytes of one fleet that has all devices"
 TEST_CASE("each device of several fleets is linked to the page in its own") {
   const test::TemporaryFolder folder;
   const auto logs = test::write_logs(folder.path(), 2);
-  const std::string a = fleet_in(folder / "a", {logs[0]}, {}),
-                    b = fleet_in(folder / "deep" / "b", {logs[1]}, {});
+  const std::string a = fleet_in(folder / "a", {logs[0]}, {}), b = fleet_in(folder / "deep" / "b", {logs[1]}, {});
   fs::create_directory(folder / "report");
   for (const PlannedFleet& one : read_fleets({a, b}))
     for (const DeviceRecord& r : merged_records(one.plan, one.folder, {false, folder / "report"})) {
@@ -82,9 +78,9 @@ TEST_CASE("one log in two fleets is refused by name, and so is one fleet named t
   options.by_channel = true;
   const std::string b = fleet_in(folder / "b", {logs[2], (folder / "again.csv").string()}, options);
   for (const auto& order : {std::vector{a, b}, std::vector{b, a}})
-    CHECK_THROWS_WITH(refuse_common_logs(read_fleets(order)),
-                      Contains("E0783") && Contains("d1 in " + a) && Contains("again in " + b) &&
-                          Contains("the same, byte by byte"));
+    CHECK_THROWS_WITH(refuse_common_logs(read_fleets(order)), Contains("E0783") && Contains("d1 in " + a) &&
+                                                                  Contains("again in " + b) &&
+                                                                  Contains("the same, byte by byte"));
   fs::create_directory_symlink(a, folder / "link");
   CHECK_THROWS_WITH(read_fleets({a, b, (folder / "link").string()}), Contains("E0795"));
   CHECK_THROWS_WITH(read_fleets({a, a + "/"}), Contains("named twice"));
@@ -113,8 +109,7 @@ std::vector<std::string> write_warm_logs(const fs::path& folder, const std::vect
     std::string text = "t[s],gx[deg/s],temp[degC]\n";
     for (int k = 0; k < 6000; ++k) {
       const double temperature = degrees + 6 - 0.002 * std::abs(k - 2999.5);
-      text += fmt::format(
-          "{:.2f},{:.6f},{:.4f}\n", k / 100.0, gauss() + 0.1 * temperature, temperature);
+      text += fmt::format("{:.2f},{:.6f},{:.4f}\n", k / 100.0, gauss() + 0.1 * temperature, temperature);
     }
     logs.push_back((folder / fmt::format("t{}.csv", degrees)).string());
     test::write_file(logs.back(), text);
@@ -124,8 +119,7 @@ std::vector<std::string> write_warm_logs(const fs::path& folder, const std::vect
 
 }  // namespace
 
-TEST_CASE(
-    "a log in two fleets is refused where one has its channels as units, with names of a list") {
+TEST_CASE("a log in two fleets is refused where one has its channels as units, with names of a list") {
   const test::TemporaryFolder folder;
   const std::vector<std::string> logs = {test::write_rows(folder / "a.npy", 2, 50),
                                          test::write_rows(folder / "b.npy", 3, 50)};
@@ -175,8 +169,7 @@ TEST_CASE("a thermometer in the log tells its temperature where the manifest say
   const FleetPlan whole = test::planned(logs), parts = test::planned(logs, by_channel);
   test::run_all(whole, folder / "whole");
   test::run_all(parts, folder / "parts");
-  const auto a = merged_records(whole, folder / "whole"),
-             b = merged_records(parts, folder / "parts");
+  const auto a = merged_records(whole, folder / "whole"), b = merged_records(parts, folder / "parts");
   for (std::size_t d = 0; d < 2; ++d) {
     CHECK(a[d].channels == b[d].channels);
     CHECK(a[d].temperature_c == b[d].temperature_c);
@@ -200,8 +193,7 @@ TEST_CASE("what was mended in a log is told by the worker, in the record, and in
   const FleetLot lot = fleet_lot(records);
   REQUIRE(!lot.notes.empty());
   CHECK_THAT(lot.notes.back(),
-             Contains("1 of 3 recordings read with warnings") &&
-                 Contains("of d1: " + records[1].warnings[0]));
+             Contains("1 of 3 recordings read with warnings") && Contains("of d1: " + records[1].warnings[0]));
 }
 
 TEST_CASE("what a log's channels are called is no way to characterize it, what is fitted is one") {
@@ -221,9 +213,7 @@ TEST_CASE("what a log's channels are called is no way to characterize it, what i
     CHECK(records[1].problem == "");
     return fleet_lot(records).notes;
   };
-  CHECK(notes_of("read", [](CharacterizeOptions& o) {
-          o.reading.units = {"deg/s", "deg/s"};
-        }).empty());
+  CHECK(notes_of("read", [](CharacterizeOptions& o) { o.reading.units = {"deg/s", "deg/s"}; }).empty());
   const auto notes = notes_of("fitted", [](CharacterizeOptions& o) { o.spectrum.overlap = 0.25; });
   REQUIRE(notes.size() == 1);
   CHECK_THAT(notes[0], Contains("characterized with 2 settings"));

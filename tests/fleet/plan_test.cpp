@@ -41,9 +41,8 @@ TEST_CASE("a long log's channels can be units too: stretches of each, and a join
   std::string bytes(2 * kLeafSamples * 2, 'x');  // one leaf and a bit of two channels, a byte each
   bytes.resize(2 * (kLeafSamples + 1000));
   test::write_file(folder / "long.i8", bytes);
-  test::write_file(
-      folder / "long.i8.json",
-      R"({"dtype": "i8", "rate_hz": 100, "channels": [{"name": "a"}, {"name": "b"}]})");
+  test::write_file(folder / "long.i8.json",
+                   R"({"dtype": "i8", "rate_hz": 100, "channels": [{"name": "a"}, {"name": "b"}]})");
   FleetPlanOptions options;
   options.split_bytes = 1 << 20U;
   options.stretch_bytes = 1 << 20U;
@@ -79,8 +78,7 @@ TEST_CASE("a shorter plan in the same folder leaves no task of the longer one") 
   CHECK_FALSE(std::filesystem::exists(folder / "F" / task_file(2)));
 }
 
-TEST_CASE(
-    "one log twice is refused, and so are logs that cannot be read unless they may be skipped") {
+TEST_CASE("one log twice is refused, and so are logs that cannot be read unless they may be skipped") {
   const test::TemporaryFolder folder;
   auto logs = test::write_logs(folder.path(), 2);
   std::filesystem::copy_file(logs[0], folder / "copy.csv");
@@ -91,8 +89,7 @@ TEST_CASE(
   test::write_file(folder / "broken.npy", "\x93NUMPY, and no more");
   broken.push_back((folder / "broken.npy").string());
   broken.push_back((folder / "absent.csv").string());
-  CHECK_THROWS_WITH(test::planned(broken),
-                    Contains("2 of 4 logs cannot be read") && Contains("`skip_unreadable`"));
+  CHECK_THROWS_WITH(test::planned(broken), Contains("2 of 4 logs cannot be read") && Contains("`skip_unreadable`"));
   FleetPlanOptions options;
   options.skip_unreadable = true;
   const FleetPlan plan = test::planned(broken, options);
@@ -107,8 +104,7 @@ TEST_CASE("a task that a power cut has torn is read from the plan, one that was 
   const std::string task = (folder / "F" / task_file(1)).string();
   const std::string whole = test::slurp(task);
   CHECK(read_task(task).id == plan.units[1].id);
-  for (const std::string& torn :
-       {std::string(), whole.substr(0, 300), std::string(whole.size(), '\0')}) {
+  for (const std::string& torn : {std::string(), whole.substr(0, 300), std::string(whole.size(), '\0')}) {
     test::write_file(task, torn);
     CHECK(unit_text(read_task(task)) + "\n" == whole);
   }
@@ -142,8 +138,7 @@ TEST_CASE("limits that fit no channel are told before the work, with the entry o
   const test::TemporaryFolder folder;
   Manifest manifest = manifest_of_logs(test::write_logs(folder.path(), 2));
   const auto planned_with = [&](const std::string& block) {
-    test::write_file(folder / "sheet.yaml",
-                     "format: noise-limits\nversion: 1\nlimits:\n  - " + block + "\n");
+    test::write_file(folder / "sheet.yaml", "format: noise-limits\nversion: 1\nlimits:\n  - " + block + "\n");
     manifest.devices[1].limits = (folder / "sheet.yaml").string();
     manifest.devices[1].where = "line7.yaml:7:5";
     return plan_fleet(manifest, {});
@@ -159,8 +154,7 @@ TEST_CASE("limits that fit no channel are told before the work, with the entry o
   test::write_file(folder / "d0.csv", "t[s],ax[m/s^2]\n0,1\n0.01,2\n0.02,3\n");
   CHECK_NOTHROW(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"));
   manifest.devices[0].type = "other";
-  CHECK_THROWS_WITH(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"),
-                    Contains("ax"));
+  CHECK_THROWS_WITH(planned_with("{channels: [ax], white_noise: {value: 5, unit: m/s/√h}}"), Contains("ax"));
   // Limits without a type hold for types that have none too, as in the lot.
   CHECK_THROWS_WITH(planned_with("{channels: [gy], white_noise: {value: 5, unit: deg/√h}}"),
                     Contains("line7.yaml:7:5") && Contains("gy"));
@@ -195,9 +189,8 @@ TEST_CASE("what a plan replaces is known, and what is no plan is not overwritten
   }
   std::filesystem::create_directory(folder / "G");
   test::write_file(folder / "G" / "plan.jsonl", "{\"project\": 1}\n");
-  CHECK_THROWS_WITH(
-      write_plan(plan, folder / "G"),
-      Contains("E0784") && Contains("no plan of a fleet") && Contains("move it away"));
+  CHECK_THROWS_WITH(write_plan(plan, folder / "G"),
+                    Contains("E0784") && Contains("no plan of a fleet") && Contains("move it away"));
   CHECK(test::slurp(folder / "G" / "plan.jsonl") == "{\"project\": 1}\n");
   CHECK_FALSE(std::filesystem::exists(folder / "G" / "tasks"));
 }
@@ -209,20 +202,18 @@ TEST_CASE("logs that cannot be read are named with their entries, and no fleet i
   for (int k = 1; k < 8; ++k) text += fmt::format("D{},gone{}.csv\n", k, k);
   test::write_file(folder / "m.csv", text);
   const std::string path = (folder / "m.csv").string();
-  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), {}),
-                    Contains("7 of 8 logs") && Contains("m.csv:3:1: ") && Contains("m.csv:7:1: ") &&
-                        !Contains("m.csv:8:1: ") && Contains("mend the manifest, or plan"));
+  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), {}), Contains("7 of 8 logs") && Contains("m.csv:3:1: ") &&
+                                                             Contains("m.csv:7:1: ") && !Contains("m.csv:8:1: ") &&
+                                                             Contains("mend the manifest, or plan"));
   FleetPlanOptions skip;
   skip.skip_unreadable = true;
   CHECK(plan_fleet(read_manifest(path), skip).units.size() == 1);
   test::write_file(folder / "m.csv", "device,log\nA,gone.csv\n");
-  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), skip),
-                    Contains("1 of 1 logs") && !Contains("skip_unreadable"));
+  CHECK_THROWS_WITH(plan_fleet(read_manifest(path), skip), Contains("1 of 1 logs") && !Contains("skip_unreadable"));
   CHECK_THROWS_WITH(test::planned({(folder / "gone.csv").string()}),
                     Contains("name logs that can be read") && !Contains("manifest"));
   REQUIRE(::mkfifo((folder / "pipe.csv").c_str(), 0600) == 0);
-  CHECK_THROWS_WITH(test::planned({(folder / "pipe.csv").string()}),
-                    Contains("is not a regular file"));
+  CHECK_THROWS_WITH(test::planned({(folder / "pipe.csv").string()}), Contains("is not a regular file"));
 }
 
 TEST_CASE("a plan that is cut, or is none, is refused") {

@@ -21,14 +21,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path result_of(const fs::path& fleet, const FleetUnit& unit) {
-  return fleet / "results" / result_folder(unit.id);
-}
+fs::path result_of(const fs::path& fleet, const FleetUnit& unit) { return fleet / "results" / result_folder(unit.id); }
 
 std::string all_records(const FleetPlan& plan, const fs::path& fleet) {
   std::string out;
-  for (const DeviceRecord& record : merged_records(plan, fleet))
-    out += device_record_text(record) + "\n";
+  for (const DeviceRecord& record : merged_records(plan, fleet)) out += device_record_text(record) + "\n";
   return out;
 }
 
@@ -40,8 +37,7 @@ TEST_CASE("a unit is done once, its folder has the record and the reports") {
   const fs::path fleet = folder / "F";
   CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::done);
   CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::already_there);
-  for (const char* name :
-       {"device.record", "report.html", "report.json", "curves.csv", "gx.sensor.yaml"})
+  for (const char* name : {"device.record", "report.html", "report.json", "curves.csv", "gx.sensor.yaml"})
     CHECK(fs::exists(result_of(fleet, plan.units[0]) / name));
   const auto record = stored_record(fleet, plan.units[0].id);
   REQUIRE(record);
@@ -52,8 +48,7 @@ TEST_CASE("a unit is done once, its folder has the record and the reports") {
   CHECK(unpublished(fleet).empty());
 }
 
-TEST_CASE(
-    "results do not depend on the order, on the folder, or on channels being units of their own") {
+TEST_CASE("results do not depend on the order, on the folder, or on channels being units of their own") {
   const test::TemporaryFolder folder;
   const auto logs = test::write_logs(folder.path(), 3);
   const FleetPlan plan = test::planned(logs);
@@ -61,8 +56,7 @@ TEST_CASE(
   for (std::size_t k = plan.units.size(); k-- > 0;) run_unit(plan.units[k], folder / "B");
   for (const FleetUnit& unit : plan.units)
     for (const char* name : {"device.record", "report.html", "report.json", "curves.csv"})
-      CHECK(test::slurp(result_of(folder / "A", unit) / name) ==
-            test::slurp(result_of(folder / "B", unit) / name));
+      CHECK(test::slurp(result_of(folder / "A", unit) / name) == test::slurp(result_of(folder / "B", unit) / name));
   FleetPlanOptions options;
   options.by_channel = true;
   options.reports = false;
@@ -89,8 +83,7 @@ TEST_CASE("channels that are units of their own are what the whole log says of t
     CHECK(units == units_of_devices);
     test::run_all(whole, folder / "W");
     test::run_all(parts, folder / "P");
-    const auto expected = merged_records(whole, folder / "W"),
-               found = merged_records(parts, folder / "P");
+    const auto expected = merged_records(whole, folder / "W"), found = merged_records(parts, folder / "P");
     REQUIRE(found.size() == expected.size());
     for (std::size_t d = 0; d < found.size(); ++d) {
       REQUIRE(found[d].problem.empty());
@@ -162,8 +155,7 @@ TEST_CASE("a thermometer is read with each channel that is a unit, and is there 
   CHECK(parts.units.size() == 6);
   test::run_all(whole, folder / "W");
   test::run_all(parts, folder / "P");
-  const auto expected = merged_records(whole, folder / "W"),
-             found = merged_records(parts, folder / "P");
+  const auto expected = merged_records(whole, folder / "W"), found = merged_records(parts, folder / "P");
   for (std::size_t d = 0; d < 3; ++d) {
     REQUIRE(found[d].problem.empty());
     REQUIRE(found[d].channels.size() == 3);
@@ -172,8 +164,7 @@ TEST_CASE("a thermometer is read with each channel that is a unit, and is there 
     CHECK(found[d].settings == expected[d].settings);
   }
   manifest.options[0].reading.names = {"x", "y", "temp"};
-  CHECK_THROWS_WITH(plan_fleet(manifest, options),
-                    Contains("E0702") && Contains("no unit can be of one channel"));
+  CHECK_THROWS_WITH(plan_fleet(manifest, options), Contains("E0702") && Contains("no unit can be of one channel"));
   // A place is one among the channels that are read.
   manifest.options[0].reading.names.clear();
   manifest.options[0].temperature = "c2";
@@ -197,8 +188,7 @@ TEST_CASE("a damaged result counts as none, is named, and is computed again") {
   CHECK(status.done == 1);
   REQUIRE(status.damaged.size() == 1);
   CHECK_THAT(status.damaged[0], Contains("damaged") && Contains(plan.units[1].id));
-  CHECK_THROWS_WITH(merged_records(plan, fleet),
-                    Contains("1 of 2 units have no result") && Contains("d1"));
+  CHECK_THROWS_WITH(merged_records(plan, fleet), Contains("1 of 2 units have no result") && Contains("d1"));
   CHECK(run_unit(plan.units[1], fleet).outcome == UnitOutcome::done);
   CHECK(all_records(plan, fleet) == before);
   test::write_file(file.string(), "");
@@ -220,8 +210,7 @@ TEST_CASE("two workers on one unit: one result, no litter") {
   CHECK(stored_record(fleet, plan.units[0].id));
 }
 
-TEST_CASE(
-    "what a worker that is no more has begun is removed by the next one, that of others stays") {
+TEST_CASE("what a worker that is no more has begun is removed by the next one, that of others stays") {
   const test::TemporaryFolder folder;
   const FleetPlan plan = test::planned(test::write_logs(folder.path(), 1));
   const fs::path fleet = folder / "F";
@@ -242,8 +231,7 @@ TEST_CASE(
     test::write_file(path / "report.json", "{");
     return path;
   };
-  const fs::path dead = begun_by("", gone), alive = begun_by("", ::getppid()),
-                 elsewhere = begun_by("another", gone);
+  const fs::path dead = begun_by("", gone), alive = begun_by("", ::getppid()), elsewhere = begun_by("another", gone);
   CHECK(unpublished(fleet).size() == 3);
   CHECK(run_unit(plan.units[0], fleet).outcome == UnitOutcome::done);
   CHECK_FALSE(fs::exists(dead));
@@ -307,15 +295,13 @@ TEST_CASE("a log in which nothing could be fitted has no result, and says why") 
     for (const FleetUnit& unit : plan.units) {
       const UnitRun run = run_unit(unit, fleet);
       CHECK((run.outcome == UnitOutcome::no_result) == (unit.device == 1));
-      CHECK((unit.device == 0 ||
-             run.problem.find("no channel could be fitted; g") != std::string::npos));
+      CHECK((unit.device == 0 || run.problem.find("no channel could be fitted; g") != std::string::npos));
     }
     CHECK(fleet_status(plan, fleet).no_result == (by_channel ? 2 : 1));
     const auto records = merged_records(plan, fleet);
     CHECK(records[0].problem.empty());
-    CHECK_THAT(records[1].problem,
-               Contains("d1.csv: error E0711: no channel could be fitted; gx: no curves and no "
-                        "fit: 1 sample, and so no rate"));
+    CHECK_THAT(records[1].problem, Contains("d1.csv: error E0711: no channel could be fitted; gx: no curves and no "
+                                            "fit: 1 sample, and so no rate"));
     CHECK(records[1].channels.empty());
   }
 }

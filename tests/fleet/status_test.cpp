@@ -24,9 +24,7 @@ TEST_CASE("a log that has been joined needs its stretches no more") {
   REQUIRE(plan.units.size() == 3);
   run_unit(plan.units[0], fleet);
   run_unit(plan.units[1], fleet);
-  const auto state = [&](const FleetUnit& unit) {
-    return fleet / "results" / result_folder(unit.id) / state_file(0);
-  };
+  const auto state = [&](const FleetUnit& unit) { return fleet / "results" / result_folder(unit.id) / state_file(0); };
   // Cut before it is joined: a stretch that is missing.
   const auto whole = fs::file_size(state(plan.units[1]));
   const std::string kept = test::slurp(state(plan.units[1]));

@@ -30,8 +30,7 @@ std::string refused_sums(const std::string& text) {
 }
 
 /// A plan in which the digests of these logs are stated.
-FleetPlan stated_plan(const std::vector<std::string>& logs,
-                      const std::vector<std::string>& digests,
+FleetPlan stated_plan(const std::vector<std::string>& logs, const std::vector<std::string>& digests,
                       const FleetPlanOptions& options = {}) {
   CharacterizeOptions reading;
   reading.reading.rate_hz = 100;  // of logs without stamps
@@ -44,9 +43,8 @@ FleetPlan stated_plan(const std::vector<std::string>& logs,
 
 TEST_CASE("sums of sha256sum, in text and binary mode, with escapes, and of BSD") {
   const StatedDigests sums = parse_sums(
-      "# logs of line 7\r\n" + kDigestA + "  a.npy\n\n" + kDigestB + " *../b b.npy\r\n" + "\\" +
-          kDigestA + "  c\\\\d\\ne.npy\n" + "SHA256 (f (1).npy) = " + std::string(64, 'C') + "\n" +
-          kDigestB + "  /other/g.npy",
+      "# logs of line 7\r\n" + kDigestA + "  a.npy\n\n" + kDigestB + " *../b b.npy\r\n" + "\\" + kDigestA +
+          "  c\\\\d\\ne.npy\n" + "SHA256 (f (1).npy) = " + std::string(64, 'C') + "\n" + kDigestB + "  /other/g.npy",
       "/logs/SUMS");
   REQUIRE(sums.size() == 5);
   CHECK(sums.at("/logs/a.npy").sha256 == kDigestA);
@@ -58,17 +56,10 @@ TEST_CASE("sums of sha256sum, in text and binary mode, with escapes, and of BSD"
 }
 
 TEST_CASE("a line that is no sum, and two sums of one log, are refused with their places") {
-  for (const std::string& line : {std::string("a.npy"),
-                                  kDigestA,
-                                  kDigestA + "  ",
-                                  kDigestA + " a.npy",
-                                  kDigestA.substr(1) + "  a.npy",
-                                  kDigestA + "a  a.npy",
-                                  "g" + kDigestA.substr(1) + "  a.npy",
-                                  "SHA256 () = " + kDigestA,
-                                  "SHA256 (a.npy) = " + kDigestA.substr(1),
-                                  "MD5 (a.npy) = " + kDigestA,
-                                  std::string("\\")})
+  for (const std::string& line :
+       {std::string("a.npy"), kDigestA, kDigestA + "  ", kDigestA + " a.npy", kDigestA.substr(1) + "  a.npy",
+        kDigestA + "a  a.npy", "g" + kDigestA.substr(1) + "  a.npy", "SHA256 () = " + kDigestA,
+        "SHA256 (a.npy) = " + kDigestA.substr(1), "MD5 (a.npy) = " + kDigestA, std::string("\\")})
     CHECK_THAT(refused_sums(kDigestB + "  b.npy\n" + line + "\n"),
                Contains("/logs/SUMS:2:1: error E0792: expected a digest"));
   CHECK_THAT(refused_sums(kDigestA + "  a.npy\n" + kDigestB + "  x/../a.npy\n"),
@@ -79,19 +70,16 @@ TEST_CASE("a line that is no sum, and two sums of one log, are refused with thei
 TEST_CASE("a manifest states digests by entry and by column, and they have 64 digits") {
   const std::string head = "format: fleet-manifest\nversion: 1\ndevices:\n";
   const Manifest tree = parse_manifest(
-      head + "  - {log: a.npy, sha256: " + std::string(64, 'A') + "}\n  - {log: b.npy}\n",
-      "/logs/m.yaml");
+      head + "  - {log: a.npy, sha256: " + std::string(64, 'A') + "}\n  - {log: b.npy}\n", "/logs/m.yaml");
   CHECK(tree.devices[0].sha256 == kDigestA);
   CHECK(tree.devices[1].sha256.empty());
-  Manifest table =
-      parse_manifest("log,sha256\na.npy," + kDigestA + "\nb.npy,\nc.npy,\n", "/logs/m.csv");
+  Manifest table = parse_manifest("log,sha256\na.npy," + kDigestA + "\nb.npy,\nc.npy,\n", "/logs/m.csv");
   CHECK(table.devices[0].sha256 == kDigestA);
   CHECK(table.devices[1].sha256.empty());
   CHECK_THROWS_WITH(parse_manifest("log,sha256\na.npy,12ab\n", "m.csv"),
                     Contains("m.csv:2:1") && Contains("sha256") && Contains("64 hexadecimal"));
-  CHECK_THROWS_WITH(
-      parse_manifest(head + "  - {log: a.npy, sha256: " + kDigestA + "0}\n", "m.yaml"),
-      Contains("m.yaml:4") && Contains("64 hexadecimal"));
+  CHECK_THROWS_WITH(parse_manifest(head + "  - {log: a.npy, sha256: " + kDigestA + "0}\n", "m.yaml"),
+                    Contains("m.yaml:4") && Contains("64 hexadecimal"));
   // Sums beside it: what is in neither stays open, what differs is refused.
   CHECK(state_digests(parse_sums(kDigestB + "  b.npy\n", "/logs/SUMS"), table) == 1);
   CHECK(table.devices[1].sha256 == kDigestB);
@@ -113,8 +101,7 @@ TEST_CASE("digests that are stated give the plan and the results of digests that
   const auto a = merged_records(taken, folder / "A", {true, folder / "A"});
   const auto b = merged_records(claimed, folder / "B", {true, folder / "B"});
   CHECK(a == b);
-  CHECK_THROWS_WITH(stated_plan(logs, {kDigestA, kDigestA}),
-                    Contains("d0 and d1 have one digest, as it is stated"));
+  CHECK_THROWS_WITH(stated_plan(logs, {kDigestA, kDigestA}), Contains("d0 and d1 have one digest, as it is stated"));
 }
 
 TEST_CASE("a wrong digest is told by the worker, whatever the log holds") {
@@ -194,6 +181,5 @@ TEST_CASE("stretches of another log are none of this one") {
   CHECK_THROWS_WITH(run_unit(right.units[2], fleet), Contains("2 of 2 stretches"));
   test::run_all(right, fleet);
   test::run_all(right, folder / "G");
-  CHECK(merged_records(right, fleet, {false, fleet}) ==
-        merged_records(right, folder / "G", {false, folder / "G"}));
+  CHECK(merged_records(right, fleet, {false, fleet}) == merged_records(right, folder / "G", {false, folder / "G"}));
 }

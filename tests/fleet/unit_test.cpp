@@ -32,9 +32,7 @@ FleetUnit some_unit() {
   return unit;
 }
 
-std::string settings_text(const CharacterizeOptions& options) {
-  return json_of(settings_of(options)).dump();
-}
+std::string settings_text(const CharacterizeOptions& options) { return json_of(settings_of(options)).dump(); }
 
 }  // namespace
 
@@ -50,8 +48,7 @@ TEST_CASE("a task reads back as it was written, every setting with it") {
   CHECK(again.options->fit.terms == unit.options->fit.terms);
 }
 
-TEST_CASE(
-    "the name of a unit is that of its content: log, settings, stretch, not of places and costs") {
+TEST_CASE("the name of a unit is that of its content: log, settings, stretch, not of places and costs") {
   const FleetUnit unit = some_unit();
   const auto id_with = [&](auto change) {
     FleetUnit other = unit;
@@ -106,10 +103,8 @@ TEST_CASE("a task that was changed by hand, or is of another version, is refused
     }
     return std::string();
   };
-  CHECK_THAT(with("\"threshold\":5.41", "\"threshold\":5.42"),
-             Contains("changed after it was planned"));
-  CHECK_THAT(with("\"version_of_program\":\"", "\"version_of_program\":\"9"),
-             Contains("another version"));
+  CHECK_THAT(with("\"threshold\":5.41", "\"threshold\":5.42"), Contains("changed after it was planned"));
+  CHECK_THAT(with("\"version_of_program\":\"", "\"version_of_program\":\"9"), Contains("another version"));
   CHECK_THAT(with("\"kind\":\"log\"", "\"kind\":\"lgo\""), Contains("did you mean"));
   CHECK_THAT(with("fleet-task", "fleet-tusk"), Contains("fleet-task"));
 }

@@ -35,8 +35,7 @@ struct AlignedArray {
 struct Motion {
   Motion(AlignmentDraws& draws, double amplitude) {
     for (int k = 0; k < 24; ++k)
-      parts.push_back({amplitude * draws.normal() / std::sqrt(12),
-                       0.002 + 0.12 * draws.uniform(),
+      parts.push_back({amplitude * draws.normal() / std::sqrt(12), 0.002 + 0.12 * draws.uniform(),
                        2 * std::numbers::pi * draws.uniform()});
   }
   double operator()(double t) const {
@@ -83,8 +82,7 @@ AlignedArray simulated_array(unsigned seed, const ArrayKind& kind) {
       double y = out.bias[s] + (1 + out.gain[s]) * x(time - out.delay[s]);
       for (std::size_t a = 0; a < others.size(); ++a) {
         y += out.cross[a][s] * others[a](time);
-        out.data.samples((static_cast<Eigen::Index>(a) + 1) * n + i, t) =
-            others[a](time) + kind.noise * draws.normal();
+        out.data.samples((static_cast<Eigen::Index>(a) + 1) * n + i, t) = others[a](time) + kind.noise * draws.normal();
       }
       out.data.samples(i, t) = y + kind.noise * draws.normal();
     }
@@ -101,19 +99,13 @@ std::pair<double, double> before_and_after(const AlignedArray& array, const Alig
   for (Eigen::Index t = 0; t < m; ++t) {
     aligner.column(array.data.samples, t, aligned);
     fusion::cross_means(learnt, array.data.samples.col(t), cross);
-    meter.push(array.data.samples.col(t).head(n),
-               fusion::in_time(learnt, aligned, cross),
-               aligned,
-               cross,
-               0);
+    meter.push(array.data.samples.col(t).head(n), fusion::in_time(learnt, aligned, cross), aligned, cross, 0);
   }
   const fusion::ErrorBudget budget = meter.result();
   return {budget.before, budget.after};
 }
 
-double beyond(double value, double truth, double error) {
-  return std::abs(value - truth) / error;
-}
+double beyond(double value, double truth, double error) { return std::abs(value - truth) / error; }
 
 }  // namespace
 
@@ -122,14 +114,10 @@ TEST_CASE("alignment: samples between instants are within the stated accuracy") 
     double most = 0;
     std::vector<double> y(64);
     for (int phase = 0; phase < 8; ++phase) {
-      const auto wave = [&](double t) {
-        return std::cos(2 * std::numbers::pi * (frequency * t + phase / 8.0));
-      };
+      const auto wave = [&](double t) { return std::cos(2 * std::numbers::pi * (frequency * t + phase / 8.0)); };
       for (int t = 0; t < 64; ++t) y[static_cast<std::size_t>(t)] = wave(t);
       for (double delay = -0.95; delay < 1; delay += 0.1)
-        most = std::max(
-            most,
-            std::abs(fusion::DelayTaps(delay, how).at(y.data(), 1, 64, 30) - wave(30 + delay)));
+        most = std::max(most, std::abs(fusion::DelayTaps(delay, how).at(y.data(), 1, 64, 30) - wave(30 + delay)));
     }
     return most;
   };
@@ -147,18 +135,16 @@ TEST_CASE("alignment: delays, biases, gains and misalignments are recovered with
     const Alignment learnt = fusion::learn_alignment(array.data, {});
     for (std::size_t i = 0; i < 6; ++i) {
       const fusion::ChannelAlignment& c = learnt.channels[i];
-      INFO("seed " << seed << " sensor " << i << ": delay " << c.delay << " +- " << c.delay_se
-                   << " of " << array.delay[i] << ", gain " << c.gain << " +- " << c.gain_se
-                   << " of " << array.gain[i] << ", bias " << c.bias << " +- " << c.bias_se
-                   << " of " << array.bias[i]);
+      INFO("seed " << seed << " sensor " << i << ": delay " << c.delay << " +- " << c.delay_se << " of "
+                   << array.delay[i] << ", gain " << c.gain << " +- " << c.gain_se << " of " << array.gain[i]
+                   << ", bias " << c.bias << " +- " << c.bias_se << " of " << array.bias[i]);
       CHECK(c.delay == Approx(array.delay[i]).margin(0.01));
       CHECK(c.gain == Approx(array.gain[i]).margin(0.003));
       CHECK(c.bias == Approx(array.bias[i]).margin(0.003));
-      for (const double z : {beyond(c.delay, array.delay[i], c.delay_se),
-                             beyond(c.gain, array.gain[i], c.gain_se),
-                             beyond(c.bias, array.bias[i], c.bias_se),
-                             beyond(c.cross[0], array.cross[0][i], c.cross_se[0]),
-                             beyond(c.cross[1], array.cross[1][i], c.cross_se[1])}) {
+      for (const double z :
+           {beyond(c.delay, array.delay[i], c.delay_se), beyond(c.gain, array.gain[i], c.gain_se),
+            beyond(c.bias, array.bias[i], c.bias_se), beyond(c.cross[0], array.cross[0][i], c.cross_se[0]),
+            beyond(c.cross[1], array.cross[1][i], c.cross_se[1])}) {
         ++all;
         outside += z > 3 ? 1 : 0;
       }
@@ -186,8 +172,7 @@ TEST_CASE("alignment: taught by the truth, what all sensors share is found too")
 TEST_CASE("alignment: several samples of delay, two sensors") {
   const AlignedArray array = simulated_array(31, {.sensors = 2, .delay = 5});
   const Alignment learnt = fusion::learn_alignment(array.data, {});
-  for (std::size_t i = 0; i < 2; ++i)
-    CHECK(learnt.channels[i].delay == Approx(array.delay[i]).margin(0.02));
+  for (std::size_t i = 0; i < 2; ++i) CHECK(learnt.channels[i].delay == Approx(array.delay[i]).margin(0.02));
 }
 
 TEST_CASE("alignment: an array that needs none is left as it is, and no worse") {
@@ -195,10 +180,10 @@ TEST_CASE("alignment: an array that needs none is left as it is, and no worse") 
   const Alignment learnt = fusion::learn_alignment(array.data, {});
   int significant = 0;
   for (const fusion::ChannelAlignment& c : learnt.channels)
-    significant += std::abs(c.delay) > 3.7 * c.delay_se || std::abs(c.gain) > 3.7 * c.gain_se ||
-                           std::abs(c.bias) > 3.7 * c.bias_se
-                       ? 1
-                       : 0;
+    significant +=
+        std::abs(c.delay) > 3.7 * c.delay_se || std::abs(c.gain) > 3.7 * c.gain_se || std::abs(c.bias) > 3.7 * c.bias_se
+            ? 1
+            : 0;
   CHECK(significant == 0);
   double raw = 0, aligned_error = 0;
   const fusion::Aligner aligner(learnt);
@@ -241,8 +226,7 @@ TEST_CASE("alignment: wild and missing samples, saturation and dead sensors") {
   const Alignment before = fusion::learn_alignment(clean.data, {});
   AlignedArray array = clean;
   for (const Eigen::Index t : {500, 1700, 3100}) array.data.samples(2, t) = 1e9;
-  for (Eigen::Index t = 2000; t < 2300; ++t)
-    array.data.samples(4, t) = std::numeric_limits<double>::quiet_NaN();
+  for (Eigen::Index t = 2000; t < 2300; ++t) array.data.samples(4, t) = std::numeric_limits<double>::quiet_NaN();
   array.data.samples.row(1) = array.data.samples.row(1).cwiseMin(1.2);
   const Alignment after = fusion::learn_alignment(array.data, {});
   CHECK(after.limits[1].high == 1.2);
@@ -269,11 +253,8 @@ TEST_CASE("error budget: shares are those of the parts that were put in") {
   Eigen::VectorXd aligned;
   for (Eigen::Index t = 0; t < 20000; ++t) {
     aligner.column(array.data.samples, t, aligned);
-    meter.push(array.data.samples.col(t),
-               fusion::in_time(learnt, aligned, Eigen::VectorXd(0)),
-               aligned,
-               Eigen::VectorXd(0),
-               0);
+    meter.push(array.data.samples.col(t), fusion::in_time(learnt, aligned, Eigen::VectorXd(0)), aligned,
+               Eigen::VectorXd(0), 0);
   }
   const fusion::ErrorBudget budget = meter.result();
   const double power = (array.x.array() - array.x.mean()).square().mean();
@@ -300,8 +281,7 @@ TEST_CASE("error budget: a delay that jitters follows the slope, and is told fro
   fusion::BudgetMeter meter(4, 0, 30000, true);
   Eigen::VectorXd y(4);
   for (int t = 0; t < 30000; ++t) {
-    for (Eigen::Index i = 0; i < 4; ++i)
-      y(i) = x(t - 0.3 * (draws.uniform() - 0.5)) + 0.01 * draws.normal();
+    for (Eigen::Index i = 0; i < 4; ++i) y(i) = x(t - 0.3 * (draws.uniform() - 0.5)) + 0.01 * draws.normal();
     meter.push(y, y, y, Eigen::VectorXd(0), x(t));
   }
   const fusion::ErrorBudget budget = meter.result();

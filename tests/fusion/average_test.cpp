@@ -12,12 +12,8 @@ using namespace libchar::fusion;
 TEST_CASE("mean: 50-digit vectors") {
   const test::Vectors inputs("fusion_inputs.csv"), expected("average.csv");
   auto mean = test::make("mean", test::array(5));
-  CHECK(test::worst(test::run(*mean, inputs.block("c", 5)).x,
-                    expected["avg_calibrated"].transpose(),
-                    1.78e-15) <= 1);
-  CHECK(test::worst(test::run(*mean, inputs.block("u", 5)).x,
-                    expected["avg_uncalibrated"].transpose(),
-                    1.78e-15) <= 1);
+  CHECK(test::worst(test::run(*mean, inputs.block("c", 5)).x, expected["avg_calibrated"].transpose(), 1.78e-15) <= 1);
+  CHECK(test::worst(test::run(*mean, inputs.block("u", 5)).x, expected["avg_uncalibrated"].transpose(), 1.78e-15) <= 1);
 }
 
 TEST_CASE("inverse-variance: weights and error of the known answers") {
@@ -32,18 +28,15 @@ TEST_CASE("inverse-variance: weights and error of the known answers") {
   }
   auto fusion = test::make("inverse-variance", array);
   CHECK(test::worst(*fusion->weights(), weights, 1e-16) <= 1);
-  const Eigen::VectorXd error =
-      test::run(*fusion, inputs.block("c", 5)).x.transpose() - inputs["x"];
-  CHECK(std::sqrt(error.squaredNorm() / 2000) ==
-        Approx(answer["rms_1_2000"].get<double>()).epsilon(1e-13));
+  const Eigen::VectorXd error = test::run(*fusion, inputs.block("c", 5)).x.transpose() - inputs["x"];
+  CHECK(std::sqrt(error.squaredNorm() / 2000) == Approx(answer["rms_1_2000"].get<double>()).epsilon(1e-13));
 }
 
 TEST_CASE("inverse-variance: noise levels near the ends of a double are levels like any others") {
   for (const double level : {1e-309, 1e-200, 1e200, 4e307}) {
     Array array = test::array(2);
     array.noise_levels = Eigen::Vector2d(level, 4 * level);
-    const test::Run run =
-        test::run(*test::make("inverse-variance", array), Eigen::Vector2d(10, 20));
+    const test::Run run = test::run(*test::make("inverse-variance", array), Eigen::Vector2d(10, 20));
     CAPTURE(level);
     CHECK(run.x(0, 0) == Approx(12).epsilon(1e-12));
     CHECK(run.variance(0, 0) == Approx(0.8 * level).epsilon(1e-6));
@@ -62,9 +55,9 @@ TEST_CASE("missing samples: the others take over") {
     std::string name;
     std::array<double, 3> x, variance;
   };
-  for (const Case& c : {Case{"mean", {3, 6, 7}, {4.0 / 9, 3.0 / 4, 1}},
-                        Case{"inverse-variance", {2.4, 16.0 / 3, 7}, {0.4, 2.0 / 3, 1}},
-                        Case{"median", {2, 6, 7}, {gap, gap, gap}}}) {
+  for (const Case& c :
+       {Case{"mean", {3, 6, 7}, {4.0 / 9, 3.0 / 4, 1}}, Case{"inverse-variance", {2.4, 16.0 / 3, 7}, {0.4, 2.0 / 3, 1}},
+        Case{"median", {2, 6, 7}, {gap, gap, gap}}}) {
     INFO(c.name);
     auto runner = test::make(c.name, array);
     const test::Run out = test::run(*runner, y);

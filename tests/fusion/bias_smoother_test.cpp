@@ -22,8 +22,7 @@ Array array_of(const std::vector<NoiseModel>& models, double rate_hz) {
   array.noise_models = models;
   array.rate_hz = rate_hz;
   array.noise_levels.resize(array.channels);
-  for (Eigen::Index i = 0; i < array.channels; ++i)
-    array.noise_levels[i] = models[static_cast<std::size_t>(i)].white;
+  for (Eigen::Index i = 0; i < array.channels; ++i) array.noise_levels[i] = models[static_cast<std::size_t>(i)].white;
   return array;
 }
 
@@ -48,9 +47,7 @@ Whole whole(const Array& array, const BiasStates& states, const Eigen::MatrixXd&
       if (!std::isnan(samples(i, k))) there.emplace_back(k, i);
   const auto m = static_cast<Eigen::Index>(there.size());
   const Eigen::Index r = array.inputs();
-  Whole out{Eigen::MatrixXd::Zero(m, r * samples.cols()),
-            Eigen::MatrixXd::Zero(m, m),
-            Eigen::VectorXd(m)};
+  Whole out{Eigen::MatrixXd::Zero(m, r * samples.cols()), Eigen::MatrixXd::Zero(m, m), Eigen::VectorXd(m)};
   for (Eigen::Index a = 0; a < m; ++a) {
     const auto [k, i] = there[static_cast<std::size_t>(a)];
     out.y[a] = samples(i, k);
@@ -59,8 +56,7 @@ Whole whole(const Array& array, const BiasStates& states, const Eigen::MatrixXd&
       const auto [l, j] = there[static_cast<std::size_t>(b)];
       if (a == b) out.covariance(a, b) += array.noise_levels[i];
       for (Eigen::Index s = 0; i == j && s < states.size(); ++s)
-        if (states.channel[static_cast<std::size_t>(s)] == i)
-          out.covariance(a, b) += drift_covariance(states, s, k, l);
+        if (states.channel[static_cast<std::size_t>(s)] == i) out.covariance(a, b) += drift_covariance(states, s, k, l);
     }
   }
   return out;
@@ -79,9 +75,7 @@ test::Run solved(const Whole& all, Eigen::Index r, const Eigen::MatrixXd& prior 
   return {x, variance};
 }
 
-test::Run smoothed(const Array& array,
-                   const Eigen::MatrixXd& samples,
-                   test::Values values = {},
+test::Run smoothed(const Array& array, const Eigen::MatrixXd& samples, test::Values values = {},
                    Eigen::Index block = 1 << 20) {
   values.emplace_back("smoothed", 1);
   auto runner = test::make("virtual-sensor", array, values);
@@ -92,10 +86,8 @@ test::Run smoothed(const Array& array,
 }
 
 std::vector<NoiseModel> unlike() {
-  return {{0.04, 0.02, 0.01, {}},
-          {0.01, 0, 0.05, {{0.2, 3}}},
-          {0.09, 0, 0, {{0.05, 0.7}, {0.3, 20}}},
-          {0.02, 0.05, 0, {}}};
+  return {
+      {0.04, 0.02, 0.01, {}}, {0.01, 0, 0.05, {{0.2, 3}}}, {0.09, 0, 0, {{0.05, 0.7}, {0.3, 20}}}, {0.02, 0.05, 0, {}}};
 }
 
 Eigen::MatrixXd random_samples(Eigen::Index n, Eigen::Index instants, std::uint64_t seed) {
@@ -144,13 +136,11 @@ TEST_CASE("virtual-sensor smoothed: several inputs, and a model of the input") {
   Eigen::MatrixXd prior(12, 12);
   for (Eigen::Index j = 0; j < 12; ++j)
     for (Eigen::Index k = 0; k < 12; ++k) {
-      const double wt =
-          2 * 3.14159265358979323846 * corner / 10 * std::abs(static_cast<double>(j - k));
+      const double wt = 2 * 3.14159265358979323846 * corner / 10 * std::abs(static_cast<double>(j - k));
       prior(j, k) = deviation * deviation * (1 + wt) * std::exp(-wt);
     }
   const test::Run known = solved(whole(plain, states, y), 1, test::inverse(prior));
-  const test::Run modelled =
-      smoothed(plain, y, {{"input_deviation", deviation}, {"input_corner_hz", corner}});
+  const test::Run modelled = smoothed(plain, y, {{"input_deviation", deviation}, {"input_corner_hz", corner}});
   CHECK((modelled.x - known.x).cwiseAbs().maxCoeff() < 1e-8);
   CHECK((modelled.variance - known.variance).cwiseAbs().maxCoeff() < 1e-8);
 }
@@ -165,8 +155,7 @@ TEST_CASE("virtual-sensor smoothed: gains that stand do as well as the whole pro
   for (Eigen::Index s = 0; s < states.size(); ++s) drift[s] = std::sqrt(states.start[s]) * gauss();
   for (Eigen::Index k = 0; k < instants; ++k) {
     truth[k] = 3 * gauss();
-    for (Eigen::Index i = 0; i < 4; ++i)
-      y(i, k) = truth[k] + std::sqrt(array.noise_levels[i]) * gauss();
+    for (Eigen::Index i = 0; i < 4; ++i) y(i, k) = truth[k] + std::sqrt(array.noise_levels[i]) * gauss();
     for (Eigen::Index s = 0; s < states.size(); ++s) {
       y(states.channel[static_cast<std::size_t>(s)], k) += drift[s];
       drift[s] = states.pole[s] * drift[s] + std::sqrt(states.drive[s]) * gauss();
@@ -196,9 +185,8 @@ TEST_CASE("virtual-sensor smoothed: the same bits in any blocks, in time turned 
   CHECK(test::same_values(one.variance, many.variance));
   // In the middle of a long run it does not matter which end came first (errors are about .1).
   const test::Run turned = smoothed(array, y.rowwise().reverse());
-  CHECK((one.x.middleCols(3000, 3000) - turned.x.rowwise().reverse().middleCols(3000, 3000))
-            .cwiseAbs()
-            .maxCoeff() < 1e-2);
+  CHECK((one.x.middleCols(3000, 3000) - turned.x.rowwise().reverse().middleCols(3000, 3000)).cwiseAbs().maxCoeff() <
+        1e-2);
   auto runner = test::make("virtual-sensor", array, {{"smoothed", 1}});
   runner->look(y);
   runner->finish_learning();
@@ -219,11 +207,9 @@ TEST_CASE("virtual-sensor smoothed: a run longer than there is room for is refus
   }
 }
 
-TEST_CASE(
-    "virtual-sensor smoothed: better than the filter where sensors drift, and it knows how much") {
+TEST_CASE("virtual-sensor smoothed: better than the filter where sensors drift, and it knows how much") {
   const double rate = 20;
-  const std::vector<NoiseModel> models{
-      {2e-5, 0, 2e-4, {}}, {2e-5, 0, 2e-4, {}}, {3.2e-4, 0, 2.5e-5, {}}};
+  const std::vector<NoiseModel> models{{2e-5, 0, 2e-4, {}}, {2e-5, 0, 2e-4, {}}, {3.2e-4, 0, 2.5e-5, {}}};
   const Array array = array_of(models, rate);
   double ours = 0, filtered = 0, stated = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

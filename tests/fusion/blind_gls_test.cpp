@@ -46,8 +46,7 @@ TEST_CASE("blind-gls: gains and variances, to a gauge, and the optimum of weight
     const Uncalibrated s = uncalibrated(100000, seed);
     BlindGls blind(test::array(5), test::settings("blind-gls", {{"gauge", 5}}));
     Eigen::VectorXd x(s.x.size());
-    for (Eigen::Index k = 0; k < s.y.cols(); ++k)
-      x[k] = blind.step(Sample(s.y.col(k).data(), 5)).x[0];
+    for (Eigen::Index k = 0; k < s.y.cols(); ++k) x[k] = blind.step(Sample(s.y.col(k).data(), 5)).x[0];
     CHECK((blind.gain() * s.gain[4] - s.gain).cwiseAbs().sum() < 0.05);
     CHECK((blind.variances().cwiseQuotient(s.variance).array() - 1).abs().maxCoeff() < 0.15);
     // Gauss-Markov with everything known: 1 / sum g^2 / v.
@@ -61,8 +60,7 @@ TEST_CASE("blind-gls: a sensor at a tenth of the rate takes nothing from the oth
   Eigen::MatrixXd holes = s.y;
   for (Eigen::Index k = 0; k < holes.cols(); ++k)
     if (k % 10 != 3) holes(4, k) = std::nan("");
-  auto whole = test::make("blind-gls", test::array(5)),
-       slow = test::make("blind-gls", test::array(5));
+  auto whole = test::make("blind-gls", test::array(5)), slow = test::make("blind-gls", test::array(5));
   const Eigen::MatrixXd a = test::run(*whole, s.y).x, b = test::run(*slow, holes).x;
   CHECK(b.allFinite());
   const Eigen::VectorXd g = *whole->weights(), h = *slow->weights();
@@ -120,8 +118,7 @@ TEST_CASE("blind-gls: the first gains come after three instants for each channel
       const double x = 5 * gauss();
       for (Eigen::Index i = 0; i < channels; ++i) y(i, k) = x + 0.1 * gauss();
     }
-    const Eigen::MatrixXd variance =
-        test::run(*test::make("blind-gls", test::array(channels)), y).variance;
+    const Eigen::MatrixXd variance = test::run(*test::make("blind-gls", test::array(channels)), y).variance;
     CAPTURE(channels);
     CHECK(variance.array().isNaN().count() == first - 1);
     CHECK(std::isnan(variance(0, first - 2)));

@@ -32,8 +32,7 @@ TEST_CASE("options: set by name, within their range") {
   settings.set("length", 7);
   CHECK(settings["length"] == 7);
   CHECK(code_of([&] { settings.set("forgeting", 0.5); }) == "E0850 did you mean forgetting?");
-  CHECK(code_of([&] { settings.set("colour", 0.5); }) ==
-        "E0850 its options are forgetting, length");
+  CHECK(code_of([&] { settings.set("colour", 0.5); }) == "E0850 its options are forgetting, length");
   for (const double bad : {-0.1, 1.1, std::nan(""), std::numeric_limits<double>::infinity()})
     CHECK(code_of([&] { settings.set("forgetting", bad); }) == "E0851 ");
   CHECK(code_of([&] { settings.set("length", 2.5); }) == "E0851 ");
@@ -62,13 +61,10 @@ TEST_CASE("every description is complete, every option's default is in its range
 }
 
 TEST_CASE("why_not: a sentence for each thing that is missing") {
-  const auto needing = [](const Needs& needs) {
-    return Description{"foo", "Foo", "here", "O(n)", needs};
-  };
+  const auto needing = [](const Needs& needs) { return Description{"foo", "Foo", "here", "O(n)", needs}; };
   Array two = test::array(2);
   CHECK(why_not(needing({}), two).empty());
-  CHECK(why_not(needing({.min_channels = 3}), two) ==
-        "foo needs at least 3 channels; this scene has 2");
+  CHECK(why_not(needing({.min_channels = 3}), two) == "foo needs at least 3 channels; this scene has 2");
   CHECK(why_not(needing({.max_channels = 2}), two).empty());
   CHECK(why_not(needing({.max_channels = 2}), test::array(3)) ==
         "foo takes at most 2 channels (its memory grows with their square); this scene has 3");

@@ -34,8 +34,7 @@ TEST_CASE("covariance-intersection: of one input it is the sensor of the least n
   // Niehsen: shares 1/v, P = sum 1/v / sum 1/v^2.
   auto fast = test::make("covariance-intersection", array, {{"fast", 1}});
   const test::Run averaged = test::run(*fast, y.leftCols(1));
-  CHECK(averaged.variance(0, 0) ==
-        Approx((1.0 / 3 + 1 + 0.5) / (1.0 / 9 + 1 + 0.25)).epsilon(1e-12));
+  CHECK(averaged.variance(0, 0) == Approx((1.0 / 3 + 1 + 0.5) / (1.0 / 9 + 1 + 0.25)).epsilon(1e-12));
   CHECK(averaged.x(0, 0) == Approx((1.0 / 9 + 2 + 3 * 0.25) / (1.0 / 9 + 1 + 0.25)).epsilon(1e-12));
 }
 
@@ -60,8 +59,7 @@ TEST_CASE("covariance-intersection: shares of the least determinant") {
   }
 }
 
-TEST_CASE(
-    "covariance-intersection: what it states holds for any correlation, inverse variances do not") {
+TEST_CASE("covariance-intersection: what it states holds for any correlation, inverse variances do not") {
   test::Gaussian gauss(4);
   const Array array = three_rows();
   for (const double correlation : {-0.45, 0.0, 0.5, 0.95}) {

@@ -36,9 +36,7 @@ Gyroscopes gyroscopes(Eigen::Index instants, std::uint64_t seed, const Differenc
   test::Gaussian gauss(seed);
   g.y.resize(6, instants);
   g.x.resize(instants);
-  const auto truth = [](double k) {
-    return 7.854 * std::sin(k * 2 * std::numbers::pi / 40 + .785);
-  };
+  const auto truth = [](double k) { return 7.854 * std::sin(k * 2 * std::numbers::pi / 40 + .785); };
   for (Eigen::Index k = 0; k < instants; ++k) g.x[k] = truth(static_cast<double>(k));
   for (Eigen::Index i = 0; i < 6; ++i) {
     const double gain = 1 + d.gain * gauss(), delay = d.delay * (2 * gauss.uniform() - 1);
@@ -95,8 +93,7 @@ TEST_CASE("cumulative sums: every row of six sensors against one at a time") {
   for (auto& own : rows) {
     for (const double t : {0.35, 0.7, 1.4, 2.8})
       for (const double sign : {1.0, -1.0})
-        for (const CusumInput input : {CusumInput::bias, CusumInput::gain})
-          own.push_back({sign * t, input});
+        for (const CusumInput input : {CusumInput::bias, CusumInput::gain}) own.push_back({sign * t, input});
     for (const double k : {1.3, 1.7, 2.6, 5.0}) own.push_back({k, CusumInput::noise});
   }
   for (int step = 0; step < 500; ++step) {
@@ -110,18 +107,17 @@ TEST_CASE("cumulative sums: every row of six sensors against one at a time") {
       sample.zz[i] = z * z;
       for (Row& row : rows[i]) {
         const double t = row.size;
-        const double by = row.input == CusumInput::bias ? t * z - t * t / 2 * w
-                          : row.input == CusumInput::gain
-                              ? t * u * z - t * t / 2 * u * u
-                              : (1 - 1 / (t * t)) / 2 * z * z - std::log(t) * w;
+        const double by = row.input == CusumInput::bias   ? t * z - t * t / 2 * w
+                          : row.input == CusumInput::gain ? t * u * z - t * t / 2 * u * u
+                                                          : (1 - 1 / (t * t)) / 2 * z * z - std::log(t) * w;
         row.sum = std::max(0.0, row.sum + by);
       }
     }
     const double top = bank.step(sample);
     double largest = 0;
     for (std::size_t i = 0; i < 6; ++i) {
-      const auto best = std::max_element(
-          rows[i].begin(), rows[i].end(), [](const Row& a, const Row& b) { return a.sum < b.sum; });
+      const auto best =
+          std::max_element(rows[i].begin(), rows[i].end(), [](const Row& a, const Row& b) { return a.sum < b.sum; });
       CHECK(bank.top(i) == Approx(best->sum).epsilon(1e-12).margin(1e-12));
       largest = std::max(largest, best->sum);
     }
@@ -179,11 +175,9 @@ TEST_CASE("repetitions: stuck, held, still and at the end of the range") {
   };
   CHECK(state(hold_from(1000), 1010) == Doing::stuck);
   // Every tenth sample of its own, held.
-  CHECK(state([&](int k, double x) { return k % 10 == 0 ? last = x + .1 * gauss() : last; },
-              5000) == Doing::moving);
+  CHECK(state([&](int k, double x) { return k % 10 == 0 ? last = x + .1 * gauss() : last; }, 5000) == Doing::moving);
   // Steps of 2: much the same value again and again, and rightly so.
-  CHECK(state([&](int, double x) { return 2 * std::round((x + .1 * gauss()) / 2); }, 20000) ==
-        Doing::moving);
+  CHECK(state([&](int, double x) { return 2 * std::round((x + .1 * gauss()) / 2); }, 20000) == Doing::moving);
   CHECK(state(
             [&](int k, double x) {
               const double y = x + .1 * gauss();
@@ -237,17 +231,9 @@ TEST_CASE("minque: which sensor, since when, and what kind of fault") {
       {"gain -2 %", 5, gain(.98), FaultRule::gain, 300},
       {"bias .1", 0, bias(.1), FaultRule::bias, 100},
       {"bias .1", 5, bias(.1), FaultRule::bias, 500},
-      {"noise x 2",
-       2,
-       [](double y, test::Gaussian& gauss) { return y + .1511 * gauss(); },
-       FaultRule::noise,
-       200},
+      {"noise x 2", 2, [](double y, test::Gaussian& gauss) { return y + .1511 * gauss(); }, FaultRule::noise, 200},
       {"dead", 2, [](double, test::Gaussian& gauss) { return .087 * gauss(); }, FaultRule::dead, 3},
-      {"saturated",
-       3,
-       [](double y, test::Gaussian&) { return std::clamp(y, -6.0, 6.0); },
-       FaultRule::saturated,
-       60}};
+      {"saturated", 3, [](double y, test::Gaussian&) { return std::clamp(y, -6.0, 6.0); }, FaultRule::saturated, 60}};
   for (const Case& c : cases) {
     INFO(c.name << " on sensor " << c.sensor + 1);
     Gyroscopes g = gyroscopes(12000, 21);
@@ -306,9 +292,7 @@ TEST_CASE("minque: noise of heavy tails is no fault, and a fault in it is found"
     }
     return gauss() / std::sqrt(squares / 4) / std::sqrt(2.0);
   };
-  const auto rare = [](test::Gaussian& gauss) {
-    return gauss() + (gauss.uniform() < 2e-3 ? 9 : 0);
-  };
+  const auto rare = [](test::Gaussian& gauss) { return gauss() + (gauss.uniform() < 2e-3 ? 9 : 0); };
   const std::vector<std::function<double(test::Gaussian&)>> kinds = {student, rare};
   for (const auto& noise : kinds)
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -338,8 +322,7 @@ TEST_CASE("minque: rare outliers of all sensors are no faults and make nobody st
       Eigen::MatrixXd y(n, 200000);
       for (Eigen::Index k = 0; k < y.cols(); ++k)
         for (Eigen::Index i = 0; i < n; ++i)
-          y(i, k) = 5 * std::sin(.009 * static_cast<double>(k)) + gauss() +
-                    (gauss.uniform() < 1e-4 ? 30 * gauss() : 0);
+          y(i, k) = 5 * std::sin(.009 * static_cast<double>(k)) + gauss() + (gauss.uniform() < 1e-4 ? 30 * gauss() : 0);
       Array array = test::array(n);
       array.rate_hz = 100;
       array.fault_free_samples = fault_free;
@@ -350,8 +333,7 @@ TEST_CASE("minque: rare outliers of all sensors are no faults and make nobody st
     }
 }
 
-TEST_CASE(
-    "minque: offsets that wander and other axes in stop-and-go are no faults, a dead sensor is") {
+TEST_CASE("minque: offsets that wander and other axes in stop-and-go are no faults, a dead sensor is") {
   struct Case {
     const char* name;
     double sigma, tau;  ///< of a Gauss-Markov offset, tau in samples
@@ -414,12 +396,10 @@ TEST_CASE("minque: two and three at once") {
     int sensor;
     double gain, bias;
   };
-  for (const std::vector<Hurt>& hurt : {std::vector<Hurt>{{0, 1, .2}, {1, 1, .2}},
-                                        {{2, .8, 0}, {3, .8, 0}},
-                                        {{0, 1, .3}, {1, 1, -.2}, {2, 1, .5}}}) {
+  for (const std::vector<Hurt>& hurt :
+       {std::vector<Hurt>{{0, 1, .2}, {1, 1, .2}}, {{2, .8, 0}, {3, .8, 0}}, {{0, 1, .3}, {1, 1, -.2}, {2, 1, .5}}}) {
     Gyroscopes g = gyroscopes(12000, 61);
-    for (const Hurt& h : hurt)
-      g.y.row(h.sensor).tail(4000) = h.gain * g.y.row(h.sensor).tail(4000).array() + h.bias;
+    for (const Hurt& h : hurt) g.y.row(h.sensor).tail(4000) = h.gain * g.y.row(h.sensor).tail(4000).array() + h.bias;
     auto minque = test::make("minque", g.array);
     test::run(*minque, g.y);
     std::vector<int> out(6, 0), expected(6, 0);
@@ -432,8 +412,7 @@ TEST_CASE("minque: two and three at once") {
 
 TEST_CASE("minque: a sensor that drops out, comes slowly or joins late is no fault") {
   // [RV 3.3]: the best sensor carries most of the weight.
-  const Eigen::VectorXd deviations =
-      (Eigen::VectorXd(5) << 1.764, .789, .558, .2495, .1764).finished();
+  const Eigen::VectorXd deviations = (Eigen::VectorXd(5) << 1.764, .789, .558, .2495, .1764).finished();
   constexpr Eigen::Index kInstants = 60000;
   const auto scene = [&](std::uint64_t seed, Eigen::RowVectorXd& x) {
     Eigen::MatrixXd y(5, kInstants);

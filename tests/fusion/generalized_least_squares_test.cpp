@@ -14,10 +14,8 @@ using namespace libchar::fusion;
 namespace {
 
 Eigen::MatrixXd matrix(const nlohmann::json& rows) {
-  Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()),
-                    static_cast<Eigen::Index>(rows[0].size()));
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    m.row(i) = test::vector(rows[static_cast<std::size_t>(i)]).transpose();
+  Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
+  for (Eigen::Index i = 0; i < m.rows(); ++i) m.row(i) = test::vector(rows[static_cast<std::size_t>(i)]).transpose();
   return m;
 }
 /// Noise variances by MINQUE with identity weights (Rao 1971): (P o P) v = diag(P C P), P = I - H (H'H)^-1 H'.
@@ -44,12 +42,10 @@ TEST_CASE("two inputs: variances, gain, estimates") {
   CHECK(test::worst(gls.gain(), matrix(answer["G"]), 1.78e-15, 3.52e-14) <= 1);
   Eigen::MatrixXd x(2, y.cols());
   Eigen::VectorXd residual(6);
-  for (Eigen::Index k = 0; k < y.cols(); ++k)
-    gls.solve(y.col(k).data(), x.col(k).data(), residual.data());
+  for (Eigen::Index k = 0; k < y.cols(); ++k) gls.solve(y.col(k).data(), x.col(k).data(), residual.data());
   CHECK(test::worst(x, expected.values.rightCols(2).transpose(), 1.78e-15, 3.52e-14) <= 1);
   // Variance of the inputs: diagonal of (H' R^-1 H)^-1.
-  const Eigen::Matrix2d variances =
-      test::inverse(h.transpose() * v.cwiseInverse().asDiagonal() * h);
+  const Eigen::Matrix2d variances = test::inverse(h.transpose() * v.cwiseInverse().asDiagonal() * h);
   CHECK(gls.variance(0) == Approx(variances(0, 0)));
   CHECK(gls.variance(1) == Approx(variances(1, 1)));
 }

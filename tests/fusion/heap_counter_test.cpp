@@ -35,15 +35,11 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 }
 }
 
-std::size_t test::heap_trips() {
-  return trips;
-}
+std::size_t test::heap_trips() { return trips; }
 
 #else
 
-std::size_t test::heap_trips() {
-  return 0;
-}
+std::size_t test::heap_trips() { return 0; }
 
 #endif
 

@@ -36,9 +36,7 @@ Eigen::VectorXd sine(Eigen::Index instants, double period, double offset = 0) {
   return x;
 }
 
-double rms(const Eigen::VectorXd& v) {
-  return std::sqrt(v.squaredNorm() / double(v.size()));
-}
+double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / double(v.size())); }
 
 }  // namespace
 
@@ -83,8 +81,7 @@ TEST_CASE("delay search: neighbours that follow each other, spikes and gaps, sea
       std::vector<std::pair<double, std::ptrdiff_t>> all;
       for (std::size_t s = 0; s < kStarts; ++s) {
         double distance = 0;
-        for (std::size_t j = 0; j < kDimension; ++j)
-          distance += std::abs(series[from + s + j] - query[j]);
+        for (std::size_t j = 0; j < kDimension; ++j) distance += std::abs(series[from + s + j] - query[j]);
         if (!std::isnan(distance + series[from + s + kDimension])) all.emplace_back(distance, s);
       }
       std::sort(all.begin(), all.end());
@@ -103,8 +100,7 @@ TEST_CASE("kalman-takens-published: 50-digit vectors") {
   const auto answer = test::answers()["kalman_takens"];
   Eigen::VectorXd variances(5);
   for (Eigen::Index i = 0; i < 5; ++i) variances[i] = answer["R"][static_cast<std::size_t>(i)];
-  auto runner = test::make("kalman-takens-published",
-                           levels(variances),
+  auto runner = test::make("kalman-takens-published", levels(variances),
                            {{"dimension", answer["d"]},
                             {"neighbours", answer["M"]},
                             {"training", answer["train"]},
@@ -175,8 +171,7 @@ TEST_CASE("kalman-takens: limits of Q are the prediction and the channels") {
   Eigen::MatrixXd moved = y;
   moved.col(1999).array() += 100;
   const auto last = [&](const Eigen::MatrixXd& samples) {
-    return test::run(*test::make("kalman-takens", array, {{"process_variance", 1e-30}}), samples)
-        .x(0, 1999);
+    return test::run(*test::make("kalman-takens", array, {{"process_variance", 1e-30}}), samples).x(0, 1999);
   };
   CHECK(std::abs(last(moved) - last(y)) < 1e-3);
 }
@@ -189,9 +184,7 @@ TEST_CASE("kalman-takens: an offset of 1e9 and a scale do no harm") {
   };
   const Eigen::MatrixXd x = run(variances, y);
   // Rounding of the samples to 1e-7 may exchange two neighbours that are equally far.
-  CHECK(((run(variances, (y.array() + 1e9).matrix()).array() - 1e9).matrix() - x)
-            .cwiseAbs()
-            .maxCoeff() < 1e-3);
+  CHECK(((run(variances, (y.array() + 1e9).matrix()).array() - 1e9).matrix() - x).cwiseAbs().maxCoeff() < 1e-3);
   CHECK((run(variances * 16, y * 4) / 4 - x).cwiseAbs().maxCoeff() < 1e-12);
 }
 
@@ -209,16 +202,13 @@ TEST_CASE("kalman-takens: gaps are predicted, dead instants do not enter the dic
   const Eigen::MatrixXd none = Eigen::MatrixXd::Constant(2, 100, std::nan(""));
   CHECK(test::run(*test::make("kalman-takens", levels(variances)), none).x.array().isNaN().all());
   const Eigen::MatrixXd constant = Eigen::MatrixXd::Constant(2, 3000, 7);
-  CHECK(test::run(*test::make("kalman-takens", levels(variances)), constant).x ==
-        constant.topRows(1));
+  CHECK(test::run(*test::make("kalman-takens", levels(variances)), constant).x == constant.topRows(1));
 }
 
-TEST_CASE(
-    "kalman-takens: it predicts once there are two stretches of the past for each neighbour") {
+TEST_CASE("kalman-takens: it predicts once there are two stretches of the past for each neighbour") {
   // Stretches of 2 that end 4 or more before now; six of them from eleven instants on.
   const Eigen::VectorXd variances = Eigen::Vector2d(0.01, 0.01), x = sine(40, 7);
-  const test::Values values{
-      {"dimension", 2}, {"neighbours", 3}, {"dictionary", 20}, {"theiler", 4}};
+  const test::Values values{{"dimension", 2}, {"neighbours", 3}, {"dictionary", 20}, {"theiler", 4}};
   for (Eigen::Index heard = 3; heard < 30; ++heard) {
     Eigen::MatrixXd y = noisy(x, variances).leftCols(heard + 1);
     y.col(heard).setConstant(std::nan(""));
@@ -294,10 +284,9 @@ TEST_CASE("kalman-takens: two stretches of the past a neighbour, or a full dicti
     Eigen::MatrixXd y(2, heard + 1);
     for (Eigen::Index k = 0; k < heard; ++k) y.col(k).setConstant(k % 3 == 0 ? 2.5 : -0.5);
     y.col(heard).setConstant(std::nan(""));
-    auto runner = test::make(
-        "kalman-takens",
-        levels(Eigen::Vector2d(1e-4, 1e-4)),
-        {{"dimension", 2}, {"theiler", 2}, {"neighbours", neighbours}, {"dictionary", dictionary}});
+    auto runner =
+        test::make("kalman-takens", levels(Eigen::Vector2d(1e-4, 1e-4)),
+                   {{"dimension", 2}, {"theiler", 2}, {"neighbours", neighbours}, {"dictionary", dictionary}});
     return test::run(*runner, y).variance(0, heard);
   };
   // A stretch is two instants, what follows it, and one that is too near to now.

@@ -93,8 +93,7 @@ TEST_CASE("kalman-takens-taught: no stretch reaches over a gap of the reference"
   };
   // Gaps of three after every forty: joined, the parts would not be a saw tooth.
   Eigen::MatrixXd cut = truth;
-  for (Eigen::Index k = 40; k + 3 < kInstants; k += 40)
-    cut.middleCols(k, 3).setConstant(test::kNaN);
+  for (Eigen::Index k = 40; k + 3 < kInstants; k += 40) cut.middleCols(k, 3).setConstant(test::kNaN);
   CHECK((predicted(cut) - truth).rightCols(100).cwiseAbs().maxCoeff() < 1e-9);
   // Nothing but scattered truths: no stretch at all, said so.
   Eigen::MatrixXd scattered = truth;

@@ -59,10 +59,7 @@ Learnt handed_out_by(Runner& runner) {
   return with.learnt();
 }
 
-std::string refusal_of_learnt(const Entry& entry,
-                              const TaughtLog& data,
-                              Learnt learnt,
-                              double ratio = 1) {
+std::string refusal_of_learnt(const Entry& entry, const TaughtLog& data, Learnt learnt, double ratio = 1) {
   auto runner = entry.make(data.array, Settings(entry.options));
   LearntExchange with(std::move(learnt), ratio);
   try {
@@ -81,8 +78,7 @@ TEST_CASE("learnt: taken in by another one, every algorithm estimates the same b
     const TaughtLog data = taught_log(tilt);
     for (const Entry& entry : algorithms()) {
       const Needs& needs = entry.description->needs;
-      if (!(needs.reference || needs.reference_helps) || entry.description->needs.tilt != tilt)
-        continue;
+      if (!(needs.reference || needs.reference_helps) || entry.description->needs.tilt != tilt) continue;
       if (!why_not(*entry.description, data.array).empty()) continue;
       INFO(entry.description->name);
       ++learning;
@@ -128,8 +124,7 @@ TEST_CASE("learnt: numbers that do not fit are refused by name") {
   CHECK_THAT(refusal_of_learnt(entry, data, less), Contains("learnt.gains: is missing"));
   Learnt longer = learnt;
   longer[2].values.push_back(0);
-  CHECK_THAT(refusal_of_learnt(entry, data, longer),
-             Contains("learnt.weights: expected 3 numbers, found 4"));
+  CHECK_THAT(refusal_of_learnt(entry, data, longer), Contains("learnt.weights: expected 3 numbers, found 4"));
   Learnt more = learnt;
   more.push_back({"colour", {1}});
   CHECK_THAT(refusal_of_learnt(entry, data, more), Contains("learnt.colour"));

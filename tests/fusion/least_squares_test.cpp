@@ -14,9 +14,7 @@ using namespace libchar::fusion;
 
 namespace {
 
-double rms_501_2000(const std::string& name,
-                    const test::Values& options,
-                    const Eigen::MatrixXd& y,
+double rms_501_2000(const std::string& name, const test::Values& options, const Eigen::MatrixXd& y,
                     const Eigen::VectorXd& x) {
   Array array = test::array(y.rows());
   array.learning_samples = 500;
@@ -42,15 +40,10 @@ TEST_CASE("least squares: calibration and weights of the known answers") {
   const LearntWeights corrected = of_u.weights({.calibrate = true, .sum_to_one = false});
   CHECK(test::worst(corrected.gain, test::vector(answer["a"]), 1.11e-15, 1.19e-15) <= 1);
   CHECK(test::worst(corrected.bias, test::vector(answer["b"]), 5.55e-17, 1.64e-16) <= 1);
-  CHECK(test::worst(
-            corrected.weights, test::vector(answer["w_uncal_corrected"]), 6.84e-16, 1.44e-13) <= 1);
-  CHECK(test::worst(of_c.weights({.sum_to_one = false}).weights,
-                    test::vector(answer["w_cal"]),
-                    4.44e-16,
-                    1.04e-13) <= 1);
-  CHECK(test::worst(of_c.weights({.sum_to_one = true}).weights,
-                    test::vector(answer["w_cal_sum1"]),
-                    4.44e-16,
+  CHECK(test::worst(corrected.weights, test::vector(answer["w_uncal_corrected"]), 6.84e-16, 1.44e-13) <= 1);
+  CHECK(test::worst(of_c.weights({.sum_to_one = false}).weights, test::vector(answer["w_cal"]), 4.44e-16, 1.04e-13) <=
+        1);
+  CHECK(test::worst(of_c.weights({.sum_to_one = true}).weights, test::vector(answer["w_cal_sum1"]), 4.44e-16,
                     1.69e-15) <= 1);
   const LearntWeights affine = of_u.weights({.sum_to_one = false, .constant = true});
   const Eigen::VectorXd expected = test::vector(answer["w_affine_uncal_then_const"]);
@@ -58,8 +51,7 @@ TEST_CASE("least squares: calibration and weights of the known answers") {
   CHECK(affine.constant == Approx(expected[5]).epsilon(1e-12));
 
   const auto& rms = answer["rms_501_2000"];
-  CHECK(rms_501_2000("least-squares-published", {}, u, x) ==
-        Approx(rms["uncal"].get<double>()).epsilon(1e-12));
+  CHECK(rms_501_2000("least-squares-published", {}, u, x) == Approx(rms["uncal"].get<double>()).epsilon(1e-12));
   CHECK(rms_501_2000("least-squares-published", {{"calibrate", 0}}, c, x) ==
         Approx(rms["cal"].get<double>()).epsilon(1e-12));
   CHECK(rms_501_2000("least-squares", {{"calibrate", 0}}, c, x) ==
@@ -128,8 +120,7 @@ TEST_CASE("bounds: best channel, optimal weights, sections") {
     auto bound = test::make(name, array);
     bound->learn(y, x);
     bound->finish_learning();
-    return std::sqrt((test::run(*bound, y).x - x).middleCols(from, count).squaredNorm() /
-                     static_cast<double>(count));
+    return std::sqrt((test::run(*bound, y).x - x).middleCols(from, count).squaredNorm() / static_cast<double>(count));
   };
   CHECK(rms("sectioned-least-squares", 0, 3000) == Approx(1 / std::sqrt(1.5)).epsilon(0.03));
   // Weights that sum to one may lean on a channel that is dead at zero, the mean of the input:
@@ -142,10 +133,8 @@ TEST_CASE("bounds: best channel, optimal weights, sections") {
 namespace {
 
 /// Weights of five channels, the last ones made of the first three by `copy`.
-Eigen::VectorXd learnt_weights(Eigen::Index rows,
-                               const std::function<void(Eigen::VectorXd&)>& copy,
-                               libchar::Findings& warnings,
-                               const std::string& name = "optimal-weights",
+Eigen::VectorXd learnt_weights(Eigen::Index rows, const std::function<void(Eigen::VectorXd&)>& copy,
+                               libchar::Findings& warnings, const std::string& name = "optimal-weights",
                                double level = 0) {
   test::Gaussian gauss(21);
   Array array = test::array(5);
@@ -157,8 +146,7 @@ Eigen::VectorXd learnt_weights(Eigen::Index rows,
     for (Eigen::Index k = 0; k < y.cols(); ++k) {
       x(0, k) = level + 3 * std::sin(0.01 * static_cast<double>(from + k));
       Eigen::VectorXd channels = Eigen::VectorXd::Zero(5);
-      for (Eigen::Index i = 0; i < 3; ++i)
-        channels[i] = x(0, k) + 0.2 * (1.0 + static_cast<double>(i)) * gauss();
+      for (Eigen::Index i = 0; i < 3; ++i) channels[i] = x(0, k) + 0.2 * (1.0 + static_cast<double>(i)) * gauss();
       copy(channels);
       y.col(k) = channels;
     }
@@ -206,8 +194,7 @@ TEST_CASE("least squares: channels made of others get the shortest weights") {
     CHECK(w.cwiseAbs().maxCoeff() < 1.5);
     // What counts is what they come to.
     const Eigen::Vector3d total(w[0] + w[3] / 2, w[1] + (w[3] + w[4]) / 2, w[2] + w[4] / 2);
-    CHECK((total - Eigen::Vector3d(36, 9, 4) / 49).cwiseAbs().maxCoeff() <
-          3 / std::sqrt(static_cast<double>(rows)));
+    CHECK((total - Eigen::Vector3d(36, 9, 4) / 49).cwiseAbs().maxCoeff() < 3 / std::sqrt(static_cast<double>(rows)));
     REQUIRE(warnings.find("dependent_channels") != nullptr);
     CHECK(warnings.find("dependent_channels")->count == 2);
   }
@@ -221,9 +208,7 @@ TEST_CASE("least squares: good channels far from zero are no copies") {
       [&](Eigen::VectorXd& y) {
         for (const Eigen::Index i : {3, 4}) y[i] = y[0] + 0.02 * gauss();
       },
-      warnings,
-      "optimal-weights",
-      1e8);
+      warnings, "optimal-weights", 1e8);
   CHECK(warnings.find("duplicate_channels") == nullptr);
   CHECK(w.sum() == Approx(1).margin(1e-12));
 }

@@ -13,12 +13,8 @@ using namespace libchar::fusion;
 namespace {
 
 /// The literal recursion of the vectors: no ridge, one at the start, floor relative to the largest.
-const test::Values kLiteral{{"gamma", 0.99},
-                            {"damping", 0},
-                            {"floor", 0},
-                            {"floor_largest", 1e-4},
-                            {"start_variance", 1},
-                            {"fault_detection", 0}};
+const test::Values kLiteral{{"gamma", 0.99},         {"damping", 0},        {"floor", 0},
+                            {"floor_largest", 1e-4}, {"start_variance", 1}, {"fault_detection", 0}};
 
 }  // namespace
 
@@ -29,10 +25,8 @@ TEST_CASE("minque: 50-digit vector of the recursion") {
   double worst_v = 0, worst_x = 0;
   for (Eigen::Index k = 0; k < y.cols(); ++k) {
     const test::Run out = test::run(*minque, y.col(k));
-    worst_x = std::max(
-        worst_x,
-        test::worst(
-            out.x, Eigen::MatrixXd::Constant(1, 1, expected["xhat"][k]), 3.92e-14, 2.93e-13));
+    worst_x =
+        std::max(worst_x, test::worst(out.x, Eigen::MatrixXd::Constant(1, 1, expected["xhat"][k]), 3.92e-14, 2.93e-13));
     worst_v = std::max(worst_v, test::worst(*minque->variances(), v.col(k), 7.99e-15, 6.29e-12));
   }
   CHECK(worst_x <= 1);
@@ -45,8 +39,7 @@ TEST_CASE("minque: faults are found, kept out and let in again") {
   array.fault_free_samples = 2000;
   const double detection = GENERATE(1, 2);
   INFO("detection " << detection);
-  auto minque =
-      test::make("minque", array, {{"fault_detection", detection}, {"recovery_samples", 200}});
+  auto minque = test::make("minque", array, {{"fault_detection", detection}, {"recovery_samples", 200}});
   const test::Run out = test::run(*minque, inputs.block("y", 6));
   // Sensor 1 dead from 3000 on (counted from zero), sensor 2 -30 % from 3800, sensor 3 +25 % from
   // 4400 to 4999.
@@ -85,10 +78,7 @@ struct Recorded {
 };
 
 /// Gaussian inputs through H plus white noise of these variances.
-Recorded made(const Eigen::MatrixXd& h,
-              const Eigen::VectorXd& variances,
-              Eigen::Index instants,
-              std::uint64_t seed) {
+Recorded made(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Eigen::Index instants, std::uint64_t seed) {
   test::Gaussian gauss(seed);
   Recorded m{Eigen::MatrixXd(h.rows(), instants), Eigen::MatrixXd(h.cols(), instants)};
   for (Eigen::Index k = 0; k < instants; ++k) {
@@ -101,10 +91,7 @@ Recorded made(const Eigen::MatrixXd& h,
 
 /// Squared error of the estimates over that of generalized least squares with the true variances,
 /// input by input.
-Eigen::VectorXd regret(const Eigen::MatrixXd& h,
-                       const Eigen::VectorXd& variances,
-                       Runner& runner,
-                       Eigen::Index from) {
+Eigen::VectorXd regret(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Runner& runner, Eigen::Index from) {
   const Recorded m = made(h, variances, 60000, 11);
   const test::Run out = test::run(runner, m.y, h.cols());
   const Eigen::MatrixXd weighted = variances.cwiseInverse().asDiagonal() * h;
@@ -126,30 +113,26 @@ TEST_CASE("minque: near the optimum, one input") {
     double regret;  ///< of the squared error, twice that of the RMS
   };
   const auto list = [](std::initializer_list<double> v) {
-    return Eigen::VectorXd(
-        Eigen::Map<const Eigen::VectorXd>(v.begin(), static_cast<Eigen::Index>(v.size())));
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.begin(), static_cast<Eigen::Index>(v.size())));
   };
-  for (const Scene& scene :
-       {Scene{"3.1", list({100, 20, 10, 2, 1}), 1.006},
-        Scene{"5.1", list({.00274, .00487, .00761, .01095, .01491, .01947}), 1.003},
-        Scene{"two good of five", list({1, 1, 1e4, 1e4, 1e4}), 1.1}}) {
+  for (const Scene& scene : {Scene{"3.1", list({100, 20, 10, 2, 1}), 1.006},
+                             Scene{"5.1", list({.00274, .00487, .00761, .01095, .01491, .01947}), 1.003},
+                             Scene{"two good of five", list({1, 1, 1e4, 1e4, 1e4}), 1.1}}) {
     INFO(scene.name);
     auto minque = test::make("minque", test::array(scene.variances.size()));
-    const double regret_now = regret(
-        Eigen::MatrixXd::Ones(scene.variances.size(), 1), scene.variances, *minque, 10000)[0];
+    const double regret_now =
+        regret(Eigen::MatrixXd::Ones(scene.variances.size(), 1), scene.variances, *minque, 10000)[0];
     CHECK(regret_now < scene.regret);
     CHECK(regret_now > 1);
     CHECK(minque->faults()->events().empty());
     libchar::Findings warnings;
     minque->remarks(warnings);
-    CHECK((warnings.find("variances_not_identifiable") != nullptr) ==
-          (scene.name == "two good of five"));
+    CHECK((warnings.find("variances_not_identifiable") != nullptr) == (scene.name == "two good of five"));
   }
 }
 
 TEST_CASE("minque: near the optimum, two inputs, faults there too") {
-  const Eigen::MatrixXd h =
-      (Eigen::MatrixXd(6, 2) << 1, -.02, 1, -.06, 1, -.11, 1, -.17, 1, -.24, 1, -.3).finished();
+  const Eigen::MatrixXd h = (Eigen::MatrixXd(6, 2) << 1, -.02, 1, -.06, 1, -.11, 1, -.17, 1, -.24, 1, -.3).finished();
   const Eigen::VectorXd variances = (Eigen::VectorXd(6) << 1, 4, 1.5, 8, 3, 12).finished() * 1e-4;
   Array array = test::array(6);
   array.observation_matrix = h;

@@ -56,8 +56,7 @@ SimplexScene simplex_scene(bool bent, Eigen::Index instants = 12000, Eigen::Inde
 std::unique_ptr<Runner> taught(const SimplexScene& s, const char* name = "neural-simplex") {
   auto runner = test::make(name, s.array);
   const Eigen::Index n = s.array.learning_samples;
-  if (std::string_view(name) == "neural-simplex")
-    runner->learn(s.y.leftCols(n), s.truth.leftCols(n));
+  if (std::string_view(name) == "neural-simplex") runner->learn(s.y.leftCols(n), s.truth.leftCols(n));
   runner->finish_learning();
   return runner;
 }
@@ -76,21 +75,17 @@ SimplexRun run_behind_learning(const SimplexScene& s, Runner& runner) {
   Eigen::MatrixXd x(1, n), variance(1, n);
   runner.run(s.y.rightCols(n), x, variance);
   SimplexRun out{x.row(0), (x - s.truth.rightCols(n)).row(0), {}};
-  if (const HandOverLog* log = runner.hand_overs())
-    out.hand_overs.assign(log->events().begin(), log->events().end());
+  if (const HandOverLog* log = runner.hand_overs()) out.hand_overs.assign(log->events().begin(), log->events().end());
   return out;
 }
 
 bool led_by(const SimplexRun& run, Lead lead) {
-  return std::any_of(run.hand_overs.begin(), run.hand_overs.end(), [&](const HandOver& h) {
-    return h.to == lead;
-  });
+  return std::any_of(run.hand_overs.begin(), run.hand_overs.end(), [&](const HandOver& h) { return h.to == lead; });
 }
 
 bool ended_for(const SimplexRun& run, HandOverReason reason) {
-  return std::any_of(run.hand_overs.begin(), run.hand_overs.end(), [&](const HandOver& h) {
-    return h.reason == reason;
-  });
+  return std::any_of(run.hand_overs.begin(), run.hand_overs.end(),
+                     [&](const HandOver& h) { return h.reason == reason; });
 }
 
 }  // namespace
@@ -158,8 +153,7 @@ TEST_CASE("simplex, inputs: the mean, differences from it, and its past at the l
   CHECK(raw[2] == 7);
 }
 
-TEST_CASE(
-    "simplex, decision: each rule by itself takes the lead away, 32 good instants give it back") {
+TEST_CASE("simplex, decision: each rule by itself takes the lead away, 32 good instants give it back") {
   TaughtNetwork judged(2, 1, {4, 1});  // inputs: mean, two differences, lag 1
   judged.net.affine = {0, 0, 0, 0, 0};
   judged.net.held_out_square = 0.01;
@@ -306,11 +300,9 @@ TEST_CASE("simplex: a sensor that fails hands over at once, the network learns a
   const std::size_t of_baseline = test::heap_trips() - before;
   before = test::heap_trips();
   const SimplexRun run = run_behind_learning(scene, *simplex);
-  CHECK(test::heap_trips() - before <=
-        of_baseline + 1);  // one for the hand-overs that are returned here
-  const auto at_failure = std::find_if(run.hand_overs.begin(),
-                                       run.hand_overs.end(),
-                                       [](const HandOver& h) { return h.sample >= 10000; });
+  CHECK(test::heap_trips() - before <= of_baseline + 1);  // one for the hand-overs that are returned here
+  const auto at_failure =
+      std::find_if(run.hand_overs.begin(), run.hand_overs.end(), [](const HandOver& h) { return h.sample >= 10000; });
   REQUIRE(at_failure != run.hand_overs.end());
   CHECK(at_failure->sample <= 10005);
   CHECK(at_failure->to == Lead::baseline);

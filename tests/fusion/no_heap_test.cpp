@@ -52,8 +52,7 @@ TEST_CASE("no heap in step: every algorithm with every switch, every scene") {
   for (const test::FusionScene& scene : all)
     for (const Entry& entry : algorithms()) {
       if (!why_not(*entry.description, scene.array).empty()) continue;
-      if (entry.description->name == "perceptron" && !scene.benign)
-        continue;  // one learning is enough
+      if (entry.description->name == "perceptron" && !scene.benign) continue;  // one learning is enough
       for (const Settings& settings : variants(entry)) {
         std::string values;
         for (const double value : settings.values()) values += std::to_string(value) + " ";

@@ -32,8 +32,7 @@ TrainingScene scene(Eigen::Index instants, Eigen::Index learning) {
   TrainingScene made{Eigen::MatrixXd(3, instants), Eigen::VectorXd(instants), test::array(3)};
   for (Eigen::Index k = 0; k < instants; ++k) {
     made.x[k] = 2.4 * gauss();
-    for (Eigen::Index i = 0; i < 3; ++i)
-      made.y(i, k) = gain[i] * made.x[k] + bias[i] + deviation[i] * gauss();
+    for (Eigen::Index i = 0; i < 3; ++i) made.y(i, k) = gain[i] * made.x[k] + bias[i] + deviation[i] * gauss();
   }
   made.array.learning_samples = learning;
   return made;
@@ -47,9 +46,7 @@ std::unique_ptr<Runner> trained(const TrainingScene& s, const test::Values& valu
   return runner;
 }
 
-double rms_of(const Eigen::VectorXd& v) {
-  return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
-}
+double rms_of(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 }  // namespace
 
@@ -80,8 +77,7 @@ TEST_CASE("tanh network: derivatives against differences, neurons in any order")
     std::vector<double> up = p, down = p;
     up[i] += kStep;
     down[i] -= kStep;
-    const double slope =
-        (network.output(up.data(), z.data()) - network.output(down.data(), z.data())) / (2 * kStep);
+    const double slope = (network.output(up.data(), z.data()) - network.output(down.data(), z.data())) / (2 * kStep);
     CHECK(row[i] == Approx(slope).epsilon(1e-6).margin(1e-8));
   }
   std::vector<double> other = p;  // neurons 0 and 5 exchanged
@@ -121,8 +117,7 @@ TEST_CASE("network normals: sums over the rows, the same bits on one core and on
   NetworkNormals alone(network);
   REQUIRE(alone.linearise(all, p.data()));
   for (Eigen::Index i = 0; i < square.rows(); ++i)
-    for (Eigen::Index j = 0; j < square.cols(); ++j)
-      CHECK(alone.curvature(i, j) == normals.curvature(i, j));
+    for (Eigen::Index j = 0; j < square.cols(); ++j) CHECK(alone.curvature(i, j) == normals.curvature(i, j));
   CHECK(alone.squares(all, p.data()) == normals.squares(all, p.data()));
   p[0] = std::nan("");
   CHECK_FALSE(normals.linearise(all, p.data()));
@@ -136,8 +131,7 @@ TEST_CASE("perceptron: as good as affine least squares on a linear scene") {
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
   const Eigen::VectorXd affine = test::solution(design, s.x.head(4000));
   const Eigen::MatrixXd rest = s.y.rightCols(18000);
-  const double best =
-      rms_of((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
+  const double best = rms_of((rest.transpose() * affine.head(3)).array() + affine[3] - s.x.tail(18000).array());
   for (const double neurons : {3, 10}) {
     auto runner = trained(s, {{"neurons", neurons}});
     const test::Run run = test::run(*runner, rest);
@@ -152,13 +146,12 @@ TEST_CASE("perceptron: learns a bent sensor") {
   TrainingScene s = scene(8000, 4000);
   s.y = (s.y.array() / 2).tanh().matrix();  // every channel saturates
   auto runner = trained(s, {{"starts", 1}, {"neurons", 6}});
-  const double ours =
-      rms_of(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
+  const double ours = rms_of(test::run(*runner, s.y.rightCols(4000)).x.row(0).transpose() - s.x.tail(4000));
   Eigen::MatrixXd design(4000, 4);
   design << s.y.leftCols(4000).transpose(), Eigen::VectorXd::Ones(4000);
   const Eigen::VectorXd affine = test::solution(design, s.x.head(4000));
-  const double straight = rms_of((s.y.rightCols(4000).transpose() * affine.head(3)).array() +
-                                 affine[3] - s.x.tail(4000).array());
+  const double straight =
+      rms_of((s.y.rightCols(4000).transpose() * affine.head(3)).array() + affine[3] - s.x.tail(4000).array());
   CHECK(ours < 0.8 * straight);
 }
 
@@ -174,8 +167,7 @@ TEST_CASE("perceptron: same seed, same bits, another seed, others, blocks do not
   }
   for (const Eigen::Index block : {1, 17}) CHECK(test::run(*trained(s), rest, 1, block).x == x);
   auto in_parts = test::make("perceptron", s.array);
-  for (Eigen::Index k = 0; k < 2000; k += 250)
-    in_parts->learn(s.y.middleCols(k, 250), s.x.segment(k, 250).transpose());
+  for (Eigen::Index k = 0; k < 2000; k += 250) in_parts->learn(s.y.middleCols(k, 250), s.x.segment(k, 250).transpose());
   in_parts->finish_learning();
   CHECK(test::run(*in_parts, rest).x == x);
 }
@@ -188,16 +180,15 @@ TEST_CASE("perceptron: offset and scale cost nothing, a constant channel drops o
     TrainingScene moved = s;
     moved.y.array() += offset;
     moved.x.array() += offset;
-    const Eigen::MatrixXd got =
-        test::run(*trained(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
+    const Eigen::MatrixXd got = test::run(*trained(moved, {{"neurons", 3}}), moved.y.rightCols(1000)).x;
     CHECK(((got.array() - offset).matrix() - x).cwiseAbs().maxCoeff() < 1e-3);
   }
   TrainingScene scaled = s;
   scaled.y *= 0x1p-300;
   scaled.x *= 0x1p-300;
-  CHECK((test::run(*trained(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x)
-            .cwiseAbs()
-            .maxCoeff() < 1e-9);
+  CHECK(
+      (test::run(*trained(scaled, {{"neurons", 3}}), scaled.y.rightCols(1000)).x * 0x1p300 - x).cwiseAbs().maxCoeff() <
+      1e-9);
   TrainingScene dead = s;
   dead.y.row(2).setConstant(0.1);
   auto runner = trained(dead);
@@ -249,8 +240,7 @@ TEST_CASE("perceptron: too few instants and useless numbers are refused") {
   Perceptron perceptron(s.array, Settings(Perceptron::options));
   s.y.row(0).head(10).setConstant(1e308);
   s.y.row(0).segment(10, 10).setConstant(-1e308);
-  for (Eigen::Index k = 0; k < 2000; ++k)
-    perceptron.learn(Sample(s.y.col(k).data(), 3), Sample(&s.x[k], 1));
+  for (Eigen::Index k = 0; k < 2000; ++k) perceptron.learn(Sample(s.y.col(k).data(), 3), Sample(&s.x[k], 1));
   CHECK(test::code_of([&] { perceptron.finish_learning(); }) == "E0861");
 }
 
@@ -268,8 +258,7 @@ TEST_CASE("perceptron: a window longer than the room is no worse, however its le
   };
   const double whole = error_of(1000);
   CHECK(whole < 0.012);
-  for (const Eigen::Index learning : {1001, 2001, 4003, 5005})
-    CHECK(error_of(learning) < 1.3 * whole);
+  for (const Eigen::Index learning : {1001, 2001, 4003, 5005}) CHECK(error_of(learning) < 1.3 * whole);
 }
 
 TEST_CASE("perceptron: a reference that stands still is refused") {

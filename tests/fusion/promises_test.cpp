@@ -58,15 +58,12 @@ const std::map<std::string_view, Promise> kPromises{
     {"tilt-kalman-tuned", {false, kInUnits}},
 };
 
-test::FusionScene five() {
-  return test::noisy_scene("five", (Eigen::VectorXd(5) << 2, .4, .2, .04, .02).finished());
-}
+test::FusionScene five() { return test::noisy_scene("five", (Eigen::VectorXd(5) << 2, .4, .2, .04, .02).finished()); }
 
 test::Run run(const Entry& entry, const test::FusionScene& scene) {
   auto runner = entry.make(scene.array, Settings(entry.options));
   const Needs& needs = entry.description->needs;
-  if (needs.reference || needs.reference_throughout || needs.reference_helps)
-    runner->learn(scene.y, scene.truth);
+  if (needs.reference || needs.reference_throughout || needs.reference_helps) runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return test::run(*runner, scene.y);
 }
@@ -108,8 +105,8 @@ TEST_CASE("promises: an estimate with weights above zero lies between the sample
             low = std::min(low, y);
             high = std::max(high, y);
           }
-        const double rounding = 4e-16 * static_cast<double>(scene.y.rows()) *
-                                std::max({std::abs(low), std::abs(high), high - low});
+        const double rounding =
+            4e-16 * static_cast<double>(scene.y.rows()) * std::max({std::abs(low), std::abs(high), high - low});
         REQUIRE(out.x(0, k) >= low - rounding);
         REQUIRE(out.x(0, k) <= high + rounding);
       }
@@ -131,8 +128,7 @@ TEST_CASE("promises: a power of two is a unit like any other") {
       if (row->second.scale == 0)
         CHECK(test::same_values(moved, plain));
       else
-        CHECK((moved - plain).cwiseAbs().maxCoeff() <
-              row->second.scale * plain.cwiseAbs().maxCoeff());
+        CHECK((moved - plain).cwiseAbs().maxCoeff() < row->second.scale * plain.cwiseAbs().maxCoeff());
     }
 }
 
@@ -141,10 +137,8 @@ TEST_CASE("promises: samples beyond 1e100 are missing samples, whatever they are
   for (const double sample : {1e150, -1e300, std::numeric_limits<double>::infinity()})
     for (const Entry& entry : algorithms()) {
       // What learns needs complete instants.
-      if (!why_not(*entry.description, scene.array).empty() || entry.description->needs.reference)
-        continue;
-      if (entry.description->needs.reference_throughout && entry.description->name != "best-sensor")
-        continue;
+      if (!why_not(*entry.description, scene.array).empty() || entry.description->needs.reference) continue;
+      if (entry.description->needs.reference_throughout && entry.description->name != "best-sensor") continue;
       INFO(entry.description->name << ", " << sample);
       test::FusionScene wild = scene, missing = scene;
       wild.y.row(2).setConstant(sample);
@@ -154,8 +148,7 @@ TEST_CASE("promises: samples beyond 1e100 are missing samples, whatever they are
       const Eigen::MatrixXd a = run(entry, wild).x, b = run(entry, missing).x;
       // A sum with a weight of zero times 1e300 in it may run in another order.
       for (Eigen::Index k = 0; k < a.cols(); ++k)
-        if (!(std::isnan(a(0, k)) && std::isnan(b(0, k))))
-          REQUIRE(a(0, k) == Approx(b(0, k)).margin(1e-13));
+        if (!(std::isnan(a(0, k)) && std::isnan(b(0, k)))) REQUIRE(a(0, k) == Approx(b(0, k)).margin(1e-13));
     }
 }
 
@@ -189,8 +182,7 @@ TEST_CASE("promises: a channel twice is that channel once with half the variance
 
 TEST_CASE("promises: minque gathers, but what it gathers belongs to the channels in use") {
   // The set changes at every instant or never: the same variances within their scatter.
-  const test::FusionScene scene =
-      test::noisy_scene("", (Eigen::VectorXd(6) << 1, 2, 3, 4, 5, 6).finished(), 40000);
+  const test::FusionScene scene = test::noisy_scene("", (Eigen::VectorXd(6) << 1, 2, 3, 4, 5, 6).finished(), 40000);
   const auto variances = [&](bool holes) {
     Eigen::MatrixXd y = scene.y;
     for (Eigen::Index k = 0; holes && k < y.cols(); k += 2) y(k / 2 % 6, k) = test::kNaN;

@@ -22,9 +22,7 @@ struct LearnedScene {
 constexpr Eigen::Index kInstants = 1500;
 
 /// Channels of these noise deviations on one moving input.
-LearnedScene scene_of(const Eigen::VectorXd& deviations,
-                      double offset = 0,
-                      std::uint64_t seed = 5) {
+LearnedScene scene_of(const Eigen::VectorXd& deviations, double offset = 0, std::uint64_t seed = 5) {
   test::Gaussian gauss(seed);
   const Eigen::Index n = deviations.size();
   const auto record = [&](Eigen::MatrixXd& y, Eigen::MatrixXd& truth, Eigen::Index instants) {
@@ -49,15 +47,12 @@ LearnedScene scene_of(const Eigen::VectorXd& deviations,
   return scene;
 }
 
-LearnedScene scene_of(Eigen::Index n) {
-  return scene_of(Eigen::VectorXd::LinSpaced(n, 0.1, 0.3));
-}
+LearnedScene scene_of(Eigen::Index n) { return scene_of(Eigen::VectorXd::LinSpaced(n, 0.1, 0.3)); }
 
 std::unique_ptr<Runner> trained(const Entry& entry, const LearnedScene& scene) {
   auto runner = entry.make(scene.array, Settings(entry.options));
   const Needs& needs = entry.description->needs;
-  if (needs.reference || needs.reference_helps)
-    runner->learn(scene.learning_y, scene.learning_truth);
+  if (needs.reference || needs.reference_helps) runner->learn(scene.learning_y, scene.learning_truth);
   if (entry.description->needs.reference_throughout) runner->learn(scene.y, scene.truth);
   runner->finish_learning();
   return runner;
@@ -86,17 +81,13 @@ bool named(const Entry& entry, const std::set<std::string_view>& names) {
 
 /// Their equations are not those of a mean: free or calibrated weights do not sum to one. Reasons:
 /// docs/theory/fusion.md.
-const std::set<std::string_view> kFreeWeights{
-    "least-squares-published", "blind-calibration", "blind-calibration-published", "blind-gls"};
+const std::set<std::string_view> kFreeWeights{"least-squares-published", "blind-calibration",
+                                              "blind-calibration-published", "blind-gls"};
 /// Their estimates may move by something else than the input does.
-const std::set<std::string_view> kNotShifted{"least-squares-published",
-                                             "blind-calibration-published",
-                                             "random-weighting-published",
-                                             "kalman-takens-published"};
+const std::set<std::string_view> kNotShifted{"least-squares-published", "blind-calibration-published",
+                                             "random-weighting-published", "kalman-takens-published"};
 
-double apart(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
+double apart(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
 bool sane_variance(const Eigen::MatrixXd& variance) {
   for (const double v : variance.reshaped())
@@ -111,8 +102,7 @@ TEST_CASE("blocks of any size give the same bits") {
   scene.y.row(2).segment(900, 200).array() += 3;  // a fault, so that the sets change on the way
   for_each(scene, [&](const Entry& entry) {
     const test::Run whole = run_of(entry, scene);
-    for (const Eigen::Index block : {1, 7, 64, 1499})
-      CHECK(test::same_values(run_of(entry, scene, block).x, whole.x));
+    for (const Eigen::Index block : {1, 7, 64, 1499}) CHECK(test::same_values(run_of(entry, scene, block).x, whole.x));
   });
 }
 
@@ -192,8 +182,7 @@ TEST_CASE("weights sum to one, variances are never negative") {
 
 TEST_CASE("identical, constant and dead channels") {
   const LearnedScene plain = scene_of(6);
-  for (const std::string what :
-       {"identical", "two identical", "constant", "one dead", "half dead", "all zero"}) {
+  for (const std::string what : {"identical", "two identical", "constant", "one dead", "half dead", "all zero"}) {
     INFO(what);
     LearnedScene scene = plain;
     const auto spoil = [&](Eigen::MatrixXd& y) {
@@ -212,8 +201,8 @@ TEST_CASE("identical, constant and dead channels") {
       CHECK(sane_variance(out.variance));
       if (!named(entry, kFreeWeights) && !named(entry, kNotShifted)) {
         // Channels that agree are believed, unless what was learnt says otherwise.
-        if ((what == "identical" || what == "constant" || what == "all zero") &&
-            !entry.description->needs.reference && !named(entry, {"kalman-takens"}))
+        if ((what == "identical" || what == "constant" || what == "all zero") && !entry.description->needs.reference &&
+            !named(entry, {"kalman-takens"}))
           CHECK(apart(out.x, scene.y.row(0)) < 1e-12);
       }
     });
@@ -240,12 +229,10 @@ TEST_CASE("noise of very different size") {
       const test::Run out = test::run(*runner, scene.y);
       CHECK(out.x.allFinite());
       CHECK(sane_variance(out.variance));
-      if (named(entry, {"inverse-variance", "optimal-weights"}))
-        CHECK(apart(out.x, scene.truth) < 8);
+      if (named(entry, {"inverse-variance", "optimal-weights"})) CHECK(apart(out.x, scene.truth) < 8);
       // Without a word on the noise: the three good channels carry the weight after the first
       // hundred instants.
-      if (named(entry, {"minque"}))
-        CHECK(apart(out.x.rightCols(1000), scene.truth.rightCols(1000)) < 10);
+      if (named(entry, {"minque"})) CHECK(apart(out.x.rightCols(1000), scene.truth.rightCols(1000)) < 10);
     });
   }
 }
@@ -292,13 +279,12 @@ TEST_CASE("minque: no negative variance and no NaN for any memory") {
         for (const Eigen::VectorXd& deviations : {unequal, two, three}) {
           INFO(gamma << " " << damping << " " << offset << " " << deviations.transpose());
           const LearnedScene scene = scene_of(deviations, offset);
-          auto minque = test::make(
-              "minque", test::array(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
+          auto minque = test::make("minque", test::array(deviations.size()), {{"gamma", gamma}, {"damping", damping}});
           bool good = true;
           for (Eigen::Index k = 0; k < kInstants; ++k) {
             const test::Run out = test::run(*minque, scene.y.col(k));
-            good = good && out.x.allFinite() && sane_variance(out.variance) &&
-                   minque->variances()->minCoeff() > 0 && minque->variances()->allFinite();
+            good = good && out.x.allFinite() && sane_variance(out.variance) && minque->variances()->minCoeff() > 0 &&
+                   minque->variances()->allFinite();
           }
           CHECK(good);
         }
@@ -314,8 +300,7 @@ TEST_CASE("step makes no trip to the heap") {
   scene.y.row(2).segment(900, 200).array() += 3;
   scene.y(3, 1000) = std::nan("");
   LearnedScene two = scene;
-  two.array.observation_matrix =
-      (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
+  two.array.observation_matrix = (Eigen::MatrixXd(6, 2) << 1, .1, 1, .2, 1, -.3, 1, .4, 1, -.5, 1, .6).finished();
   for (Eigen::MatrixXd* truth : {&two.truth, &two.learning_truth})
     truth->conservativeResizeLike(Eigen::MatrixXd::Zero(2, truth->cols()));
   for (const LearnedScene* fed : {&scene, &two})

@@ -15,9 +15,7 @@ using namespace libchar::fusion;
 namespace {
 
 /// Columns whose second moments are exactly S.
-Eigen::MatrixXd errors_of(const Eigen::MatrixXd& s) {
-  return test::upper_root(s);
-}
+Eigen::MatrixXd errors_of(const Eigen::MatrixXd& s) { return test::upper_root(s); }
 
 Eigen::VectorXd optimum(const Eigen::MatrixXd& s) {
   const Eigen::VectorXd v = test::solution(s, Eigen::VectorXd::Ones(s.rows()));
@@ -88,14 +86,12 @@ TEST_CASE("shrunk least squares: the optimum of (1 - s) S + s diag S") {
     Eigen::MatrixXd error(400, 4);
     for (Eigen::Index k = 0; k < error.rows(); ++k) {
       const double common = gauss();
-      for (Eigen::Index i = 0; i < 4; ++i)
-        error(k, i) = 0.3 * static_cast<double>(i + 1) * (common + 0.5 * gauss());
+      for (Eigen::Index i = 0; i < 4; ++i) error(k, i) = 0.3 * static_cast<double>(i + 1) * (common + 0.5 * gauss());
     }
     const Eigen::MatrixXd s = error.transpose() * error;
     const Eigen::MatrixXd target = s.diagonal().asDiagonal();
     const LearntWeights learnt = learn(error, {.shrinkage = share});
-    CHECK((learnt.weights - optimum((1 - share) * s + share * target)).cwiseAbs().maxCoeff() <
-          1e-11);
+    CHECK((learnt.weights - optimum((1 - share) * s + share * target)).cwiseAbs().maxCoeff() < 1e-11);
     CHECK(learnt.variance == Approx((error * learnt.weights).squaredNorm() / 397).epsilon(1e-10));
   }
 }
@@ -124,8 +120,7 @@ TEST_CASE("regularized least squares: a short window makes no extreme weights") 
       Eigen::MatrixXd error(rows, 6);
       for (Eigen::Index k = 0; k < rows; ++k) {
         const double drift = gauss();
-        for (Eigen::Index i = 0; i < 6; ++i)
-          error(k, i) = 0.5 * drift + (0.5 + 0.2 * static_cast<double>(i)) * gauss();
+        for (Eigen::Index i = 0; i < 6; ++i) error(k, i) = 0.5 * drift + (0.5 + 0.2 * static_cast<double>(i)) * gauss();
       }
       return error;
     };

@@ -28,8 +28,7 @@ struct FusionScene {
 /// White noise of these variances, flicker a tenth and a walk a thousandth of its deviation.
 inline std::vector<libchar::fusion::NoiseModel> drifting(const Eigen::VectorXd& variances) {
   std::vector<libchar::fusion::NoiseModel> models;
-  for (const double v : variances)
-    models.push_back({v, 0.1 * std::sqrt(v), 0.001 * std::sqrt(v), {}});
+  for (const double v : variances) models.push_back({v, 0.1 * std::sqrt(v), 0.001 * std::sqrt(v), {}});
   return models;
 }
 
@@ -43,11 +42,8 @@ inline void scale_levels(libchar::fusion::Array& array, double factor) {
   }
 }
 
-inline FusionScene noisy_scene(const std::string& name,
-                               const Eigen::VectorXd& variances,
-                               Eigen::Index instants = 600,
-                               double offset = 0,
-                               double signal = 2) {
+inline FusionScene noisy_scene(const std::string& name, const Eigen::VectorXd& variances, Eigen::Index instants = 600,
+                               double offset = 0, double signal = 2) {
   FusionScene scene;
   scene.name = name;
   const Eigen::Index n = variances.size();
@@ -58,8 +54,7 @@ inline FusionScene noisy_scene(const std::string& name,
   for (Eigen::Index k = 0; k < instants; ++k) {
     x = 0.7 * x + signal * gauss();
     scene.truth(0, k) = offset + x;
-    for (Eigen::Index i = 0; i < n; ++i)
-      scene.y(i, k) = offset + x + std::sqrt(variances[i]) * gauss();
+    for (Eigen::Index i = 0; i < n; ++i) scene.y(i, k) = offset + x + std::sqrt(variances[i]) * gauss();
   }
   scene.array.channels = n;
   scene.array.noise_levels = variances;
@@ -72,9 +67,7 @@ inline FusionScene noisy_scene(const std::string& name,
   return scene;
 }
 
-inline FusionScene hurt(FusionScene scene,
-                        const std::string& name,
-                        const std::function<void(Eigen::MatrixXd&)>& how) {
+inline FusionScene hurt(FusionScene scene, const std::string& name, const std::function<void(Eigen::MatrixXd&)>& how) {
   how(scene.y);
   scene.name = name;
   scene.benign = false;
@@ -87,19 +80,17 @@ inline std::vector<FusionScene> fusion_scenes() {
   const VectorXd five = (VectorXd(5) << 100, 20, 10, 2, 1).finished() / 50;
   const VectorXd three = (VectorXd(3) << 1, 2, 3).finished();
   const FusionScene sound = noisy_scene("five unequal channels", five);
-  std::vector<FusionScene> all{
-      sound,
-      noisy_scene("two channels", (VectorXd(2) << 1, 4).finished()),
-      noisy_scene("three channels", three),
-      noisy_scene("six equal channels", VectorXd::Constant(6, 0.3)),
-      noisy_scene("200 channels", VectorXd::LinSpaced(200, 0.1, 5), 500),
-      noisy_scene("deviations 1 : 1e12", (VectorXd(4) << 1e-12, 1, 1e12, 2).finished()),
-      noisy_scene("offset 1e9, noise 1e-6", VectorXd::Constant(5, 1e-12), 600, 1e9, 1e-3),
-      noisy_scene("scale 1e-100", five * 1e-200, 600, 0, 1e-100),
-      noisy_scene("one instant", five, 1)};
+  std::vector<FusionScene> all{sound,
+                               noisy_scene("two channels", (VectorXd(2) << 1, 4).finished()),
+                               noisy_scene("three channels", three),
+                               noisy_scene("six equal channels", VectorXd::Constant(6, 0.3)),
+                               noisy_scene("200 channels", VectorXd::LinSpaced(200, 0.1, 5), 500),
+                               noisy_scene("deviations 1 : 1e12", (VectorXd(4) << 1e-12, 1, 1e12, 2).finished()),
+                               noisy_scene("offset 1e9, noise 1e-6", VectorXd::Constant(5, 1e-12), 600, 1e9, 1e-3),
+                               noisy_scene("scale 1e-100", five * 1e-200, 600, 0, 1e-100),
+                               noisy_scene("one instant", five, 1)};
   for (FusionScene& scene : all)
-    if (scene.name != sound.name && scene.name != "six equal channels" &&
-        scene.name != "three channels")
+    if (scene.name != sound.name && scene.name != "six equal channels" && scene.name != "three channels")
       scene.benign = false;
   const auto add = [&](const char* name, const std::function<void(Eigen::MatrixXd&)>& how) {
     all.push_back(hurt(sound, name, how));
@@ -110,16 +101,13 @@ inline std::vector<FusionScene> fusion_scenes() {
   add("two identical", [](Eigen::MatrixXd& y) { y.row(3) = Eigen::RowVectorXd(y.row(4)); });
   add("one dead", [](Eigen::MatrixXd& y) { y.row(4).setZero(); });
   add("one dies", [](Eigen::MatrixXd& y) { y.row(4).rightCols(y.cols() / 2).setZero(); });
-  add("one bit", [](Eigen::MatrixXd& y) {
-    y = (y.array() > 0).select(1.0, Eigen::MatrixXd::Constant(y.rows(), y.cols(), -1));
-  });
+  add("one bit",
+      [](Eigen::MatrixXd& y) { y = (y.array() > 0).select(1.0, Eigen::MatrixXd::Constant(y.rows(), y.cols(), -1)); });
   add("saturated", [](Eigen::MatrixXd& y) { y = y.cwiseMax(-1).cwiseMin(1); });
   add("spike 1e300", [](Eigen::MatrixXd& y) { y(2, 250) = 1e300; });
-  add("infinite sample",
-      [](Eigen::MatrixXd& y) { y(2, 250) = std::numeric_limits<double>::infinity(); });
+  add("infinite sample", [](Eigen::MatrixXd& y) { y(2, 250) = std::numeric_limits<double>::infinity(); });
   add("lone NaN at both ends", [](Eigen::MatrixXd& y) { y(0, 0) = y(1, y.cols() - 1) = kNaN; });
-  add("burst of NaN in one",
-      [](Eigen::MatrixXd& y) { y.row(4).segment(200, 150).setConstant(kNaN); });
+  add("burst of NaN in one", [](Eigen::MatrixXd& y) { y.row(4).segment(200, 150).setConstant(kNaN); });
   add("burst of NaN in all", [](Eigen::MatrixXd& y) { y.middleCols(200, 150).setConstant(kNaN); });
   add("one channel all NaN", [](Eigen::MatrixXd& y) { y.row(1).setConstant(kNaN); });
   add("all NaN", [](Eigen::MatrixXd& y) { y.setConstant(kNaN); });
@@ -163,8 +151,8 @@ inline FusionScene lever_scene(Eigen::Index n = 8) {
     scene.array.observation_matrix(i, 0) = 1;
     scene.array.observation_matrix(i, 1) = -0.1 * static_cast<double>(i * i);
     for (Eigen::Index k = 0; k < x.cols(); ++k)
-      scene.y(i, k) = scene.array.observation_matrix.row(i).dot(x.col(k)) +
-                      std::sqrt(scene.array.noise_levels[i]) * gauss();
+      scene.y(i, k) =
+          scene.array.observation_matrix.row(i).dot(x.col(k)) + std::sqrt(scene.array.noise_levels[i]) * gauss();
   }
   scene.truth = x;
   return scene;

@@ -47,9 +47,7 @@ std::unique_ptr<Runner> ready(const Entry& entry, const test::FusionScene& scene
   }
 }
 
-std::optional<test::Run> run_sweep(const Entry& entry,
-                                   const test::FusionScene& scene,
-                                   Eigen::Index block = 1 << 30) {
+std::optional<test::Run> run_sweep(const Entry& entry, const test::FusionScene& scene, Eigen::Index block = 1 << 30) {
   const auto runner = ready(entry, scene);
   if (!runner) return std::nullopt;
   return test::run(*runner, scene.y, scene.array.inputs(), block);
@@ -78,8 +76,7 @@ TEST_CASE("every algorithm x every scene: estimates are finite where samples are
       for (Eigen::Index k = 0; k < out.x.cols(); ++k) {
         const bool complete = (scene.y.col(k).array().abs() < 1e99).all();
         if (complete && !out.x.col(k).allFinite()) ++missing;
-        if ((out.x.col(k).array().abs() == std::numeric_limits<double>::infinity()).any())
-          ++infinite;
+        if ((out.x.col(k).array().abs() == std::numeric_limits<double>::infinity()).any()) ++infinite;
         if ((out.variance.col(k).array() < 0).any()) ++negative;
       }
       CHECK(missing == 0);
@@ -94,8 +91,7 @@ TEST_CASE("every algorithm x every scene: estimates are finite where samples are
 
 TEST_CASE("every set of weights sums to one where the method promises it") {
   // Free weights shrink, inverse gains are no weights; the published form says what it says.
-  const Names free{
-      "least-squares-published", "blind-calibration", "blind-calibration-published", "blind-gls"};
+  const Names free{"least-squares-published", "blind-calibration", "blind-calibration-published", "blind-gls"};
   for (const test::FusionScene& scene : scenes())
     for (const Entry& entry : algorithms()) {
       const auto runner = ready(entry, scene);
@@ -110,8 +106,7 @@ TEST_CASE("every set of weights sums to one where the method promises it") {
       REQUIRE(weights->allFinite());
       // sum w h = identity: unbiased. For one input that is sum w = 1.
       const Eigen::MatrixXd unity = weights->transpose() * scene.array.h();
-      const double size = weights->cwiseAbs().colwise().sum().maxCoeff() *
-                          scene.array.h().cwiseAbs().maxCoeff() *
+      const double size = weights->cwiseAbs().colwise().sum().maxCoeff() * scene.array.h().cwiseAbs().maxCoeff() *
                           static_cast<double>(scene.y.rows());
       CHECK((unity - Eigen::MatrixXd::Identity(unity.rows(), unity.cols())).cwiseAbs().maxCoeff() <=
             8 * std::numeric_limits<double>::epsilon() * std::max(1.0, size));
@@ -121,8 +116,7 @@ TEST_CASE("every set of weights sums to one where the method promises it") {
 TEST_CASE("every algorithm x every scene: blocks of any size give the same bits") {
   for (const test::FusionScene& scene : scenes())
     for (const Entry& entry : algorithms()) {
-      if (entry.description->name == "perceptron" && !scene.benign)
-        continue;  // learns long, see below
+      if (entry.description->name == "perceptron" && !scene.benign) continue;  // learns long, see below
       const auto whole = run_sweep(entry, scene);
       if (!whole) continue;
       for (const Eigen::Index block : {1, 7, 64}) {
@@ -139,11 +133,8 @@ TEST_CASE("every algorithm x every scene: blocks of any size give the same bits"
 TEST_CASE("benign scenes: a shift of the input shifts the estimates") {
   // Free weights shrink towards zero; the published random weighting needs an input of mean zero; a
   // calibration that is blind to the offset takes the mean for it, which shifts alike.
-  const Names unlike{"least-squares-published",
-                     "random-weighting-published",
-                     "blind-calibration",
-                     "blind-calibration-published",
-                     "kalman-takens-published"};
+  const Names unlike{"least-squares-published", "random-weighting-published", "blind-calibration",
+                     "blind-calibration-published", "kalman-takens-published"};
   for (const test::FusionScene& scene : test::fusion_scenes()) {
     if (!scene.benign) continue;
     for (const double shift : {1.0, -1024.0, 1048576.0}) {
@@ -189,8 +180,7 @@ TEST_CASE("benign scenes: a change of unit changes the estimates alike") {
 
 TEST_CASE("benign scenes: the order of the channels does not matter") {
   // Of these one channel is the reference, or random starts belong to places.
-  const Names unlike{
-      "random-weighting-published", "blind-calibration-published", "blind-gls", "perceptron"};
+  const Names unlike{"random-weighting-published", "blind-calibration-published", "blind-gls", "perceptron"};
   for (const test::FusionScene& scene : test::fusion_scenes()) {
     if (!scene.benign) continue;
     test::FusionScene turned = scene;
@@ -230,8 +220,7 @@ TEST_CASE("minque: no variance is negative or lost, any memory, n >= 3, offsets 
   for (const Eigen::Index n : {3, 4, 6, 20})
     for (const double gamma : {0.9, 0.93, 0.98, 0.99, 0.999, 0.99999})
       for (const double offset : {0.0, 1e4, 1e8}) {
-        const auto scene =
-            test::noisy_scene("", Eigen::VectorXd::LinSpaced(n, 0.01, 3), 2000, offset);
+        const auto scene = test::noisy_scene("", Eigen::VectorXd::LinSpaced(n, 0.01, 3), 2000, offset);
         auto runner = test::make("minque", scene.array, {{"gamma", gamma}});
         INFO("n = " << n << ", gamma = " << gamma << ", offset " << offset);
         for (Eigen::Index k = 0; k < scene.y.cols(); k += 50) {
@@ -247,8 +236,7 @@ TEST_CASE("minque: no variance is negative or lost, any memory, n >= 3, offsets 
 
 TEST_CASE("minque: variances that the data cannot tell apart are named") {
   const Entry& entry = algorithm("minque");
-  CHECK_FALSE(
-      why_not(*entry.description, test::noisy_scene("", Eigen::VectorXd::Ones(2)).array).empty());
+  CHECK_FALSE(why_not(*entry.description, test::noisy_scene("", Eigen::VectorXd::Ones(2)).array).empty());
   Eigen::VectorXd two_good = Eigen::VectorXd::Constant(8, 1e6);
   two_good.head(2).setOnes();
   const auto remarked = [](const Eigen::VectorXd& variances) {

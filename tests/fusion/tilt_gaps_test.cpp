@@ -37,13 +37,10 @@ Swing swing(double jitter = 0, double gyroscope_noise = 0.01, double gravity_noi
 
 const test::Values kTuned{{"angle_noise", 1e-6}, {"bias_noise", 1e-9}, {"gravity_variance", 4e-4}};
 
-test::Run kalman(const Swing& swing) {
-  return test::run(*test::make("tilt-kalman", swing.array, kTuned), swing.y);
-}
+test::Run kalman(const Swing& swing) { return test::run(*test::make("tilt-kalman", swing.array, kTuned), swing.y); }
 
 double rms(const Eigen::MatrixXd& x, const Swing& swing) {
-  return std::sqrt((x - swing.truth).rightCols(kGapInstants - 500).squaredNorm() /
-                   (kGapInstants - 500));
+  return std::sqrt((x - swing.truth).rightCols(kGapInstants - 500).squaredNorm() / (kGapInstants - 500));
 }
 
 }  // namespace
@@ -68,8 +65,7 @@ TEST_CASE("tilt: an instant without samples takes its time") {
 TEST_CASE("tilt-kalman: a silent gyroscope costs accuracy, and the variance says so") {
   const Swing whole = swing();
   Swing silent = whole;
-  for (Eigen::Index k = 600; k + 50 < kGapInstants; k += 400)
-    silent.y.row(0).segment(k, 50).setConstant(test::kNaN);
+  for (Eigen::Index k = 600; k + 50 < kGapInstants; k += 400) silent.y.row(0).segment(k, 50).setConstant(test::kNaN);
   const test::Run good = kalman(whole), held = kalman(silent);
   CHECK(rms(good.x, whole) < 0.006);
   // Holding the last rate for half a second alone would be off by up to 0.35 rad.

@@ -52,20 +52,15 @@ TEST_CASE("tilt: 50-digit vectors") {
   const auto run = [&](const char* name, const test::Values& values = {}) {
     return test::run(*test::make(name, array, values), y);
   };
-  CHECK(test::worst(run("tilt-accelerometer").x, file["acc_angle_atan2"].transpose(), 4.5e-16) <=
-        1);
+  CHECK(test::worst(run("tilt-accelerometer").x, file["acc_angle_atan2"].transpose(), 4.5e-16) <= 1);
   // The sum of many rates: rounding grows with the number of instants.
-  CHECK(test::worst(run("tilt-gyroscope", {{"start_at_zero", 1}}).x,
-                    file["gyro_integral"].transpose(),
-                    2e-15) <= 1);
+  CHECK(test::worst(run("tilt-gyroscope", {{"start_at_zero", 1}}).x, file["gyro_integral"].transpose(), 2e-15) <= 1);
   CHECK(test::worst(run("tilt-complementary", {{"lambda", answer["lam"]}, {"start_at_zero", 1}}).x,
-                    file["theta_cf"].transpose(),
-                    8.88e-16) <= 1);
-  const test::Run kalman = run("tilt-kalman",
-                               {{"angle_noise", answer["Qtheta"]},
-                                {"bias_noise", answer["Qbias"]},
-                                {"gravity_variance", answer["R"]},
-                                {"start_at_zero", 1}});
+                    file["theta_cf"].transpose(), 8.88e-16) <= 1);
+  const test::Run kalman = run("tilt-kalman", {{"angle_noise", answer["Qtheta"]},
+                                               {"bias_noise", answer["Qbias"]},
+                                               {"gravity_variance", answer["R"]},
+                                               {"start_at_zero", 1}});
   CHECK(test::worst(kalman.x, file["theta_kf"].transpose(), 1.78e-15) <= 1);
   CHECK(test::worst(kalman.variance, file["P00"].transpose(), 0, 1e-14) <= 1);
 }
@@ -97,21 +92,15 @@ TEST_CASE("tilt: gain one and gain zero are the single sensors, bit for bit") {
             .unaryExpr([](double off) { return wrapped(off); })
             .cwiseAbs()
             .maxCoeff() < 1e-15);
-  const Eigen::MatrixXd deaf = run("tilt-kalman",
-                                   {{"gravity_variance", 1e200},
-                                    {"start_bias_variance", 0},
-                                    {"angle_noise", 0},
-                                    {"bias_noise", 0}});
+  const Eigen::MatrixXd deaf = run(
+      "tilt-kalman", {{"gravity_variance", 1e200}, {"start_bias_variance", 0}, {"angle_noise", 0}, {"bias_noise", 0}});
   // It starts with the variance of gravity, so its second sample still counts half.
-  const Eigen::MatrixXd trusting =
-      run("tilt-kalman", {{"gravity_variance", 1e-200}, {"angle_noise", 1}});
-  CHECK((trusting - run("tilt-accelerometer"))
-            .unaryExpr([](double off) { return wrapped(off); })
-            .cwiseAbs()
-            .maxCoeff() < 1e-15);
+  const Eigen::MatrixXd trusting = run("tilt-kalman", {{"gravity_variance", 1e-200}, {"angle_noise", 1}});
+  CHECK(
+      (trusting - run("tilt-accelerometer")).unaryExpr([](double off) { return wrapped(off); }).cwiseAbs().maxCoeff() <
+      1e-15);
   CHECK(deaf.allFinite());
-  const Eigen::MatrixXd from_zero =
-      run("tilt-kalman", {{"gravity_variance", 1e200}, {"start_at_zero", 1}});
+  const Eigen::MatrixXd from_zero = run("tilt-kalman", {{"gravity_variance", 1e200}, {"start_at_zero", 1}});
   CHECK((from_zero - run("tilt-gyroscope", {{"start_at_zero", 1}})).cwiseAbs().maxCoeff() < 1e-13);
 }
 
@@ -121,13 +110,11 @@ TEST_CASE("tilt: filters follow a turn through +-pi and learn the bias") {
     INFO(name);
     const Eigen::MatrixXd x = test::run(*test::make(name, tilt_array()), y.topRows(3)).x;
     CHECK(x.cwiseAbs().maxCoeff() <= kPi);
-    const Eigen::ArrayXd off =
-        (x.row(0) - y.row(3)).array().unaryExpr([](double a) { return wrapped(a); });
+    const Eigen::ArrayXd off = (x.row(0) - y.row(3)).array().unaryExpr([](double a) { return wrapped(a); });
     CHECK(std::sqrt(off.tail(15000).square().mean()) < 0.03);
   }
   TiltKalmanFilter filter({}, 0.01, 1e-4, false);
-  for (Eigen::Index k = 0; k < y.cols(); ++k)
-    filter.step(tilt_sample({}, Sample(y.col(k).data(), 3)));
+  for (Eigen::Index k = 0; k < y.cols(); ++k) filter.step(tilt_sample({}, Sample(y.col(k).data(), 3)));
   CHECK(filter.bias() == Approx(0.02).margin(5 * std::sqrt(filter.p11())));
   CHECK(std::sqrt(filter.p11()) < 0.005);
 }
@@ -174,9 +161,7 @@ TEST_CASE("tilt-kalman: the covariance stays positive, and settles at the Riccat
     TiltNoise noise;
     double start;
   };
-  for (const Case& c : {Case{{1e-5, 1e-3, 1e-2}, 1e-4},
-                        Case{{0, 0, 1e-12}, 1e12},
-                        Case{{1e12, 0, 1e-12}, 1e12},
+  for (const Case& c : {Case{{1e-5, 1e-3, 1e-2}, 1e-4}, Case{{0, 0, 1e-12}, 1e12}, Case{{1e12, 0, 1e-12}, 1e12},
                         Case{{1e-12, 1e-12, 1e12}, 0}}) {
     TiltKalmanFilter filter(c.noise, 0.002, c.start, false);
     for (int k = 0; k < 1000000; ++k) filter.step({0.1, 0.3});
@@ -201,14 +186,12 @@ TEST_CASE("tilt-kalman: the covariance stays positive, and settles at the Riccat
 TEST_CASE("tilt: blocks of any size give the same bits") {
   Eigen::MatrixXd y = turning(500).topRows(3);
   y.block(1, 100, 1, 30).setConstant(std::nan(""));
-  for (const char* name :
-       {"tilt-gyroscope", "tilt-accelerometer", "tilt-complementary", "tilt-kalman"}) {
+  for (const char* name : {"tilt-gyroscope", "tilt-accelerometer", "tilt-complementary", "tilt-kalman"}) {
     INFO(name);
     const Eigen::MatrixXd whole = test::run(*test::make(name, tilt_array()), y).x;
     for (const Eigen::Index block : {1, 7, 64}) {
       const Eigen::MatrixXd parts = test::run(*test::make(name, tilt_array()), y, 1, block).x;
-      CHECK(((parts.array() == whole.array()) || (parts.array().isNaN() && whole.array().isNaN()))
-                .all());
+      CHECK(((parts.array() == whole.array()) || (parts.array().isNaN() && whole.array().isNaN())).all());
     }
   }
 }
@@ -223,22 +206,17 @@ TEST_CASE("tilt tuned: near the best constants there are, unlike noise, unlike c
     runner->finish_learning();
     const Eigen::MatrixXd x = test::run(*runner, y.topRightCorner(3, 10000)).x;
     const Eigen::ArrayXd off =
-        (x.row(0) - y.block(3, 10000, 1, 10000)).array().unaryExpr([](double a) {
-          return wrapped(a);
-        });
+        (x.row(0) - y.block(3, 10000, 1, 10000)).array().unaryExpr([](double a) { return wrapped(a); });
     return std::sqrt(off.tail(9000).square().mean());
   };
   double best_blend = 1, best_kalman = 1;
   for (double decades = -2; decades <= 2; decades += 0.25)
-    best_blend =
-        std::min(best_blend, rms("tilt-complementary", {{"time_constant", std::pow(10, decades)}}));
+    best_blend = std::min(best_blend, rms("tilt-complementary", {{"time_constant", std::pow(10, decades)}}));
   for (double angle = -9; angle <= -3; angle += 1)
     for (double bias = -12; bias <= -4; bias += 1)
-      best_kalman = std::min(best_kalman,
-                             rms("tilt-kalman",
-                                 {{"angle_noise", std::pow(10, angle)},
-                                  {"bias_noise", std::pow(10, bias)},
-                                  {"gravity_variance", 0.0025}}));
+      best_kalman = std::min(best_kalman, rms("tilt-kalman", {{"angle_noise", std::pow(10, angle)},
+                                                              {"bias_noise", std::pow(10, bias)},
+                                                              {"gravity_variance", 0.0025}}));
   const double blend = rms("tilt-complementary-tuned"), kalman = rms("tilt-kalman-tuned");
   CHECK(blend < 1.1 * best_blend);
   CHECK(kalman < 1.25 * best_kalman);
@@ -258,10 +236,7 @@ TEST_CASE("tilt: the start is the mean over start_s, and what comes after it is 
     y.row(2).setConstant(9.81);
     y(1, at) = 9.81 * std::sin(0.1);
     y(2, at) = 9.81 * std::cos(0.1);
-    return test::run(*test::make(
-                         "tilt-complementary", tilt_array(), {{"lambda", 0.99}, {"start_s", 0.1}}),
-                     y)
-        .x(0, at);
+    return test::run(*test::make("tilt-complementary", tilt_array(), {{"lambda", 0.99}, {"start_s", 0.1}}), y).x(0, at);
   };
   CHECK(angle_after(1) == Approx(0.1 / 2).epsilon(1e-12));
   CHECK(angle_after(9) == Approx(0.1 / 10).epsilon(1e-12));
@@ -285,9 +260,7 @@ TEST_CASE("tilt: a wild first sample of the accelerometer is not carried on") {
   y(1, 0) += 9;  // a knock: tens of degrees
   const auto error = [&](const char* name, const test::Values& values) {
     const Eigen::MatrixXd x = test::run(*test::make(name, tilt_array(), values), y).x;
-    return std::sqrt(
-        (x - truth).unaryExpr([](double a) { return wrapped(a); }).rightCols(19500).squaredNorm() /
-        19500);
+    return std::sqrt((x - truth).unaryExpr([](double a) { return wrapped(a); }).rightCols(19500).squaredNorm() / 19500);
   };
   CHECK(error("tilt-gyroscope", {{"start_s", 0}}) > 0.5);
   CHECK(error("tilt-gyroscope", {}) < 0.05);

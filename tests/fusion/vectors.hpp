@@ -24,12 +24,10 @@ struct Vectors {
   explicit Vectors(const std::string& file) {
     const auto rows = table(known("fusion/" + file));
     names = rows.at(0);
-    values.resize(static_cast<Eigen::Index>(rows.size()) - 1,
-                  static_cast<Eigen::Index>(names.size()));
+    values.resize(static_cast<Eigen::Index>(rows.size()) - 1, static_cast<Eigen::Index>(names.size()));
     for (Eigen::Index r = 0; r < values.rows(); ++r)
       for (Eigen::Index c = 0; c < values.cols(); ++c)
-        values(r, c) =
-            std::stod(rows[static_cast<std::size_t>(r) + 1].at(static_cast<std::size_t>(c)));
+        values(r, c) = std::stod(rows[static_cast<std::size_t>(r) + 1].at(static_cast<std::size_t>(c)));
   }
   Eigen::Index column(const std::string& name) const {
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -43,9 +41,7 @@ struct Vectors {
   }
 };
 
-inline nlohmann::json answers() {
-  return nlohmann::json::parse(slurp(known("fusion/kat.json")));
-}
+inline nlohmann::json answers() { return nlohmann::json::parse(slurp(known("fusion/kat.json"))); }
 
 inline Eigen::VectorXd vector(const nlohmann::json& list) {
   const std::vector<double> values = list;
@@ -56,8 +52,7 @@ inline Eigen::VectorXd vector(const nlohmann::json& list) {
 inline bool same_values(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
   for (Eigen::Index i = 0; i < a.size(); ++i)
-    if (!(a.data()[i] == b.data()[i] || (std::isnan(a.data()[i]) && std::isnan(b.data()[i]))))
-      return false;
+    if (!(a.data()[i] == b.data()[i] || (std::isnan(a.data()[i]) && std::isnan(b.data()[i])))) return false;
   return true;
 }
 
@@ -65,15 +60,12 @@ struct Run {
   Eigen::MatrixXd x, variance;
 };
 
-inline Run run(libchar::fusion::Runner& runner,
-               const Eigen::MatrixXd& samples,
-               Eigen::Index inputs = 1,
+inline Run run(libchar::fusion::Runner& runner, const Eigen::MatrixXd& samples, Eigen::Index inputs = 1,
                Eigen::Index block = std::numeric_limits<Eigen::Index>::max()) {
   Run out{Eigen::MatrixXd(inputs, samples.cols()), Eigen::MatrixXd(inputs, samples.cols())};
   for (Eigen::Index k = 0; k < samples.cols();) {
     const Eigen::Index size = std::min(block, samples.cols() - k);
-    runner.run(
-        samples.middleCols(k, size), out.x.middleCols(k, size), out.variance.middleCols(k, size));
+    runner.run(samples.middleCols(k, size), out.x.middleCols(k, size), out.variance.middleCols(k, size));
     k += size;
   }
   return out;
@@ -87,8 +79,7 @@ inline libchar::fusion::Settings settings(const std::string& name, const Values&
   return made;
 }
 
-inline std::unique_ptr<libchar::fusion::Runner> make(const std::string& name,
-                                                     const libchar::fusion::Array& array,
+inline std::unique_ptr<libchar::fusion::Runner> make(const std::string& name, const libchar::fusion::Array& array,
                                                      const Values& values = {}) {
   return libchar::fusion::algorithm(name).make(array, settings(name, values));
 }
@@ -100,10 +91,7 @@ inline libchar::fusion::Array array(Eigen::Index channels) {
 }
 
 /// Largest |a - b| in units of the tolerance 10 x max(absolute, relative x |b|): below 1 passes.
-inline double worst(const Eigen::MatrixXd& a,
-                    const Eigen::MatrixXd& b,
-                    double absolute,
-                    double relative = 0) {
+inline double worst(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double absolute, double relative = 0) {
   double worst = 0;
   for (Eigen::Index i = 0; i < b.size(); ++i) {
     const double tolerance = 10 * std::max(absolute, relative * std::abs(b.data()[i]));

@@ -21,8 +21,7 @@ Array drifting_array(const std::vector<NoiseModel>& models, double rate_hz) {
   array.noise_models = models;
   array.rate_hz = rate_hz;
   array.noise_levels.resize(array.channels);
-  for (Eigen::Index i = 0; i < array.channels; ++i)
-    array.noise_levels[i] = models[static_cast<std::size_t>(i)].white;
+  for (Eigen::Index i = 0; i < array.channels; ++i) array.noise_levels[i] = models[static_cast<std::size_t>(i)].white;
   return array;
 }
 
@@ -47,8 +46,7 @@ struct Textbook {
     Eigen::MatrixXd s = cp * p * cp.transpose();
     s.diagonal() += white(present);
     const Eigen::MatrixXd inverse = test::inverse(s);
-    const Eigen::MatrixXd w =
-        test::inverse(hp.transpose() * inverse * hp) * hp.transpose() * inverse;
+    const Eigen::MatrixXd w = test::inverse(hp.transpose() * inverse * hp) * hp.transpose() * inverse;
     const Eigen::VectorXd e = y(present) - cp * b;
     const Eigen::VectorXd x = w * e;
     const Eigen::MatrixXd gain =
@@ -97,8 +95,7 @@ Opposite opposite(Eigen::Index instants, std::uint64_t seed, double rate_hz = 20
 double mean_rms(const Eigen::VectorXd& error, Eigen::Index length) {
   double sum = 0;
   const Eigen::Index cells = error.size() / length;
-  for (Eigen::Index k = 0; k < cells; ++k)
-    sum += std::pow(error.segment(k * length, length).mean(), 2);
+  for (Eigen::Index k = 0; k < cells; ++k) sum += std::pow(error.segment(k * length, length).mean(), 2);
   return std::sqrt(sum / static_cast<double>(cells));
 }
 
@@ -106,8 +103,7 @@ double mean_rms(const Eigen::VectorXd& error, Eigen::Index length) {
 
 TEST_CASE("virtual-sensor: two sensors, one of them drifting, in closed form") {
   const double sigma = 0.3, tau = 5, r1 = 0.04, r2 = 0.09, rate = 10;
-  const BiasFilter filter(
-      drifting_array({{r1, 0, 0, {{sigma, tau}}}, {r2, 0, 0, {}}}, rate), 1e4, 100);
+  const BiasFilter filter(drifting_array({{r1, 0, 0, {{sigma, tau}}}, {r2, 0, 0, {}}}, rate), 1e4, 100);
   REQUIRE(filter.states().size() == 1);
   // P = phi^2 P R / (P + R) + q with R = r1 + r2: the difference is what is seen.
   const double phi = std::exp(-1 / (rate * tau)), q = sigma * sigma * (1 - phi * phi), r = r1 + r2;
@@ -119,10 +115,8 @@ TEST_CASE("virtual-sensor: two sensors, one of them drifting, in closed form") {
 }
 
 TEST_CASE("virtual-sensor: the steady state is that of the equation iterated, to 1e-9") {
-  std::vector<NoiseModel> models{{0.04, 0.02, 0, {}},
-                                 {0.01, 0, 0, {{0.2, 3}}},
-                                 {0.09, 0, 0, {{0.05, 0.7}, {0.3, 20}}},
-                                 {0.02, 0.05, 0, {}}};
+  std::vector<NoiseModel> models{
+      {0.04, 0.02, 0, {}}, {0.01, 0, 0, {{0.2, 3}}}, {0.09, 0, 0, {{0.05, 0.7}, {0.3, 20}}}, {0.02, 0.05, 0, {}}};
   const Array array = drifting_array(models, 10);
   const BiasFilter filter(array, 30, 100);
   Textbook textbook(array, filter.states());
@@ -148,16 +142,14 @@ TEST_CASE("virtual-sensor: flicker is a sum of processes, within a tenth of its 
   }
 }
 
-TEST_CASE(
-    "virtual-sensor: the gains that stand do as well as the whole equation at every instant") {
+TEST_CASE("virtual-sensor: the gains that stand do as well as the whole equation at every instant") {
   const Opposite scene = opposite(20000, 3);
   auto ours = test::make("virtual-sensor", scene.array);
   const test::Run run = test::run(*ours, scene.y);
   const BiasFilter filter(scene.array, 1e4, 100);
   Textbook textbook(scene.array, filter.states());
   Eigen::VectorXd exact(scene.x.size());
-  for (Eigen::Index k = 0; k < scene.x.size(); ++k)
-    exact[k] = textbook.step(scene.y.col(k), all_of(4))[0];
+  for (Eigen::Index k = 0; k < scene.x.size(); ++k) exact[k] = textbook.step(scene.y.col(k), all_of(4))[0];
   const Eigen::VectorXd error = run.x.row(0).transpose() - scene.x;
   CHECK((run.x.row(0).transpose() - exact).norm() < 0.05 * (exact - scene.x).norm());
   for (const Eigen::Index length : {1, 200, 800})
@@ -223,8 +215,7 @@ TEST_CASE("virtual-sensor: several inputs are those of generalized least squares
 
 TEST_CASE("virtual-sensor: it says when it looks ahead, and when there is no drift") {
   const auto remarked = [](double smoothed, double flicker) {
-    const Array array =
-        drifting_array(std::vector<NoiseModel>(3, NoiseModel{0.01, flicker, 0, {}}), 100);
+    const Array array = drifting_array(std::vector<NoiseModel>(3, NoiseModel{0.01, flicker, 0, {}}), 100);
     libchar::Findings warnings;
     test::make("virtual-sensor", array, {{"smoothed", smoothed}})->remarks(warnings);
     return std::pair{warnings.find("looks_ahead") != nullptr, warnings.find("no_drift") != nullptr};
@@ -263,8 +254,7 @@ TEST_CASE("virtual-sensor: a model of the input, its steady state by plain itera
   const Eigen::Matrix2d r = Eigen::Vector2d(0.04, 0.09).asDiagonal();
   Eigen::Matrix3d updated;
   for (int k = 0; k < 5000; ++k) {
-    const Eigen::Matrix<double, 3, 2> gain =
-        p * c.transpose() * test::inverse(c * p * c.transpose() + r);
+    const Eigen::Matrix<double, 3, 2> gain = p * c.transpose() * test::inverse(c * p * c.transpose() + r);
     const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * c;
     updated = left * p * left.transpose() + gain * r * gain.transpose();  // Joseph
     p = f * updated * f.transpose() + q;
@@ -273,11 +263,9 @@ TEST_CASE("virtual-sensor: a model of the input, its steady state by plain itera
   CHECK(filter.steady_variance()[0] == Approx(updated(1, 1)).epsilon(1e-9));
 }
 
-TEST_CASE(
-    "virtual-sensor: an input model helps slow inputs, and one that says nothing changes nothing") {
+TEST_CASE("virtual-sensor: an input model helps slow inputs, and one that says nothing changes nothing") {
   const double rate = 200;
-  const Array array =
-      drifting_array(std::vector<NoiseModel>(4, NoiseModel{0.01, 0.01, 0.001, {}}), rate);
+  const Array array = drifting_array(std::vector<NoiseModel>(4, NoiseModel{0.01, 0.01, 0.001, {}}), rate);
   const auto errors = [&](double corner) {
     test::Gaussian gauss(12);
     const double a = 2 * 3.14159265358979 * corner / rate, keep = std::exp(-a);
@@ -303,8 +291,7 @@ TEST_CASE(
   // White, of a hundred thousand times the noise: as good as no model.
   const Opposite scene = opposite(3000, 4);
   auto plain = test::make("virtual-sensor", scene.array);
-  auto white = test::make(
-      "virtual-sensor", scene.array, {{"input_deviation", 1e3}, {"input_corner_hz", 1e5}});
+  auto white = test::make("virtual-sensor", scene.array, {{"input_deviation", 1e3}, {"input_corner_hz", 1e5}});
   CHECK((test::run(*plain, scene.y).x - test::run(*white, scene.y).x).cwiseAbs().maxCoeff() < 1e-6);
 }
 

@@ -54,15 +54,12 @@ std::unique_ptr<Runner> watched(const Entry& entry, const WatchedScene& scene, b
   return runner;
 }
 
-double rms(const Eigen::MatrixXd& error) {
-  return std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
-}
+double rms(const Eigen::MatrixXd& error) { return std::sqrt(error.squaredNorm() / static_cast<double>(error.size())); }
 
 std::vector<const Entry*> watchable(const WatchedScene& scene) {
   std::vector<const Entry*> out;
   for (const Entry& entry : algorithms())
-    if (entry.own_options < entry.options.size() &&
-        why_not(*entry.description, scene.array).empty())
+    if (entry.own_options < entry.options.size() && why_not(*entry.description, scene.array).empty())
       out.push_back(&entry);
   return out;
 }
@@ -102,8 +99,7 @@ TEST_CASE("watched: a bias, a gain, noise and silence of one sensor are left out
       // Those that use one sensor here, and not the one that fails.
       const std::string_view name = entry->description->name;
       if (name == "covariance-intersection" || name == "best-axes") continue;
-      INFO(entry->description->name << ": gain " << fault.gain << ", bias " << fault.bias
-                                    << ", noise " << fault.noise);
+      INFO(entry->description->name << ": gain " << fault.gain << ", bias " << fault.bias << ", noise " << fault.noise);
       const auto with = watched(*entry, scene, true);
       const Eigen::MatrixXd on = test::run(*with, scene.y, 1, kWatchedInstants).x - scene.truth;
       const Eigen::MatrixXd off =

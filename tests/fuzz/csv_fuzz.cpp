@@ -35,8 +35,7 @@ struct Digest final : BlockSink {
       if (rows == 20000) throw Enough{};
       ++rows;
       for (std::size_t c = 0; c < channels; ++c)
-        lanes[c] =
-            (lanes[c] ^ std::bit_cast<std::uint64_t>(samples.channels[c][i])) * 0x100000001B3U;
+        lanes[c] = (lanes[c] ^ std::bit_cast<std::uint64_t>(samples.channels[c][i])) * 0x100000001B3U;
     }
   }
   std::size_t channels = 0;
@@ -56,8 +55,7 @@ std::string outcome(const std::string& path, const ReadOptions& options) {
       said += channel.name + "|" + channel.unit + "|" + (channel.integer ? "i\n" : "\n");
     said += std::to_string(info.rows) + " " + std::to_string(info.samples) + " " +
             std::to_string(std::bit_cast<std::uint64_t>(info.time.rate_hz)) + " " +
-            std::to_string(std::bit_cast<std::uint64_t>(info.time.max_deviation_s)) + " " +
-            info.sha256;
+            std::to_string(std::bit_cast<std::uint64_t>(info.time.max_deviation_s)) + " " + info.sha256;
   } catch (const Error& error) {
     said = error.what();
     if (said.find('\n') != std::string::npos) std::abort();
@@ -94,11 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string blocks = outcome(path, options);
   ::close(file);
   if (whole != blocks) {
-    std::fprintf(stderr,
-                 "whole:\n%s\nblocks of %zu:\n%s\n",
-                 whole.c_str(),
-                 options.block_bytes,
-                 blocks.c_str());
+    std::fprintf(stderr, "whole:\n%s\nblocks of %zu:\n%s\n", whole.c_str(), options.block_bytes, blocks.c_str());
     std::abort();
   }
   return 0;

@@ -18,8 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const NamedCurve& named : table->curves) {
       fuzz::expect(named.curve.x.size() == named.curve.y.size(), "abscissae without values");
       for (std::size_t i = 0; i < named.curve.x.size(); ++i)
-        fuzz::expect(std::isfinite(named.curve.x[i]) && named.curve.x[i] > 0 &&
-                         std::isfinite(named.curve.y[i]),
+        fuzz::expect(std::isfinite(named.curve.x[i]) && named.curve.x[i] > 0 && std::isfinite(named.curve.y[i]),
                      "a point that is none");
     }
   } catch (const Error& error) {

@@ -19,8 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::string written = tree.dump();
   try {
-    fuzz::expect_same(
-        "a tree and its JSON", written, as_json(parse_document(written, "d.json")).dump());
+    fuzz::expect_same("a tree and its JSON", written, as_json(parse_document(written, "d.json")).dump());
   } catch (const Error& error) {
     fuzz::fail("a tree whose JSON is refused", written, error.what());
   }

@@ -51,8 +51,7 @@ void draw(const Chart& figure) {
   const std::string tags = tags_of(svg);
   for (const char* none : {"nan", "inf"})
     fuzz::expect(tags.find(none) == std::string::npos, "a place in an SVG that is no number");
-  fuzz::expect_same(
-      "drawn, and drawn again", svg, draw_figure(figure, FigureFormat::svg, {}, warnings));
+  fuzz::expect_same("drawn, and drawn again", svg, draw_figure(figure, FigureFormat::svg, {}, warnings));
   figure_csv(figure);
   figure_gnuplot(figure, {});
   terminal_figure(figure, {});

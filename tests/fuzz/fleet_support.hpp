@@ -62,8 +62,7 @@ class Folder {
  public:
   Folder() {
     const std::filesystem::path fast = "/dev/shm";
-    const auto where =
-        std::filesystem::is_directory(fast) ? fast : std::filesystem::temp_directory_path();
+    const auto where = std::filesystem::is_directory(fast) ? fast : std::filesystem::temp_directory_path();
     path_ = where / ("libchar-fuzz-" + std::to_string(::getpid()));
     std::filesystem::create_directories(path_);
   }
@@ -75,8 +74,7 @@ class Folder {
   }
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
-    std::ofstream(path_ / name, std::ios::binary)
-        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path_ / name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return path_ / name;
   }
 

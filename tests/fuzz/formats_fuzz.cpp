@@ -26,10 +26,7 @@ const std::string& folder() {
 
 using Columns = std::vector<std::vector<double>>;
 
-void write(const std::string& path,
-           const LogInfo& info,
-           const Columns& columns,
-           WriteOptions options) {
+void write(const std::string& path, const LogInfo& info, const Columns& columns, WriteOptions options) {
   options.overwrite = true;
   const auto writer = open_log_writer(path, info, options);
   std::vector<std::span<const double>> spans(columns.begin(), columns.end());
@@ -69,8 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   LogInfo info;
   info.time.rate_hz = 125;
   if ((choice & 128U) != 0) info.time.start_ns = 1700000000000000000;
-  for (std::size_t c = 0; c < width; ++c)
-    info.channels.push_back({"channel_" + std::to_string(c), "m"});
+  for (std::size_t c = 0; c < width; ++c) info.channels.push_back({"channel_" + std::to_string(c), "m"});
   WriteOptions options;
   options.order = (choice & 32U) != 0 ? "planar" : "interleaved";
   options.big_endian = (choice & 64U) != 0;

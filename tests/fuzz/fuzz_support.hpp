@@ -36,8 +36,7 @@ inline std::string said(const libchar::Error& error) {
 /// Bytes handed out from the front; zeros when there are no more.
 class Input {
  public:
-  Input(const std::uint8_t* data, std::size_t size)
-      : rest_(reinterpret_cast<const char*>(data), size) {}
+  Input(const std::uint8_t* data, std::size_t size) : rest_(reinterpret_cast<const char*>(data), size) {}
   std::uint8_t byte() { return take<std::uint8_t>(); }
   template <class Number>
   Number take() {
@@ -76,8 +75,6 @@ void round_trip(const std::uint8_t* data, std::size_t size, Function read_and_wr
   expect_same("written, and written again from what was written", written, again);
 }
 
-inline std::string bits(double value) {
-  return std::to_string(std::bit_cast<std::uint64_t>(value));
-}
+inline std::string bits(double value) { return std::to_string(std::bit_cast<std::uint64_t>(value)); }
 
 }  // namespace fuzz

@@ -39,12 +39,10 @@ std::string read(const std::string& path, const char* preset, std::size_t block_
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
-  constexpr std::array kPresets = {
-      "IMAR", "LN200", "LN200IG", "IXSEA", "NAVCHIP_INT", "NAVCHIP_FLT", "", "NAVCHIP"};
+  constexpr std::array kPresets = {"IMAR", "LN200", "LN200IG", "IXSEA", "NAVCHIP_INT", "NAVCHIP_FLT", "", "NAVCHIP"};
   const char* const preset = kPresets[data[0] % kPresets.size()];
   const test::MemoryLog log({reinterpret_cast<const char*>(data) + 2, size - 2});
-  fuzz::expect_same("blocks of another size give other rows",
-                    read(log.path(), preset, std::size_t{1} << 22U),
+  fuzz::expect_same("blocks of another size give other rows", read(log.path(), preset, std::size_t{1} << 22U),
                     read(log.path(), preset, 1 + data[1] * data[1]));
   return 0;
 }

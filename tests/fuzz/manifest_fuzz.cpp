@@ -13,8 +13,7 @@ namespace {
 
 std::string line_of(const FleetDevice& one) {
   std::string out;
-  for (const std::string* text : {&one.device, &one.log, &one.type, &one.batch, &one.limits})
-    out += *text + "|";
+  for (const std::string* text : {&one.device, &one.log, &one.type, &one.batch, &one.limits}) out += *text + "|";
   return out + (one.temperature_c ? fuzz::bits(*one.temperature_c) : "") + "\n";
 }
 

@@ -48,8 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Sum whole = read(log.path(), std::size_t{1} << 22U);
     const Sum parts = read(log.path(), block_bytes);
-    if (whole.rows != parts.rows || whole.values != parts.values || whole.hash != parts.hash)
-      std::abort();
+    if (whole.rows != parts.rows || whole.values != parts.values || whole.hash != parts.hash) std::abort();
   } catch (const libchar::Error&) {
   }
   return 0;

@@ -73,8 +73,7 @@ void check_cell(const std::string& text, char mark) {
   const csv::Cell cell = csv::read_cell(text, mark);
   const auto number = decimal(text, mark);
   if (!number) {
-    fuzz::expect(cell.kind != csv::Cell::value && cell.kind != csv::Cell::out_of_range,
-                 "a number that is none");
+    fuzz::expect(cell.kind != csv::Cell::value && cell.kind != csv::Cell::out_of_range, "a number that is none");
     return;
   }
   const double value = judged(text, mark);
@@ -130,13 +129,11 @@ void check_rows(std::string text, int unit_digits, bool crlf) {
   std::vector<std::int64_t> stamps(kRows + 8);
   char fractional_a = 0, fractional_b = 0;
   using Use = VectorColumn::Use;
-  const VectorColumn columns[] = {
-      {.use = Use::stamp, .stamps = stamps.data(), .stamp_digits = unit_digits},
-      {.use = Use::value, .values = a.data(), .fractional = &fractional_a},
-      {.use = Use::value, .values = b.data(), .fractional = &fractional_b}};
+  const VectorColumn columns[] = {{.use = Use::stamp, .stamps = stamps.data(), .stamp_digits = unit_digits},
+                                  {.use = Use::value, .values = a.data(), .fractional = &fractional_a},
+                                  {.use = Use::value, .values = b.data(), .fractional = &fractional_b}};
   std::vector<std::uint32_t> scratch;
-  const VectorRows result =
-      parse_vector_rows({text.data(), size}, ',', crlf, columns, kRows, scratch);
+  const VectorRows result = parse_vector_rows({text.data(), size}, ',', crlf, columns, kRows, scratch);
   fuzz::expect(result.rows <= kRows && result.consumed <= size, "more rows than there are");
   std::size_t at = 0;
   for (std::size_t row = 0; row < result.rows; ++row) {
@@ -150,8 +147,7 @@ void check_rows(std::string text, int unit_digits, bool crlf) {
     const std::string stamp = field(","), first = field(","), second = field(crlf ? "\r\n" : "\n");
     const auto number = decimal(stamp, '.');
     fuzz::expect(number && decimal(first, '.') && decimal(second, '.'), "a row of no numbers");
-    if (const auto judge =
-            judged_stamp(*number, csv::kNanoseconds[static_cast<std::size_t>(unit_digits)]))
+    if (const auto judge = judged_stamp(*number, csv::kNanoseconds[static_cast<std::size_t>(unit_digits)]))
       fuzz::expect(*judge == stamps[row], "another stamp of a row");
     fuzz::expect_same(first.c_str(), fuzz::bits(a[row]), fuzz::bits(judged(first, '.')));
     fuzz::expect_same(second.c_str(), fuzz::bits(b[row]), fuzz::bits(judged(second, '.')));

@@ -43,8 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::said(error);
     return 0;
   }
-  for (const FleetUnit& unit : plan.units)
-    fuzz::expect(unit.device < plan.devices.size(), "a unit of no device");
+  for (const FleetUnit& unit : plan.units) fuzz::expect(unit.device < plan.devices.size(), "a unit of no device");
   std::string again;
   try {
     write_plan(plan, folder.path());

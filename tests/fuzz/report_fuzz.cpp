@@ -30,8 +30,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (data[0] % 2 == 1)
       replay_report(text);
     else
-      compare_characterizations({parse_characterization_report(text, "a.json"),
-                                 parse_characterization_report(text, "b.json")});
+      compare_characterizations(
+          {parse_characterization_report(text, "a.json"), parse_characterization_report(text, "b.json")});
   } catch (const Error& error) {
     fuzz::said(error);
   }

@@ -43,12 +43,10 @@ std::string outcome(const std::string& bytes, const char* format, std::size_t bl
   try {
     const LogInfo info = read_log(file.path(), options, seen);
     fuzz::expect(info.samples == seen.rows, "samples that were not delivered");
-    end = "rows " + std::to_string(info.rows) + " samples " + std::to_string(info.samples) +
-          " rate " + fuzz::bits(info.time.rate_hz) + " start " +
-          std::to_string(info.time.start_ns.value_or(0)) + " gaps " +
+    end = "rows " + std::to_string(info.rows) + " samples " + std::to_string(info.samples) + " rate " +
+          fuzz::bits(info.time.rate_hz) + " start " + std::to_string(info.time.start_ns.value_or(0)) + " gaps " +
           std::to_string(info.time.gaps);
-    for (const Finding& warning : info.warnings.list())
-      end += " " + warning.code + " " + std::to_string(warning.count);
+    for (const Finding& warning : info.warnings.list()) end += " " + warning.code + " " + std::to_string(warning.count);
   } catch (const Error& error) {
     fuzz::said(error);
     return "refused " + error.problem().code;  // how much was seen before depends on the block
@@ -66,8 +64,8 @@ std::string as_csv(const std::vector<std::int64_t>& cells) {
 }
 
 std::string as_npy(const std::vector<std::int64_t>& cells) {
-  std::string header = "{'descr': '<i8', 'fortran_order': False, 'shape': (" +
-                       std::to_string(cells.size() / 2) + ", 2), }";
+  std::string header =
+      "{'descr': '<i8', 'fortran_order': False, 'shape': (" + std::to_string(cells.size() / 2) + ", 2), }";
   header.resize(117, ' ');
   header += '\n';
   std::string bytes = "\x93NUMPY";

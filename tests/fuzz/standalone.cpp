@@ -30,8 +30,7 @@ std::string artifact = "./";
 void keep_input(int number) {
   const std::string path = artifact + "crash-" + std::to_string(::getpid());
   std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(current.data()),
-             static_cast<std::streamsize>(current.size()));
+      .write(reinterpret_cast<const char*>(current.data()), static_cast<std::streamsize>(current.size()));
   std::fprintf(stderr, "signal %d, the input is in %s\n", number, path.c_str());
   std::signal(number, SIG_DFL);
   std::raise(number);
@@ -65,8 +64,7 @@ Options options_of(int count, char** words) {
       add_seed(word, options);
       options.seconds = 0;  // files are tried as they are
     } else {
-      for (const auto& entry : std::filesystem::directory_iterator(word))
-        add_seed(entry.path(), options);
+      for (const auto& entry : std::filesystem::directory_iterator(word)) add_seed(entry.path(), options);
     }
   }
   if (options.seeds.empty()) options.seeds.push_back({0});
@@ -135,9 +133,7 @@ Bytes broken(const Options& options, std::mt19937_64& random) {
         break;
       default:
         bytes.resize(at);
-        bytes.insert(bytes.end(),
-                     other.begin() + static_cast<std::ptrdiff_t>(any(other.size() + 1)),
-                     other.end());
+        bytes.insert(bytes.end(), other.begin() + static_cast<std::ptrdiff_t>(any(other.size() + 1)), other.end());
     }
     if (bytes.size() > options.most) bytes.resize(options.most);
   }
@@ -148,11 +144,9 @@ Bytes broken(const Options& options, std::mt19937_64& random) {
 
 int main(int count, char** words) {
   const Options options = options_of(count, words);
-  for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGALRM})
-    std::signal(number, keep_input);
+  for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGALRM}) std::signal(number, keep_input);
   std::mt19937_64 random(options.seed);
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   std::uint64_t runs = 0;
   for (const Bytes& seed : options.seeds) {
     ::alarm(20);  // a hang

@@ -33,17 +33,15 @@ void push(Stream& stream, std::span<const double> samples, std::size_t piece) {
 std::string moments(std::span<const double> samples, std::size_t piece) {
   Moments m;
   push(m, samples, piece);
-  return std::to_string(m.count()) + " " + std::to_string(m.missing()) + " " +
-         fuzz::bits(m.mean()) + " " + fuzz::bits(m.variance()) + " " + fuzz::bits(m.skewness()) +
-         " " + fuzz::bits(m.kurtosis()) + " " + fuzz::bits(m.minimum()) + " " +
-         fuzz::bits(m.maximum());
+  return std::to_string(m.count()) + " " + std::to_string(m.missing()) + " " + fuzz::bits(m.mean()) + " " +
+         fuzz::bits(m.variance()) + " " + fuzz::bits(m.skewness()) + " " + fuzz::bits(m.kurtosis()) + " " +
+         fuzz::bits(m.minimum()) + " " + fuzz::bits(m.maximum());
 }
 
 std::string curve_text(const AllanCurve& curve) {
   std::string text = std::to_string(curve.samples) + " " + std::to_string(curve.missing);
   for (const AllanPoint& p : curve.points)
-    text +=
-        " " + std::to_string(p.m) + ":" + fuzz::bits(p.deviation) + ":" + std::to_string(p.terms);
+    text += " " + std::to_string(p.m) + ":" + fuzz::bits(p.deviation) + ":" + std::to_string(p.terms);
   return text;
 }
 
@@ -119,8 +117,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (samples.empty()) return 0;
   fuzz::expect_same("moments", moments(samples, samples.size()), moments(samples, piece));
   fuzz::expect_same("pyramid", pyramid(samples, samples.size()), pyramid(samples, piece));
-  fuzz::expect_same(
-      "spectrum", spectrum(samples, samples.size(), segment), spectrum(samples, piece, segment));
+  fuzz::expect_same("spectrum", spectrum(samples, samples.size(), segment), spectrum(samples, piece, segment));
   against_direct(samples);
   return 0;
 }

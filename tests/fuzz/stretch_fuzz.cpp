@@ -40,12 +40,10 @@ std::string write_log(const fuzz::Folder& folder, std::size_t rows, std::size_t 
   for (std::size_t i = 97; i < samples.size(); i += 1009) samples[i] = 40;
   for (std::size_t i = rows / 2; i < rows / 2 + rows / 50; ++i)
     samples[i * channels] = std::numeric_limits<double>::quiet_NaN();
-  folder.write("log.f64.json",
-               R"({"dtype": "f64", "endian": "little", "rate_hz": 100, "channels": )" +
-                   std::string(channels == 1 ? R"([{"name": "a"}]})"
-                                             : R"([{"name": "a"}, {"name": "b", "unit": "K"}]})"));
-  return folder.write(
-      "log.f64", {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof(double)});
+  folder.write("log.f64.json", R"({"dtype": "f64", "endian": "little", "rate_hz": 100, "channels": )" +
+                                   std::string(channels == 1 ? R"([{"name": "a"}]})"
+                                                             : R"([{"name": "a"}, {"name": "b", "unit": "K"}]})"));
+  return folder.write("log.f64", {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof(double)});
 }
 
 State cut(const std::string& bytes, const CharacterizeOptions& options) {
@@ -76,25 +74,20 @@ Case made(std::size_t rows, std::size_t channels, std::uint64_t segment, bool al
   out.options.spectrum.segment = segment;
   out.options.wanted.spectrum = all;
   for (std::uint64_t leaf = 0; leaf < leaves_of(rows); ++leaf)
-    characterize_stretch(path, out.options, {leaf, leaf + 1}, "log", [&](const std::string& bytes) {
-      out.states.push_back(cut(bytes, out.options));
-    });
+    characterize_stretch(path, out.options, {leaf, leaf + 1}, "log",
+                         [&](const std::string& bytes) { out.states.push_back(cut(bytes, out.options)); });
   return out;
 }
 
 const std::vector<Case>& cases() {
-  static const std::vector<Case> all = {made(16, 1, 8),
-                                        made(60, 1, 8, false),
-                                        made(700, 2, 64),
-                                        made(6000, 1, 0),
-                                        made(70000, 1, 256),
-                                        made((std::size_t{1} << 20U) + 3000, 1, 1024)};
+  static const std::vector<Case> all = {made(16, 1, 8),      made(60, 1, 8, false),
+                                        made(700, 2, 64),    made(6000, 1, 0),
+                                        made(70000, 1, 256), made((std::size_t{1} << 20U) + 3000, 1, 1024)};
   return all;
 }
 
 std::uint64_t odd_number(std::uint8_t choice, std::uint64_t there) {
-  const double reals[] = {
-      std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300, -1e300, 5e-324, -1, 0.5, 1e19, -0.0};
+  const double reals[] = {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300, -1e300, 5e-324, -1, 0.5, 1e19, -0.0};
   const std::uint64_t ones[] = {0,
                                 1,
                                 2,
@@ -116,8 +109,8 @@ std::uint64_t odd_number(std::uint8_t choice, std::uint64_t there) {
 void change(fuzz::Input& input, const State& state, std::string& content) {
   const std::uint8_t how = input.byte();
   const std::size_t place = input.take<std::uint32_t>();
-  std::size_t at = how % 2 == 1 && !state.small.empty() ? state.small[place % state.small.size()]
-                                                        : place % (content.size() + 1);
+  std::size_t at =
+      how % 2 == 1 && !state.small.empty() ? state.small[place % state.small.size()] : place % (content.size() + 1);
   at = std::min(at, content.size());
   const std::size_t left = content.size() - at, eight = std::min<std::size_t>(left, 8);
   std::uint64_t number = 0;
@@ -175,10 +168,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t changed = choice % one.states.size();
   std::vector<NamedState> states;
   for (std::size_t s = 0; s < one.states.size(); ++s)
-    states.push_back(state_in_memory(
-        "state " + std::to_string(s),
-        whole(one.states[s],
-              s == changed ? content_of(input, one.states[s]) : one.states[s].content)));
+    states.push_back(
+        state_in_memory("state " + std::to_string(s),
+                        whole(one.states[s], s == changed ? content_of(input, one.states[s]) : one.states[s].content)));
   characterize_all(states, one.options);
   return 0;
 }

@@ -12,8 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
   std::string written;
   try {
-    const FleetUnit unit =
-        parse_unit(data[0] % 2 == 1 ? std::string(text) : fuzz::named_task(text), "t.json");
+    const FleetUnit unit = parse_unit(data[0] % 2 == 1 ? std::string(text) : fuzz::named_task(text), "t.json");
     fuzz::expect(unit.kind != UnitKind::stretch || unit.stretch.first_leaf < unit.stretch.end_leaf,
                  "a stretch of no leaves");
     written = unit_text(unit);

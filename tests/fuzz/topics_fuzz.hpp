@@ -17,9 +17,7 @@ struct TopicSum {
   bool operator==(const TopicSum&) const = default;
 };
 
-inline TopicSum read_topic(const libchar::Format& format,
-                           const std::string& path,
-                           std::size_t topic,
+inline TopicSum read_topic(const libchar::Format& format, const std::string& path, std::size_t topic,
                            std::size_t most) {
   libchar::ReadOptions options;
   options.hash = false;

@@ -12,8 +12,7 @@
 
 namespace test {
 
-inline libchar::Recording array_log(const std::string& name,
-                                    const libchar::ReadOptions& options = {}) {
+inline libchar::Recording array_log(const std::string& name, const libchar::ReadOptions& options = {}) {
   return libchar::read_recording(fixture("arrays/" + name).string(), options);
 }
 
@@ -28,10 +27,8 @@ inline std::string array_fault(const std::string& name, const libchar::ReadOptio
 }
 
 /// The same of a file of these bytes.
-inline std::string with_bytes(const std::string& name,
-                              const std::string& bytes,
-                              libchar::Recording* recording = nullptr,
-                              const libchar::ReadOptions& options = {}) {
+inline std::string with_bytes(const std::string& name, const std::string& bytes,
+                              libchar::Recording* recording = nullptr, const libchar::ReadOptions& options = {}) {
   const TemporaryFolder folder;
   const std::string path = (folder / name).string();
   std::ofstream(path, std::ios::binary) << bytes;

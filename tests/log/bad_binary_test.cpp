@@ -36,8 +36,7 @@ std::vector<Case> cases(const std::string& folder) {
 // What happened: "ok", "warn", or the message of the error.
 std::string outcome(const std::string& format, const std::string& file) {
   try {
-    return test::read_rows(format, test::known("badinputs/" + file)).warnings.empty() ? "ok"
-                                                                                      : "warn";
+    return test::read_rows(format, test::known("badinputs/" + file)).warnings.empty() ? "ok" : "warn";
   } catch (const Error& error) {
     CHECK(error.problem().kind == ErrorKind::input);
     CHECK(std::string(error.what()).find('\n') == std::string::npos);
@@ -50,9 +49,8 @@ std::string outcome(const std::string& format, const std::string& file) {
 
 TEST_CASE("bad .npy files get the verdict of the table") {
   // "or read by name" and "half or clear error" leave the choice: both are read. Further dimensions are columns.
-  const std::map<std::string, std::string> chosen = {{"npy/033_structured.npy", "ok"},
-                                                     {"npy/046_nan_payload.npy", "warn"},
-                                                     {"npy/021_3d.npy", "ok"}};
+  const std::map<std::string, std::string> chosen = {
+      {"npy/033_structured.npy", "ok"}, {"npy/046_nan_payload.npy", "warn"}, {"npy/021_3d.npy", "ok"}};
   std::size_t count = 0;
   for (const Case& c : cases("npy")) {
     const std::string got = outcome("npy", c.file);
@@ -62,8 +60,7 @@ TEST_CASE("bad .npy files get the verdict of the table") {
       CHECK((got != "ok" && got != "warn"));
     else
       CHECK(got == expected);
-    if (expected == "error" && c.where != "-")
-      CHECK(got.find("(byte " + c.where) != std::string::npos);
+    if (expected == "error" && c.where != "-") CHECK(got.find("(byte " + c.where) != std::string::npos);
     ++count;
   }
   CHECK(count == 31);
@@ -84,12 +81,11 @@ TEST_CASE("bad raw files and sidecars get the verdict of the table") {
 }
 
 TEST_CASE("messages about bad binary files name place, numbers and remedy") {
-  const auto says =
-      [](const std::string& format, const std::string& file, const std::string& part) {
-        const std::string got = outcome(format, file);
-        INFO(file << " -> " << got);
-        CHECK(got.find(part) != std::string::npos);
-      };
+  const auto says = [](const std::string& format, const std::string& file, const std::string& part) {
+    const std::string got = outcome(format, file);
+    INFO(file << " -> " << got);
+    CHECK(got.find(part) != std::string::npos);
+  };
   says("npy", "npy/007_truncated_data.npy", "2 of 4 values present");
   says("npy", "npy/006_hlen_past_eof.npy", "exceeds the file size 68");
   says("npy", "npy/048_npz.npy", "ZIP archive (.npz)");

@@ -112,9 +112,8 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
     INFO(row.file << " " << row.verdict << " " << place);
     for (const std::size_t block_bytes : {std::size_t{1}, std::size_t{7}, std::size_t{1} << 22U}) {
       ReadOptions options;
-      options.block_bytes = row.file.find("5000") != std::string::npos
-                                ? std::max<std::size_t>(block_bytes, 512)
-                                : block_bytes;
+      options.block_bytes =
+          row.file.find("5000") != std::string::npos ? std::max<std::size_t>(block_bytes, 512) : block_bytes;
       std::string verdict = "ok", said;
       std::vector<std::string> places;
       try {
@@ -133,8 +132,7 @@ TEST_CASE("every bad CSV input gets its verdict, place and reason") {
         verdict = "error";
         said = error.what();
         CHECK(said.find('\n') == std::string::npos);
-        CHECK((error.problem().kind == ErrorKind::input ||
-               error.problem().kind == ErrorKind::numeric));
+        CHECK((error.problem().kind == ErrorKind::input || error.problem().kind == ErrorKind::numeric));
         const std::string& where = error.problem().where;
         REQUIRE(where.rfind(path, 0) == 0);
         std::string rest = where.substr(std::min(where.size(), path.size() + 1));

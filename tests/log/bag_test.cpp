@@ -22,8 +22,7 @@ TEST_CASE("bag: an IMU has the generator's numbers, whatever the chunks are pack
   NEEDS_LIBRARY(BZIP2);
   for (const char* name : {"ros1_none.bag", "ros1_bz2.bag", "ros1_lz4.bag"}) {
     INFO(name);
-    const test::Rows rows =
-        test::read_rows("bag", test::ros(name), test::of_topic("/imu/data_raw"));
+    const test::Rows rows = test::read_rows("bag", test::ros(name), test::of_topic("/imu/data_raw"));
     test::check_imu(rows, 100);
     CHECK(rows.warnings.empty());
   }
@@ -52,10 +51,9 @@ TEST_CASE("bag: topics are listed by the index, or by a look at everything") {
       if (topic.name == "/notes") CHECK(topic.why_not == "no numbers");
       if (topic.name == "/pressure") CHECK(topic.fields[2].unit == "Pa");
     }
-    CHECK(listing.dialect.front() == (indexed ? "bag 2.0, chunks packed with none"
-                                              : "bag 2.0, chunks packed with none, no index"));
-    const test::Rows rows =
-        test::read_rows("bag", changed_bag(folder, changed), test::of_topic("/imu/data_raw"));
+    CHECK(listing.dialect.front() ==
+          (indexed ? "bag 2.0, chunks packed with none" : "bag 2.0, chunks packed with none, no index"));
+    const test::Rows rows = test::read_rows("bag", changed_bag(folder, changed), test::of_topic("/imu/data_raw"));
     test::check_imu(rows, 100);
     CHECK((rows.warnings.find("cut_end") != nullptr) == !indexed);
   }
@@ -64,10 +62,8 @@ TEST_CASE("bag: topics are listed by the index, or by a look at everything") {
 TEST_CASE("bag: any message by its definition, stamps of 0 give way to the time of recording") {
   NEEDS_LIBRARY(LZ4);
   NEEDS_LIBRARY(BZIP2);
-  const test::Rows load =
-      test::read_rows("bag", test::ros("ros1_lz4.bag"), test::of_topic("/load"));
-  CHECK(test::channel_names(load.info) ==
-        "at[s] took[s] cells[0].volts cells[1].volts raw[0] raw[1] last");
+  const test::Rows load = test::read_rows("bag", test::ros("ros1_lz4.bag"), test::of_topic("/load"));
+  CHECK(test::channel_names(load.info) == "at[s] took[s] cells[0].volts cells[1].volts raw[0] raw[1] last");
   REQUIRE(load.time_ns.size() == 25);
   for (std::size_t k = 0; k < 25; ++k) {
     const auto i = static_cast<double>(k);
@@ -79,8 +75,7 @@ TEST_CASE("bag: any message by its definition, stamps of 0 give way to the time 
     CHECK(load.columns[6][k] == i / 8);
     CHECK(load.time_ns[k] == test::kRosStart + static_cast<std::int64_t>(k) * 20000000 + 1000000);
   }
-  const test::Rows pressure =
-      test::read_rows("bag", test::ros("ros1_bz2.bag"), test::of_topic("/pressure"));
+  const test::Rows pressure = test::read_rows("bag", test::ros("ros1_bz2.bag"), test::of_topic("/pressure"));
   CHECK(test::channel_names(pressure.info) == "fluid_pressure[Pa]");
   CHECK(pressure.columns[0][24] == 101328);
   CHECK(pressure.info.time.column == "log time");
@@ -106,8 +101,7 @@ TEST_CASE("bag: a broken chunk is left out and said, other versions are refused"
     INFO(name);
     std::string bytes = test::slurp(test::ros(name));
     for (std::size_t at = 4500; at < 4600; ++at) bytes[at] = static_cast<char>(~bytes[at]);
-    const test::Rows rows =
-        test::read_rows("bag", changed_bag(folder, bytes), test::of_topic("/imu/data_raw"), true);
+    const test::Rows rows = test::read_rows("bag", changed_bag(folder, bytes), test::of_topic("/imu/data_raw"), true);
     CHECK(rows.time_ns.size() < 100);
     CHECK(rows.time_ns.size() > 10);
     CHECK(rows.warnings.find("broken_chunk") != nullptr);
@@ -118,9 +112,8 @@ TEST_CASE("bag: a broken chunk is left out and said, other versions are refused"
   CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROS")), Catch::Contains("E0444"));
   CHECK_THAT(test::refusal("bag", changed_bag(folder, "#ROSBAG V2.0\n")), Catch::Contains("E0426"));
   // A header of 2^31 bytes, data of 2^32: nothing is asked for.
-  CHECK_THAT(
-      test::refusal("bag", changed_bag(folder, std::string("#ROSBAG V2.0\n\0\0\0\x80zzzz", 21))),
-      Catch::Contains("E0426"));
+  CHECK_THAT(test::refusal("bag", changed_bag(folder, std::string("#ROSBAG V2.0\n\0\0\0\x80zzzz", 21))),
+             Catch::Contains("E0426"));
 }
 
 TEST_CASE("bag: cut in front of its first whole message, where it ends and inside what is said") {
@@ -129,9 +122,7 @@ TEST_CASE("bag: cut in front of its first whole message, where it ends and insid
   const std::string bytes = test::slurp(test::ros("ros1_bz2.bag"));
   CHECK_THAT(
       test::refusal("bag", changed_bag(folder, bytes.substr(0, 5000))),
-      Catch::Contains("E0426") &&
-          Catch::Contains("holds no whole message: the file ends at byte 5000 inside a chunk"));
+      Catch::Contains("E0426") && Catch::Contains("holds no whole message: the file ends at byte 5000 inside a chunk"));
   CHECK_THAT(test::refusal("bag", changed_bag(folder, bytes.substr(0, 12))),
-             Catch::Contains("ends at byte 12, inside the 13 bytes that mark a bag") &&
-                 !Catch::Contains("version"));
+             Catch::Contains("ends at byte 12, inside the 13 bytes that mark a bag") && !Catch::Contains("version"));
 }

@@ -23,18 +23,15 @@ TEST_CASE("a file that is handed out in pieces is read whole, and nothing behind
   if (file.gcount() < 20000) return;  // a kernel that keeps them to itself
   std::vector<std::byte> bytes(60000, std::byte{0xA5});
   BinaryFile(path).read(0, std::span(bytes).first(known.size()));
-  CHECK(std::equal(known.begin(), known.end(), bytes.begin(), [](char a, std::byte b) {
-    return static_cast<std::byte>(a) == b;
-  }));
-  CHECK(std::all_of(
-      bytes.begin() + 20000, bytes.end(), [](std::byte b) { return b == std::byte{0xA5}; }));
+  CHECK(std::equal(known.begin(), known.end(), bytes.begin(),
+                   [](char a, std::byte b) { return static_cast<std::byte>(a) == b; }));
+  CHECK(std::all_of(bytes.begin() + 20000, bytes.end(), [](std::byte b) { return b == std::byte{0xA5}; }));
 }
 
 TEST_CASE("a file that cannot be read any further names the byte where that is") {
   // The memory of this process as a file: behind a page that is there comes one that is not.
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  void* const two =
-      ::mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void* const two = ::mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   REQUIRE(two != MAP_FAILED);
   const auto begin = reinterpret_cast<std::uintptr_t>(two);
   REQUIRE(::munmap(static_cast<char*>(two) + page, page) == 0);

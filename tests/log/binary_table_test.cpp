@@ -35,23 +35,16 @@ struct TableLog {
   std::optional<std::int64_t> start_ns;
   std::uint64_t samples = 0;
   std::vector<TableSample> values;
-  bool unit_guessed = false;  // of the stamps, where the file cannot say it
-  std::optional<double> given_rate_hz =
-      std::nullopt;  // where the file has neither stamps nor a rate
+  bool unit_guessed = false;                           // of the stamps, where the file cannot say it
+  std::optional<double> given_rate_hz = std::nullopt;  // where the file has neither stamps nor a rate
 };
 
-double stored_as_float(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
+double stored_as_float(double x) { return static_cast<double>(static_cast<float>(x)); }
 
 // A raw reading of fixtures/flight/make.py.
-int raw_reading(int i, int axis) {
-  return (37 * i + 101 * axis) % 2001 - 1000;
-}
+int raw_reading(int i, int axis) { return (37 * i + 101 * axis) % 2001 - 1000; }
 
-double reading(int i, int axis, double scale) {
-  return stored_as_float(raw_reading(i, axis) * scale);
-}
+double reading(int i, int axis, double scale) { return stored_as_float(raw_reading(i, axis) * scale); }
 
 std::vector<TableLog> flight_logs() {
   const double gyro_scale = stored_as_float(2000 * 3.14159265358979323846 / 180 / 32768);
@@ -135,13 +128,7 @@ std::vector<TableLog> flight_logs() {
        7 * kSecond,
        80,
        {{0, 79, reading(79, 0, 1e-4)}, {5, 1, reading(1, 2, 1e-2)}}},
-      {"flight/letters.bin",
-       "SCAL",
-       "c[] C[] e[] E[] L[]",
-       100,
-       kSecond,
-       20,
-       {{0, 1, -1.51}, {4, 1, 47.3977421}}},
+      {"flight/letters.bin", "SCAL", "c[] C[] e[] E[] L[]", 100, kSecond, 20, {{0, 1, -1.51}, {4, 1, 47.3977421}}},
       {"flight/damaged.bin",
        "",
        "GyrX[rad/s] GyrY[rad/s] GyrZ[rad/s]",
@@ -159,12 +146,8 @@ std::vector<TableLog> ros_logs() {
       "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] "
       "linear_acceleration.x[m/s^2] linear_acceleration.y[m/s^2] linear_acceleration.z[m/s^2]";
   const std::string magnetic = "magnetic_field.x[T] magnetic_field.y[T] magnetic_field.z[T]";
-  const std::vector<TableSample> readings = {{0, 10, 0.001 * 10 - 0.3},
-                                             {1, 4, 2},
-                                             {2, 7, -1},
-                                             {3, 99, 24.75},
-                                             {4, 3, 0.25},
-                                             {5, 50, 9.81 - 50 * 1e-4}};
+  const std::vector<TableSample> readings = {
+      {0, 10, 0.001 * 10 - 0.3}, {1, 4, 2}, {2, 7, -1}, {3, 99, 24.75}, {4, 3, 0.25}, {5, 50, 9.81 - 50 * 1e-4}};
   std::vector<TableLog> logs;
   for (const char* name : {"ros2.mcap", "ros2_lz4.mcap", "ros2_zstd.mcap", "humble.db3"})
     logs.push_back({fmt::format("ros/{}", name), "/imu0/data", imu, 200, kStart, 200, readings});
@@ -181,32 +164,23 @@ std::vector<TableLog> ros_logs() {
                   50,
                   {{0, 49, 2e-5 + 49 * 1e-9}, {1, 3, -1e-6 * 3}, {2, 0, 4e-5}}});
   // Messages without a header stand at the time of their recording.
-  logs.push_back(
-      {"ros/ros2.mcap", "/level", "data[]", 40, kStart + kMilli, 40, {{0, 39, 39 * 39 / 64.0}}});
+  logs.push_back({"ros/ros2.mcap", "/level", "data[]", 40, kStart + kMilli, 40, {{0, 39, 39 * 39 / 64.0}}});
   return logs;
 }
 
 // By NumPy (fixtures/npy).
 std::vector<TableLog> numpy_logs() {
-  std::vector<TableLog> logs = {{"npy/structured.npy",
-                                 "",
-                                 "gyr_0[] gyr_1[] gyr_2[] acc_0[] acc_1[] acc_2[] count[]",
-                                 200,
-                                 1403636579758555392,
-                                 5,
-                                 {{1, 4, 3.25}, {5, 2, -4}, {6, 0, -2}},
-                                 true},
-                                {"npy/aligned_version_3.npy",
-                                 "",
-                                 "flag[] Größe[]",
-                                 10,
-                                 std::nullopt,
-                                 3,
-                                 {{0, 2, 3}, {1, 1, 1.5}},
-                                 false,
-                                 10}};
-  for (const char* name :
-       {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"})
+  std::vector<TableLog> logs = {
+      {"npy/structured.npy",
+       "",
+       "gyr_0[] gyr_1[] gyr_2[] acc_0[] acc_1[] acc_2[] count[]",
+       200,
+       1403636579758555392,
+       5,
+       {{1, 4, 3.25}, {5, 2, -4}, {6, 0, -2}},
+       true},
+      {"npy/aligned_version_3.npy", "", "flag[] Größe[]", 10, std::nullopt, 3, {{0, 2, 3}, {1, 1, 1.5}}, false, 10}};
+  for (const char* name : {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"})
     logs.push_back({fmt::format("npy/{}", name),
                     "",
                     "c0[] c1[] c2[]",

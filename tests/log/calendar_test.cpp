@@ -24,19 +24,10 @@ std::int64_t ns(std::string_view text, DateOrder order = DateOrder::day_first) {
 
 TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
   const std::int64_t noon = 1714564800 * kBillion;  // 2024-05-01T12:00:00Z
-  for (const char* text : {"2024-05-01T12:00:00Z",
-                           "2024-05-01 12:00:00",
-                           "2024-05-01T14:00:00+02:00",
-                           "2024-05-01T04:30:00-0730",
-                           "2024/05/01 12:00",
-                           "01.05.2024 12:00:00",
-                           "1.5.2024, 12:00:00",
-                           "01/05/24 12:00:00 PM",
-                           "1 May 2024 12:00:00",
-                           "01-May-2024 12:00:00",
-                           "May 1, 2024 12:00:00 p.m.",
-                           "20240501T120000Z",
-                           "2024-05-01 12:00:00 UTC"}) {
+  for (const char* text :
+       {"2024-05-01T12:00:00Z", "2024-05-01 12:00:00", "2024-05-01T14:00:00+02:00", "2024-05-01T04:30:00-0730",
+        "2024/05/01 12:00", "01.05.2024 12:00:00", "1.5.2024, 12:00:00", "01/05/24 12:00:00 PM", "1 May 2024 12:00:00",
+        "01-May-2024 12:00:00", "May 1, 2024 12:00:00 p.m.", "20240501T120000Z", "2024-05-01 12:00:00 UTC"}) {
     INFO(text);
     CHECK(ns(text) == noon);
   }
@@ -51,21 +42,9 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
 }
 
 TEST_CASE("what is no day or no time of day is refused") {
-  for (const char* text : {"2024-02-30",
-                           "2023-02-29 00:00",
-                           "2024-13-01",
-                           "2024-05-01 25:00:00",
-                           "2024-05-01 12:60",
-                           "2024-05-01 12:00:0x",
-                           "2024-05-01x",
-                           "1.2.3",
-                           "20240501",
-                           "192.168.1.1",
-                           "13:00 PM",
-                           "12",
-                           "1,234.5",
-                           "",
-                           "node-07x"}) {
+  for (const char* text : {"2024-02-30", "2023-02-29 00:00", "2024-13-01", "2024-05-01 25:00:00", "2024-05-01 12:60",
+                           "2024-05-01 12:00:0x", "2024-05-01x", "1.2.3", "20240501", "192.168.1.1", "13:00 PM", "12",
+                           "1,234.5", "", "node-07x"}) {
     INFO(text);
     CHECK_FALSE(read_calendar(text, DateOrder::day_first));
   }
@@ -83,19 +62,17 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
 }
 
 TEST_CASE("times of day as digits, hhmmss, are told from numbers by their even steps") {
-  const auto text =
-      [](const std::string& name, int begin, double rate, int samples, const char* form) {
-        std::string out = name + ",x\n";
-        for (int i = 0; i < samples; ++i) {
-          const double s = begin + i / rate;
-          const int whole = static_cast<int>(s) % 86400;
-          out += fmt::format(fmt::runtime(form),
-                             whole / 3600 * 10000 + whole / 60 % 60 * 100 + whole % 60 +
-                                 (s - std::floor(s))) +
-                 fmt::format(",{}\n", i % 7);
-        }
-        return out;
-      };
+  const auto text = [](const std::string& name, int begin, double rate, int samples, const char* form) {
+    std::string out = name + ",x\n";
+    for (int i = 0; i < samples; ++i) {
+      const double s = begin + i / rate;
+      const int whole = static_cast<int>(s) % 86400;
+      out += fmt::format(fmt::runtime(form),
+                         whole / 3600 * 10000 + whole / 60 % 60 * 100 + whole % 60 + (s - std::floor(s))) +
+             fmt::format(",{}\n", i % 7);
+    }
+    return out;
+  };
   for (const char* form : {"{:09.2f}", "{:.2f}"})
     for (const double rate : {1.0, 5.0, 10.0})
       for (const int begin : {187, 45296, 86000}) {

@@ -9,8 +9,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kChannelRows =
-    "t[s],gyro_10[deg/s],gyro_2[deg/s],gyro_1[deg/s],acc*,ref\n0,1,2,3,4,5\n1,1,2,3,4,5\n";
+const std::string kChannelRows = "t[s],gyro_10[deg/s],gyro_2[deg/s],gyro_1[deg/s],acc*,ref\n0,1,2,3,4,5\n1,1,2,3,4,5\n";
 
 struct NamesBench {
   NamesBench() { std::ofstream(path, std::ios::binary) << kChannelRows; }
@@ -43,8 +42,7 @@ TEST_CASE("channel names: patterns in natural order, names and positions as they
   CHECK(bench.names({"acc*"}) == Words{{"acc*"}});
   CHECK(bench.names({"gyro_2[deg/s]"}) == Words{{"gyro_2"}});
   // What another word names, or an earlier pattern took, is not meant again; the time never is.
-  CHECK(bench.names({"gyro*", "gyro_2", "*"}, {"ref"}) ==
-        Words{{"gyro_1", "gyro_10"}, {"gyro_2"}, {"acc*"}});
+  CHECK(bench.names({"gyro*", "gyro_2", "*"}, {"ref"}) == Words{{"gyro_1", "gyro_10"}, {"gyro_2"}, {"acc*"}});
 }
 
 TEST_CASE("channel names: new names stand for all columns") {
@@ -56,9 +54,8 @@ TEST_CASE("channel names: new names stand for all columns") {
 
 TEST_CASE("channel names: a word for nothing is refused with what there is") {
   const NamesBench bench;
-  CHECK_THAT(bench.refusal({"gyr?"}),
-             Contains("E0320") && Contains("no channel matches this pattern") &&
-                 Contains("gyro_10, gyro_2, gyro_1, acc*, ref"));
+  CHECK_THAT(bench.refusal({"gyr?"}), Contains("E0320") && Contains("no channel matches this pattern") &&
+                                          Contains("gyro_10, gyro_2, gyro_1, acc*, ref"));
   CHECK_THAT(bench.refusal({"gyro_3"}), Contains("E0320") && Contains("did you mean gyro_"));
   CHECK_THAT(bench.refusal({"ref", "re*"}), Contains("E0320") && Contains("named elsewhere"));
   CHECK_THAT(bench.refusal({"t"}), Contains("time column"));

@@ -15,8 +15,7 @@ namespace {
 
 std::string many_rows(const std::string& last) {
   std::string text = "t,a\n";
-  for (int i = 0; i < 20000; ++i)
-    text += std::to_string(i) + "," + std::to_string(7 * i % 1000) + "\n";
+  for (int i = 0; i < 20000; ++i) text += std::to_string(i) + "," + std::to_string(7 * i % 1000) + "\n";
   return text + last;
 }
 

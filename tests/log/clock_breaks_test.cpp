@@ -58,7 +58,6 @@ TEST_CASE("first rows of another run are no rows of this one") {
   CHECK(wild_start(stamps, clock_in(kS)) == 3);
   stamps.erase(stamps.begin(), stamps.begin() + 3);
   CHECK(wild_start(stamps, clock_in(kS)) == 0);
-  for (int i = 0; i < 6; ++i)
-    stamps.insert(stamps.begin(), (12990 - 1000 * i) * kS);  // a slow start
+  for (int i = 0; i < 6; ++i) stamps.insert(stamps.begin(), (12990 - 1000 * i) * kS);  // a slow start
   CHECK(wild_start(stamps, clock_in(kS)) == 0);
 }

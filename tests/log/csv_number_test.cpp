@@ -12,9 +12,7 @@ using namespace libchar::csv;
 
 namespace {
 
-std::uint64_t bits(double x) {
-  return std::bit_cast<std::uint64_t>(x);
-}
+std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 
 struct Quick {
   bool taken = false, integer = false;
@@ -75,49 +73,24 @@ TEST_CASE("the quick number gives the bits of from_chars, whatever the way of wr
 TEST_CASE("numbers halfway between two doubles round to even") {
   // m + 1/2 ulp with m odd and even, written out in full: 2^53 + 1 and its kin, shifted below the
   // mark.
-  for (const char* text : {"9007199254740993",
-                           "9007199254740995",
-                           "900719925474099.3",
-                           "9007199254740.993",
-                           "1.0000000000000002",
-                           "4503599627370496.5",
-                           "4503599627370497.5",
-                           "450359962737049.65",
-                           "0.5",
-                           "0.25",
-                           "2.50",
-                           "1125899906842624.125",
-                           "1125899906842624.375",
-                           "0.000000000000001",
-                           "18446744073709551615",
-                           "9223372036854775807.5"}) {
+  for (const char* text :
+       {"9007199254740993", "9007199254740995", "900719925474099.3", "9007199254740.993", "1.0000000000000002",
+        "4503599627370496.5", "4503599627370497.5", "450359962737049.65", "0.5", "0.25", "2.50", "1125899906842624.125",
+        "1125899906842624.375", "0.000000000000001", "18446744073709551615", "9223372036854775807.5"}) {
     const Quick q = quick(text);
     if (q.taken) CHECK(bits(q.value) == bits(reference(text)));
   }
 }
 
 TEST_CASE("the quick number leaves to the slow way what is not plainly a number") {
-  for (const char* text : {"",
-                           "-",
-                           "+1",
-                           ".",
-                           "-.",
-                           "e5",
-                           "1e",
-                           "1e+",
-                           "nan",
-                           "inf",
-                           "12345678901234567890",
-                           "1e99999",
-                           "0x",
-                           " 1"}) {
+  for (const char* text :
+       {"", "-", "+1", ".", "-.", "e5", "1e", "1e+", "nan", "inf", "12345678901234567890", "1e99999", "0x", " 1"}) {
     const std::string padded = std::string(text) + "," + std::string(64, ' ');
     double value = 0;
     bool integer = false;
     const char* const end = quick_number(padded.data(), '.', value, integer);
     INFO(text);
-    CHECK((end == nullptr ||
-           end - padded.data() < static_cast<std::ptrdiff_t>(std::string(text).size())));
+    CHECK((end == nullptr || end - padded.data() < static_cast<std::ptrdiff_t>(std::string(text).size())));
   }
   CHECK(std::signbit(quick("-0").value));
   CHECK(std::signbit(quick("-0.0").value));
@@ -130,28 +103,15 @@ TEST_CASE("the quick number leaves to the slow way what is not plainly a number"
 
 TEST_CASE("a cell is one finite number, missing, infinite or wrong") {
   const auto kind = [](const char* text) { return read_cell(text, '.').kind; };
-  for (const char* text : {"", "nan", "NaN", "NA", "null", "-nan", "N/A"})
-    CHECK(kind(text) == Cell::missing);
+  for (const char* text : {"", "nan", "NaN", "NA", "null", "-nan", "N/A"}) CHECK(kind(text) == Cell::missing);
   for (const char* text : {"inf", "-inf", "Infinity", "+INF"}) CHECK(kind(text) == Cell::infinite);
   for (const char* text : {"1e400", "-1e400", "4e492493924924", "123e99999999999999999999"})
     CHECK(kind(text) == Cell::out_of_range);
-  for (const char* text : {"1,5",
-                           "0x1p3",
-                           "1.5abc",
-                           "1'000",
-                           "1d5",
-                           "1 000",
-                           "--1",
-                           "+-1",
-                           ".",
-                           "e",
-                           "1e",
-                           "1e+",
-                           "1_0",
-                           "\xE2\x88\x92"
-                           "1",
-                           "true",
-                           "1.2.3"})
+  for (const char* text :
+       {"1,5", "0x1p3", "1.5abc", "1'000", "1d5", "1 000", "--1", "+-1", ".", "e", "1e", "1e+", "1_0",
+        "\xE2\x88\x92"
+        "1",
+        "true", "1.2.3"})
     CHECK(kind(text) == Cell::bad);
   CHECK(read_cell("1e-400", '.').number == 0);
   CHECK(std::signbit(read_cell("-1e-400", '.').number));
@@ -177,30 +137,22 @@ TEST_CASE("a cell that is no number is told with reason and place") {
     std::size_t offset;
     const char* reason;
   };
-  for (const Wrong& wrong : {Wrong{"--1", 0, "two signs"},
-                             Wrong{"-+1", 0, "two signs"},
-                             Wrong{"1e", 0, "cut off in its exponent"},
-                             Wrong{"1e-", 0, "cut off in its exponent"},
-                             Wrong{".", 0, "without digits"},
-                             Wrong{"1_0", 1, "underscore"},
-                             Wrong{"1,000.5", 1, "thousands separator"},
-                             Wrong{"1.2.3", 3, "second decimal mark"},
-                             Wrong{"12abc", 2, "expected to end here"},
-                             Wrong{"1e5x", 3, "expected to end here"},
-                             Wrong{"-abc", 0, "a number was expected"},
-                             Wrong{"\xE2\x88\x92"
-                                   "1",
-                                   0,
-                                   "U+2212"},
-                             Wrong{"1\xC2\xA0"
-                                   "0",
-                                   1,
-                                   "no-break space"},
-                             Wrong{"\xE2\x80\x8B"
-                                   "1",
-                                   0,
-                                   "zero-width"},
-                             Wrong{"\x1A", 0, "Ctrl-Z"}}) {
+  for (const Wrong& wrong :
+       {Wrong{"--1", 0, "two signs"}, Wrong{"-+1", 0, "two signs"}, Wrong{"1e", 0, "cut off in its exponent"},
+        Wrong{"1e-", 0, "cut off in its exponent"}, Wrong{".", 0, "without digits"}, Wrong{"1_0", 1, "underscore"},
+        Wrong{"1,000.5", 1, "thousands separator"}, Wrong{"1.2.3", 3, "second decimal mark"},
+        Wrong{"12abc", 2, "expected to end here"}, Wrong{"1e5x", 3, "expected to end here"},
+        Wrong{"-abc", 0, "a number was expected"},
+        Wrong{"\xE2\x88\x92"
+              "1",
+              0, "U+2212"},
+        Wrong{"1\xC2\xA0"
+              "0",
+              1, "no-break space"},
+        Wrong{"\xE2\x80\x8B"
+              "1",
+              0, "zero-width"},
+        Wrong{"\x1A", 0, "Ctrl-Z"}}) {
     const Cell cell = read_cell(wrong.text, '.');
     INFO(wrong.text << ": " << cell.reason);
     CHECK(cell.kind == Cell::bad);
@@ -211,8 +163,7 @@ TEST_CASE("a cell that is no number is told with reason and place") {
 }
 
 TEST_CASE("the sign of an exponent is one character, and underflow and overflow know their side") {
-  for (const char* text : {"1e-5", "1e+5", "1E5", "2.5e-3"})
-    CHECK(read_cell(text, '.').number == reference(text));
+  for (const char* text : {"1e-5", "1e+5", "1E5", "2.5e-3"}) CHECK(read_cell(text, '.').number == reference(text));
   CHECK(read_cell("0.0001e-330", '.').number == 0);
   CHECK(read_cell("1000000e-330", '.').number == 0);
   CHECK(read_cell("0.0001e400", '.').kind == Cell::out_of_range);
@@ -234,8 +185,7 @@ TEST_CASE("time stamps become whole nanoseconds exactly") {
     const std::string padded = text + "," + std::string(32, '9');
     int digits = 0;
     for (std::int64_t u = unit; u > 1; u /= 10) ++digits;
-    if (const char* end = quick_stamp(padded.data(), '.', digits, quick_ns);
-        end != nullptr && *end == ',')
+    if (const char* end = quick_stamp(padded.data(), '.', digits, quick_ns); end != nullptr && *end == ',')
       CHECK(quick_ns == ns);
     return ns;
   };

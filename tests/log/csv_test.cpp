@@ -20,8 +20,7 @@ using Names = std::vector<std::string>;
 
 Names names(const Recording& r) {
   Names list;
-  for (const Channel& c : r.info.channels)
-    list.push_back(c.unit.empty() ? c.name : c.name + "|" + c.unit);
+  for (const Channel& c : r.info.channels) list.push_back(c.unit.empty() ? c.name : c.name + "|" + c.unit);
   return list;
 }
 
@@ -61,13 +60,11 @@ TEST_CASE("TUM: blanks between columns, several comment lines") {
 }
 
 TEST_CASE("phyphox: quoted names, exponents, semicolon and tab with decimal comma") {
-  const char* header[] = {"\"Time (s)\",\"Acceleration x (m/s^2)\"",
-                          "\"Time (s)\";\"Acceleration x (m/s^2)\"",
+  const char* header[] = {"\"Time (s)\",\"Acceleration x (m/s^2)\"", "\"Time (s)\";\"Acceleration x (m/s^2)\"",
                           "\"Time (s)\"\t\"Acceleration x (m/s^2)\""};
-  const std::string rows[] = {
-      "\n9.364549000E-3,1.5E0\n1.936454900E-2,-2.5E0\n2.936454900E-2,3.25E0\n",
-      "\n9,364549000E-3;1,5E0\n1,936454900E-2;-2,5E0\n2,936454900E-2;3,25E0\n",
-      "\n9,364549000E-3\t1,5E0\n1,936454900E-2\t-2,5E0\n2,936454900E-2\t3,25E0\n"};
+  const std::string rows[] = {"\n9.364549000E-3,1.5E0\n1.936454900E-2,-2.5E0\n2.936454900E-2,3.25E0\n",
+                              "\n9,364549000E-3;1,5E0\n1,936454900E-2;-2,5E0\n2,936454900E-2;3,25E0\n",
+                              "\n9,364549000E-3\t1,5E0\n1,936454900E-2\t-2,5E0\n2,936454900E-2\t3,25E0\n"};
   for (int i = 0; i < 3; ++i) {
     const Recording r = read_text(header[i] + rows[i]);
     INFO(rows[i]);
@@ -135,8 +132,7 @@ TEST_CASE("the time column and its unit") {
   const auto unit = [](const std::string& text) { return read_text(text).info.time; };
   CHECK(unit("t_us,x\n0,1\n5000,2\n10000,3\n").rate_hz == Approx(200));
   CHECK(unit("timestamp,x\n1700000000000,1\n1700000000010,2\n1700000000020,2\n").unit == "ms");
-  CHECK(unit("timestamp,x\n1700000000000000,1\n1700000000010000,2\n1700000000020000,2\n").unit ==
-        "us");
+  CHECK(unit("timestamp,x\n1700000000000000,1\n1700000000010000,2\n1700000000020000,2\n").unit == "us");
   CHECK(unit("t,x\n0.00,1\n0.01,2\n0.02,4\n").unit == "s");
   CHECK(unit("t,x\n0,1\n10,2\n20,4\n").unit == "ms");
   CHECK(unit("t,x\n0,1\n10,2\n20,4\n").unit_guessed);
@@ -173,8 +169,8 @@ TEST_CASE("channels are selected by name, in file order, and nothing else is par
   options.channels = {"accel"};
   CHECK(failure("t,accel_x\n0,1\n", options).find("did you mean accel_x?") != std::string::npos);
   options.channels = {"x"};
-  CHECK(failure("t,x,note\n0,1,a\n1,2\n", options)
-            .find("log.csv:3:4 (byte 18): error E0304: 2 fields, 3 expected") == 0);
+  CHECK(failure("t,x,note\n0,1,a\n1,2\n", options).find("log.csv:3:4 (byte 18): error E0304: 2 fields, 3 expected") ==
+        0);
 }
 
 TEST_CASE("the first line that cannot be is named with line, column and byte") {
@@ -183,12 +179,10 @@ TEST_CASE("the first line that cannot be is named with line, column and byte") {
                   "`overflow_as_missing`") == 0);
   CHECK(failure("").find("log.csv:1:1 (byte 0): error E0322: the file is empty") == 0);
   CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
-  CHECK(failure("\x1F\x8B\x08").find(LIBCHAR_HAVE_ZLIB ? "compressed" : "cannot unpack") !=
-        std::string::npos);
+  CHECK(failure("\x1F\x8B\x08").find(LIBCHAR_HAVE_ZLIB ? "compressed" : "cannot unpack") != std::string::npos);
   CHECK(failure("PK\x03\x04zip").find("ZIP") != std::string::npos);
   CHECK(failure(std::string("t\0,\0x\0\n\0", 8)).find("UTF-16") != std::string::npos);
-  CHECK(failure("t,x,x\n0,1,2\n")
-            .find("log.csv:1:5: error E0307: two columns have the same name (first at 1:3)") == 0);
+  CHECK(failure("t,x,x\n0,1,2\n").find("log.csv:1:5: error E0307: two columns have the same name (first at 1:3)") == 0);
   CHECK(failure("t," + std::string(1025, 'n') + "\n0,1\n").find("1024") != std::string::npos);
   CHECK(failure("t,x\n0,1\n" + std::string(3U << 20U, '1'))
             .find("log.csv:3:1 (byte 8): error E0305: line longer than 1 MiB") == 0);
@@ -214,8 +208,7 @@ TEST_CASE("options that hints name do what they say") {
   CHECK(count(joined, "repeated_header") == 1);
   options = {};
   options.skip_rows = 3;
-  CHECK(read_text("Logger v1\nSerial,77\n\nt,x\n0,1\n1,2\n", options).samples[0] ==
-        std::vector<double>{1, 2});
+  CHECK(read_text("Logger v1\nSerial,77\n\nt,x\n0,1\n1,2\n", options).samples[0] == std::vector<double>{1, 2});
   options = {};
   options.encoding = "latin1";
   CHECK(names(read_text("t,\xB0"
@@ -235,9 +228,8 @@ TEST_CASE("options that hints name do what they say") {
 
 TEST_CASE("a header that is no UTF-8 is read as Windows-1252, which is said") {
   const auto guessed = [](const Recording& r) {
-    return std::any_of(r.info.guesses.begin(), r.info.guesses.end(), [](const std::string& guess) {
-      return guess.find("Windows-1252") != std::string::npos;
-    });
+    return std::any_of(r.info.guesses.begin(), r.info.guesses.end(),
+                       [](const std::string& guess) { return guess.find("Windows-1252") != std::string::npos; });
   };
   const Recording excel = read_text(
       "Zeit [s];Temperatur [\xB0"
@@ -255,8 +247,7 @@ TEST_CASE("a header that is no UTF-8 is read as Windows-1252, which is said") {
 
 TEST_CASE("numbers with their unit behind them: the unit of the column") {
   // MATLAB's writetimetable, durations in front.
-  const Recording matlab =
-      read_text("Time,gx\n0 sec,1.5\n0.005 sec,-2\n0.01 sec,3e-1\n0.015 sec,4\n");
+  const Recording matlab = read_text("Time,gx\n0 sec,1.5\n0.005 sec,-2\n0.01 sec,3e-1\n0.015 sec,4\n");
   CHECK(matlab.info.time.rate_hz == Approx(200));
   CHECK(matlab.info.time.unit == "s");
   CHECK_FALSE(matlab.info.time.unit_guessed);
@@ -264,8 +255,7 @@ TEST_CASE("numbers with their unit behind them: the unit of the column") {
   CHECK(read_text("Time,x\n0 ms,1\n5 ms,2\n10 ms,3\n").info.time.rate_hz == Approx(200));
   CHECK(read_text("Time,x\n0 min,1\n1 min,2\n2 min,3\n").info.time.rate_hz == Approx(1.0 / 60));
   CHECK(read_text("Time,x\n0 hr,1\n1 hr,2\n2 hr,3\n").info.time.rate_hz == Approx(1.0 / 3600));
-  CHECK(read_text("Time,x\n0 days,1\n1 day,2\n2 days,3\n").info.time.rate_hz ==
-        Approx(1.0 / 86400));
+  CHECK(read_text("Time,x\n0 days,1\n1 day,2\n2 days,3\n").info.time.rate_hz == Approx(1.0 / 86400));
   // Grafana, as it shows the values.
   const Recording grafana = read_text(
       "\"Time\",\"temp\",\"a\"\n"
@@ -286,17 +276,13 @@ TEST_CASE("numbers with their unit behind them: the unit of the column") {
 
 TEST_CASE("a unit that changes inside a column is refused with both and the line") {
   const std::string changed = failure("Time,x\n0 s,1\n0.5 s,2\n600 ms,3\n");
-  CHECK_THAT(changed,
-             Catch::Contains("log.csv:4:1") && Catch::Contains("E0333") &&
-                 Catch::Contains("a value in ms, those before it are in s"));
+  CHECK_THAT(changed, Catch::Contains("log.csv:4:1") && Catch::Contains("E0333") &&
+                          Catch::Contains("a value in ms, those before it are in s"));
   std::string far = "t,x\n";
   for (int i = 0; i < 5000; ++i) far += std::to_string(i) + ",1.5 V\n";
-  CHECK_THAT(failure(far + "5000,2 mV\n"),
-             Catch::Contains("log.csv:5002:6") && Catch::Contains("in mV"));
-  CHECK_THAT(failure("t,x\n0,1 V\n1,2\n2,3 V\n"),
-             Catch::Contains("log.csv:3:3") && Catch::Contains("without a unit"));
-  CHECK_THAT(failure("t,x [mV]\n0,1 V\n1,2 V\n2,3 V\n"),
-             Catch::Contains("a value in V, and the header says mV"));
+  CHECK_THAT(failure(far + "5000,2 mV\n"), Catch::Contains("log.csv:5002:6") && Catch::Contains("in mV"));
+  CHECK_THAT(failure("t,x\n0,1 V\n1,2\n2,3 V\n"), Catch::Contains("log.csv:3:3") && Catch::Contains("without a unit"));
+  CHECK_THAT(failure("t,x [mV]\n0,1 V\n1,2 V\n2,3 V\n"), Catch::Contains("a value in V, and the header says mV"));
   // Numbers first: what stands behind a number is damage.
   CHECK_THAT(failure("t,x\n0,1\n1,2 V\n2,3\n"), Catch::Contains("E0311"));
 }
@@ -337,9 +323,7 @@ TEST_CASE("values, warnings and errors depend on neither block size nor threads"
   std::string text = "t[s];x (g);y\r\n";
   for (int i = 0; i < 1300; ++i) {
     const int oddity = static_cast<int>(random() % 60);
-    text += fmt::format("{:.4f};{};{}",
-                        i * 0.01 + (oddity == 1 ? 0.03 : 0),
-                        static_cast<double>(random()) * 1e-19,
+    text += fmt::format("{:.4f};{};{}", i * 0.01 + (oddity == 1 ? 0.03 : 0), static_cast<double>(random()) * 1e-19,
                         oddity == 2   ? ""
                         : oddity == 3 ? "\"1.5\""
                                       : fmt::format("{}", i));
@@ -357,12 +341,8 @@ TEST_CASE("values, warnings and errors depend on neither block size nor threads"
     try {
       const Recording r = read_recording(path, options);
       for (const Finding& w : r.info.warnings.list()) said += one_line(w, "") + "\n";
-      said += fmt::format("{} {} {} {} {}",
-                          r.info.rows,
-                          r.info.samples,
-                          r.info.time.rate_hz,
-                          r.info.time.max_deviation_s,
-                          r.info.sha256);
+      said += fmt::format("{} {} {} {} {}", r.info.rows, r.info.samples, r.info.time.rate_hz,
+                          r.info.time.max_deviation_s, r.info.sha256);
       for (const auto& channel : r.samples)
         for (const double x : channel) said += fmt::format(" {}", std::bit_cast<std::uint64_t>(x));
     } catch (const Error& error) {
@@ -392,8 +372,8 @@ TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
         if (delimiter == ',' && mark == ',') continue;
         std::string text = fmt::format("t{0}x{0}y{1}", delimiter, end);
         for (int i = 0; i < 3; ++i) {
-          std::string row = fmt::format(
-              "{:.2f}{}{:.9f}{}{:.9f}", 0.01 * i, delimiter, values[0][i], delimiter, values[1][i]);
+          std::string row =
+              fmt::format("{:.2f}{}{:.9f}{}{:.9f}", 0.01 * i, delimiter, values[0][i], delimiter, values[1][i]);
           for (char& c : row)
             if (c == '.') c = mark;
           text += row + end;
@@ -408,23 +388,17 @@ TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
       }
 }
 
-TEST_CASE(
-    "a last line without line end is kept and said, unless its last cell is seen to be whole") {
-  for (const char* text :
-       {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
+TEST_CASE("a last line without line end is kept and said, unless its last cell is seen to be whole") {
+  for (const char* text : {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
     const Recording r = read_text(text);
     INFO(text);
     CHECK(r.samples[0].back() == 4);
     CHECK(r.samples[0].size() == 3);
     REQUIRE(count(r, "no_final_newline") == 1);
-    CHECK_THAT(r.info.warnings.find("no_final_newline")->where.rows[0],
-               Catch::StartsWith("line 4"));
+    CHECK_THAT(r.info.warnings.find("no_final_newline")->where.rows[0], Catch::StartsWith("line 4"));
   }
-  for (const char* text : {"t,x\n1,2\n2,3\n3,4\n",
-                           "t,x\n1,2\n2,3\n3,\"4\"",
-                           "t,x,\n1,2,\n2,3,\n3,4,",
-                           "t,x\n1,2\n2,3\n3,4\n# end",
-                           "t,x\n1,2\n2,3\n3,4\n  "}) {
+  for (const char* text : {"t,x\n1,2\n2,3\n3,4\n", "t,x\n1,2\n2,3\n3,\"4\"", "t,x,\n1,2,\n2,3,\n3,4,",
+                           "t,x\n1,2\n2,3\n3,4\n# end", "t,x\n1,2\n2,3\n3,4\n  "}) {
     INFO(text);
     CHECK(count(read_text(text), "no_final_newline") == 0);
   }
@@ -433,9 +407,9 @@ TEST_CASE(
 TEST_CASE("a delimiter that does not fit is answered with the one that does") {
   ReadOptions options;
   options.delimiter = ";";
-  CHECK_THAT(failure("t,x,y\n1,2,3\n2,3,4\n", options),
-             Catch::StartsWith("log.csv:2:1 ") &&
-                 Catch::Contains("looks separated by , (3 columns): leave `delimiter` out"));
+  CHECK_THAT(
+      failure("t,x,y\n1,2,3\n2,3,4\n", options),
+      Catch::StartsWith("log.csv:2:1 ") && Catch::Contains("looks separated by , (3 columns): leave `delimiter` out"));
   // One column of decimal commas is what was asked for.
   CHECK(read_text("x\n1,5\n2,25\n", options).samples[0] == std::vector<double>{1.5, 2.25});
   options.delimiter = ",";
@@ -468,8 +442,7 @@ TEST_CASE("names that are given go by what is read") {
   ReadOptions options;
   options.names = {"a", "b", "c"};
   options.channels = {"gz"};
-  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
-             Catch::Contains("3 given, and 1 channel is read: gz"));
+  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options), Catch::Contains("3 given, and 1 channel is read: gz"));
   options.channels = {"a"};
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
              Catch::Contains("`channels` chooses by the names in the log, gx, gy, gz, and `names` "
@@ -477,15 +450,12 @@ TEST_CASE("names that are given go by what is read") {
 }
 
 TEST_CASE("web pages and JSON documents are called by their names") {
-  CHECK_THAT(failure("<!DOCTYPE html>\n<html>404</html>\n"),
-             Catch::Contains("E0301") && Catch::Contains("HTML"));
+  CHECK_THAT(failure("<!DOCTYPE html>\n<html>404</html>\n"), Catch::Contains("E0301") && Catch::Contains("HTML"));
   CHECK_THAT(failure("\n{\"a\": 1}\n"), Catch::Contains("E0301") && Catch::Contains("JSON"));
 }
 
-TEST_CASE(
-    "counts become values: by a number in the unit, by options for channels of a name or pattern") {
-  const std::string text =
-      "t [s],gx [1/16.4 deg/s],gy [0.05 deg/s],a\n0,164,20,1\n0.1,-82,40,2\n0.2,0,-20,4\n";
+TEST_CASE("counts become values: by a number in the unit, by options for channels of a name or pattern") {
+  const std::string text = "t [s],gx [1/16.4 deg/s],gy [0.05 deg/s],a\n0,164,20,1\n0.1,-82,40,2\n0.2,0,-20,4\n";
   const Recording r = read_text(text);
   CHECK(r.info.channels[0].unit == "deg/s");
   CHECK(r.samples[0] == std::vector<double>{164 * (1 / 16.4), -82 * (1 / 16.4), 0});
@@ -523,19 +493,16 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"\0\x05\xE9\x5C\x6F\x10\x20\x30\xFE\x09\0\x01"s, "mavlogdump"},
       {"\x80\x04\x95\x10\0\0\0"s, "pickle"},
       {"000001D CMPX\x01\x02"s, "obspy"},
-      {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s,
-       "gfzrnx"},
+      {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s, "gfzrnx"},
       {"header: \n  seq: 0\n  stamp: \n    secs: 1\n  frame_id: \"imu\"\n"s, "rostopic echo -p"},
   };
-  for (const auto& [text, way] : contents)
-    CHECK_THAT(failure(text), Catch::Contains("E0301") && Catch::Contains(way));
+  for (const auto& [text, way] : contents) CHECK_THAT(failure(text), Catch::Contains("E0301") && Catch::Contains(way));
 }
 
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
   options.kinds.group_by = "id";
-  const Recording same =
-      read_text("t [s],id,x,y\n0,a,1,10\n0,b,2,20\n1,a,3,30\n2,a,5,50\n2,b,6,60\n", options);
+  const Recording same = read_text("t [s],id,x,y\n0,a,1,10\n0,b,2,20\n1,a,3,30\n2,a,5,50\n2,b,6,60\n", options);
   CHECK(names(same) == Names{"a_x", "a_y", "b_x", "b_y"});
   CHECK(same.info.rows == 3);
   CHECK(same.samples[0] == std::vector<double>{1, 3, 5});
@@ -555,8 +522,7 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   options.channels = {"c_x"};
   CHECK_THAT(failure(long_form, options), Catch::Contains("E0320") && Catch::Contains("a_x"));
   options.channels.clear();
-  const Recording turns =
-      read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
+  const Recording turns = read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
   CHECK(turns.samples[1] == std::vector<double>{2, 4, 6});
   CHECK(turns.info.time.rate_hz == Approx(1));
   const Finding* apart = turns.info.warnings.find("stamps_apart");
@@ -564,8 +530,7 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   CHECK(apart->where.rows == std::vector<std::string>{"b 100 ms behind a"});
   CHECK(apart->help[0].options[0].value == "1");
   options.kinds.own_stamps = true;
-  const Recording own =
-      read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
+  const Recording own = read_text("t [s],id,x\n0,a,1\n0.1,b,2\n1,a,3\n1.1,b,4\n2,a,5\n2.1,b,6\n", options);
   CHECK(own.info.rows == 6);
   CHECK(own.info.warnings.find("stamps_apart") == nullptr);
   options.kinds.own_stamps = false;

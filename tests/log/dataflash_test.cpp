@@ -17,18 +17,12 @@ using namespace libchar;
 
 namespace {
 
-int bin_count(int i, int axis) {
-  return (37 * i + 101 * axis) % 2001 - 1000;
-}
+int bin_count(int i, int axis) { return (37 * i + 101 * axis) % 2001 - 1000; }
 
 // A number that was stored as a float.
-double bin_f32(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
+double bin_f32(double x) { return static_cast<double>(static_cast<float>(x)); }
 
-std::string bin(const std::string& name) {
-  return test::fixture("flight/" + name).string();
-}
+std::string bin(const std::string& name) { return test::fixture("flight/" + name).string(); }
 
 Recording read_bin(const std::string& path, const std::string& topic, std::string channel = "") {
   ReadOptions options;
@@ -39,8 +33,7 @@ Recording read_bin(const std::string& path, const std::string& topic, std::strin
 
 std::string bin_channels(const LogInfo& info) {
   std::string all;
-  for (const Channel& channel : info.channels)
-    all += fmt::format("{}[{}] ", channel.name, channel.unit);
+  for (const Channel& channel : info.channels) all += fmt::format("{}[{}] ", channel.name, channel.unit);
   return all;
 }
 
@@ -68,8 +61,7 @@ TEST_CASE("DataFlash: sensors are topics of their own, with units and stamps of 
   for (int i = 0; i < 200; ++i) REQUIRE(gyro.samples[1][i] == bin_f32(bin_count(i, 1) * 1e-4));
 
   const Recording imu = read_bin(bin("copter.bin"), "IMU 1");
-  CHECK(bin_channels(imu.info) ==
-        "GyrX[rad/s] GyrY[rad/s] GyrZ[rad/s] AccX[m/s^2] AccY[m/s^2] AccZ[m/s^2] T[degC] ");
+  CHECK(bin_channels(imu.info) == "GyrX[rad/s] GyrY[rad/s] GyrZ[rad/s] AccX[m/s^2] AccY[m/s^2] AccZ[m/s^2] T[degC] ");
   CHECK(imu.info.time.rate_hz == Approx(200).epsilon(1e-12));
   CHECK(imu.samples[0][3] == bin_f32(bin_count(15, 0) * 1e-4 + 1));
 }
@@ -92,19 +84,16 @@ TEST_CASE("DataFlash: multipliers of the log and letters of the format scale the
   CHECK(scaled.samples[4][1] == 47.3977421);
 }
 
-TEST_CASE(
-    "DataFlash: every letter by value, arrays, doubled labels, and what is not read says why") {
+TEST_CASE("DataFlash: every letter by value, arrays, doubled labels, and what is not read says why") {
   const Recording all = read_bin(bin("letters.bin"), "ALL");
   CHECK(bin_channels(all.info) == "b[] B[] h[] H[] i[] I[] q[] d[] f[] g[] M[] ");
-  const std::vector<double> at_7 = {
-      -7, 7, -2100, 4200, -490000, 3000000007.0, -7e12, 7 / 3.0, 1.75, 0.875, 7};
+  const std::vector<double> at_7 = {-7, 7, -2100, 4200, -490000, 3000000007.0, -7e12, 7 / 3.0, 1.75, 0.875, 7};
   for (std::size_t c = 0; c < at_7.size(); ++c) CHECK(all.samples[c][7] == at_7[c]);
   const Recording array = read_bin(bin("letters.bin"), "ARR", "a[31]");
   CHECK(array.samples[0][3] == bin_count(3, 0) + 31);
   CHECK(read_bin(bin("letters.bin"), "TWIC", "x_2").samples[0][4] == 8);
   std::map<std::string, std::string> why;
-  for (const LogTopic& topic : log_listing(bin("letters.bin"), {}).topics)
-    why[topic.name] = topic.why_not;
+  for (const LogTopic& topic : log_listing(bin("letters.bin"), {}).topics) why[topic.name] = topic.why_not;
   CHECK(why["TEXT"] == "text");
   CHECK(why["BADL"] == "its format makes 15 bytes and its length says 22");
   CHECK(why["BADX"] == "its format has the letter x");
@@ -130,8 +119,7 @@ TEST_CASE(
   CHECK(gyro.samples[0][127] == bin_count(255, 0) / 1000.0);
 }
 
-TEST_CASE(
-    "DataFlash: a log of APM 3.1 in milliseconds, without units, with unwritten flash behind") {
+TEST_CASE("DataFlash: a log of APM 3.1 in milliseconds, without units, with unwritten flash behind") {
   const Recording baro = read_bin(bin("old.bin"), "BARO");
   CHECK(bin_channels(baro.info) == "Alt[m] Press[Pa] Temp[degC] ");
   CHECK(baro.info.time.column == "TimeMS");
@@ -140,8 +128,7 @@ TEST_CASE(
   CHECK(baro.samples[2][0] == 25.12);
   CHECK(baro.info.warnings.empty());
   const Recording imu = read_bin(bin("old.bin"), "IMU2");
-  CHECK(bin_channels(imu.info) ==
-        "GyrX[rad/s] GyrY[rad/s] GyrZ[rad/s] AccX[m/s^2] AccY[m/s^2] AccZ[m/s^2] ");
+  CHECK(bin_channels(imu.info) == "GyrX[rad/s] GyrY[rad/s] GyrZ[rad/s] AccX[m/s^2] AccY[m/s^2] AccZ[m/s^2] ");
   CHECK(imu.samples[0][79] == bin_f32(2 * bin_count(79, 0) * 1e-4));
 }
 
@@ -197,20 +184,16 @@ TEST_CASE("DataFlash: rows do not depend on the size of blocks") {
     const Recording parts = read_recording(bin("damaged.bin"), options);
     REQUIRE(parts.info.samples == whole.info.samples);
     for (std::size_t c = 0; c < whole.samples.size(); ++c)
-      CHECK(std::memcmp(parts.samples[c].data(),
-                        whole.samples[c].data(),
-                        whole.info.samples * sizeof(double)) == 0);
+      CHECK(std::memcmp(parts.samples[c].data(), whole.samples[c].data(), whole.info.samples * sizeof(double)) == 0);
   }
 }
 
 TEST_CASE("DataFlash: a .bin with a sidecar stays raw, one without that is no log is told so") {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "x.bin").string();
-  std::ofstream(path, std::ios::binary)
-      << std::string("\xa3\x95\x80\x00", 4) + std::string(60, 'x');
+  std::ofstream(path, std::ios::binary) << std::string("\xa3\x95\x80\x00", 4) + std::string(60, 'x');
   CHECK_THROWS_WITH(read_recording(path), Catch::Contains("E0422"));
-  std::ofstream(path + ".json")
-      << R"({"dtype": "i16", "endian": "little", "channels": 2, "rate_hz": 100})";
+  std::ofstream(path + ".json") << R"({"dtype": "i16", "endian": "little", "channels": 2, "rate_hz": 100})";
   const Recording raw = read_recording(path);
   CHECK(raw.info.format == "raw");
   CHECK(raw.info.samples == 16);
@@ -222,6 +205,5 @@ TEST_CASE("DataFlash: a .bin with a sidecar stays raw, one without that is no lo
 TEST_CASE("DataFlash: cut in front of its first whole message it is told to be cut") {
   const test::MemoryLog log(std::string_view(test::slurp(bin("copter.bin"))).substr(0, 100));
   CHECK_THROWS_WITH(read_recording(log.path(), {}),
-                    Catch::Contains("E0426") &&
-                        Catch::Contains("the log ends inside a message: its last 11 bytes"));
+                    Catch::Contains("E0426") && Catch::Contains("the log ends inside a message: its last 11 bytes"));
 }

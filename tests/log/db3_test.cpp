@@ -9,16 +9,13 @@ using namespace libchar;
 
 TEST_CASE("db3: an IMU of Humble by the definitions that the program brings") {
   NEEDS_LIBRARY(SQLITE);
-  const test::Rows rows =
-      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/imu0/data"));
+  const test::Rows rows = test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/imu0/data"));
   test::check_imu(rows, 200);
   CHECK(rows.info.topic == "/imu0/data");
   CHECK(rows.warnings.empty());
-  const test::Rows joints =
-      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/joints"));
+  const test::Rows joints = test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/joints"));
   CHECK(joints.columns[2][19] == -0.3 * 19);
-  const test::Rows level =
-      test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/level"));
+  const test::Rows level = test::read_rows("db3", test::ros("humble.db3"), test::of_topic("/level"));
   CHECK(level.columns[0][39] == 39.0 * 39 / 64);
   CHECK(level.time_ns[39] == test::kRosStart + 975000000 + 1000000);
 }
@@ -91,8 +88,7 @@ TEST_CASE("db3: cut in front of its first message it is told to be cut, and wher
   };
   CHECK_THAT(cut_at(0), Catch::Contains("E0446") && Catch::Contains("is empty"));
   CHECK_THAT(cut_at(50), Catch::Contains("ends at byte 50, inside the header"));
-  CHECK_THAT(cut_at(1000),
-             Catch::Contains("E0446") && Catch::Contains("ends at byte 1000 of 110592"));
+  CHECK_THAT(cut_at(1000), Catch::Contains("E0446") && Catch::Contains("ends at byte 1000 of 110592"));
   CHECK_THAT(cut_at(5000), Catch::Contains("E0426") && Catch::Contains("ends at byte 5000 of"));
   CHECK_THAT(cut_at(17000), Catch::Contains("E0426") && Catch::Contains("ends at byte 17000 of"));
 }

@@ -47,8 +47,7 @@ TEST_CASE("blank lines and comments between the first rows are no part of the sa
   CHECK(r.samples == std::vector<std::vector<double>>{{1, 2, 3}});
 }
 
-TEST_CASE(
-    "rows that end with a delimiter have no further column, and that is said where it begins") {
+TEST_CASE("rows that end with a delimiter have no further column, and that is said where it begins") {
   const Recording r = read_text("t,x\n0,1,\n1,2,\n2,3,\n");
   CHECK(r.samples == std::vector<std::vector<double>>{{1, 2, 3}});
   REQUIRE(count(r, "trailing_delimiter") == 1);
@@ -74,8 +73,7 @@ TEST_CASE("what is wrong with the first lines is told with line, column and numb
         "2 lines in front of the table left out");
   ReadOptions named;
   named.header = "yes";
-  CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).info.channels[0].name ==
-        "x");
+  CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).info.channels[0].name == "x");
   named.header = "no";
   CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).samples.size() == 2);
 }
@@ -85,8 +83,7 @@ TEST_CASE("a file exactly as long as the head is whole though no line end follow
     const std::string row = "1.5";
     std::string text;
     while (text.size() + 1000 < csv::kHeadBytes) text += "#" + std::string(500, ' ') + "\n";
-    text +=
-        "#" + std::string(csv::kHeadBytes - less - text.size() - row.size() - 2, ' ') + "\n" + row;
+    text += "#" + std::string(csv::kHeadBytes - less - text.size() - row.size() - 2, ' ') + "\n" + row;
     REQUIRE(text.size() == csv::kHeadBytes - less);
     ReadOptions options;
     options.rate_hz = 1;
@@ -101,8 +98,7 @@ TEST_CASE("text with control characters in a fiftieth of its first 4096 bytes is
     text[last] = '\x01';
     return text + "\n0,1\n";
   };
-  CHECK_THAT(
-      failure(text_with(82, 4095)),
-      Catch::Contains("E0301") && Catch::Contains("82 control characters in the first 4096 bytes"));
+  CHECK_THAT(failure(text_with(82, 4095)),
+             Catch::Contains("E0301") && Catch::Contains("82 control characters in the first 4096 bytes"));
   CHECK_THAT(failure(text_with(81, 4095)), !Catch::Contains("E0301"));
 }

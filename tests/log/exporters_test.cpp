@@ -40,8 +40,7 @@ std::string lines(int rows, Line line) {
 
 std::string channels_of(const LogInfo& info) {
   std::string out;
-  for (const Channel& c : info.channels)
-    out += (out.empty() ? "" : " ") + c.name + "[" + c.unit + "]";
+  for (const Channel& c : info.channels) out += (out.empty() ? "" : " ") + c.name + "[" + c.unit + "]";
   return out;
 }
 
@@ -55,98 +54,79 @@ std::string said_by(const LogInfo& info) {
 
 std::vector<Export> robot_exports() {
   std::vector<Export> out;
-  out.push_back(
-      {"rostopic echo -p, sensor_msgs/Imu",
-       "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angular_velocity.x,"
-       "field.linear_acceleration.z\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format("{},{},{},imu_link,{},9.81\n",
-                                      1700000000000000000 + 10000000LL * k + (k * 7919) % 900000,
-                                      100 + k,
-                                      1700000000000000000 + 10000000LL * k,
-                                      0.25 + k);
-                 }),
-       "time[] field.header.seq[] field.angular_velocity.x[] field.linear_acceleration.z[]",
-       100,
-       1700000000000000000,
-       {1.7e18, 100, 0.25, 9.81},
-       "field.header.stamp, the device's own clock, not time"});
+  out.push_back({"rostopic echo -p, sensor_msgs/Imu",
+                 "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angular_velocity.x,"
+                 "field.linear_acceleration.z\n" +
+                     lines(12,
+                           [](int k) {
+                             return fmt::format("{},{},{},imu_link,{},9.81\n",
+                                                1700000000000000000 + 10000000LL * k + (k * 7919) % 900000, 100 + k,
+                                                1700000000000000000 + 10000000LL * k, 0.25 + k);
+                           }),
+                 "time[] field.header.seq[] field.angular_velocity.x[] field.linear_acceleration.z[]",
+                 100,
+                 1700000000000000000,
+                 {1.7e18, 100, 0.25, 9.81},
+                 "field.header.stamp, the device's own clock, not time"});
   out.push_back({"ros2 topic echo --csv, sensor_msgs/Imu",
                  lines(12,
                        [](int k) {
                          const std::int64_t ns = 950000000 + 10000000LL * k;
-                         return fmt::format("{},{},imu_link,0.0,0.0,{},9.81\n",
-                                            1700000000 + ns / 1000000000,
-                                            ns % 1000000000,
-                                            0.5 + k);
+                         return fmt::format("{},{},imu_link,0.0,0.0,{},9.81\n", 1700000000 + ns / 1000000000,
+                                            ns % 1000000000, 0.5 + k);
                        }),
                  "c1[] c2[] c3[] c4[]",
                  100,
                  1700000000950000000,
                  {0, 0, 0.5, 9.81},
                  "stamps: seconds in c0 and nanoseconds in c1"});
-  out.push_back(
-      {"bagpy",
-       "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format("1700000000.{:06d},{},1700000000,{},imu,{}\n",
-                                      10000 * k + 1000 + (k * 97) % 1000,
-                                      k,
-                                      10000000 * k,
-                                      k * 0.5);
-                 }),
-       "Time[] header.seq[] angular_velocity.x[]",
-       100,
-       1700000000000000000,
-       {1700000000.001, 0, 0},
-       "header.stamp.secs, the device's own clock, not Time"});
+  out.push_back({"bagpy",
+                 "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x\n" +
+                     lines(12,
+                           [](int k) {
+                             return fmt::format("1700000000.{:06d},{},1700000000,{},imu,{}\n",
+                                                10000 * k + 1000 + (k * 97) % 1000, k, 10000000 * k, k * 0.5);
+                           }),
+                 "Time[] header.seq[] angular_velocity.x[]",
+                 100,
+                 1700000000000000000,
+                 {1700000000.001, 0, 0},
+                 "header.stamp.secs, the device's own clock, not Time"});
   out.push_back({"EuRoC",
                  "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],a_RS_S_x [m s^-2]\r\n" +
                      lines(12,
                            [](int k) {
                              return fmt::format("{},-0.099134701513277898,{},8.1\r\n",
-                                                1403636579758555392 + 5000000LL * k,
-                                                k);
+                                                1403636579758555392 + 5000000LL * k, k);
                            }),
                  "w_RS_S_x[rad s^-1] w_RS_S_y[rad s^-1] a_RS_S_x[m s^-2]",
                  200,
                  1403636579758555392,
                  {-0.099134701513277898, 0, 8.1},
                  "header in line 1"});
-  out.push_back({"TUM RGB-D accelerometer.txt",
-                 "# accelerometer data\n# file: 'rgbd_dataset.bag'\n# timestamp ax ay az\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format(
-                                 "1305031102.{:06d} 0.1 {} 9.8\n", 100000 + 2000 * k, k);
-                           }),
-                 "ax[] ay[] az[]",
-                 500,
-                 1305031102100000000,
-                 {0.1, 0, 9.8},
-                 "delimiter blanks"});
-  out.push_back({"Kalibr imu0.csv",
-                 "timestamp,omega_x,omega_y,omega_z,alpha_x,alpha_y,alpha_z\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format(
-                                 "{},{},0,0,0,0,9.8\n", 1385030208736607488 + 5000000LL * k, k);
-                           }),
-                 "omega_x[] omega_y[] omega_z[] alpha_x[] alpha_y[] alpha_z[]",
-                 200,
-                 1385030208736607488,
-                 {0, 0, 0, 0, 0, 9.8},
-                 "time unit: ns"});
+  out.push_back(
+      {"TUM RGB-D accelerometer.txt",
+       "# accelerometer data\n# file: 'rgbd_dataset.bag'\n# timestamp ax ay az\n" +
+           lines(12, [](int k) { return fmt::format("1305031102.{:06d} 0.1 {} 9.8\n", 100000 + 2000 * k, k); }),
+       "ax[] ay[] az[]",
+       500,
+       1305031102100000000,
+       {0.1, 0, 9.8},
+       "delimiter blanks"});
+  out.push_back(
+      {"Kalibr imu0.csv",
+       "timestamp,omega_x,omega_y,omega_z,alpha_x,alpha_y,alpha_z\n" +
+           lines(12, [](int k) { return fmt::format("{},{},0,0,0,0,9.8\n", 1385030208736607488 + 5000000LL * k, k); }),
+       "omega_x[] omega_y[] omega_z[] alpha_x[] alpha_y[] alpha_z[]",
+       200,
+       1385030208736607488,
+       {0, 0, 0, 0, 0, 9.8},
+       "time unit: ns"});
   out.push_back(
       {"PX4 ulog2csv sensor_combined",
        "timestamp,gyro_rad[0],gyro_rad[1],gyro_integral_dt,accelerometer_timestamp_relative,"
        "accelerometer_m_s2[0],magnetometer_ga[2]\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format("{},0.01,{},4000,0,-0.2,0.31\n", 112574307 + 4000 * k, k);
-                 }),
+           lines(12, [](int k) { return fmt::format("{},0.01,{},4000,0,-0.2,0.31\n", 112574307 + 4000 * k, k); }),
        "gyro[0][rad/s] gyro[1][rad/s] gyro_integral_dt[] accelerometer_timestamp_relative[] "
        "accelerometer[0][m/s2] magnetometer[2][Gauss]",
        250,
@@ -154,45 +134,41 @@ std::vector<Export> robot_exports() {
        {0.01, 0, 4000, 0, -0.2, 0.31},
        "taken as us"});
   out.push_back({"ArduPilot mavlogdump --format csv --types IMU",
-                 "timestamp,TimeUS,I,GyrX,GyrY,AccZ,T\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format("1700000000.{:06d},{},0,0.001,{},-9.8,41.5\n",
-                                                40000 * k,
-                                                254633000 + 40000 * k,
-                                                k);
-                           }),
+                 "timestamp,TimeUS,I,GyrX,GyrY,AccZ,T\n" + lines(12,
+                                                                 [](int k) {
+                                                                   return fmt::format(
+                                                                       "1700000000.{:06d},{},0,0.001,{},-9.8,41.5\n",
+                                                                       40000 * k, 254633000 + 40000 * k, k);
+                                                                 }),
                  "TimeUS[] I[] GyrX[] GyrY[] AccZ[] T[]",
                  25,
                  1700000000000000000,
                  {254633000, 0, 0.001, 0, -9.8, 41.5},
                  "time column: timestamp, not TimeUS"});
-  out.push_back(
-      {"Betaflight blackbox_decode",
-       "loopIteration, time (us), gyroADC[0], gyroADC[1], accSmooth[2], flightModeFlags (flags), "
-       "failsafePhase (flags)\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format(
-                       "{}, {}, 3, {}, 2050, ANGLE_MODE, IDLE\n", k * 4, 91734000 + 500 * k, k);
-                 }),
-       "loopIteration[] gyroADC[0][] gyroADC[1][] accSmooth[2][]",
-       2000,
-       91734000000,
-       {0, 3, 0, 2050},
-       "left out columns of words: flightModeFlags"});
-  out.push_back(
-      {"Blackbox Explorer export",
-       "\"Product\",\"Blackbox flight data recorder by Nicholas Sherlock\"\n\"Data "
-       "version\",\"2\"\n"
-       "\"looptime\",\"125\"\n\"gyro_scale\",\"0x3f800000\"\n"
-       "\"loopIteration\",\"time\",\"gyroADC[0]\",\"gyroADC[1]\"\n" +
-           lines(40, [](int k) { return fmt::format("{},{},5,{}\n", k, 1000000 + 500 * k, k); }),
-       "loopIteration[] gyroADC[0][] gyroADC[1][]",
-       2000,
-       1000000000,
-       {0, 5, 0},
-       "4 lines in front of the table left out"});
+  out.push_back({"Betaflight blackbox_decode",
+                 "loopIteration, time (us), gyroADC[0], gyroADC[1], accSmooth[2], flightModeFlags (flags), "
+                 "failsafePhase (flags)\n" +
+                     lines(12,
+                           [](int k) {
+                             return fmt::format("{}, {}, 3, {}, 2050, ANGLE_MODE, IDLE\n", k * 4, 91734000 + 500 * k,
+                                                k);
+                           }),
+                 "loopIteration[] gyroADC[0][] gyroADC[1][] accSmooth[2][]",
+                 2000,
+                 91734000000,
+                 {0, 3, 0, 2050},
+                 "left out columns of words: flightModeFlags"});
+  out.push_back({"Blackbox Explorer export",
+                 "\"Product\",\"Blackbox flight data recorder by Nicholas Sherlock\"\n\"Data "
+                 "version\",\"2\"\n"
+                 "\"looptime\",\"125\"\n\"gyro_scale\",\"0x3f800000\"\n"
+                 "\"loopIteration\",\"time\",\"gyroADC[0]\",\"gyroADC[1]\"\n" +
+                     lines(40, [](int k) { return fmt::format("{},{},5,{}\n", k, 1000000 + 500 * k, k); }),
+                 "loopIteration[] gyroADC[0][] gyroADC[1][]",
+                 2000,
+                 1000000000,
+                 {0, 5, 0},
+                 "4 lines in front of the table left out"});
   return out;
 }
 
@@ -200,44 +176,38 @@ std::vector<Export> phone_exports() {
   std::vector<Export> out;
   const auto phyphox = [](char delimiter, bool comma) {
     return lines(12, [=](int k) {
-      std::string row =
-          fmt::format("{:.9E}{}{:.9E}{}{:.9E}\n", 0.01 * k, delimiter, 0.5 + k, delimiter, 9.81);
+      std::string row = fmt::format("{:.9E}{}{:.9E}{}{:.9E}\n", 0.01 * k, delimiter, 0.5 + k, delimiter, 9.81);
       if (comma) std::replace(row.begin(), row.end(), '.', ',');
       return row;
     });
   };
-  out.push_back(
-      {"phyphox, comma",
-       "\"Time (s)\",\"Acceleration x (m/s^2)\",\"Acceleration z (m/s^2)\"\n" + phyphox(',', false),
-       "Acceleration x[m/s^2] Acceleration z[m/s^2]",
-       100,
-       0,
-       {0.5, 9.81},
-       "header in line 1"});
+  out.push_back({"phyphox, comma",
+                 "\"Time (s)\",\"Acceleration x (m/s^2)\",\"Acceleration z (m/s^2)\"\n" + phyphox(',', false),
+                 "Acceleration x[m/s^2] Acceleration z[m/s^2]",
+                 100,
+                 0,
+                 {0.5, 9.81},
+                 "header in line 1"});
   out.push_back({"phyphox, tab",
-                 "\"Time (s)\"\t\"Acceleration x (m/s^2)\"\t\"Acceleration z (m/s^2)\"\n" +
-                     phyphox('\t', false),
+                 "\"Time (s)\"\t\"Acceleration x (m/s^2)\"\t\"Acceleration z (m/s^2)\"\n" + phyphox('\t', false),
                  "Acceleration x[m/s^2] Acceleration z[m/s^2]",
                  100,
                  0,
                  {0.5, 9.81},
                  "delimiter tab"});
-  out.push_back(
-      {"phyphox, semicolon and decimal comma",
-       "\"Time (s)\";\"Acceleration x (m/s^2)\";\"Acceleration z (m/s^2)\"\n" + phyphox(';', true),
-       "Acceleration x[m/s^2] Acceleration z[m/s^2]",
-       100,
-       0,
-       {0.5, 9.81},
-       "decimal comma"});
+  out.push_back({"phyphox, semicolon and decimal comma",
+                 "\"Time (s)\";\"Acceleration x (m/s^2)\";\"Acceleration z (m/s^2)\"\n" + phyphox(';', true),
+                 "Acceleration x[m/s^2] Acceleration z[m/s^2]",
+                 100,
+                 0,
+                 {0.5, 9.81},
+                 "decimal comma"});
   out.push_back({"Sensor Logger, Gyroscope.csv",
                  "time,seconds_elapsed,z,y,x\n" + lines(12,
                                                         [](int k) {
-                                                          return fmt::format(
-                                                              "{},{:.9f},0.01,{},0.03\n",
-                                                              1714564800123000000 + 10000000LL * k,
-                                                              0.0853 + 0.01 * k,
-                                                              k);
+                                                          return fmt::format("{},{:.9f},0.01,{},0.03\n",
+                                                                             1714564800123000000 + 10000000LL * k,
+                                                                             0.0853 + 0.01 * k, k);
                                                         }),
                  "seconds_elapsed[] z[] y[] x[]",
                  100,
@@ -249,10 +219,7 @@ std::vector<Export> phone_exports() {
                  ";YYYY-MO-DD HH-MI-SS_SSS\n" +
                      lines(12,
                            [](int k) {
-                             return fmt::format("0.1;{};{};2024-05-01 12:00:0{}:{:03d}\n",
-                                                k,
-                                                5 + 100 * k,
-                                                k / 10,
+                             return fmt::format("0.1;{};{};2024-05-01 12:00:0{}:{:03d}\n", k, 5 + 100 * k, k / 10,
                                                 (100 * k) % 1000);
                            }),
                  "ACCELEROMETER X[m/s²] GYROSCOPE Z[rad/s]",
@@ -262,34 +229,27 @@ std::vector<Export> phone_exports() {
                  "Time since start in ms, not YYYY-MO-DD HH-MI-SS_SSS"});
   out.push_back({"Physics Toolbox Sensor Suite",
                  "time,gFx,gFy,gFz,\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format("{:.4f},0.01,{},0.99,\n", 0.0051 + 0.005 * k, k);
-                           }),
+                     lines(12, [](int k) { return fmt::format("{:.4f},0.01,{},0.99,\n", 0.0051 + 0.005 * k, k); }),
                  "gFx[] gFy[] gFz[]",
                  200,
                  5100000,
                  {0.01, 0, 0.99},
                  "trailing_delimiter"});
-  out.push_back(
-      {"Physics Toolbox, clock times",
-       "time;wx (rad/s);wy (rad/s)\n" +
-           lines(12, [](int k) { return fmt::format("23:59:59:{:03d};0,02;{}\n", 10 * k, k); }),
-       "wx[rad/s] wy[rad/s]",
-       100,
-       (std::int64_t{86399}) * 1000000000,
-       {0.02, 0},
-       "stamps are times of day"});
+  out.push_back({"Physics Toolbox, clock times",
+                 "time;wx (rad/s);wy (rad/s)\n" +
+                     lines(12, [](int k) { return fmt::format("23:59:59:{:03d};0,02;{}\n", 10 * k, k); }),
+                 "wx[rad/s] wy[rad/s]",
+                 100,
+                 (std::int64_t{86399}) * 1000000000,
+                 {0.02, 0},
+                 "stamps are times of day"});
   out.push_back({"Sensor Logger, all sensors in one file",
                  "sensor,time,seconds_elapsed,x,y,z\n" +
                      lines(12,
                            [](int k) {
-                             return fmt::format(
-                                 "{},{},{:.3f},{},0.2,0.3\n",
-                                 k % 2 == 0 ? "Accelerometer" : "Gyroscope",
-                                 1714564800000000000 + 10000000LL * (k / 2) + 3100000 * (k % 2),
-                                 0.01 * (k / 2),
-                                 k);
+                             return fmt::format("{},{},{:.3f},{},0.2,0.3\n", k % 2 == 0 ? "Accelerometer" : "Gyroscope",
+                                                1714564800000000000 + 10000000LL * (k / 2) + 3100000 * (k % 2),
+                                                0.01 * (k / 2), k);
                            }),
                  "",
                  0,
@@ -301,12 +261,9 @@ std::vector<Export> phone_exports() {
                  "sensor,time,seconds_elapsed,x,y,z\n" +
                      lines(24,
                            [](int k) {
-                             return fmt::format(
-                                 "{},{},{:.3f},{},0.2,0.3\n",
-                                 k % 2 == 0 ? "Accelerometer" : "Gyroscope",
-                                 1714564800000000000 + 10000000LL * (k / 2) + 3100000 * (k % 2),
-                                 0.01 * (k / 2),
-                                 k);
+                             return fmt::format("{},{},{:.3f},{},0.2,0.3\n", k % 2 == 0 ? "Accelerometer" : "Gyroscope",
+                                                1714564800000000000 + 10000000LL * (k / 2) + 3100000 * (k % 2),
+                                                0.01 * (k / 2), k);
                            }),
                  "seconds_elapsed[] x[] y[] z[]",
                  100,
@@ -324,59 +281,48 @@ std::vector<Export> imu_exports() {
       {"Xsens MT Manager",
        "// Start Time: Unknown\r\n// Update Rate: 100.0Hz\r\n// Filter Profile: human (46.1)\r\n"
        "PacketCounter\tSampleTimeFine\tYear\tAcc_X\tGyr_X\r\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format("{:05d}\t{}\t\t9.81\t{}\r\n", 100 + k, 51214 + 100 * k, k);
-                 }),
+           lines(12, [](int k) { return fmt::format("{:05d}\t{}\t\t9.81\t{}\r\n", 100 + k, 51214 + 100 * k, k); }),
        "PacketCounter[] Year[] Acc_X[] Gyr_X[]",
        100,
        5121400000,
        {100, NAN, 9.81, 0},
        "time unit: 100us, from the rate of 100 Hz"});
-  out.push_back(
-      {"Movella DOT",
-       "DeviceTag:,DOT 1\r\nFirmwareVersion:,2.0.0\r\nAppVersion:,v2022.0\r\nSyncStatus:,Synced\r\n"
-       "OutputRate:,60Hz\r\nFilterProfile:,General\r\nMeasurementMode:,Rate quantities (with "
-       "mag)\r\n"
-       "StartTime:,2022-05-01 12:00:00\r\n\r\n"
-       "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Gyr_X\r\n" +
-           lines(
-               24,
-               [](int k) { return fmt::format("{},{},0.1,{},9\r\n", k, 1013245 + 16667 * k, k); }),
-       "PacketCounter[] Acc_X[] Acc_Y[] Gyr_X[]",
-       1e6 / 16667,
-       1013245000,
-       {0, 0.1, 0, 9},
-       "time unit: us, from the rate of 60 Hz"});
+  out.push_back({"Movella DOT",
+                 "DeviceTag:,DOT 1\r\nFirmwareVersion:,2.0.0\r\nAppVersion:,v2022.0\r\nSyncStatus:,Synced\r\n"
+                 "OutputRate:,60Hz\r\nFilterProfile:,General\r\nMeasurementMode:,Rate quantities (with "
+                 "mag)\r\n"
+                 "StartTime:,2022-05-01 12:00:00\r\n\r\n"
+                 "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Gyr_X\r\n" +
+                     lines(24, [](int k) { return fmt::format("{},{},0.1,{},9\r\n", k, 1013245 + 16667 * k, k); }),
+                 "PacketCounter[] Acc_X[] Acc_Y[] Gyr_X[]",
+                 1e6 / 16667,
+                 1013245000,
+                 {0, 0.1, 0, 9},
+                 "time unit: us, from the rate of 60 Hz"});
   out.push_back({"Movella DOT, without its header",
                  "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Gyr_X\r\n" +
-                     lines(24,
-                           [](int k) {
-                             return fmt::format("{},{},0.1,{},9\r\n", k, 1013245 + 16667 * k, k);
-                           }),
+                     lines(24, [](int k) { return fmt::format("{},{},0.1,{},9\r\n", k, 1013245 + 16667 * k, k); }),
                  "PacketCounter[] Acc_X[] Acc_Y[] Gyr_X[]",
                  1e6 / 16667,
                  1013245000,
                  {0, 0.1, 0, 9},
                  "taken as us"});
-  out.push_back({"stamps that no unit brings to the stated rate",
-                 "# Sample Rate: 75 Hz\ntimestamp,x\n" +
-                     lines(24, [](int k) { return fmt::format("{},{}\n", 20 * k, k); }),
-                 "",
-                 0,
-                 kNoStart,
-                 {},
-                 "the file states 75 Hz, and its stamps step by 20, which is 50 Hz in ms",
-                 true});
   out.push_back(
-      {"Arduino, key=value",
-       lines(12,
-             [](int k) { return fmt::format("t={} ax=0.01 ay={} az=0.98\r\n", 1000 + 20 * k, k); }),
-       "ax[] ay[] az[]",
-       50,
-       1000000000,
-       {0.01, 0, 0.98},
-       "names in front of the values"});
+      {"stamps that no unit brings to the stated rate",
+       "# Sample Rate: 75 Hz\ntimestamp,x\n" + lines(24, [](int k) { return fmt::format("{},{}\n", 20 * k, k); }),
+       "",
+       0,
+       kNoStart,
+       {},
+       "the file states 75 Hz, and its stamps step by 20, which is 50 Hz in ms",
+       true});
+  out.push_back({"Arduino, key=value",
+                 lines(12, [](int k) { return fmt::format("t={} ax=0.01 ay={} az=0.98\r\n", 1000 + 20 * k, k); }),
+                 "ax[] ay[] az[]",
+                 50,
+                 1000000000,
+                 {0.01, 0, 0.98},
+                 "names in front of the values"});
   out.push_back({"Arduino, key: value",
                  lines(12, [](int k) { return fmt::format("ax: 0.01, ay: {}, az: -0.98\n", k); }),
                  "ax[] ay[] az[]",
@@ -398,20 +344,15 @@ std::vector<Export> imu_exports() {
                  kNoStart,
                  {1.5, 0, -2},
                  "names in front of the values"});
-  out.push_back(
-      {"Arduino serial monitor with timestamps",
-       lines(12, [](int k) { return fmt::format("12:00:00.{:03d} -> 1.5,{},-2\n", 50 * k, k); }),
-       "c0[] c1[] c2[]",
-       20,
-       std::int64_t{43200} * 1000000000,
-       {1.5, 0, -2},
-       "up to ->"});
+  out.push_back({"Arduino serial monitor with timestamps",
+                 lines(12, [](int k) { return fmt::format("12:00:00.{:03d} -> 1.5,{},-2\n", 50 * k, k); }),
+                 "c0[] c1[] c2[]",
+                 20,
+                 std::int64_t{43200} * 1000000000,
+                 {1.5, 0, -2},
+                 "up to ->"});
   out.push_back({"Tera Term log with timestamps",
-                 lines(12,
-                       [](int k) {
-                         return fmt::format(
-                             "[2024-05-01 12:00:00.{:03d}] 1.5,{},-2\r\n", 50 * k, k);
-                       }),
+                 lines(12, [](int k) { return fmt::format("[2024-05-01 12:00:00.{:03d}] 1.5,{},-2\r\n", 50 * k, k); }),
                  "c0[] c1[] c2[]",
                  20,
                  std::int64_t{1714564800} * 1000000000,
@@ -422,31 +363,28 @@ std::vector<Export> imu_exports() {
 
 std::vector<Export> bench_exports() {
   std::vector<Export> out;
-  out.push_back(
-      {"LabVIEW .lvm, decimal comma",
-       "LabVIEW Measurement\t\r\nWriter_Version\t2\r\nReader_Version\t2\r\nSeparator\tTab\r\n"
-       "Decimal_Separator\t,\r\nMulti_Headings\tNo\r\nX_Columns\tOne\r\nTime_Pref\tRelative\r\n"
-       "Operator\tme\r\nDate\t2024/05/01\r\nTime\t12:00:00,123\r\n***End_of_Header***\t\r\n\t\r\n"
-       "Channels\t2\t\t\r\nSamples\t20\t20\t\r\nDate\t2024/05/01\t2024/05/01\t\r\n"
-       "Time\t12:00:00,1\t12:00:00,1\t\r\nX_Dimension\tTime\tTime\t\r\nX0\t0,0E+0\t0,0E+0\t\r\n"
-       "Delta_X\t0,001000\t0,001000\t\r\n***End_of_Header***\t\t\t\r\n"
-       "X_Value\tVoltage\tVoltage 1\tComment\r\n" +
-           lines(20, [](int k) { return fmt::format("0,{:06d}\t1,25\t{},5\r\n", 1000 * k, k); }),
-       "Voltage[] Voltage 1[]",
-       1000,
-       0,
-       {1.25, 0.5},
-       "segments of a LabVIEW measurement file"});
-  out.push_back(
-      {"Excel, German",
-       "Datum;Uhrzeit;Beschleunigung [m/s²];Drehrate [°/s]\r\n" +
-           lines(12,
-                 [](int k) { return fmt::format("01.05.2024;12:00:{:02d};9,81;{},5\r\n", k, k); }),
-       "Beschleunigung[m/s²] Drehrate[°/s]",
-       1,
-       std::int64_t{1714564800} * 1000000000,
-       {9.81, 0.5},
-       "calendar stamps"});
+  out.push_back({"LabVIEW .lvm, decimal comma",
+                 "LabVIEW Measurement\t\r\nWriter_Version\t2\r\nReader_Version\t2\r\nSeparator\tTab\r\n"
+                 "Decimal_Separator\t,\r\nMulti_Headings\tNo\r\nX_Columns\tOne\r\nTime_Pref\tRelative\r\n"
+                 "Operator\tme\r\nDate\t2024/05/01\r\nTime\t12:00:00,123\r\n***End_of_Header***\t\r\n\t\r\n"
+                 "Channels\t2\t\t\r\nSamples\t20\t20\t\r\nDate\t2024/05/01\t2024/05/01\t\r\n"
+                 "Time\t12:00:00,1\t12:00:00,1\t\r\nX_Dimension\tTime\tTime\t\r\nX0\t0,0E+0\t0,0E+0\t\r\n"
+                 "Delta_X\t0,001000\t0,001000\t\r\n***End_of_Header***\t\t\t\r\n"
+                 "X_Value\tVoltage\tVoltage 1\tComment\r\n" +
+                     lines(20, [](int k) { return fmt::format("0,{:06d}\t1,25\t{},5\r\n", 1000 * k, k); }),
+                 "Voltage[] Voltage 1[]",
+                 1000,
+                 0,
+                 {1.25, 0.5},
+                 "segments of a LabVIEW measurement file"});
+  out.push_back({"Excel, German",
+                 "Datum;Uhrzeit;Beschleunigung [m/s²];Drehrate [°/s]\r\n" +
+                     lines(12, [](int k) { return fmt::format("01.05.2024;12:00:{:02d};9,81;{},5\r\n", k, k); }),
+                 "Beschleunigung[m/s²] Drehrate[°/s]",
+                 1,
+                 std::int64_t{1714564800} * 1000000000,
+                 {9.81, 0.5},
+                 "calendar stamps"});
   out.push_back({"Excel, German, Zeit [s]",
                  "sep=;\r\nZeit [s];Drehrate [°/s]\r\n" +
                      lines(12, [](int k) { return fmt::format("0,{:02d};{},5\r\n", 5 * k, k); }),
@@ -455,54 +393,46 @@ std::vector<Export> bench_exports() {
                  0,
                  {0.5},
                  "sep= in line 1"});
-  out.push_back({"Excel, French",
-                 "Temps (s);Accélération (m/s²)\r\n" +
-                     lines(12, [](int k) { return fmt::format("{},0;-9,81\r\n", k); }),
-                 "Accélération[m/s²]",
-                 1,
-                 0,
-                 {-9.81},
-                 "decimal comma"});
+  out.push_back(
+      {"Excel, French",
+       "Temps (s);Accélération (m/s²)\r\n" + lines(12, [](int k) { return fmt::format("{},0;-9,81\r\n", k); }),
+       "Accélération[m/s²]",
+       1,
+       0,
+       {-9.81},
+       "decimal comma"});
   out.push_back({"Excel, American",
                  "Time,\"Pressure, hPa\"\r\n" +
-                     lines(24,
-                           [](int k) {
-                             return fmt::format("5/1/2024 12:{:02d}:00 PM,\"1,013.{}\"\r\n", k, k);
-                           }),
+                     lines(24, [](int k) { return fmt::format("5/1/2024 12:{:02d}:00 PM,\"1,013.{}\"\r\n", k, k); }),
                  "Pressure[hPa]",
                  1.0 / 60,
                  std::int64_t{1714564800} * 1000000000,
                  {1013.0},
                  "is read with the month first"});
-  out.push_back(
-      {"InfluxDB annotated CSV, one field",
-       "#group,false,false,true,true,false,false,true,true\r\n"
-       "#datatype,string,long,dateTime:RFC3339,dateTime:RFC3339,dateTime:RFC3339,double,string,"
-       "string\r\n"
-       "#default,mean,,,,,,,\r\n,result,table,_start,_stop,_time,_value,_field,_measurement\r\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format(
-                       ",,0,2024-05-01T00:00:00Z,2024-05-02T00:00:00Z,"
-                       "2024-05-01T12:00:{:02d}.5Z,{},gx,imu\r\n",
-                       k,
-                       k + 0.25);
-                 }),
-       "result[] table[] _value[]",
-       1,
-       std::int64_t{1714564800} * 1000000000 + 500000000,
-       {NAN, 0, 0.25},
-       "_time"});
-  out.push_back({"InfluxDB annotated CSV, two fields side by side",
-                 ",result,table,_time,_value,_field\n" +
-                     lines(24,
+  out.push_back({"InfluxDB annotated CSV, one field",
+                 "#group,false,false,true,true,false,false,true,true\r\n"
+                 "#datatype,string,long,dateTime:RFC3339,dateTime:RFC3339,dateTime:RFC3339,double,string,"
+                 "string\r\n"
+                 "#default,mean,,,,,,,\r\n,result,table,_start,_stop,_time,_value,_field,_measurement\r\n" +
+                     lines(12,
                            [](int k) {
-                             return fmt::format(",,{},2024-05-01T12:00:{:02d}Z,{},{}\n",
-                                                k % 2,
-                                                k / 2,
-                                                k,
-                                                k % 2 == 0 ? "gx" : "gy");
+                             return fmt::format(
+                                 ",,0,2024-05-01T00:00:00Z,2024-05-02T00:00:00Z,"
+                                 "2024-05-01T12:00:{:02d}.5Z,{},gx,imu\r\n",
+                                 k, k + 0.25);
                            }),
+                 "result[] table[] _value[]",
+                 1,
+                 std::int64_t{1714564800} * 1000000000 + 500000000,
+                 {NAN, 0, 0.25},
+                 "_time"});
+  out.push_back({"InfluxDB annotated CSV, two fields side by side",
+                 ",result,table,_time,_value,_field\n" + lines(24,
+                                                               [](int k) {
+                                                                 return fmt::format(
+                                                                     ",,{},2024-05-01T12:00:{:02d}Z,{},{}\n", k % 2,
+                                                                     k / 2, k, k % 2 == 0 ? "gx" : "gy");
+                                                               }),
                  "",
                  0,
                  kNoStart,
@@ -510,15 +440,12 @@ std::vector<Export> bench_exports() {
                  "`where` _field=gx",
                  true});
   out.push_back({"InfluxDB annotated CSV, grouped",
-                 ",result,table,_time,_value,_field\n" +
-                     lines(24,
-                           [](int k) {
-                             return fmt::format(",,{},2024-05-01T12:00:{:02d}Z,{},{}\n",
-                                                k % 2,
-                                                k / 2,
-                                                k,
-                                                k % 2 == 0 ? "gx" : "gy");
-                           }),
+                 ",result,table,_time,_value,_field\n" + lines(24,
+                                                               [](int k) {
+                                                                 return fmt::format(
+                                                                     ",,{},2024-05-01T12:00:{:02d}Z,{},{}\n", k % 2,
+                                                                     k / 2, k, k % 2 == 0 ? "gx" : "gy");
+                                                               }),
                  "gx[] gy[]",
                  1,
                  std::int64_t{1714564800} * 1000000000,
@@ -529,142 +456,120 @@ std::vector<Export> bench_exports() {
                    o.kinds.group_by = "_field";
                    o.channels = {"_value"};
                  }});
-  out.push_back({"Grafana",
-                 "\"Time\",\"gyro x\",\"gyro y\"\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format(
-                                 "2024-05-01 12:00:0{}.{:03d},0.5,{}\n", k / 10, 100 * (k % 10), k);
-                           }),
-                 "gyro x[] gyro y[]",
-                 10,
-                 std::int64_t{1714564800} * 1000000000,
-                 {0.5, 0},
-                 "calendar stamps"});
+  out.push_back(
+      {"Grafana",
+       "\"Time\",\"gyro x\",\"gyro y\"\n" +
+           lines(12,
+                 [](int k) { return fmt::format("2024-05-01 12:00:0{}.{:03d},0.5,{}\n", k / 10, 100 * (k % 10), k); }),
+       "gyro x[] gyro y[]",
+       10,
+       std::int64_t{1714564800} * 1000000000,
+       {0.5, 0},
+       "calendar stamps"});
   out.push_back(
       {"MATLAB writetimetable",
-       "Time,gyro_1,gyro_2\n" +
-           lines(12, [](int k) { return fmt::format("01-May-2024 12:00:{:02d},0.5,{}\n", k, k); }),
+       "Time,gyro_1,gyro_2\n" + lines(12, [](int k) { return fmt::format("01-May-2024 12:00:{:02d},0.5,{}\n", k, k); }),
        "gyro_1[] gyro_2[]",
        1,
        std::int64_t{1714564800} * 1000000000,
        {0.5, 0},
        "calendar stamps"});
-  out.push_back(
-      {"pandas to_csv",
-       ",time,gx,status\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format(
-                       "{},2024-05-01 12:00:00.{:02d}0000+02:00,{},OK\n", k, 5 * k, 0.5 * k);
-                 }),
-       "gx[]",
-       20,
-       std::int64_t{1714557600} * 1000000000,
-       {0},
-       "left out columns of words: status"});
-  out.push_back(
-      {"R write.table",
-       "\"t\" \"x\"\n" +
-           lines(12, [](int k) { return fmt::format("\"{}\" {} {}\n", k + 1, 0.5 * k, k); }),
-       "x[]",
-       2,
-       0,
-       {0},
-       "count the rows"});
-  out.push_back(
-      {"PicoScope",
-       "Time,Channel A,Channel B\r\n(ms),(V),(mV)\r\n\r\n" +
-           lines(12, [](int k) { return fmt::format("{:.5f},0.01,{}\r\n", -5.0 + 0.1 * k, k); }),
-       "Channel A[V] Channel B[mV]",
-       10000,
-       -5000000,
-       {0.01, 0},
-       "units in line 2"});
-  out.push_back(
-      {"Tektronix MSO",
-       "Model,MSO24\r\nFirmware Version,1.44\r\n\r\nWaveform Type,ANALOG,,\r\nHorizontal "
-       "Units,s,,\r\n"
-       "Sample Interval,1e-05,,\r\nRecord Length,12,,\r\n\r\nLabels,,,\r\nTIME,CH1,CH2\r\n" +
-           lines(20, [](int k) { return fmt::format("{:.6e},0.02,{}\r\n", -1e-4 + 1e-5 * k, k); }),
-       "CH1[] CH2[]",
-       100000,
-       -100000,
-       {0.02, 0},
-       "in front of the table left out"});
-  out.push_back(
-      {"Keysight InfiniiVision",
-       "x-axis,1,2\r\nsecond,Volt,Volt\r\n" +
-           lines(12, [](int k) { return fmt::format("{:.6E},0.02,{}\r\n", -5e-3 + 1e-3 * k, k); }),
-       "1[Volt] 2[Volt]",
-       1000,
-       -5000000,
-       {0.02, 0},
-       "units in line 2"});
-  out.push_back({"NI DAQExpress",
-                 "Time,Dev1/ai0 (V),Dev1/ai1 (V)\r\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format(
-                                 "2024-05-01 12:00:00.{:06d},0.02,{}\r\n", 1000 * k, k);
-                           }),
-                 "Dev1/ai0[V] Dev1/ai1[V]",
-                 1000,
-                 std::int64_t{1714564800} * 1000000000,
+  out.push_back({"pandas to_csv",
+                 ",time,gx,status\n" + lines(12,
+                                             [](int k) {
+                                               return fmt::format("{},2024-05-01 12:00:00.{:02d}0000+02:00,{},OK\n", k,
+                                                                  5 * k, 0.5 * k);
+                                             }),
+                 "gx[]",
+                 20,
+                 std::int64_t{1714557600} * 1000000000,
+                 {0},
+                 "left out columns of words: status"});
+  out.push_back({"R write.table",
+                 "\"t\" \"x\"\n" + lines(12, [](int k) { return fmt::format("\"{}\" {} {}\n", k + 1, 0.5 * k, k); }),
+                 "x[]",
+                 2,
+                 0,
+                 {0},
+                 "count the rows"});
+  out.push_back({"PicoScope",
+                 "Time,Channel A,Channel B\r\n(ms),(V),(mV)\r\n\r\n" +
+                     lines(12, [](int k) { return fmt::format("{:.5f},0.01,{}\r\n", -5.0 + 0.1 * k, k); }),
+                 "Channel A[V] Channel B[mV]",
+                 10000,
+                 -5000000,
+                 {0.01, 0},
+                 "units in line 2"});
+  out.push_back({"Tektronix MSO",
+                 "Model,MSO24\r\nFirmware Version,1.44\r\n\r\nWaveform Type,ANALOG,,\r\nHorizontal "
+                 "Units,s,,\r\n"
+                 "Sample Interval,1e-05,,\r\nRecord Length,12,,\r\n\r\nLabels,,,\r\nTIME,CH1,CH2\r\n" +
+                     lines(20, [](int k) { return fmt::format("{:.6e},0.02,{}\r\n", -1e-4 + 1e-5 * k, k); }),
+                 "CH1[] CH2[]",
+                 100000,
+                 -100000,
                  {0.02, 0},
-                 "calendar stamps"});
+                 "in front of the table left out"});
+  out.push_back({"Keysight InfiniiVision",
+                 "x-axis,1,2\r\nsecond,Volt,Volt\r\n" +
+                     lines(12, [](int k) { return fmt::format("{:.6E},0.02,{}\r\n", -5e-3 + 1e-3 * k, k); }),
+                 "1[Volt] 2[Volt]",
+                 1000,
+                 -5000000,
+                 {0.02, 0},
+                 "units in line 2"});
   out.push_back(
-      {"Dewesoft",
-       "Data file: test.dxd\nSample rate: 500 Hz\nStart time: 01.05.2024 12:00:00\n\n"
-       "Time (s)\tAI 1 (m/s2)\tAI 2 (V)\n" +
-           lines(12, [](int k) { return fmt::format("{:.4f}\t0.02\t{}\n", 0.002 * k, k); }),
-       "AI 1[m/s2] AI 2[V]",
-       500,
-       0,
+      {"NI DAQExpress",
+       "Time,Dev1/ai0 (V),Dev1/ai1 (V)\r\n" +
+           lines(12, [](int k) { return fmt::format("2024-05-01 12:00:00.{:06d},0.02,{}\r\n", 1000 * k, k); }),
+       "Dev1/ai0[V] Dev1/ai1[V]",
+       1000,
+       std::int64_t{1714564800} * 1000000000,
        {0.02, 0},
-       "3 lines in front of the table left out"});
+       "calendar stamps"});
+  out.push_back({"Dewesoft",
+                 "Data file: test.dxd\nSample rate: 500 Hz\nStart time: 01.05.2024 12:00:00\n\n"
+                 "Time (s)\tAI 1 (m/s2)\tAI 2 (V)\n" +
+                     lines(12, [](int k) { return fmt::format("{:.4f}\t0.02\t{}\n", 0.002 * k, k); }),
+                 "AI 1[m/s2] AI 2[V]",
+                 500,
+                 0,
+                 {0.02, 0},
+                 "3 lines in front of the table left out"});
   out.push_back(
       {"Campbell CR1000, TOA5",
        "\"TOA5\",\"st\",\"CR1000\",\"123\",\"CR1000.Std.31\",\"CPU:a.CR1\",\"5\",\"T\"\r\n"
        "\"TIMESTAMP\",\"RECORD\",\"batt_volt\",\"PTemp\"\r\n\"TS\",\"RN\",\"Volts\",\"Deg C\"\r\n"
        "\"\",\"\",\"Min\",\"Smp\"\r\n" +
-           lines(12,
-                 [](int k) {
-                   return fmt::format("\"2024-05-01 12:{:02d}:00\",{},12.5,\"NAN\"\r\n", k, k);
-                 }) +
+           lines(12, [](int k) { return fmt::format("\"2024-05-01 12:{:02d}:00\",{},12.5,\"NAN\"\r\n", k, k); }) +
            "\"2024-05-01 12:12:00\",12,12.5,21.5\r\n",
        "RECORD[] batt[volt] PTemp[Deg C]",
        1.0 / 60,
        std::int64_t{1714564800} * 1000000000,
        {0, 12.5, NAN},
        "units in line 3"});
-  out.push_back({"HOBO",
-                 "\"Plot Title: 10012345\"\r\n\"#\",\"Date Time, GMT+02:00\",\"Temp, °C (LGR S/N: "
-                 "10012345)\","
-                 "\"Stopped (LGR S/N: 10012345)\"\r\n" +
-                     lines(24,
-                           [](int k) {
-                             return fmt::format(
-                                 "{},05/13/24 01:{:02d}:00 PM,21.{:03d},\r\n", k + 1, k, k);
-                           }),
-                 "Temp[°C] Stopped[]",
-                 1.0 / 60,
-                 std::int64_t{1715605200} * 1000000000,
-                 {21, NAN},
-                 "calendar stamps"});
-  out.push_back({"Stable32",
-                 "# File: PHASE.DAT\r\n# Tau: 1.0\r\n" +
-                     lines(12, [](int k) { return fmt::format("{:.6e}\r\n", 1e-9 * k); }),
-                 "c0[]",
-                 0,
-                 kNoStart,
-                 {0},
-                 "no header"});
+  out.push_back(
+      {"HOBO",
+       "\"Plot Title: 10012345\"\r\n\"#\",\"Date Time, GMT+02:00\",\"Temp, °C (LGR S/N: "
+       "10012345)\","
+       "\"Stopped (LGR S/N: 10012345)\"\r\n" +
+           lines(24, [](int k) { return fmt::format("{},05/13/24 01:{:02d}:00 PM,21.{:03d},\r\n", k + 1, k, k); }),
+       "Temp[°C] Stopped[]",
+       1.0 / 60,
+       std::int64_t{1715605200} * 1000000000,
+       {21, NAN},
+       "calendar stamps"});
+  out.push_back(
+      {"Stable32",
+       "# File: PHASE.DAT\r\n# Tau: 1.0\r\n" + lines(12, [](int k) { return fmt::format("{:.6e}\r\n", 1e-9 * k); }),
+       "c0[]",
+       0,
+       kNoStart,
+       {0},
+       "no header"});
   out.push_back(
       {"a temperature called t beside the stamps",
-       "t,clock_ms,gx\n" +
-           lines(12,
-                 [](int k) { return fmt::format("{},{},{}\n", 24 + (k % 3) * 0.1, 10 * k, k); }),
+       "t,clock_ms,gx\n" + lines(12, [](int k) { return fmt::format("{},{},{}\n", 24 + (k % 3) * 0.1, 10 * k, k); }),
        "t[] gx[]",
        100,
        0,
@@ -672,27 +577,21 @@ std::vector<Export> bench_exports() {
        "time column: clock",
        false,
        nullptr});
-  out.push_back(
-      {"a torque t with its unit, stamps behind",
-       "t [N·m],timestamp,gx\n" + lines(12,
-                                        [](int k) {
-                                          return fmt::format(
-                                              "{},{},{}\n", 1 + 0.1 * k, 1700000000000 + 10 * k, k);
-                                        }),
-       "t[N·m] gx[]",
-       100,
-       std::int64_t{1700000000} * 1000000000,
-       {1, 0},
-       "time unit: ms"});
-  out.push_back(
-      {"days with the day first, which the data say",
-       "date,x\n" +
-           lines(20, [](int k) { return fmt::format("{:02d}/05/2024 00:00,{}\n", k + 1, k); }),
-       "x[]",
-       1.0 / 86400,
-       std::int64_t{1714521600} * 1000000000,
-       {0},
-       "calendar stamps"});
+  out.push_back({"a torque t with its unit, stamps behind",
+                 "t [N·m],timestamp,gx\n" +
+                     lines(12, [](int k) { return fmt::format("{},{},{}\n", 1 + 0.1 * k, 1700000000000 + 10 * k, k); }),
+                 "t[N·m] gx[]",
+                 100,
+                 std::int64_t{1700000000} * 1000000000,
+                 {1, 0},
+                 "time unit: ms"});
+  out.push_back({"days with the day first, which the data say",
+                 "date,x\n" + lines(20, [](int k) { return fmt::format("{:02d}/05/2024 00:00,{}\n", k + 1, k); }),
+                 "x[]",
+                 1.0 / 86400,
+                 std::int64_t{1714521600} * 1000000000,
+                 {0},
+                 "calendar stamps"});
   return out;
 }
 
@@ -720,8 +619,7 @@ void check_export(const Export& e) {
     REQUIRE(r.samples.size() == e.first.size());
     for (std::size_t c = 0; c < e.first.size(); ++c) {
       INFO(r.info.channels[c].name);
-      CHECK((r.samples[c][0] == e.first[c] ||
-             (std::isnan(r.samples[c][0]) && std::isnan(e.first[c]))));
+      CHECK((r.samples[c][0] == e.first[c] || (std::isnan(r.samples[c][0]) && std::isnan(e.first[c]))));
     }
   }
 }

@@ -15,8 +15,7 @@ namespace {
 std::vector<bool> random_flags(std::mt19937_64& engine, std::size_t n, double share) {
   std::vector<bool> flags(n);
   for (std::size_t i = 0; i < n; ++i)
-    flags[i] = i > 0 && engine() % 4 != 0 ? flags[i - 1]
-                                          : (static_cast<double>(engine() % 1000) < 1000 * share);
+    flags[i] = i > 0 && engine() % 4 != 0 ? flags[i - 1] : (static_cast<double>(engine() % 1000) < 1000 * share);
   return flags;
 }
 
@@ -37,8 +36,7 @@ std::vector<std::pair<std::size_t, std::size_t>> plain_runs(const std::vector<bo
 void check_same(const FlagRuns& a, const FlagRuns& b, std::size_t least) {
   CHECK(a.longest() == b.longest());
   CHECK(a.places() == b.places());
-  for (const std::size_t length : {least, std::size_t{3}})
-    CHECK(a.from_length(length) == b.from_length(length));
+  for (const std::size_t length : {least, std::size_t{3}}) CHECK(a.from_length(length) == b.from_length(length));
   REQUIRE(a.closed().size() == b.closed().size());
   for (std::size_t length = least; length < a.closed().size(); ++length)
     CHECK(a.closed()[length] == b.closed()[length]);
@@ -126,8 +124,7 @@ TEST_CASE("lines: noise that is smooth by nature has none") {
   for (const double keep : {0.5, 0.8, 0.95}) {
     double one = 0, two = 0;
     std::vector<double> x(200000);
-    for (double& v : x)
-      v = two += (1 - keep) * ((one += (1 - keep) * (normal(engine) - one)) - two);
+    for (double& v : x) v = two += (1 - keep) * ((one += (1 - keep) * (normal(engine) - one)) - two);
     LineWatch watch;
     watch.block(x, nullptr, 0);
     INFO("keeps " << keep);
@@ -135,8 +132,7 @@ TEST_CASE("lines: noise that is smooth by nature has none") {
   }
 }
 
-TEST_CASE(
-    "lines: short gaps that were filled are found where there are digits, never in coarse noise") {
+TEST_CASE("lines: short gaps that were filled are found where there are digits, never in coarse noise") {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> normal;
   for (const double levels : {2.0, 5.0, 20.0, 100.0, 1e3, 1e4, 1e6}) {  // per standard deviation

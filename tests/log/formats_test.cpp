@@ -18,18 +18,10 @@ namespace {
 
 // As docs/formats.md has it.
 std::string row_of(const LogFormat& format) {
-  std::string files =
-      format.suffixes.empty() ? "" : fmt::format("`{}`", fmt::join(format.suffixes, " "));
-  if (!format.otherwise.empty())
-    files += fmt::format("{}{}", files.empty() ? "" : ", ", format.otherwise);
-  return fmt::format("| {} | {} | {} | {} | {} | {} | yes | {} |\n",
-                     format.title,
-                     files,
-                     format.names,
-                     format.units,
-                     format.rate,
-                     format.start,
-                     format.written_suffixes.empty() ? "no" : "yes");
+  std::string files = format.suffixes.empty() ? "" : fmt::format("`{}`", fmt::join(format.suffixes, " "));
+  if (!format.otherwise.empty()) files += fmt::format("{}{}", files.empty() ? "" : ", ", format.otherwise);
+  return fmt::format("| {} | {} | {} | {} | {} | {} | yes | {} |\n", format.title, files, format.names, format.units,
+                     format.rate, format.start, format.written_suffixes.empty() ? "no" : "yes");
 }
 
 }  // namespace
@@ -46,14 +38,12 @@ TEST_CASE("docs/formats.md has the row of every format and no other") {
   CHECK(page.substr(begin + head.size(), end + 1 - begin - head.size()) == rows);
 }
 
-TEST_CASE(
-    "names and suffixes of formats are taken once, and every format can be told from a file") {
+TEST_CASE("names and suffixes of formats are taken once, and every format can be told from a file") {
   std::set<std::string_view> names, suffixes;
   for (const Format& format : formats()) {
     INFO(format.about.name);
     CHECK(names.insert(format.about.name).second);
-    for (const std::string_view suffix : format.about.suffixes)
-      CHECK(suffixes.insert(suffix).second);
+    for (const std::string_view suffix : format.about.suffixes) CHECK(suffixes.insert(suffix).second);
     for (const std::string_view suffix : format.about.written_suffixes)
       CHECK(format_by_suffix("x" + std::string(suffix)) == &format);
     CHECK((format.sniff != nullptr || format.certain != nullptr));
@@ -61,9 +51,8 @@ TEST_CASE(
     CHECK(format.about.topics == (format.topics != nullptr));
     CHECK((format.write == nullptr) == format.about.written_suffixes.empty());
   }
-  CHECK(std::count_if(formats().begin(), formats().end(), [](const Format& format) {
-          return format.about.from_pipes;
-        }) == 1);
+  CHECK(std::count_if(formats().begin(), formats().end(),
+                      [](const Format& format) { return format.about.from_pipes; }) == 1);
 }
 
 TEST_CASE("words and suffixes for options come from the table") {
@@ -72,8 +61,7 @@ TEST_CASE("words and suffixes for options come from the table") {
   std::sort(words.begin() + 1, words.end());
   CHECK(format_words() == words);
   CHECK(written_format_words() == std::vector<std::string>{"auto", "csv", "npy", "raw"});
-  CHECK_THAT(readable_files(),
-             Catch::StartsWith(".bag, .csv, ") && Catch::Contains(".npy, .npz, raw with sidecar"));
+  CHECK_THAT(readable_files(), Catch::StartsWith(".bag, .csv, ") && Catch::Contains(".npy, .npz, raw with sidecar"));
   CHECK(written_suffixes() == ".csv, .npy, .f64, .f32, .bin, .raw");
   CHECK(format_to_write("LOG.CSV", {}).name == "csv");
   CHECK_THROWS_WITH(format_to_write("log.tsv", {}), Catch::Contains("end the name in one of .csv"));

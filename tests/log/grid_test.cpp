@@ -55,8 +55,7 @@ TEST_CASE("missing rows become missing samples, never values") {
 TEST_CASE("the scatter of the stamps is said in per cent of the interval") {
   // Offsets 0, +a, -a in turn: the median of |offset| is a, so the robust deviation is 1.4826 a.
   std::vector<std::int64_t> t;
-  for (int i = 0; i < 3000; ++i)
-    t.push_back(10000 * i + (i % 3 == 1 ? 3000 : i % 3 == 2 ? -3000 : 0));
+  for (int i = 0; i < 3000; ++i) t.push_back(10000 * i + (i % 3 == 1 ? 3000 : i % 3 == 2 ? -3000 : 0));
   const Recording r = read_text(log_of(t));
   REQUIRE(count(r, "jitter") == 1);
   CHECK_THAT(r.info.warnings.find("jitter")->sentence, Catch::Contains("scatter by 44 %"));
@@ -67,8 +66,7 @@ TEST_CASE("the rate is exact in spite of jitter, drifts of the first rows and ou
   std::normal_distribution<double> noise(0, 300);
   std::vector<std::int64_t> t;
   for (int i = 0; i < 200000; ++i)
-    t.push_back(static_cast<std::int64_t>(
-        std::llround(i * 5000.025 + noise(random) + (i % 1000 == 7 ? 1500 : 0))));
+    t.push_back(static_cast<std::int64_t>(std::llround(i * 5000.025 + noise(random) + (i % 1000 == 7 ? 1500 : 0))));
   const Recording r = read_text(log_of(t));
   CHECK(r.info.samples == 200000);
   CHECK(r.info.time.rate_hz == Approx(1e6 / 5000.025).epsilon(1e-7));
@@ -176,9 +174,7 @@ TEST_CASE("a lasting change of rate is refused with the options that read either
     std::int64_t before, after;
     std::size_t at;
   };
-  for (const Change& change : {Change{10000, 14000, 3001},
-                               Change{25000, 40000, 1367},
-                               Change{40000, 25000, 700},
+  for (const Change& change : {Change{10000, 14000, 3001}, Change{25000, 40000, 1367}, Change{40000, 25000, 700},
                                Change{10000, 10400, 2000}}) {
     std::vector<std::int64_t> t = even(change.at, change.before);
     for (int i = 0; i < 2500; ++i) t.push_back(t.back() + change.after);
@@ -190,8 +186,7 @@ TEST_CASE("a lasting change of rate is refused with the options that read either
     ReadOptions first, second;
     first.to_s = second.from_s = at;
     const Recording before = read_text(log_of(t), first), after = read_text(log_of(t), second);
-    CHECK(before.info.time.rate_hz ==
-          Approx(1e6 / static_cast<double>(change.before)).epsilon(1e-3));
+    CHECK(before.info.time.rate_hz == Approx(1e6 / static_cast<double>(change.before)).epsilon(1e-3));
     CHECK(after.info.time.rate_hz == Approx(1e6 / static_cast<double>(change.after)).epsilon(1e-3));
     CHECK(before.info.time.gaps == 0);
     CHECK(after.info.time.gaps == 0);
@@ -218,9 +213,8 @@ TEST_CASE("stamps too far away for a grid are refused with their distance") {
                              "first"));
   auto t = even(1001, 1000);
   for (int i = 0; i < 100; ++i) t.push_back(200001000000 + 1000 * i);
-  CHECK_THAT(failure(log_of(t)),
-             Catch::Contains("log.csv:1003:1: error E0316: wild time stamp: 2e+05 s after the row "
-                             "before (199999999 missing samples)"));
+  CHECK_THAT(failure(log_of(t)), Catch::Contains("log.csv:1003:1: error E0316: wild time stamp: 2e+05 s after the row "
+                                                 "before (199999999 missing samples)"));
 }
 
 TEST_CASE("16- and 32-bit microsecond clocks run over and go on") {
@@ -249,15 +243,11 @@ TEST_CASE("a clock in 0.1 ms runs over and goes on") {
 }
 
 TEST_CASE("stamps that are no time axis") {
-  CHECK(failure("t_us,x\n5,1\n5,2\n5,3\n")
-            .find("log.csv:3:1: error E0315: no time axis: all stamps are equal") == 0);
+  CHECK(failure("t_us,x\n5,1\n5,2\n5,3\n").find("log.csv:3:1: error E0315: no time axis: all stamps are equal") == 0);
   CHECK(failure("t_us,x\n5,1\n4,2\n3,3\n").find("never rise") != std::string::npos);
-  CHECK(count(read_text("t_ns,x\n0,1\n100,2\n200,3\n4000000000000000000,4\n300,5\n400,1\n"),
-              "wild_stamp") == 1);
-  CHECK(failure("t_ns,x\n-9000000000000000000,1\n9000000000000000000,2\n").find("error E031") !=
-        std::string::npos);
-  CHECK(failure("t,x\n0,1\n,2\n").find("log.csv:3:1 (byte 8): error E0313: missing time stamp") ==
-        0);
+  CHECK(count(read_text("t_ns,x\n0,1\n100,2\n200,3\n4000000000000000000,4\n300,5\n400,1\n"), "wild_stamp") == 1);
+  CHECK(failure("t_ns,x\n-9000000000000000000,1\n9000000000000000000,2\n").find("error E031") != std::string::npos);
+  CHECK(failure("t,x\n0,1\n,2\n").find("log.csv:3:1 (byte 8): error E0313: missing time stamp") == 0);
 }
 
 TEST_CASE("one and two rows") {
@@ -274,19 +264,14 @@ TEST_CASE("a window gives the same samples as the whole") {
   auto t = even(5000, 10000, 77);
   t.erase(t.begin() + 1200, t.begin() + 1300);
   const Recording whole = read_text(log_of(t));
-  for (const auto& [from, to] : {std::pair{0.0, 50.0},
-                                 {3.0, 4.0},
-                                 {12.5, 12.7},
-                                 {11.9, 13.2},
-                                 {12.35, 20.0},
-                                 {49.0, 99.0}}) {
+  for (const auto& [from, to] :
+       {std::pair{0.0, 50.0}, {3.0, 4.0}, {12.5, 12.7}, {11.9, 13.2}, {12.35, 20.0}, {49.0, 99.0}}) {
     ReadOptions options;
     options.from_s = from;
     options.to_s = to;
     const Recording part = read_text(log_of(t), options);
     const auto first = static_cast<std::size_t>(std::llround(from * 100));
-    const auto last = std::min<std::size_t>(whole.samples[0].size(),
-                                            static_cast<std::size_t>(std::llround(to * 100)));
+    const auto last = std::min<std::size_t>(whole.samples[0].size(), static_cast<std::size_t>(std::llround(to * 100)));
     INFO(from << " " << to);
     REQUIRE(part.samples[0].size() == last - first);
     for (std::size_t i = first; i < last; ++i) {
@@ -322,17 +307,14 @@ TEST_CASE("stamps sketched together are stamps sketched one by one") {
   std::vector<std::int64_t> stamps;
   for (std::size_t i = 0; i < 40000; ++i) {
     const double late = i % 977 == 13 ? 3e5 : 0;  // now and then an extreme
-    stamps.push_back(
-        static_cast<std::int64_t>(5e6 * static_cast<double>(i) + jitter(generator) + late));
+    stamps.push_back(static_cast<std::int64_t>(5e6 * static_cast<double>(i) + jitter(generator) + late));
   }
   StampSketch one;
   for (std::size_t i = 0; i < stamps.size(); ++i) one.add(static_cast<std::int64_t>(i), stamps[i]);
   for (const std::size_t run : {1U, 7U, 256U, 40000U}) {
     StampSketch together;
     for (std::size_t i = 0; i < stamps.size(); i += run)
-      together.add_run(static_cast<std::int64_t>(i),
-                       stamps.data() + i,
-                       std::min<std::size_t>(run, stamps.size() - i));
+      together.add_run(static_cast<std::int64_t>(i), stamps.data() + i, std::min<std::size_t>(run, stamps.size() - i));
     CAPTURE(run);
     CHECK(together.interval_ns() == one.interval_ns());
     CHECK(together.deviation(5e6).robust == one.deviation(5e6).robust);
@@ -384,10 +366,7 @@ namespace {
 
 /// Stamps in microseconds of rows that come in packets: each row `inner` after the one before, the
 /// last at the time of the packet.
-std::vector<std::int64_t> packets(std::size_t rows,
-                                  double dt,
-                                  const std::vector<std::size_t>& sizes,
-                                  double inner,
+std::vector<std::int64_t> packets(std::size_t rows, double dt, const std::vector<std::size_t>& sizes, double inner,
                                   double jitter) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise;
@@ -396,8 +375,7 @@ std::vector<std::int64_t> packets(std::size_t rows,
     const std::size_t size = sizes[k % sizes.size()];
     const double arrival = dt * static_cast<double>(t.size() + size) + jitter * noise(random);
     for (std::size_t i = 0; i < size; ++i)
-      t.push_back(static_cast<std::int64_t>(
-          std::llround(arrival - inner * static_cast<double>(size - 1 - i))));
+      t.push_back(static_cast<std::int64_t>(std::llround(arrival - inner * static_cast<double>(size - 1 - i))));
   }
   t.resize(rows);
   return t;
@@ -410,14 +388,10 @@ TEST_CASE("stamps in packets: the rate is rows over time") {
     std::vector<std::size_t> sizes;
     double dt, inner, jitter;
   };
-  for (const Clock& clock : {Clock{{5}, 10000, 200, 0},
-                             Clock{{5}, 10000, 200, 1500},
-                             Clock{{4}, 10000, 150, 300},
-                             Clock{{1, 7, 3, 4}, 5000, 40, 200},
-                             Clock{{2}, 2500, 30, 100},
-                             Clock{{20}, 1000, 10, 50}}) {
-    const Recording r =
-        read_text(log_of(packets(20000, clock.dt, clock.sizes, clock.inner, clock.jitter)));
+  for (const Clock& clock :
+       {Clock{{5}, 10000, 200, 0}, Clock{{5}, 10000, 200, 1500}, Clock{{4}, 10000, 150, 300},
+        Clock{{1, 7, 3, 4}, 5000, 40, 200}, Clock{{2}, 2500, 30, 100}, Clock{{20}, 1000, 10, 50}}) {
+    const Recording r = read_text(log_of(packets(20000, clock.dt, clock.sizes, clock.inner, clock.jitter)));
     INFO(clock.sizes.size() << " " << clock.sizes[0] << " " << clock.dt << " " << clock.jitter);
     CHECK(r.info.time.rate_hz == Approx(1e6 / clock.dt).epsilon(1e-3));
     CHECK(r.info.samples == 20000);
@@ -426,12 +400,10 @@ TEST_CASE("stamps in packets: the rate is rows over time") {
   }
   ReadOptions inside;
   inside.rate_hz = 5000;
-  CHECK(read_text(log_of(packets(5000, 10000, {5}, 200, 0)), inside).info.time.rate_hz ==
-        Approx(5000).epsilon(1e-3));
+  CHECK(read_text(log_of(packets(5000, 10000, {5}, 200, 0)), inside).info.time.rate_hz == Approx(5000).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "packets of one stamp each: rate and what is missing, however they are rounded and late") {
+TEST_CASE("packets of one stamp each: rate and what is missing, however they are rounded and late") {
   std::mt19937 random(5);
   std::gamma_distribution<double> late(2, 0.02);
   for (const std::size_t rows : {5, 10, 32})
@@ -441,14 +413,11 @@ TEST_CASE(
         std::vector<std::int64_t> stamps;
         std::size_t missing = 0;
         for (std::size_t packet = 1; packet < 20000 / rows; ++packet) {
-          const double at = static_cast<double>(packet * rows) * dt +
-                            late(random) * static_cast<double>(rows) * dt;
+          const double at = static_cast<double>(packet * rows) * dt + late(random) * static_cast<double>(rows) * dt;
           const bool gone = lost && packet > 100 / rows && packet % 41 == 0;
           missing += gone ? rows : 0;
           if (!gone)
-            stamps.insert(stamps.end(),
-                          rows,
-                          static_cast<std::int64_t>(std::round(at / rounded_us) * rounded_us));
+            stamps.insert(stamps.end(), rows, static_cast<std::int64_t>(std::round(at / rounded_us) * rounded_us));
         }
         const Recording r = read_text(log_of(stamps));
         INFO(rows << " rows, rounded to " << rounded_us << " us, " << missing << " missing");
@@ -477,20 +446,12 @@ TEST_CASE("coarse stamps: the rate is rows over time") {
   struct Clock {
     double rate_hz, tick_ms;
   };
-  for (const Clock clock : {Clock{81.3, 10},
-                            Clock{85.47, 10},
-                            Clock{3, 1000},
-                            Clock{1.2, 1000},
-                            Clock{0.7, 1000},
-                            Clock{700, 1},
-                            Clock{1100, 1},
-                            Clock{130, 10},
-                            Clock{400, 1}}) {
+  for (const Clock clock : {Clock{81.3, 10}, Clock{85.47, 10}, Clock{3, 1000}, Clock{1.2, 1000}, Clock{0.7, 1000},
+                            Clock{700, 1}, Clock{1100, 1}, Clock{130, 10}, Clock{400, 1}}) {
     for (const int rows : {200, 20000}) {
       std::vector<std::int64_t> t;
       for (int i = 0; i < rows; ++i)
-        t.push_back(static_cast<std::int64_t>(std::floor(i * 1000 / clock.rate_hz / clock.tick_ms) *
-                                              clock.tick_ms));
+        t.push_back(static_cast<std::int64_t>(std::floor(i * 1000 / clock.rate_hz / clock.tick_ms) * clock.tick_ms));
       const Recording r = read_text(log_of(t, "t_ms"));
       INFO(clock.rate_hz << " Hz, " << clock.tick_ms << " ms, " << rows);
       CHECK(r.info.time.rate_hz == Approx(clock.rate_hz).epsilon(rows == 200 ? 0.01 : 1e-4));
@@ -552,8 +513,7 @@ TEST_CASE("a clock that begins again is refused with options that read it") {
 TEST_CASE("of a slow channel among fast ones the rows with a value count") {
   std::string text = "t,fast,slow\n";
   for (int i = 0; i < 20000; ++i)
-    text += fmt::format(
-        "{:.3f},{},{}\n", i * 0.005, i % 5, i % 200 == 0 ? fmt::to_string(i / 200) : "");
+    text += fmt::format("{:.3f},{},{}\n", i * 0.005, i % 5, i % 200 == 0 ? fmt::to_string(i / 200) : "");
   ReadOptions options;
   options.channels = {"slow"};
   const Recording alone = read_text(text, options);
@@ -565,8 +525,7 @@ TEST_CASE("of a slow channel among fast ones the rows with a value count") {
   CHECK(count(both, "slow_channel") == 1);
 }
 
-TEST_CASE(
-    "a channel among others has a clock of its own by its steps, not by its first two values") {
+TEST_CASE("a channel among others has a clock of its own by its steps, not by its first two values") {
   std::mt19937 random(3);
   const auto share = [&] { return static_cast<double>(random()) / 4294967296.0; };
   struct Kind {
@@ -582,11 +541,8 @@ TEST_CASE(
       {"two of three", false, [](int i) { return i % 3 != 2; }},
       {"the second value lost", true, [](int i) { return i % 100 == 0 && i != 100; }},
       {"a sixth of the values lost", true, [&](int i) { return i % 20 == 0 && share() > 0.17; }},
-      {"30 Hz in rows of 100",
-       true,
-       [](int i) { return i % 10 == 0 || i % 10 == 3 || i % 10 == 7; }},
-      {"late by up to a fifth",
-       true,
+      {"30 Hz in rows of 100", true, [](int i) { return i % 10 == 0 || i % 10 == 3 || i % 10 == 7; }},
+      {"late by up to a fifth", true,
        [&](int i) {
          if (i < next) return false;
          next = i + 80 + static_cast<int>(40 * share());
@@ -596,8 +552,7 @@ TEST_CASE(
   for (const Kind& kind : kinds) {
     std::string text = "t[s],fast,slow\n";
     for (int i = 0; i < 12000; ++i)
-      text += fmt::format(
-          "{:.2f},{},{}\n", 0.01 * i, i % 7, kind.there(i) ? fmt::to_string(i % 11) : "");
+      text += fmt::format("{:.2f},{},{}\n", 0.01 * i, i % 7, kind.there(i) ? fmt::to_string(i % 11) : "");
     INFO(kind.what);
     CHECK(count(read_text(text), "slow_channel") == (kind.own ? 1U : 0U));
     ReadOptions alone;

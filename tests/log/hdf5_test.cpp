@@ -68,9 +68,7 @@ TEST_CASE("hdf5: groups are topics, records bring their own stamps, an attribute
   CHECK(mag.samples[1][99] == 99);
   const std::string said = test::joined(mag.info.dialect);
   CHECK_THAT(said, Catch::Contains("words is text") && Catch::Contains("on holds truth values"));
-  CHECK_THAT(
-      said,
-      Catch::Contains("one is a soft link") && Catch::Contains("other is a link to another file"));
+  CHECK_THAT(said, Catch::Contains("one is a soft link") && Catch::Contains("other is a link to another file"));
   CHECK_THAT(said, Catch::Contains("left out of table: name is text"));
   CHECK_THAT(said, Catch::Contains("sampling_rate says 50 Hz"));
 }
@@ -99,8 +97,7 @@ TEST_CASE("hdf5: a file cut anywhere is refused in one sentence, or read whole")
   }
 }
 
-TEST_CASE(
-    "hdf5: changed bytes end in a sentence or in values, and never in a crash of this process") {
+TEST_CASE("hdf5: changed bytes end in a sentence or in values, and never in a crash of this process") {
   NEEDS_LIBRARY(HDF5);
   const std::string bytes = test::slurp(test::fixture("arrays/log.h5"));
   for (std::size_t at = 8; at < bytes.size(); at += 97) {
@@ -121,15 +118,11 @@ struct Echo final : Answering {
     if (end_ == "give up") std::_Exit(0);
     return "";
   }
-  std::string answer(std::span<const std::byte> question) override {
-    return {static_cast<char>(question[0])};
-  }
+  std::string answer(std::span<const std::byte> question) override { return {static_cast<char>(question[0])}; }
   std::string end_;
 };
 
-std::unique_ptr<Answering> echo(const std::string& end) {
-  return std::make_unique<Echo>(end);
-}
+std::unique_ptr<Answering> echo(const std::string& end) { return std::make_unique<Echo>(end); }
 
 std::string why_gone(const std::string& end) {
   ChildProcess child(echo, end);

@@ -48,13 +48,10 @@ TEST_CASE("imu: increments times rate times scale of each preset") {
 
 TEST_CASE("imu: without a preset one sentence lists them, a wrong one is told from the times") {
   CHECK_THAT(array_fault("int.imu"),
-             Catch::Contains("E0468") &&
-                 Catch::Contains("IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, NAVCHIP_FLT"));
-  CHECK_THAT(array_fault("int.imu", by("LN100")),
-             Catch::Contains("E0468") && Catch::Contains("LN100"));
-  CHECK_THAT(
-      array_fault("int.imu", by("IXSEA")),
-      Catch::Contains("E0469") && Catch::Contains("those of IMAR, LN200, LN200IG, NAVCHIP_INT"));
+             Catch::Contains("E0468") && Catch::Contains("IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, NAVCHIP_FLT"));
+  CHECK_THAT(array_fault("int.imu", by("LN100")), Catch::Contains("E0468") && Catch::Contains("LN100"));
+  CHECK_THAT(array_fault("int.imu", by("IXSEA")),
+             Catch::Contains("E0469") && Catch::Contains("those of IMAR, LN200, LN200IG, NAVCHIP_INT"));
   CHECK_THAT(array_fault("float.imu", by("LN200")),
              Catch::Contains("E0469") && Catch::Contains("those of IXSEA, NAVCHIP_FLT"));
 }
@@ -68,22 +65,14 @@ TEST_CASE("imu: a cut record is counted, the whole ones are read") {
     CHECK(log.info.rows == cut / 32);
     CHECK((log.info.warnings.find("trailing_bytes") != nullptr) == (cut % 32 != 0));
   }
-  CHECK_THAT(test::with_bytes("log.imu", bytes.substr(0, 63), nullptr, by("LN200")),
-             Catch::Contains("E0469"));
+  CHECK_THAT(test::with_bytes("log.imu", bytes.substr(0, 63), nullptr, by("LN200")), Catch::Contains("E0469"));
 }
 
 TEST_CASE("Stable32: one value a line behind # comments, with CRLF, is one channel") {
   for (const char* end : {"\r\n", "\n"}) {
     std::string text;
-    for (const char* line : {"# File: PHASE.DAT",
-                             "# Date: 01/02/03  12:34:56",
-                             "# Type: Phase",
-                             "# Tau: 1.000000e+00",
-                             "# # Header End",
-                             "1.234567890e-09",
-                             "2.500000000e-09",
-                             "-3.750000000e-09",
-                             "4e-9"})
+    for (const char* line : {"# File: PHASE.DAT", "# Date: 01/02/03  12:34:56", "# Type: Phase", "# Tau: 1.000000e+00",
+                             "# # Header End", "1.234567890e-09", "2.500000000e-09", "-3.750000000e-09", "4e-9"})
       text += std::string(line) + end;
     Recording log;
     ReadOptions options;

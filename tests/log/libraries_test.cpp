@@ -50,9 +50,8 @@ TEST_CASE("a file that needs a library is read, or refused in a sentence that na
       INFO(error.what());
       CHECK_FALSE(one.here);
       CHECK(error.problem().kind == ErrorKind::input);
-      CHECK_THAT(error.what(),
-                 Catch::Contains(one.library) &&
-                     (Catch::Contains("built without") || Catch::Contains("cannot unpack")));
+      CHECK_THAT(error.what(), Catch::Contains(one.library) &&
+                                   (Catch::Contains("built without") || Catch::Contains("cannot unpack")));
       CHECK(!error.problem().hint.empty());
     }
   }

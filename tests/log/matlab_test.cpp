@@ -60,8 +60,7 @@ TEST_CASE("matlab: structs are groups, rows of stamps are stamps, classes are ke
   CHECK(log.samples[1][19] == 19);
   CHECK(log.samples[2][19] == -19);
   const std::string said = test::joined(log.info.dialect);
-  CHECK_THAT(said,
-             Catch::Contains("imu/note is text") && Catch::Contains("imu/cells is a cell array"));
+  CHECK_THAT(said, Catch::Contains("imu/note is text") && Catch::Contains("imu/cells is a cell array"));
   options.topic = "acc";
   const Recording acc = array_log("struct_v5.mat", options);
   CHECK(acc.info.time.rate_hz == 100);
@@ -85,8 +84,7 @@ TEST_CASE("matlab: a file cut anywhere is refused in one sentence, or has fewer 
       refused += !said.empty();
       CHECK(said.find('\n') == std::string::npos);
       if (said.empty())
-        for (const std::vector<double>& samples : log.samples)
-          CHECK(samples.size() == log.info.rows);
+        for (const std::vector<double>& samples : log.samples) CHECK(samples.size() == log.info.rows);
     }
     CHECK(refused > bytes.size() / 2);
   }

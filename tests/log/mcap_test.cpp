@@ -49,8 +49,7 @@ TEST_CASE("MCAP: an IMU in CDR has the generator's numbers, whatever the chunks 
     CHECK(rows.warnings.empty());
   }
   test::check_imu(test::read_rows("mcap", test::ros("ros1.mcap")), 100);
-  const test::Rows unchunked =
-      test::read_rows("mcap", test::ros("ros2_unchunked.mcap"), test::of_topic("/imu0/data"));
+  const test::Rows unchunked = test::read_rows("mcap", test::ros("ros2_unchunked.mcap"), test::of_topic("/imu0/data"));
   test::check_imu(unchunked, unchunked.time_ns.size());
   CHECK(unchunked.time_ns.size() > 80);
   CHECK(unchunked.warnings.empty());
@@ -89,10 +88,9 @@ TEST_CASE("MCAP: topics are listed with types, counts, rates and fields, or why 
 
 TEST_CASE("MCAP: any message by its embedded definition") {
   const test::Rows odd = test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/odd"));
-  CHECK(
-      test::channel_names(odd.info) ==
-      "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state "
-      "cells[1].volts cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
+  CHECK(test::channel_names(odd.info) ==
+        "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state "
+        "cells[1].volts cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
   REQUIRE(odd.columns.size() == 18);
   for (std::size_t k = 0; k < 20; ++k) {
     const auto i = static_cast<double>(k);
@@ -133,18 +131,15 @@ TEST_CASE("MCAP: any message by its embedded definition") {
   CHECK(odd.warnings.find("rounded_integer")->count == 1);
 }
 
-TEST_CASE(
-    "MCAP: only the fields that are asked for, joints by their place, JSON by its first message") {
+TEST_CASE("MCAP: only the fields that are asked for, joints by their place, JSON by its first message") {
   NEEDS_LIBRARY(LZ4);
-  const test::Rows one = test::read_rows(
-      "mcap", test::ros("ros2_lz4.mcap"), test::of_topic("/odd", {"cells[1].state", "gains[1]"}));
+  const test::Rows one =
+      test::read_rows("mcap", test::ros("ros2_lz4.mcap"), test::of_topic("/odd", {"cells[1].state", "gains[1]"}));
   REQUIRE(one.columns.size() == 2);
   CHECK(one.columns[0][19] == 19);
   CHECK(one.columns[1][19] == 9.5);
-  const test::Rows joints =
-      test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/joints"));
-  CHECK(test::channel_names(joints.info) ==
-        "position[0] position[1] position[2] velocity[0] velocity[1] velocity[2]");
+  const test::Rows joints = test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/joints"));
+  CHECK(test::channel_names(joints.info) == "position[0] position[1] position[2] velocity[0] velocity[1] velocity[2]");
   CHECK(joints.columns[2][19] == -0.3 * 19);
   CHECK(joints.time_ns[19] == test::kRosStart + 950000000);
   const test::Rows room = test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/room"));
@@ -185,17 +180,15 @@ TEST_CASE("MCAP: of a cut file every whole message in front of the cut is read")
   std::vector<std::size_t> ends;
   for (std::size_t at = 8; at + 9 < bytes.size();) {
     const auto size = number_at<std::uint64_t>(bytes, at + 1);
-    if (bytes[at] == 5 && number_at<std::uint16_t>(bytes, at + 9) == 0)
-      ends.push_back(at + 9 + size);
+    if (bytes[at] == 5 && number_at<std::uint16_t>(bytes, at + 9) == 0) ends.push_back(at + 9 + size);
     at += 9 + size;
   }
   REQUIRE(ends.size() > 80);
   const test::TemporaryFolder folder;
   for (std::size_t cut = ends[2]; cut < ends.back(); cut += 1237) {
-    const auto whole =
-        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin());
-    const test::Rows rows = test::read_rows(
-        "mcap", changed_mcap(folder, bytes.substr(0, cut)), test::of_topic("/imu0/data"));
+    const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin());
+    const test::Rows rows =
+        test::read_rows("mcap", changed_mcap(folder, bytes.substr(0, cut)), test::of_topic("/imu0/data"));
     CHECK(rows.time_ns.size() == whole);
   }
 }
@@ -208,16 +201,14 @@ TEST_CASE("MCAP: a broken chunk is left out, said and counted, a changed byte ou
     INFO(name);
     std::string bytes = test::slurp(test::ros(name));
     bytes[6000] = static_cast<char>(bytes[6000] ^ 0x10);
-    const test::Rows rows =
-        test::read_rows("mcap", changed_mcap(folder, bytes), test::of_topic("/imu0/data"));
+    const test::Rows rows = test::read_rows("mcap", changed_mcap(folder, bytes), test::of_topic("/imu0/data"));
     CHECK(rows.time_ns.size() < 200);
     REQUIRE(rows.warnings.find("broken_chunk") != nullptr);
     CHECK(rows.warnings.find("broken_chunk")->count == 1);
   }
   std::string bytes = test::slurp(test::ros("ros2_unchunked.mcap"));
   bytes[20000] = static_cast<char>(bytes[20000] ^ 0x10);
-  const test::Rows rows =
-      test::read_rows("mcap", changed_mcap(folder, bytes), test::of_topic("/imu0/data"));
+  const test::Rows rows = test::read_rows("mcap", changed_mcap(folder, bytes), test::of_topic("/imu0/data"));
   CHECK(rows.warnings.find("checksum") != nullptr);
 }
 
@@ -231,8 +222,7 @@ TEST_CASE("MCAP: records that are not known, empty or twice there change nothing
   const std::string more = mcap_record('\x7f', "later versions") + mcap_record('\x0c', "") + twice;
   std::string cut = bytes.substr(0, first) + more + bytes.substr(first);
   cut.resize(cut.size() - 8);  // the index is wrong now: without its end it is not looked at
-  const test::Rows rows =
-      test::read_rows("mcap", changed_mcap(folder, cut), test::of_topic("/imu0/data"));
+  const test::Rows rows = test::read_rows("mcap", changed_mcap(folder, cut), test::of_topic("/imu0/data"));
   test::check_imu(rows, rows.time_ns.size());
   CHECK(rows.time_ns.size() > 80);
   CHECK(rows.warnings.find("definition_changed") == nullptr);
@@ -242,9 +232,7 @@ TEST_CASE("MCAP: what asks for more than there is gets nothing") {
   const test::TemporaryFolder folder;
   const std::string magic = "\x89MCAP0\r\n";
   const std::string header = mcap_record(1, std::string(8, '\0'));
-  const auto refused = [&](const std::string& bytes) {
-    return test::refusal("mcap", changed_mcap(folder, bytes));
-  };
+  const auto refused = [&](const std::string& bytes) { return test::refusal("mcap", changed_mcap(folder, bytes)); };
   // A chunk that says it holds 2^60 bytes, and one of a method that does not exist.
   std::string front(28, '\0');
   front[8 + 8 + 7] = 0x10;
@@ -252,8 +240,7 @@ TEST_CASE("MCAP: what asks for more than there is gets nothing") {
   CHECK_THAT(refused(magic + header + mcap_record(6, chunk)), Catch::Contains("E0443"));
   front = std::string(28, '\0');
   chunk = front + std::string("\3\0\0\0xyz", 7) + std::string(8, '\0');
-  CHECK_THAT(refused(magic + header + mcap_record(6, chunk)),
-             Catch::Contains("E0442") && Catch::Contains("xyz"));
+  CHECK_THAT(refused(magic + header + mcap_record(6, chunk)), Catch::Contains("E0442") && Catch::Contains("xyz"));
   // A record that says it is longer than the file; no records; another file.
   CHECK_THAT(refused(magic + header + "\5" + std::string(8, '\xff')), Catch::Contains("E0426"));
   CHECK_THAT(refused(magic), Catch::Contains("E0426"));
@@ -275,8 +262,8 @@ TEST_CASE("unpacking stops at what was said, and says what is wrong") {
   CHECK_THAT(why_not_packed("brotli"), Catch::Contains("brotli"));
   const std::string text = "123456789";
   CHECK(crc32_of(std::as_bytes(std::span(text))) == 0xcbf43926);  // the check value of CRC-32
-  CHECK(crc32_of(std::as_bytes(std::span(text).subspan(4)),
-                 crc32_of(std::as_bytes(std::span(text).first(4)))) == 0xcbf43926);
+  CHECK(crc32_of(std::as_bytes(std::span(text).subspan(4)), crc32_of(std::as_bytes(std::span(text).first(4)))) ==
+        0xcbf43926);
 }
 
 TEST_CASE("MCAP: cut in front of its first whole message, where it ends and inside what is said") {

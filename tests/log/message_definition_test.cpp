@@ -13,9 +13,7 @@ using namespace libchar;
 
 namespace {
 
-std::string bar() {
-  return std::string(80, '=') + "\n";
-}
+std::string bar() { return std::string(80, '=') + "\n"; }
 
 template <typename T>
 void put(std::string& to, T value) {
@@ -27,8 +25,7 @@ std::vector<std::byte> message(const std::string& bytes) {
   return {from, from + bytes.size()};
 }
 
-MessageFormat format_of(const std::string& definition,
-                        const std::string& example = "",
+MessageFormat format_of(const std::string& definition, const std::string& example = "",
                         const std::string& encoding = "ros1") {
   MessageFormat format;
   format.type = "a/B";
@@ -39,9 +36,7 @@ MessageFormat format_of(const std::string& definition,
   return format;
 }
 
-std::string why(const std::string& definition,
-                const std::string& example = "",
-                const std::string& encoding = "ros1") {
+std::string why(const std::string& definition, const std::string& example = "", const std::string& encoding = "ros1") {
   return make_decoder(format_of(definition, example, encoding)).why_not;
 }
 
@@ -62,8 +57,7 @@ TEST_CASE("definitions: comments, constants, defaults, bounds and arrays are tol
                           "float64 x 1.5\nstring<=10 name \"a#b\"\nint32[<=4] some\nbyte[3] three\n"
                           "Other other\nq/msg/Third[] thirds\ntime t\nHeader header\n" +
                               bar() + "MSG: p/Other\nbool b\n",
-                          true,
-                          types) == "");
+                          true, types) == "");
   const MessageType& type = types.at("p/T");
   REQUIRE(type.fields.size() == 8);
   CHECK(type.fields[0].name == "x");
@@ -89,8 +83,7 @@ TEST_CASE("definitions that cannot be used have a reason") {
   CHECK_THAT(why("float64 x\n", "1234"), Catch::Contains("do not fit"));
   CHECK_THAT(why("float64 x\n", "123456789"), Catch::Contains("do not fit"));
   CHECK(why("float64 x\n", "12345678").empty());
-  CHECK_THAT(why("float64 x\n", std::string("\0\2\0\0", 4) + "12345678", "cdr"),
-             Catch::Contains("encapsulation"));
+  CHECK_THAT(why("float64 x\n", std::string("\0\2\0\0", 4) + "12345678", "cdr"), Catch::Contains("encapsulation"));
   // Two of the next in each of 40 types: 2^40 fields.
   std::string doubling = "T1 a\nT1 b\n";
   for (int i = 1; i < 20; ++i)
@@ -99,8 +92,7 @@ TEST_CASE("definitions that cannot be used have a reason") {
   CHECK_THAT(why(doubling + bar() + "MSG: a/T20\nfloat64 x\n"), Catch::Contains("too large"));
 }
 
-TEST_CASE(
-    "CDR: every value is aligned to its size behind the encapsulation, in either byte order") {
+TEST_CASE("CDR: every value is aligned to its size behind the encapsulation, in either byte order") {
   // bool, then a double at 8, i16 at 16, a text at 20, f32 at 28.
   for (const bool big : {false, true}) {
     std::string text = big ? std::string("\0\0\0\0", 4) : std::string("\0\1\0\0", 4);
@@ -127,8 +119,7 @@ TEST_CASE(
     REQUIRE(made.decoder->decode(message(text), row, stamp, rounded) == Decoded::well);
     CHECK(row == std::vector<double>{1.25, 2.5, 1, -3});
     for (std::size_t cut = 0; cut < text.size(); ++cut)
-      CHECK(made.decoder->decode(message(text.substr(0, cut)), row, stamp, rounded) ==
-            Decoded::misfit);
+      CHECK(made.decoder->decode(message(text.substr(0, cut)), row, stamp, rounded) == Decoded::misfit);
     CHECK(made.decoder->decode(message(text + "123"), row, stamp, rounded) == Decoded::well);
     CHECK(made.decoder->decode(message(text + "1234"), row, stamp, rounded) == Decoded::misfit);
   }
@@ -162,8 +153,7 @@ TEST_CASE("arrays of messages with lengths of their own: the first elements are 
     text += 'n';
   }
   put(text, std::int32_t{-4});
-  const std::string definition =
-      "C[] cs\nint32 end\n" + bar() + "MSG: a/C\nfloat64 x\nstring name\n";
+  const std::string definition = "C[] cs\nint32 end\n" + bar() + "MSG: a/C\nfloat64 x\nstring name\n";
   CHECK(fields_of_definition(format_of(definition, text)) == "cs[0].x cs[1].x end ");
   const DecoderOrReason made = make_decoder(format_of(definition, text));
   made.decoder->select({2, 1}, std::nullopt);
@@ -221,8 +211,7 @@ TEST_CASE("every type that the program knows can be compiled, and knows its part
     for (const MessageTypes& types : versions) {
       const CompiledMessage compiled = compile_message(types, type, {});
       CHECK(compiled.problem == "");
-      const bool only_lists =
-          std::string(type).ends_with("TFMessage") || std::string(type).ends_with("MultiArray");
+      const bool only_lists = std::string(type).ends_with("TFMessage") || std::string(type).ends_with("MultiArray");
       CHECK((!compiled.fields.empty() || only_lists));
     }
   }

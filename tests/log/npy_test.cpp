@@ -54,13 +54,11 @@ std::string fault_of(const std::string& literal) {
 
 }  // namespace
 
-TEST_CASE(
-    "64-bit integers are said to be rounded where a double does not hold them, and only there") {
+TEST_CASE("64-bit integers are said to be rounded where a double does not hold them, and only there") {
   const auto rounded = [](const std::vector<std::uint64_t>& values, const char* type) {
     const test::TemporaryFolder folder;
     const std::string path = (folder / "a.npy").string();
-    const std::string literal = "{'descr': '" + std::string(type) +
-                                "', 'fortran_order': False, 'shape': (" +
+    const std::string literal = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" +
                                 std::to_string(values.size()) + ",), }\n";
     std::string data(values.size() * 8, '\0');
     std::memcpy(data.data(), values.data(), data.size());
@@ -90,19 +88,17 @@ TEST_CASE("a file that becomes shorter while it is read is told with the byte wh
   RowBlock block;
   Findings warnings;
   const std::string end = "(byte " + std::to_string(10 + literal.size() + 4001) + ")";
-  CHECK_THROWS_WITH(
-      ([&] {
-        while (source->next(block, warnings)) {
-        }
-      })(),
-      Catch::Contains(end) && Catch::Contains("E0104") && Catch::Contains("became shorter"));
+  CHECK_THROWS_WITH(([&] {
+                      while (source->next(block, warnings)) {
+                      }
+                    })(),
+                    Catch::Contains(end) && Catch::Contains("E0104") && Catch::Contains("became shorter"));
 }
 
 TEST_CASE("C order, Fortran order, byte order and header version change nothing") {
   const std::vector<ColumnValues> expected = {
       {0, 0.375, 0.75, 1.125}, {0.125, 0.5, 0.875, 1.25}, {0.25, 0.625, 1, 1.375}};
-  for (const char* name :
-       {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"}) {
+  for (const char* name : {"c_order.npy", "fortran_order.npy", "big_endian_f4.npy", "version_2.npy"}) {
     INFO(name);
     const auto got = read(name);
     CHECK(got.columns == expected);
@@ -186,8 +182,8 @@ TEST_CASE("a real recording with time in its first column") {
   NEEDS_SHARED("data/tilt_broad_02_undisturbed_slow_rotation_B.npy");
   ReadOptions options;
   options.time_column = "c0";
-  const Recording got = read_recording(
-      test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy").string(), options);
+  const Recording got =
+      read_recording(test::shared("data/tilt_broad_02_undisturbed_slow_rotation_B.npy").string(), options);
   CHECK(got.info.time.rate_hz == Approx(285.7142857142857).epsilon(1e-9));
   CHECK(got.info.samples == 53240);
   CHECK(got.info.time.gaps == 0);
@@ -198,8 +194,7 @@ TEST_CASE("a real recording with time in its first column") {
 }
 
 TEST_CASE("block size and hashing never change what is read") {
-  for (const char* name :
-       {"structured.npy", "fortran_order.npy", "half.npy", "aligned_version_3.npy"}) {
+  for (const char* name : {"structured.npy", "fortran_order.npy", "half.npy", "aligned_version_3.npy"}) {
     const auto whole = read(name);
     for (std::size_t bytes = 1; bytes < 70000; bytes = bytes * 5 / 3 + 1) {
       INFO(name << " in blocks of " << bytes);
@@ -208,9 +203,7 @@ TEST_CASE("block size and hashing never change what is read") {
       const auto got = read(name, options);
       REQUIRE(got.columns.size() == whole.columns.size());
       for (std::size_t c = 0; c < got.columns.size(); ++c)
-        CHECK(std::memcmp(got.columns[c].data(),
-                          whole.columns[c].data(),
-                          whole.columns[c].size() * 8) == 0);
+        CHECK(std::memcmp(got.columns[c].data(), whole.columns[c].data(), whole.columns[c].size() * 8) == 0);
       CHECK(got.time_ns == whole.time_ns);
       CHECK(got.sha256 == whole.sha256);
       CHECK(got.warnings.list().size() == whole.warnings.list().size());
@@ -230,8 +223,7 @@ TEST_CASE("a reading that is given up does not wait for the rest") {
 }
 
 TEST_CASE("the header is read as Python writes it and never more freely") {
-  const NpyHeader spaced =
-      header_of("{ \"shape\" : ( 2 , 2 ) ,'fortran_order':True,'descr':'=f8'}\n");
+  const NpyHeader spaced = header_of("{ \"shape\" : ( 2 , 2 ) ,'fortran_order':True,'descr':'=f8'}\n");
   CHECK(spaced.shape == std::vector<std::uint64_t>{2, 2});
   CHECK(spaced.fortran_order);
   const NpyHeader quoted = header_of(
@@ -241,29 +233,22 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
   CHECK(quoted.fields[1].name == "c\\");
   CHECK(quoted.item_bytes == 6);
   const std::string rest = "'fortran_order': False, 'shape': (4,), }";
-  CHECK_THAT(fault_of("{'descr': __import__('os'), " + rest),
-             Catch::Contains("expected a quoted string"));
+  CHECK_THAT(fault_of("{'descr': __import__('os'), " + rest), Catch::Contains("expected a quoted string"));
   CHECK_THAT(fault_of("{'descr': '|O', " + rest),
              Catch::Contains("Python objects (pickled code), which are never read"));
   CHECK_THAT(fault_of("{'descr': '<c16', " + rest), Catch::Contains("complex"));
   CHECK_THAT(fault_of("{'descr': '|S5', " + rest), Catch::Contains("text"));
   CHECK_THAT(fault_of("{'descr': 'f8', " + rest), Catch::Contains("of a type that is not read"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8'), ('a', '<f8')], " + rest),
-             Catch::Contains("two fields have one name"));
-  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')])], " + rest),
-             Catch::Contains("record within a record"));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8'), ('a', '<f8')], " + rest), Catch::Contains("two fields have one name"));
+  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')])], " + rest), Catch::Contains("record within a record"));
   CHECK_THAT(fault_of("{'descr': [], " + rest), Catch::Contains("no field"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (4294967296, 4294967296, 4))], " + rest),
-             Catch::Contains("overflows"));
-  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (200000,))], " + rest),
-             Catch::Contains("more than 100000 columns"));
-  CHECK_THAT(fault_of("{'descr': '<f8', 'shape': (4,), }"),
-             Catch::Contains("no key \"fortran_order\""));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (4294967296, 4294967296, 4))], " + rest), Catch::Contains("overflows"));
+  CHECK_THAT(fault_of("{'descr': [('a', '<f8', (200000,))], " + rest), Catch::Contains("more than 100000 columns"));
+  CHECK_THAT(fault_of("{'descr': '<f8', 'shape': (4,), }"), Catch::Contains("no key \"fortran_order\""));
   CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': 0, 'shape': (4,), }"),
              Catch::Contains("neither True nor False"));
-  CHECK_THAT(
-      fault_of("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,), }"),
-      Catch::Contains("too large"));
+  CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,), }"),
+             Catch::Contains("too large"));
   CHECK_THAT(fault_of("{'descr': '<f8', " + rest + "x"), Catch::Contains("behind the header"));
   CHECK_THAT(fault_of("{'descr': '<f8"), Catch::Contains("does not end"));
   CHECK_THAT(fault_of(""), Catch::Contains("expected {"));
@@ -271,16 +256,11 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
 
 TEST_CASE("what is no regular file is said so at once") {
   const test::TemporaryFolder folder;
-  CHECK_THROWS_WITH(find_format("npy")->open(folder.path().string(), {}),
-                    Catch::Contains("is a folder"));
-  CHECK_THROWS_WITH(find_format("npy")->open((folder / "none.npy").string(), {}),
-                    Catch::Contains("No such file"));
-  CHECK_THROWS_WITH(find_format("npy")->open("/dev/zero", {}),
-                    Catch::Contains("not a regular file"));
-  std::ofstream(folder / "empty.npy")
-      << npy("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }", "");
-  CHECK_THROWS_WITH(find_format("npy")->open((folder / "empty.npy").string(), {}),
-                    Catch::Contains("holds no samples"));
+  CHECK_THROWS_WITH(find_format("npy")->open(folder.path().string(), {}), Catch::Contains("is a folder"));
+  CHECK_THROWS_WITH(find_format("npy")->open((folder / "none.npy").string(), {}), Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(find_format("npy")->open("/dev/zero", {}), Catch::Contains("not a regular file"));
+  std::ofstream(folder / "empty.npy") << npy("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }", "");
+  CHECK_THROWS_WITH(find_format("npy")->open((folder / "empty.npy").string(), {}), Catch::Contains("holds no samples"));
 }
 
 TEST_CASE("stamps that overflow, are too large or are missing") {
@@ -295,11 +275,9 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
     return test::read_rows("npy", folder / "t.npy");
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(write({0, 1, 0.1, 2, 0.2, 3}).time_ns ==
-        std::vector<std::int64_t>{0, 100'000'000, 200'000'000});
+  CHECK(write({0, 1, 0.1, 2, 0.2, 3}).time_ns == std::vector<std::int64_t>{0, 100'000'000, 200'000'000});
   CHECK_THROWS_WITH(write({0, 1, nan, 2, 0.2, 3}),
-                    Catch::Contains("E0313") && Catch::Contains("missing time stamp") &&
-                        Catch::Contains("row 1"));
+                    Catch::Contains("E0313") && Catch::Contains("missing time stamp") && Catch::Contains("row 1"));
   CHECK_THROWS_WITH(write({0, 1, 1e10, 2}),
                     Catch::Contains("does not fit 64-bit nanoseconds") && Catch::Contains("row 1"));
 }
@@ -307,8 +285,8 @@ TEST_CASE("stamps that overflow, are too large or are missing") {
 TEST_CASE("dimensions behind the first are columns, in either order") {
   const auto read = [](bool fortran, const std::vector<double>& values) {
     const test::TemporaryFolder folder;
-    std::string header = std::string("{'descr': '<f8', 'fortran_order': ") +
-                         (fortran ? "True" : "False") + ", 'shape': (2, 2, 3), }";
+    std::string header =
+        std::string("{'descr': '<f8', 'fortran_order': ") + (fortran ? "True" : "False") + ", 'shape': (2, 2, 3), }";
     header.resize(117, ' ');
     header += '\n';
     std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header;

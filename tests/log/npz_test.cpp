@@ -15,8 +15,7 @@ using test::array_log;
 using test::check_common_log;
 using test::with_bytes;
 
-TEST_CASE(
-    "npz: arrays of one length are one table, stored or deflated, in either order of either type") {
+TEST_CASE("npz: arrays of one length are one table, stored or deflated, in either order of either type") {
   NEEDS_LIBRARY(ZLIB);
   for (const char* name : {"log.npz", "compressed.npz"}) {
     INFO(name);
@@ -43,8 +42,7 @@ TEST_CASE("npz: without stamps a number called fs is the rate, and what holds no
   CHECK(log.samples[8][19] == 119);
   const std::string said = test::joined(log.info.dialect);
   CHECK_THAT(said, Catch::Contains("fs says 100 Hz"));
-  CHECK_THAT(said,
-             Catch::Contains("label holds text") && Catch::Contains("z holds complex numbers"));
+  CHECK_THAT(said, Catch::Contains("label holds text") && Catch::Contains("z holds complex numbers"));
   CHECK_THAT(said, Catch::Contains("still holds truth values"));
 }
 
@@ -161,14 +159,11 @@ TEST_CASE("npz: archives that lie about their sizes are refused before they are 
     return said.empty() ? test::joined(log.info.dialect) : said;
   };
   using namespace std::string_literals;
-  CHECK_THAT(with(24, "\xFF\xFF\xFF\x7F"),
-             Catch::Contains("E0462") && Catch::Contains("a ratio of 1032 at most"));
-  CHECK_THAT(with(20, "\xFF\xFF\xFF\x7F"),
-             Catch::Contains("E0460") && Catch::Contains("ends behind its end"));
+  CHECK_THAT(with(24, "\xFF\xFF\xFF\x7F"), Catch::Contains("E0462") && Catch::Contains("a ratio of 1032 at most"));
+  CHECK_THAT(with(20, "\xFF\xFF\xFF\x7F"), Catch::Contains("E0460") && Catch::Contains("ends behind its end"));
   CHECK_THAT(with(8, "\x01"s), Catch::Contains("is encrypted"));
   CHECK_THAT(with(10, "\x0C"s), Catch::Contains("compressed by method 12"));
-  CHECK_THAT(with(16, "\x00\x01\x02\x03"s),
-             Catch::Contains("E0462") && Catch::Contains("checksum"));
+  CHECK_THAT(with(16, "\x00\x01\x02\x03"s), Catch::Contains("E0462") && Catch::Contains("checksum"));
   // two members that share their bytes
   const std::size_t second = bytes.find("PK\x01\x02", entry + 4);
   std::string twice = bytes;

@@ -94,8 +94,7 @@ TEST_CASE("the kurtosis of the differences is that of their definition, with a d
       second += d * d / n;
       fourth += d * d * d * d / n;
     }
-    CHECK(meter(x).difference_kurtosis ==
-          Approx(static_cast<double>(fourth / (second * second))).epsilon(1e-9));
+    CHECK(meter(x).difference_kurtosis == Approx(static_cast<double>(fourth / (second * second))).epsilon(1e-9));
   }
 }
 
@@ -133,16 +132,12 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
   CHECK(first.finish().signs.frozen_runs == q.signs.frozen_runs);
   std::vector<double> moves(50000);  // a robot that stops here and there
   for (std::size_t i = 0; i < moves.size(); ++i)
-    moves[i] =
-        std::round(1e6 *
-                   std::sin(1e-3 * static_cast<double>(i - std::min<std::size_t>(i % 2000, 15)))) /
-        1e6;
+    moves[i] = std::round(1e6 * std::sin(1e-3 * static_cast<double>(i - std::min<std::size_t>(i % 2000, 15)))) / 1e6;
   REQUIRE(meter(moves).longest_stuck >= 15);
   CHECK_FALSE(has(meter(moves).findings, "stuck"));
   std::vector<double> coarse = gaussian(50000, 1);
   double slow = 0;
-  for (double& v : coarse)
-    v = std::round(slow += 0.05 * v);  // a slow quantity between the steps of its converter
+  for (double& v : coarse) v = std::round(slow += 0.05 * v);  // a slow quantity between the steps of its converter
   CHECK_FALSE(has(meter(coarse).findings, "stuck"));
 }
 
@@ -269,11 +264,9 @@ TEST_CASE("the result does not depend on how the samples are pushed") {
   for (std::size_t i = 0; i < x.size(); i += 97) x[i] = kMissing;
   for (std::size_t i = 500; i < 540; ++i) x[i] = 9;
   const ChannelQuality whole = meter(x);
-  for (const std::size_t step :
-       {std::size_t{1}, std::size_t{3}, std::size_t{4095}, std::size_t{4097}}) {
+  for (const std::size_t step : {std::size_t{1}, std::size_t{3}, std::size_t{4095}, std::size_t{4097}}) {
     QualityMeter m;
-    for (std::size_t i = 0; i < x.size(); i += step)
-      m.push({x.data() + i, std::min(step, x.size() - i)});
+    for (std::size_t i = 0; i < x.size(); i += step) m.push({x.data() + i, std::min(step, x.size() - i)});
     const ChannelQuality q = m.finish();
     CHECK(q.mean == whole.mean);
     CHECK(q.standard_deviation == whole.standard_deviation);
@@ -300,21 +293,15 @@ TEST_CASE("clocks, counters and sawteeth are named, noise and slow signals are n
         "rises by 1 with every sample: a counter or a clock, not a measurement");
   CHECK(counter_of([](double t) { return 1.7e9 - 0.01 * t; }).find("falls by 0.01") == 0);
   CHECK(counter_of([](double t) { return std::fmod(t, 256); }).find("rises by 1 with nearly") == 0);
-  CHECK(counter_of([&](double t) { return t + std::floor(t / 300) * 5; }).find("nearly") !=
+  CHECK(counter_of([&](double t) { return t + std::floor(t / 300) * 5; }).find("nearly") != std::string::npos);
+  CHECK(counter_of([&](double t) { return 1e6 * (t + 0.05 * noise(random)); }).find("never falls") == 0);
+  CHECK(counter_of([&](double t) { return std::fmod(t + 0.02 * noise(random), 100); }).find("falls back") !=
         std::string::npos);
-  CHECK(counter_of([&](double t) {
-          return 1e6 * (t + 0.05 * noise(random));
-        }).find("never falls") == 0);
-  CHECK(counter_of([&](double t) {
-          return std::fmod(t + 0.02 * noise(random), 100);
-        }).find("falls back") != std::string::npos);
   double walk = 0;
   CHECK(counter_of([&](double) { return noise(random); }).empty());
   CHECK(counter_of([&](double) { return walk += noise(random); }).empty());
   CHECK(counter_of([&](double t) { return 0.1 * t + noise(random); }).empty());
-  CHECK(counter_of([&](double t) {
-          return std::round(26 + 1e-3 * t + 0.1 * noise(random));
-        }).empty());
+  CHECK(counter_of([&](double t) { return std::round(26 + 1e-3 * t + 0.1 * noise(random)); }).empty());
   CHECK(counter_of([](double t) { return std::sin(0.01 * t); }).empty());
   CHECK(counter_of([](double) { return 3.0; }).empty());
   CHECK(counter_of([](double t) { return t < 5000 ? 0.0 : 1.0; }).empty());
@@ -338,8 +325,7 @@ TEST_CASE("quality does not depend on the sizes of blocks, from one sample to th
   const ChannelQuality whole = meter(x);
   for (const std::size_t block : {1U, 7U, 300U, 2048U, 5000U}) {
     QualityMeter m;
-    for (std::size_t i = 0; i < x.size(); i += block)
-      m.push(std::span(x).subspan(i, std::min(block, x.size() - i)));
+    for (std::size_t i = 0; i < x.size(); i += block) m.push(std::span(x).subspan(i, std::min(block, x.size() - i)));
     const ChannelQuality parts = m.finish();
     CHECK(parts.mean == whole.mean);
     CHECK(parts.standard_deviation == whole.standard_deviation);
@@ -493,15 +479,13 @@ TEST_CASE(
   std::fill(frozen.begin() + 20000, frozen.end(), frozen[20000]);
   REQUIRE(has(meter(frozen).findings, "stuck"));
   CHECK(meter(frozen).findings[0].help.size() == 1);
-  std::vector<double> slow =
-      gaussian(50000, 0.5);  // steps of a converter, and a long rest on one of them
+  std::vector<double> slow = gaussian(50000, 0.5);  // steps of a converter, and a long rest on one of them
   for (std::size_t i = 0; i < slow.size(); ++i)
     slow[i] = std::round(10 * std::sin(static_cast<double>(i) / 8000) + slow[i]);
   std::fill(slow.begin() + 20000, slow.begin() + 20200, slow[20000]);
   REQUIRE(has(meter(slow).findings, "stuck"));
   for (const Finding& one : meter(slow).findings)
-    if (one.code == "stuck")
-      CHECK(one.help.empty());  // else --frozen would take sound samples away
+    if (one.code == "stuck") CHECK(one.help.empty());  // else --frozen would take sound samples away
   CHECK_FALSE(has(meter(frozen).findings, "dead_band"));
   std::vector<double> coarse = gaussian(50000, 1);
   for (double& v : coarse) v = std::round(v);

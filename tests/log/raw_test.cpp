@@ -26,9 +26,7 @@ struct Raw {
     std::ofstream(path, std::ios::binary) << bytes;
     std::ofstream(path + suffix, std::ios::binary) << sidecar;
   }
-  test::Rows read(const ReadOptions& options = {}) const {
-    return test::read_rows("raw", path, options);
-  }
+  test::Rows read(const ReadOptions& options = {}) const { return test::read_rows("raw", path, options); }
 };
 
 std::string said(const std::string& sidecar, bool json = true) {
@@ -48,10 +46,9 @@ TEST_CASE("interleaved and planar, little and big, integers with scale and offse
   const std::string planar("\x01\x00\x02\x00\x03\x00\xFF\xFF\x00\x80\xFF\x7F", 12);
   const std::string tail =
       R"(", "rate_hz": 10, "channels": [{"name": "a", "unit": "deg/s", "scale": 0.5, "offset": 1}, {"name": "b"}])";
-  for (const Raw& raw :
-       {Raw(little, R"({"dtype": "i16", "endian": "little)" + tail + "}"),
-        Raw(big, R"({"dtype": "i16", "endian": "big)" + tail + "}"),
-        Raw(planar, R"({"dtype": "i16", "endian": "little)" + tail + R"(, "order": "planar"})")}) {
+  for (const Raw& raw : {Raw(little, R"({"dtype": "i16", "endian": "little)" + tail + "}"),
+                         Raw(big, R"({"dtype": "i16", "endian": "big)" + tail + "}"),
+                         Raw(planar, R"({"dtype": "i16", "endian": "little)" + tail + R"(, "order": "planar"})")}) {
     const auto got = raw.read();
     CHECK(got.columns == std::vector<ColumnValues>{{1.5, 2, 2.5}, {-1, -32768, 32767}});
     CHECK(got.info.channels[0].unit == "deg/s");
@@ -79,12 +76,10 @@ TEST_CASE("the time channel has its scale and offset, too") {
   };
   using Stamps = std::vector<std::int64_t>;
   // Whole nanoseconds a tick, a fraction of one, and offsets of both kinds.
-  CHECK(stamps(R"({"name": "t", "unit": "s", "scale": 0.0001})").time_ns ==
-        Stamps{0, 10000000, 20000000});
+  CHECK(stamps(R"({"name": "t", "unit": "s", "scale": 0.0001})").time_ns == Stamps{0, 10000000, 20000000});
   CHECK(stamps(R"({"name": "t", "unit": "ns", "scale": 30.517578125, "offset": 0.25})").time_ns ==
         Stamps{0, 3052, 6104});
-  CHECK(stamps(R"({"name": "t", "unit": "us", "offset": 5})").time_ns ==
-        Stamps{5000, 105000, 205000});
+  CHECK(stamps(R"({"name": "t", "unit": "us", "offset": 5})").time_ns == Stamps{5000, 105000, 205000});
   // Stamps since 1970 beyond what a double holds stay exact.
   CHECK(stamps(R"({"name": "t", "unit": "ns", "offset": 1403636579758555392})").time_ns[2] ==
         1403636579758555392 + 200);
@@ -94,19 +89,16 @@ TEST_CASE("the time channel has its scale and offset, too") {
   CHECK(guessed.time_ns == Stamps{0, 10000000, 20000000});
   ReadOptions named;
   named.time_column = "clock";
-  CHECK(stamps(R"({"name": "clock", "unit": "s", "scale": 0.01})", named).time_ns ==
-        Stamps{0, 1000000000, 2000000000});
-  CHECK_THROWS_WITH(stamps(R"({"name": "t", "unit": "s", "scale": 1e9})"),
-                    Catch::Contains("E0314"));
+  CHECK(stamps(R"({"name": "clock", "unit": "s", "scale": 0.01})", named).time_ns == Stamps{0, 1000000000, 2000000000});
+  CHECK_THROWS_WITH(stamps(R"({"name": "t", "unit": "s", "scale": 1e9})"), Catch::Contains("E0314"));
 }
 
 TEST_CASE("a YAML sidecar says the same as a JSON one") {
   const std::string bytes("\x00\x00\x80\x3F\x00\x00\x00\x40", 8);
-  const Raw yaml(
-      bytes,
-      "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: "
-      "1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
-      ".yaml");
+  const Raw yaml(bytes,
+                 "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: "
+                 "1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
+                 ".yaml");
   const auto got = yaml.read();
   CHECK(got.columns == std::vector<ColumnValues>{{1}, {2}});
   CHECK(got.info.channels[1].name == "010");
@@ -121,16 +113,14 @@ TEST_CASE("rows, trailing bytes and truncation") {
   const auto less = Raw(four + "abc", front + R"(, "rows": 1})").read();
   CHECK(less.info.rows == 1);
   CHECK(less.warnings.find("trailing_bytes")->count == 19);
-  CHECK_THROWS_WITH(Raw(four, front + R"(, "rows": 3})").read(),
-                    Catch::Contains("2 of 3 rows present"));
+  CHECK_THROWS_WITH(Raw(four, front + R"(, "rows": 3})").read(), Catch::Contains("2 of 3 rows present"));
   CHECK_THROWS_WITH(Raw(four.substr(0, 15), front + "}").read(),
                     Catch::Contains("15 bytes are less than one row of 16"));
   CHECK_THROWS_WITH(Raw(four + "abc", front + R"(, "order": "planar"})").read(),
                     Catch::Contains("planes cannot be found"));
 }
 
-TEST_CASE(
-    "values that would be ordinary in the other byte order are pointed out, tiny ones are not") {
+TEST_CASE("values that would be ordinary in the other byte order are pointed out, tiny ones are not") {
   const auto doubtful = [](const std::vector<double>& values, bool swap) {
     std::string bytes;
     for (const double x : values) {
@@ -196,9 +186,9 @@ TEST_CASE("a block keeps to its bytes, stamps included, and progress is that of 
 TEST_CASE("a missing sidecar is answered with one to copy, two are one too many") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "x.f64") << std::string(16, 'a');
-  CHECK_THROWS_WITH(test::read_rows("raw", folder / "x.f64"),
-                    Catch::Contains("no sidecar") && Catch::Contains(R"(write )") &&
-                        Catch::Contains("x.f64.json, such as"));
+  CHECK_THROWS_WITH(test::read_rows("raw", folder / "x.f64"), Catch::Contains("no sidecar") &&
+                                                                  Catch::Contains(R"(write )") &&
+                                                                  Catch::Contains("x.f64.json, such as"));
   CHECK(parse_sidecar(minimal_sidecar(), "x", true).channels.size() == 3);
   std::ofstream(folder / "x.f64.json") << minimal_sidecar();
   std::ofstream(folder / "x.f64.yml") << minimal_sidecar();
@@ -207,29 +197,21 @@ TEST_CASE("a missing sidecar is answered with one to copy, two are one too many"
 
 TEST_CASE("sidecars are refused with the key at fault") {
   const std::string front = R"({"dtype": "f64", "endian": "little", )";
-  CHECK_THAT(said(front + R"("channels": -1})"),
-             Catch::Contains("x.json:1:50") && Catch::Contains("channels:"));
-  CHECK_THAT(said(front + R"("channels": 1000000000})"),
-             Catch::Contains("more than the limit of 100000"));
+  CHECK_THAT(said(front + R"("channels": -1})"), Catch::Contains("x.json:1:50") && Catch::Contains("channels:"));
+  CHECK_THAT(said(front + R"("channels": 1000000000})"), Catch::Contains("more than the limit of 100000"));
   CHECK_THAT(said(front + R"("channels": []})"), Catch::Contains("empty"));
   CHECK_THAT(said(front + R"("channels": [{"name": "a"}, {"name": "a"}]})"),
              Catch::Contains("channels[1].name") && Catch::Contains("two channels have one name"));
-  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scala": 2}]})"),
-             Catch::Contains("did you mean scale?"));
-  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scale": 0}]})"),
-             Catch::Contains("scale of 0"));
+  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scala": 2}]})"), Catch::Contains("did you mean scale?"));
+  CHECK_THAT(said(front + R"("channels": [{"name": "a", "scale": 0}]})"), Catch::Contains("scale of 0"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 0})"),
              Catch::Contains("x.json:1:64") && Catch::Contains("rate_hz:"));
-  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": "100"})"),
-             Catch::Contains("rate_hz: expected"));
+  CHECK_THAT(said(front + R"("channels": 1, "rate_hz": "100"})"), Catch::Contains("rate_hz: expected"));
   CHECK_THAT(said(front + R"("channels": 1, "rate_hz": 1e400})"), Catch::Contains("got \"1e400\""));
-  CHECK_THAT(said(front + R"("channels": 1, "offset": -8})"),
-             Catch::Contains("a channel's values"));
+  CHECK_THAT(said(front + R"("channels": 1, "offset": -8})"), Catch::Contains("a channel's values"));
   CHECK_THAT(said(front + R"("channels": 1, "rows": 1.5})"), Catch::Contains("rows: expected"));
-  CHECK_THAT(said(front + R"("channels": 1, "t0_ns": 18446744073709551615})"),
-             Catch::Contains("t0_ns: expected"));
-  CHECK_THAT(said(R"({"dtype": "f64", "channels": 1})"),
-             Catch::Contains("endian: the key is missing"));
+  CHECK_THAT(said(front + R"("channels": 1, "t0_ns": 18446744073709551615})"), Catch::Contains("t0_ns: expected"));
+  CHECK_THAT(said(R"({"dtype": "f64", "channels": 1})"), Catch::Contains("endian: the key is missing"));
   CHECK_THAT(said(R"({"channels": 1})"), Catch::Contains("dtype: the key is missing"));
   CHECK_THAT(said("[1]"), Catch::Contains("map of keys and values"));
   CHECK(said(R"({"dtype": "u8", "channels": 1})") == "accepted");
@@ -237,8 +219,7 @@ TEST_CASE("sidecars are refused with the key at fault") {
 
 TEST_CASE("a wrong key of a sidecar is named with line and column, in JSON as in YAML") {
   const std::string json = "{\n  \"dtype\": \"u8\",\n  \"chanels\": 1\n}";
-  CHECK(said(json) ==
-        "x.json:3:3: error E0540: unknown key; got \"chanels\"; hint: did you mean channels?");
+  CHECK(said(json) == "x.json:3:3: error E0540: unknown key; got \"chanels\"; hint: did you mean channels?");
   CHECK_THAT(said("dtype: u8\nchanels: 1\n", false), Catch::StartsWith("x.json:2:1: error E0540"));
   CHECK_THAT(said("{\"dtype\": \"u8\",\n \"channels\": [{\"name\": \"a\"},\n  {\"nmae\": \"b\"}]}"),
              Catch::StartsWith("x.json:3:4: error E0540: unknown key in channels[1]"));
@@ -248,20 +229,18 @@ TEST_CASE("a wrong key of a sidecar is named with line and column, in JSON as in
 
 TEST_CASE("YAML is read without the parts that bite") {
   const auto refused = [](const std::string& text) { return said(text, false); };
-  CHECK_THAT(refused("a: &x 1\nb: *x\n"),
-             Catch::Contains("anchors are not read") && Catch::Contains("x.json:1:"));
+  CHECK_THAT(refused("a: &x 1\nb: *x\n"), Catch::Contains("anchors are not read") && Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("a: !!python/object:os.system ls\n"), Catch::Contains("tags are not read"));
-  CHECK_THAT(refused("dtype: f64\ndtype: f32\n"),
-             Catch::Contains("twice") && Catch::Contains("x.json:2:1"));
+  CHECK_THAT(refused("dtype: f64\ndtype: f32\n"), Catch::Contains("twice") && Catch::Contains("x.json:2:1"));
   CHECK_THAT(refused("<<: {dtype: f64}\n"), Catch::Contains("merge"));
   CHECK_THAT(refused("dtype: f64\n---\ndtype: f32\n"), Catch::Contains("second document"));
   CHECK_THAT(refused(std::string(200, '[')), Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("\tdtype: f64\n"), Catch::Contains("not valid YAML"));
   CHECK_THAT(refused(""), Catch::Contains("empty"));
-  const Json node = as_json(
-      parse_yaml_document("a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
-                          "18446744073709551615\n",
-                          "x"));
+  const Json node =
+      as_json(parse_yaml_document("a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
+                                  "18446744073709551615\n",
+                                  "x"));
   CHECK(node["a"] == "010");
   CHECK(node["b"] == "0x10");
   CHECK(node["c"] == -3);
@@ -273,9 +252,7 @@ TEST_CASE("YAML is read without the parts that bite") {
 }
 
 TEST_CASE("numbers in a sidecar beyond a double are refused as such, with their place") {
-  const std::string message =
-      said(R"({"dtype": "f64", "endian": "little", "channels": 1, "rate_hz": 1e400})");
-  CHECK_THAT(message,
-             Catch::Contains("E0602") && Catch::Contains("out of range") &&
-                 Catch::Contains("1e400") && Catch::Contains(":1:"));
+  const std::string message = said(R"({"dtype": "f64", "endian": "little", "channels": 1, "rate_hz": 1e400})");
+  CHECK_THAT(message, Catch::Contains("E0602") && Catch::Contains("out of range") && Catch::Contains("1e400") &&
+                          Catch::Contains(":1:"));
 }

@@ -40,8 +40,7 @@ TEST_CASE("what cannot be read is said with its path") {
   CHECK(message(folder.path().string()).find("folder") != std::string::npos);
   const std::string pipe = (folder / "pipe.csv").string();
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK(message(pipe).find("empty") !=
-        std::string::npos);  // a pipe without a writer does not hang the program
+  CHECK(message(pipe).find("empty") != std::string::npos);  // a pipe without a writer does not hang the program
   ReadOptions options;
   options.format = "xls";
   CHECK(message("a.csv", options).find("unknown log format") != std::string::npos);
@@ -110,17 +109,14 @@ TEST_CASE("the hash taken beside the parsing is that of the file, whatever its r
   }();
   CHECK(alone.info.sha256 == expected);
   for (const int threads : {1, 2, 4})
-    for (const std::size_t block :
-         {std::size_t{1000}, std::size_t{4097}, std::size_t{70000}, std::size_t{1} << 22U}) {
+    for (const std::size_t block : {std::size_t{1000}, std::size_t{4097}, std::size_t{70000}, std::size_t{1} << 22U}) {
       options.threads = threads;
       options.block_bytes = block;
       const Recording r = test::read_text(text, options);
       CHECK(r.info.sha256 == expected);
       REQUIRE(r.samples[0].size() == alone.samples[0].size());
-      CHECK(std::memcmp(r.samples[0].data(), alone.samples[0].data(), 8 * r.samples[0].size()) ==
-            0);
-      CHECK(std::memcmp(r.samples[1].data(), alone.samples[1].data(), 8 * r.samples[1].size()) ==
-            0);
+      CHECK(std::memcmp(r.samples[0].data(), alone.samples[0].data(), 8 * r.samples[0].size()) == 0);
+      CHECK(std::memcmp(r.samples[1].data(), alone.samples[1].data(), 8 * r.samples[1].size()) == 0);
     }
 }
 
@@ -175,8 +171,8 @@ TEST_CASE("real recordings: air monitors with missing values") {
   CHECK(r.info.rows == 43969);
   CHECK(r.info.samples == 43969);
   CHECK(r.info.time.rate_hz == Approx(1.0 / 60).epsilon(1e-12));
-  const std::uint64_t expected[] = {
-      1133, 1046, 1046, 1135, 1049, 1047, 1135, 1049, 1047, 1133, 1046, 1046, 1133, 1046, 1046};
+  const std::uint64_t expected[] = {1133, 1046, 1046, 1135, 1049, 1047, 1135, 1049,
+                                    1047, 1133, 1046, 1046, 1133, 1046, 1046};
   REQUIRE(r.samples.size() == 15);
   for (std::size_t c = 0; c < 15; ++c) CHECK(missing(r.samples[c]) == expected[c]);
   CHECK(r.info.channels[0].name == "pm25_1");
@@ -185,9 +181,7 @@ TEST_CASE("real recordings: air monitors with missing values") {
 
 TEST_CASE("real recordings: rates and rows") {
   NEEDS_SHARED("data/array_mimu4444_exp1.csv");
-  const auto read = [](const char* name) {
-    return read_recording(test::shared(std::string("data/") + name).string());
-  };
+  const auto read = [](const char* name) { return read_recording(test::shared(std::string("data/") + name).string()); };
   const Recording mimu = read("array_mimu4444_exp1.csv");
   CHECK(mimu.info.rows == 37439);
   CHECK(mimu.info.samples == 37439);
@@ -209,8 +203,7 @@ TEST_CASE("real recordings: rates and rows") {
   const Recording hourly = read("array_airq3_rtp201908_ref1h.csv");
   CHECK(hourly.info.samples == 739);
   CHECK(hourly.info.time.rate_hz == Approx(1.0 / 3600));
-  CHECK(read("array_dot4_quad_horizontal_path_9.gt10hz.csv").info.time.rate_hz ==
-        Approx(10).epsilon(1e-4));
+  CHECK(read("array_dot4_quad_horizontal_path_9.gt10hz.csv").info.time.rate_hz == Approx(10).epsilon(1e-4));
 }
 
 TEST_CASE("a published curve is a table with a text column: its numbers can be read") {

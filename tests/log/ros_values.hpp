@@ -15,12 +15,9 @@ namespace test {
 
 inline constexpr std::int64_t kRosStart = 1700000000000000000;
 
-inline std::filesystem::path ros(const std::string& name) {
-  return fixture("ros/" + name);
-}
+inline std::filesystem::path ros(const std::string& name) { return fixture("ros/" + name); }
 
-inline libchar::ReadOptions of_topic(const std::string& topic,
-                                     std::vector<std::string> channels = {}) {
+inline libchar::ReadOptions of_topic(const std::string& topic, std::vector<std::string> channels = {}) {
   libchar::ReadOptions options;
   options.topic = topic;
   options.channels = std::move(channels);
@@ -30,14 +27,12 @@ inline libchar::ReadOptions of_topic(const std::string& topic,
 inline std::string channel_names(const libchar::LogInfo& info) {
   std::string all;
   for (const libchar::Channel& channel : info.channels)
-    all += (all.empty() ? "" : " ") + channel.name +
-           (channel.unit.empty() ? "" : "[" + channel.unit + "]");
+    all += (all.empty() ? "" : " ") + channel.name + (channel.unit.empty() ? "" : "[" + channel.unit + "]");
   return all;
 }
 
 /// The sentence with which reading is refused, "" when it is not.
-inline std::string refusal(const std::string& format,
-                           const std::filesystem::path& path,
+inline std::string refusal(const std::string& format, const std::filesystem::path& path,
                            const libchar::ReadOptions& options = {}) {
   try {
     read_rows(format, path, options);
@@ -59,8 +54,7 @@ inline void check_imu(const Rows& rows, std::size_t n) {
   std::size_t wrong = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const auto i = static_cast<double>(k);
-    const double expected[] = {
-        0.001 * i - 0.3, std::sqrt(i), -i / 7, 0.25 * i, 1 / (i + 1), 9.81 - i * 1e-4};
+    const double expected[] = {0.001 * i - 0.3, std::sqrt(i), -i / 7, 0.25 * i, 1 / (i + 1), 9.81 - i * 1e-4};
     for (std::size_t c = 0; c < 6; ++c) wrong += rows.columns[c][k] != expected[c] ? 1 : 0;
     wrong += rows.time_ns[k] != kRosStart + static_cast<std::int64_t>(k) * 5000000 ? 1 : 0;
   }
@@ -69,9 +63,7 @@ inline void check_imu(const Rows& rows, std::size_t n) {
 
 /// A file of fixtures/ros cut at every `step`-th byte: what is read is the beginning of what the
 /// whole one holds, and a loss is said.
-inline void check_cuts(const std::string& format,
-                       const std::string& name,
-                       const std::string& topic,
+inline void check_cuts(const std::string& format, const std::string& name, const std::string& topic,
                        std::size_t step = 1000) {
   const std::string bytes = slurp(ros(name));
   const Rows whole = read_rows(format, ros(name), of_topic(topic));
@@ -92,8 +84,7 @@ inline void check_cuts(const std::string& format,
       CHECK(std::equal(rows.time_ns.begin(), rows.time_ns.end(), whole.time_ns.begin()));
       for (std::size_t c = 0; c < whole.columns.size(); ++c)
         CHECK(std::equal(rows.columns[c].begin(), rows.columns[c].end(), whole.columns[c].begin()));
-      const bool loss = rows.warnings.find("cut_end") != nullptr ||
-                        rows.warnings.find("lost_messages") != nullptr;
+      const bool loss = rows.warnings.find("cut_end") != nullptr || rows.warnings.find("lost_messages") != nullptr;
       CHECK(loss);
       said += loss ? 1 : 0;
     } catch (const libchar::Error& error) {

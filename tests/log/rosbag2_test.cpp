@@ -65,8 +65,8 @@ TEST_CASE("rosbag2: parts are one log in the order of metadata.yaml") {
   const test::Rows whole =
       test::read_rows("mcap", test::ros("ros2_unchunked.mcap"), test::of_topic("/imu0/data"), true);
   for (const std::filesystem::path& path : {folder / ".", folder / "metadata.yaml"}) {
-    const test::Rows rows = test::read_rows(
-        "rosbag2", named_log_file(path.string()), test::of_topic("/imu0/data"), true);
+    const test::Rows rows =
+        test::read_rows("rosbag2", named_log_file(path.string()), test::of_topic("/imu0/data"), true);
     test::check_imu(rows, whole.time_ns.size());
     CHECK(rows.warnings.empty());
     CHECK(rows.info.topic == "/imu0/data");
@@ -77,9 +77,8 @@ TEST_CASE("rosbag2: parts are one log in the order of metadata.yaml") {
   CHECK(read.info.samples == whole.time_ns.size());
   CHECK(read.info.format == "rosbag2");
   CHECK(std::filesystem::path(read.info.file).filename() == "metadata.yaml");
-  CHECK(read.info.sha256 ==
-        digest(test::slurp(folder / "metadata.yaml") + test::slurp(folder / "a_0.mcap") +
-               test::slurp(folder / "b_1.mcap")));
+  CHECK(read.info.sha256 == digest(test::slurp(folder / "metadata.yaml") + test::slurp(folder / "a_0.mcap") +
+                                   test::slurp(folder / "b_1.mcap")));
   // In the other order the stamps go back, which is said as of any log.
   write_metadata(folder, {"b_1.mcap", "a_0.mcap"});
   CHECK_FALSE(read_recording((folder / ".").string(), options).info.warnings.empty());
@@ -88,21 +87,17 @@ TEST_CASE("rosbag2: parts are one log in the order of metadata.yaml") {
 TEST_CASE("rosbag2: topics of the parts are merged by name and type") {
   NEEDS_LIBRARY(SQLITE);
   const test::TemporaryFolder folder;
-  for (const char* name : {"humble.db3", "jazzy.db3"})
-    std::filesystem::copy_file(test::ros(name), folder / name);
+  for (const char* name : {"humble.db3", "jazzy.db3"}) std::filesystem::copy_file(test::ros(name), folder / name);
   write_metadata(folder, {"humble.db3", "jazzy.db3"});
   const LogInfo listing = log_listing((folder / ".").string(), {});
   std::map<std::string, std::uint64_t> rows;
   for (const LogTopic& topic : listing.topics) rows[topic.name] = topic.rows;
-  CHECK(rows ==
-        std::map<std::string, std::uint64_t>{
-            {"/imu0/data", 200}, {"/joints", 20}, {"/level", 40}, {"/mag", 50}, {"/odd", 40}});
+  CHECK(rows == std::map<std::string, std::uint64_t>{
+                    {"/imu0/data", 200}, {"/joints", 20}, {"/level", 40}, {"/mag", 50}, {"/odd", 40}});
   CHECK(listing.dialect.front() == "recording of rosbag2, 2 parts: humble.db3, jazzy.db3");
-  test::check_imu(
-      test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/imu0/data")), 200);
+  test::check_imu(test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/imu0/data")), 200);
   // The first part has no definition of this type.
-  const test::Rows odd =
-      test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/odd"), true);
+  const test::Rows odd = test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/odd"), true);
   CHECK(odd.time_ns.size() == 20);
   const Finding* const lost = odd.warnings.find("unreadable_part");
   REQUIRE(lost != nullptr);
@@ -115,12 +110,10 @@ TEST_CASE("rosbag2: a part that is not there, is cut or is packed is named") {
   write(folder / "a_0.mcap", piece_of_mcap(0, 70));
   write_metadata(folder, {"a_0.mcap", "a_1.mcap"});
   const std::string path = (folder / ".").string();
-  CHECK_THROWS_WITH(
-      log_listing(path, {}),
-      Catch::Contains("E0448") && Catch::Contains("not there") && Catch::Contains("a_1.mcap"));
+  CHECK_THROWS_WITH(log_listing(path, {}),
+                    Catch::Contains("E0448") && Catch::Contains("not there") && Catch::Contains("a_1.mcap"));
   write(folder / "a_1.mcap", piece_of_mcap(70, 100000).substr(0, 20000));
-  const test::Rows cut =
-      test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/imu0/data"), true);
+  const test::Rows cut = test::read_rows("rosbag2", folder / "metadata.yaml", test::of_topic("/imu0/data"), true);
   REQUIRE(cut.warnings.find("cut_end") != nullptr);
   CHECK_THAT(cut.warnings.find("cut_end")->where.rows.front(), Catch::StartsWith("a_1.mcap, "));
   CHECK(cut.time_ns.size() > 20);
@@ -128,11 +121,9 @@ TEST_CASE("rosbag2: a part that is not there, is cut or is packed is named") {
   write_metadata(folder, {"a_0.mcap", "a_1.db3.zstd"});
   CHECK_THROWS_WITH(log_listing(path, {}), Catch::Contains("E0449") && Catch::Contains("unzstd"));
   write_metadata(folder, {});
-  CHECK_THROWS_WITH(log_listing(path, {}),
-                    Catch::Contains("E0448") && Catch::Contains("lists no parts"));
+  CHECK_THROWS_WITH(log_listing(path, {}), Catch::Contains("E0448") && Catch::Contains("lists no parts"));
   std::filesystem::remove(folder / "metadata.yaml");
-  CHECK_THROWS_WITH(log_listing(path, {}),
-                    Catch::Contains("E0101") && Catch::Contains("is a folder"));
+  CHECK_THROWS_WITH(log_listing(path, {}), Catch::Contains("E0101") && Catch::Contains("is a folder"));
 }
 
 TEST_CASE("rosbag2: files about a recording are called after its folder") {

@@ -22,8 +22,7 @@ struct StatedClock {
   std::string name;
   double unit_ns;
 };
-const std::vector<StatedClock> kClocks = {
-    {"t[s]", 1e9}, {"t[ms]", 1e6}, {"t[us]", 1e3}, {"t[ns]", 1}};
+const std::vector<StatedClock> kClocks = {{"t[s]", 1e9}, {"t[ms]", 1e6}, {"t[us]", 1e3}, {"t[ns]", 1}};
 
 /// What a log says of its time, and what is true of it.
 struct TimedRows {
@@ -58,8 +57,7 @@ TimedRows even_rows(const Rules& rules) {
   if (rules.gap > 100) out.unsure = 0.002 * rules.gap;
   for (std::size_t i = 0; i < rules.rows; ++i) {
     const double lost = 2 * i >= rules.rows ? rules.gap : 0;
-    out.instants.push_back(1000 + (static_cast<double>(i) + lost + rules.jitter * noise(random)) /
-                                      rules.rate_hz);
+    out.instants.push_back(1000 + (static_cast<double>(i) + lost + rules.jitter * noise(random)) / rules.rate_hz);
   }
   return out;
 }
@@ -107,8 +105,7 @@ TimedRows lossy(const Rules& rules, double share) {
 
 TimedRows with_duty(const Rules& rules, std::size_t on, double off_s) {
   TimedRows out = even_rows(rules);
-  for (std::size_t i = 0; i < out.instants.size(); ++i)
-    out.instants[i] += static_cast<double>(i / on) * off_s;
+  for (std::size_t i = 0; i < out.instants.size(); ++i) out.instants[i] += static_cast<double>(i / on) * off_s;
   out.missing += static_cast<double>((out.instants.size() - 1) / on) * off_s * rules.rate_hz;
   out.unsure = 0.5 + 0.002 * out.missing + static_cast<double>(out.instants.size() / on);
   return out;
@@ -136,9 +133,7 @@ const std::vector<Cause> kCauses = {
     {"duty cycle", [](const Rules& r) { return with_duty(r, 400, 20); }, "gap"},
     {"packets of 11", [](const Rules& r) { return in_packets(r, 11, 0.7345); }, "packets"},
     {"packets of 5", [](const Rules& r) { return in_packets(r, 5, 0.02); }, "packets"},
-    {"packets of equal stamps",
-     [](const Rules& r) { return in_packets(r, 4, 0); },
-     "coarse_stamps"},
+    {"packets of equal stamps", [](const Rules& r) { return in_packets(r, 4, 0); }, "coarse_stamps"},
     {"messages in turns",
      [](const Rules& r) {
        return in_turns(r, {0.56, 1.44});
@@ -223,8 +218,7 @@ TEST_CASE("stamps of every cause, unit, jitter and gap: the right rate and no ga
             said += fmt::format("{} x {}; ", warning.count, warning.code);
           INFO(said);
           CHECK(r.info.time.rate_hz == Approx(truth.rate_hz).epsilon(1e-3));
-          CHECK(static_cast<double>(r.info.time.missing_samples) ==
-                Approx(truth.missing).margin(truth.unsure));
+          CHECK(static_cast<double>(r.info.time.missing_samples) == Approx(truth.missing).margin(truth.unsure));
           if (*cause.warning != '\0') CHECK(count(r, cause.warning) > 0);
         }
   CHECK(inputs >= 150);

@@ -31,14 +31,12 @@ TEST_CASE("rows missing at random stand on a lattice, whatever their jitter") {
   CHECK(found.pattern == StampPattern::steps);
 }
 
-TEST_CASE(
-    "three rows of ten that are missing again and again are gaps, as exactly as steps are alike") {
+TEST_CASE("three rows of ten that are missing again and again are gaps, as exactly as steps are alike") {
   std::uint64_t state = 1;
   const auto random = [&] { return state = state * 6364136223846793005U + 1442695040888963407U; };
   std::vector<std::int64_t> stamps;
   for (std::int64_t i = 0; stamps.size() < 1025; ++i)
-    if (i % 10 > 2)
-      stamps.push_back(5000000 * i + static_cast<std::int64_t>((random() >> 40U) % 60000));
+    if (i % 10 > 2) stamps.push_back(5000000 * i + static_cast<std::int64_t>((random() >> 40U) % 60000));
   const StampModel found = model_of_stamps(stamps);
   CHECK(found.ns == Approx(5e6).epsilon(1e-4));
   CHECK(found.pattern == StampPattern::steps);
@@ -53,8 +51,7 @@ TEST_CASE("rows missing in long gaps of any length are no packets") {
       std::vector<std::int64_t> stamps;
       for (std::int64_t i = 0; stamps.size() < 1025;) {
         // Runs and gaps of geometric lengths: 10 rows are missing on average.
-        for (bool more = true; more; more = (random() >> 40U) % run != 0)
-          stamps.push_back(10000000 * i++);
+        for (bool more = true; more; more = (random() >> 40U) % run != 0) stamps.push_back(10000000 * i++);
         for (bool more = true; more; more = (random() >> 40U) % 10 != 0) ++i;
       }
       const StampModel found = model_of_stamps(stamps);
@@ -76,8 +73,7 @@ TEST_CASE("steps of unlike length in turns are no gaps") {
   CHECK(turns.ns == Approx(500));
   CHECK(turns.pattern == StampPattern::uneven);
   stamps = {0};
-  for (int i = 0; i < 1000; ++i)
-    stamps.push_back(stamps.back() + (i % 5 < 3 ? 101 : i % 5 == 3 ? 126 : 121));
+  for (int i = 0; i < 1000; ++i) stamps.push_back(stamps.back() + (i % 5 < 3 ? 101 : i % 5 == 3 ? 126 : 121));
   stamps.insert(stamps.end(), {});
   for (std::size_t i = 500; i < stamps.size(); ++i) stamps[i] += 30000000;
   CHECK(model_of_stamps(stamps).ns == Approx(110).epsilon(1e-3));
@@ -108,9 +104,7 @@ TEST_CASE("in a longer log two rounded stamps may be up to two ticks apart from 
     std::vector<std::int64_t> stamps{0};
     for (int g = 0; g < groups; ++g)
       for (int i = 0; i < 5; ++i)
-        stamps.push_back(stamps.back() + (i == (2 * g >= groups && 2 * g < groups + 2 ? 0 : 4)
-                                              ? 5000000
-                                              : 4000000));
+        stamps.push_back(stamps.back() + (i == (2 * g >= groups && 2 * g < groups + 2 ? 0 : 4) ? 5000000 : 4000000));
     return model_of_stamps(stamps).ns;
   };
   CHECK(found(16) == Approx(4.2e6).epsilon(0.002));  // sixteen odd steps

@@ -20,16 +20,14 @@ std::vector<std::int64_t> even_stamps(std::size_t n, std::int64_t start, std::in
 
 StampSketch sketch_of(const std::vector<std::int64_t>& stamps) {
   StampSketch sketch;
-  for (std::size_t i = 0; i < stamps.size(); ++i)
-    sketch.add(static_cast<std::int64_t>(i), stamps[i]);
+  for (std::size_t i = 0; i < stamps.size(); ++i) sketch.add(static_cast<std::int64_t>(i), stamps[i]);
   return sketch;
 }
 
 StampSketch sketch_of_runs(const std::vector<std::int64_t>& stamps, std::size_t run) {
   StampSketch sketch;
   for (std::size_t i = 0; i < stamps.size(); i += run)
-    sketch.add_run(
-        static_cast<std::int64_t>(i), stamps.data() + i, std::min(run, stamps.size() - i));
+    sketch.add_run(static_cast<std::int64_t>(i), stamps.data() + i, std::min(run, stamps.size() - i));
   return sketch;
 }
 

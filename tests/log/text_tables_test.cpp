@@ -13,9 +13,7 @@ using namespace libchar;
 
 namespace {
 
-std::string of(const std::string& name) {
-  return test::fixture("tables/" + name);
-}
+std::string of(const std::string& name) { return test::fixture("tables/" + name); }
 
 ReadOptions topic(const std::string& name) {
   ReadOptions options;
@@ -66,8 +64,7 @@ TEST_CASE("JSON lines: paths are channels, numbers keep their digits") {
 }
 
 TEST_CASE("JSON: an array of objects, keys in any order, keys that come late") {
-  std::string text =
-      "[ {\"t\":0,\"x [V]\":1},\n  {\"x [V]\":2.5,\"t\":1}, {\"t\":2,\"x [V]\":3,\"y\":NaN} ]";
+  std::string text = "[ {\"t\":0,\"x [V]\":1},\n  {\"x [V]\":2.5,\"t\":1}, {\"t\":2,\"x [V]\":3,\"y\":NaN} ]";
   const Recording log = read_recording(Written("a.json", text).path);
   CHECK(names(log) == "x[V] y ");
   CHECK(log.samples[0] == std::vector<double>{1, 2.5, 3});
@@ -79,17 +76,14 @@ TEST_CASE("JSON: an array of objects, keys in any order, keys that come late") {
 
 TEST_CASE("JSON that is broken is refused with the number of the object, a cut end is said") {
   const auto said = [](const std::string& text) { return outcome(Written("a.jsonl", text).path); };
-  CHECK_THAT(said("{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":}\n"),
-             Catch::Contains("object 2") && Catch::Contains("E0337"));
+  CHECK_THAT(said("{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":}\n"), Catch::Contains("object 2") && Catch::Contains("E0337"));
   CHECK_THAT(said("{\"t\":0,\"x\":1}\nfoo\n"), Catch::Contains("broken object: foo"));
   CHECK_THAT(said("{\"t\":0 \"x\":1}\n"), Catch::Contains("E0337"));
-  CHECK_THAT(said("{\"a\":\"" + std::string(3000000, 'x')),
-             Catch::Contains("more than 1048576 bytes"));
+  CHECK_THAT(said("{\"a\":\"" + std::string(3000000, 'x')), Catch::Contains("more than 1048576 bytes"));
   std::string deep;
   for (int k = 0; k < 10000; ++k) deep += "{\"a\":";
   CHECK_THAT(said(deep + "1" + std::string(10000, '}')), Catch::Contains("E0337"));
-  const Written cut("a.jsonl",
-                    "{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":2}\n{\"t\":2,\"x\":3}\n{\"t\":3,\"x\"");
+  const Written cut("a.jsonl", "{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":2}\n{\"t\":2,\"x\":3}\n{\"t\":3,\"x\"");
   const Recording log = read_recording(cut.path);
   CHECK(log.samples[0].size() == 3);
   CHECK(log.info.warnings.find("compressed_cut") != nullptr);
@@ -104,55 +98,43 @@ std::string lvm(const std::string& columns, const std::string& body) {
 }
 
 std::string segment(const std::string& clock, const std::string& x0, const std::string& names) {
-  return "Channels\t2\t\t\nSamples\t2\t2\nTime\t" + clock + "\t" + clock +
-         "\nY_Unit_Label\tVolts\tVolts\nX0\t" + x0 + "\t" + x0 +
-         "\nDelta_X\t0,01\t0,01\n***End_of_Header***\t\t\n" + names + "\tComment\n";
+  return "Channels\t2\t\t\nSamples\t2\t2\nTime\t" + clock + "\t" + clock + "\nY_Unit_Label\tVolts\tVolts\nX0\t" + x0 +
+         "\t" + x0 + "\nDelta_X\t0,01\t0,01\n***End_of_Header***\t\t\n" + names + "\tComment\n";
 }
 
 }  // namespace
 
 TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments go on") {
   const std::string two = "X_Value\tA\tB";
-  const auto read = [](const std::string& text) {
-    return read_recording(Written("a.lvm", text).path);
-  };
-  const Recording one =
-      read(lvm("One",
-               segment("12:00:00,5", "0", two) + "0,00\t1,5\t2\tready\n0,01\t2,5\t3\n\t\n" +
-                   segment("12:00:00,52", "0", two) + "0,00\t3,5\t4\n0,01\t4,5\t5\n"));
+  const auto read = [](const std::string& text) { return read_recording(Written("a.lvm", text).path); };
+  const Recording one = read(lvm("One", segment("12:00:00,5", "0", two) + "0,00\t1,5\t2\tready\n0,01\t2,5\t3\n\t\n" +
+                                            segment("12:00:00,52", "0", two) + "0,00\t3,5\t4\n0,01\t4,5\t5\n"));
   CHECK(names(one) == "A[Volts] B[Volts] ");
   CHECK(one.info.time.rate_hz == Approx(100));
   CHECK(one.samples[0] == std::vector<double>{1.5, 2.5, 3.5, 4.5});
-  const Recording none =
-      read(lvm("No", segment("12:00:00,5", "0", two) + "\t1\t2\n\t2\t3\n\t3\t4\n\t4\t5\n"));
+  const Recording none = read(lvm("No", segment("12:00:00,5", "0", two) + "\t1\t2\n\t2\t3\n\t3\t4\n\t4\t5\n"));
   CHECK(none.info.time.rate_hz == Approx(100));
   CHECK(none.samples[1] == std::vector<double>{2, 3, 4, 5});
   const std::string multi = segment("12:00:00,5", "0", "X_Value\tA\tX_Value\tB");
-  const Recording each =
-      read(lvm("Multi", multi + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n0,02\t3\t0,02\t4\n"));
+  const Recording each = read(lvm("Multi", multi + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n0,02\t3\t0,02\t4\n"));
   CHECK(each.samples[1] == std::vector<double>{2, 3, 4});
   CHECK_THAT(outcome(Written("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
              Catch::Contains("E0340") && Catch::Contains("clocks of their own"));
-  CHECK_THAT(outcome(Written("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path),
-             Catch::Contains("E0340"));
+  CHECK_THAT(outcome(Written("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));
 }
 
 TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
   ReadOptions options;
   options.rate_hz = 40;
   const Recording vn = read_recording(
-      Written("a.txt",
-              "$VNGYR,+00.1,-0.2,+3.5*5D\r\n$VNERR,03*72\r\n$VNGYR,+00.2,-0.25,+3.25*5D\r\n")
-          .path,
-      options);
+      Written("a.txt", "$VNGYR,+00.1,-0.2,+3.5*5D\r\n$VNERR,03*72\r\n$VNGYR,+00.2,-0.25,+3.25*5D\r\n").path, options);
   CHECK(names(vn) == "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
   CHECK(vn.samples[2] == std::vector<double>{3.5, 3.25});
   CHECK(vn.info.warnings.find("comment_line")->count == 1);
   std::string text;
   for (int k = 0; k < 8; ++k)
-    text += "#RAWIMUSXA,COM1,0,81.5,FINESTEERING,1724,219418.0,004c,22ff,5;00,11,1724,219418.0" +
-            std::to_string(k) + "0,111607,43088060," + std::to_string(k) +
-            ",-3033352,186983,-132863,823*5aa97065\n";
+    text += "#RAWIMUSXA,COM1,0,81.5,FINESTEERING,1724,219418.0,004c,22ff,5;00,11,1724,219418.0" + std::to_string(k) +
+            "0,111607,43088060," + std::to_string(k) + ",-3033352,186983,-132863,823*5aa97065\n";
   const Recording nov = read_recording(Written("a.asc", text).path);
   CHECK(nov.info.time.rate_hz == Approx(100));
   CHECK(names(nov) == "acc_z acc_y acc_x gyro_z gyro_y gyro_x ");
@@ -161,12 +143,11 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
 }
 
 TEST_CASE("Shimmer: a line between names and units says that values are calibrated") {
-  const Recording log =
-      read_recording(Written("a.csv",
-                             "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro "
-                             "X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
-                             "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
-                         .path);
+  const Recording log = read_recording(Written("a.csv",
+                                               "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro "
+                                               "X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
+                                               "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
+                                           .path);
   CHECK(names(log) == "Accel X[m/(s^2)] Gyro X[deg/s] ");
   CHECK(log.samples[1][1] == 0.25);
 }
@@ -185,10 +166,8 @@ TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or on
   CHECK(bench.samples[0][39] == 1 + 39.0 / 64);
 }
 
-TEST_CASE(
-    "a phone's archive: a topic for each file, with the units of its sensor, or several as one") {
-  CHECK_THAT(outcome(of("phone.zip")),
-             Catch::Contains("E0427") && Catch::Contains("Accelerometer"));
+TEST_CASE("a phone's archive: a topic for each file, with the units of its sensor, or several as one") {
+  CHECK_THAT(outcome(of("phone.zip")), Catch::Contains("E0427") && Catch::Contains("Accelerometer"));
   const Recording gyro = read_recording(of("phone.zip"), topic("Gyroscope"));
   CHECK(names(gyro) == "seconds_elapsed z[rad/s] y[rad/s] x[rad/s] ");
   CHECK(gyro.samples[1][7] == 0.5);
@@ -227,8 +206,7 @@ TEST_CASE("a cut or broken workbook, archive or sound ends in a sentence or in w
     const std::string suffix = std::filesystem::path(name).extension().string();
     for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 97) {
       INFO(name << " " << length);
-      CHECK(!outcome(Written("a" + suffix, bytes.substr(0, length)).path,
-                     topic(suffix == ".zip" ? "Gyroscope" : ""))
+      CHECK(!outcome(Written("a" + suffix, bytes.substr(0, length)).path, topic(suffix == ".zip" ? "Gyroscope" : ""))
                  .empty());
     }
     for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 211) {
@@ -241,13 +219,11 @@ TEST_CASE("a cut or broken workbook, archive or sound ends in a sentence or in w
 }
 
 TEST_CASE("JSON lines: what is no object is a row that cannot be read, and the others are read") {
-  for (const std::string broken :
-       {R"({"t": 0.5, "x": [1, 2)", R"({"t": 0.5, "x: 3})", "garbage", R"({"t" 0.5})"}) {
+  for (const std::string broken : {R"({"t": 0.5, "x": [1, 2)", R"({"t": 0.5, "x: 3})", "garbage", R"({"t" 0.5})"}) {
     std::string text;
     for (int i = 0; i < 100; ++i)
-      text += i == 50 ? broken + "\n"
-                      : "{\"t\": " + std::to_string(0.01 * i) +
-                            ", \"x\": " + std::to_string(i % 7) + "}\n";
+      text +=
+          i == 50 ? broken + "\n" : "{\"t\": " + std::to_string(0.01 * i) + ", \"x\": " + std::to_string(i % 7) + "}\n";
     const Written log("log.jsonl", text);
     INFO(broken);
     if (broken != R"({"t" 0.5})") {

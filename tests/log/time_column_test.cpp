@@ -34,23 +34,18 @@ struct Found {
 };
 
 bool operator==(const Found& a, const Found& b) {
-  return a.has_time == b.has_time && a.unit == b.unit && a.guessed == b.guessed &&
-         a.rate_hz == b.rate_hz && a.channels == b.channels;
+  return a.has_time == b.has_time && a.unit == b.unit && a.guessed == b.guessed && a.rate_hz == b.rate_hz &&
+         a.channels == b.channels;
 }
 
 std::ostream& operator<<(std::ostream& out, const Found& f) {
-  return out << (f.has_time ? "time in " : "no time ") << f.unit
-             << (f.guessed ? " (guessed) " : " ") << f.rate_hz << " Hz, " << f.channels
-             << " channels";
+  return out << (f.has_time ? "time in " : "no time ") << f.unit << (f.guessed ? " (guessed) " : " ") << f.rate_hz
+             << " Hz, " << f.channels << " channels";
 }
 
 Found found(const std::string& path, const ReadOptions& options) {
   const LogInfo info = read_recording(path, options).info;
-  return {!info.time.column.empty(),
-          info.time.unit,
-          info.time.unit_guessed,
-          info.time.rate_hz,
-          info.channels.size()};
+  return {!info.time.column.empty(), info.time.unit, info.time.unit_guessed, info.time.rate_hz, info.channels.size()};
 }
 
 void append(std::string& bytes, std::int64_t value) {
@@ -100,9 +95,8 @@ Found from_raw(const Stamps& stamps, const ReadOptions& options) {
   }
   const test::TemporaryFolder folder;
   std::ofstream(folder / "x.bin", std::ios::binary) << bytes;
-  std::ofstream(folder / "x.bin.json")
-      << R"({"dtype": "i64", "endian": "little", "channels": [{"name": ")" << stamps.name
-      << R"("}, {"name": "x"}]})";
+  std::ofstream(folder / "x.bin.json") << R"({"dtype": "i64", "endian": "little", "channels": [{"name": ")"
+                                       << stamps.name << R"("}, {"name": "x"}]})";
   return found((folder / "x.bin").string(), options);
 }
 
@@ -141,22 +135,9 @@ TEST_CASE("the same stamps have one unit and one rate in every format") {
 TEST_CASE("a name says time in every format or in none") {
   ReadOptions options;
   options.rate_hz = 100;
-  for (const char* name : {"t",
-                           "time",
-                           "elapsed",
-                           "Elapsed Time",
-                           "host_time",
-                           "seconds",
-                           "millis",
-                           "microseconds",
-                           "timeus",
-                           "timestamp_gps",
-                           "sampletimefine",
-                           "x_time",
-                           "temperature",
-                           "t_max",
-                           "speed_min",
-                           "index"}) {
+  for (const char* name :
+       {"t", "time", "elapsed", "Elapsed Time", "host_time", "seconds", "millis", "microseconds", "timeus",
+        "timestamp_gps", "sampletimefine", "x_time", "temperature", "t_max", "speed_min", "index"}) {
     INFO(name);
     const Stamps stamps{name, every(10)};
     const Found csv = from_csv(stamps, options);
@@ -227,8 +208,7 @@ TEST_CASE("the device's own time is preferred to the host's") {
 }
 
 TEST_CASE("a wrong time column or unit is refused in every format alike") {
-  const auto message = [](Found (*read)(const Stamps&, const ReadOptions&),
-                          const ReadOptions& options) {
+  const auto message = [](Found (*read)(const Stamps&, const ReadOptions&), const ReadOptions& options) {
     try {
       read({"t", every(10)}, options);
       return std::string("accepted");
@@ -272,13 +252,11 @@ TEST_CASE("a unit that a sidecar states wins over the one in the name") {
 namespace {
 
 /// Of a log of two columns, the stamps being those of `of_row`.
-Recording with_stamps(const std::string& header,
-                      const std::function<std::string(int)>& of_row,
+Recording with_stamps(const std::string& header, const std::function<std::string(int)>& of_row,
                       const ReadOptions& options = {}) {
   std::mt19937_64 random(3);
   std::string text = header + ",x\n";
-  for (int i = 0; i < 300; ++i)
-    text += of_row(i) + "," + std::to_string(static_cast<double>(random() % 1000)) + "\n";
+  for (int i = 0; i < 300; ++i) text += of_row(i) + "," + std::to_string(static_cast<double>(random() % 1000)) + "\n";
   return test::read_text(text, options);
 }
 
@@ -289,24 +267,14 @@ TEST_CASE("a steady clock is the time, whatever its name") {
     const char* header;
     double step, rate_hz;
   };
-  for (const Named& named : {Named{"ms", 10, 100},
-                             Named{"us", 10000, 100},
-                             Named{"millis()", 10, 100},
-                             Named{"micros()", 10000, 100},
-                             Named{"TOW", 0.1, 10},
-                             Named{"UTC", 0.02, 50},
-                             Named{"IMUTime", 0.005, 200},
-                             Named{"MasterTime", 0.005, 200},
-                             Named{"sensor_ts", 10000000, 100},
-                             Named{"Tick", 10, 100},
-                             Named{"loggingTime", 0.01, 100},
-                             Named{"\xE6\x97\xB6\xE9\x97\xB4", 0.01, 100},
-                             Named{"Laufzeit", 0.01, 100},
-                             Named{"ts", 0.01, 100},
-                             Named{"frame_clock", 10000, 100}}) {
+  for (const Named& named :
+       {Named{"ms", 10, 100}, Named{"us", 10000, 100}, Named{"millis()", 10, 100}, Named{"micros()", 10000, 100},
+        Named{"TOW", 0.1, 10}, Named{"UTC", 0.02, 50}, Named{"IMUTime", 0.005, 200}, Named{"MasterTime", 0.005, 200},
+        Named{"sensor_ts", 10000000, 100}, Named{"Tick", 10, 100}, Named{"loggingTime", 0.01, 100},
+        Named{"\xE6\x97\xB6\xE9\x97\xB4", 0.01, 100}, Named{"Laufzeit", 0.01, 100}, Named{"ts", 0.01, 100},
+        Named{"frame_clock", 10000, 100}}) {
     INFO(named.header);
-    const Recording r =
-        with_stamps(named.header, [&](int i) { return fmt::format("{}", 1000 + named.step * i); });
+    const Recording r = with_stamps(named.header, [&](int i) { return fmt::format("{}", 1000 + named.step * i); });
     CHECK(r.info.time.column == name_and_unit(named.header).first);
     CHECK(r.info.time.rate_hz == Approx(named.rate_hz));
   }
@@ -318,12 +286,9 @@ TEST_CASE("a temperature that rises and a row counter are no time") {
   CHECK(with_stamps("T", [&](int i) {
           return fmt::format("{:.3f}", 20 + 0.01 * i + noise(random));
         }).info.time.column.empty());
-  CHECK(with_stamps("T", [&](int i) {
-          return fmt::format("{:.2f}", 20 + 0.001 * i);
-        }).info.time.column.empty());
-  CHECK(with_stamps("temperature", [&](int i) {
-          return fmt::format("{:.2f}", 20 + 0.01 * i);
-        }).info.time.column.empty());
+  CHECK(with_stamps("T", [&](int i) { return fmt::format("{:.2f}", 20 + 0.001 * i); }).info.time.column.empty());
+  CHECK(
+      with_stamps("temperature", [&](int i) { return fmt::format("{:.2f}", 20 + 0.01 * i); }).info.time.column.empty());
   CHECK(with_stamps("sample", [](int i) { return std::to_string(i); }).info.time.column.empty());
   ReadOptions rate;
   rate.rate_hz = 100;  // who knows the rate looks for no clock
@@ -333,13 +298,11 @@ TEST_CASE("a temperature that rises and a row counter are no time") {
 }
 
 TEST_CASE("a device's clock of whole seconds gives way to a steady host clock") {
-  const Recording r = with_stamps("device_time[s],host_time[s]", [](int i) {
-    return fmt::format("{},{:.3f}", (i * 10 + 3) / 10, 100 + i * 1.0003);
-  });
+  const Recording r = with_stamps("device_time[s],host_time[s]",
+                                  [](int i) { return fmt::format("{},{:.3f}", (i * 10 + 3) / 10, 100 + i * 1.0003); });
   CHECK(r.info.time.column == "device_time");  // as good: one row a second
-  const Recording s = with_stamps("device_time[s],host_time[s]", [](int i) {
-    return fmt::format("{},{:.3f}", i * 7 / 20, 100 + i * 0.35);
-  });
+  const Recording s = with_stamps("device_time[s],host_time[s]",
+                                  [](int i) { return fmt::format("{},{:.3f}", i * 7 / 20, 100 + i * 0.35); });
   CHECK(s.info.time.column == "host_time");
   CHECK_THAT(s.info.guesses.front(), Catch::Contains("steadier than device_time"));
 }
@@ -350,15 +313,12 @@ TEST_CASE("counts of days are read to the millisecond, as a guess") {
     double first;
     std::int64_t start_s;
   };
-  for (const Days& days : {Days{"time", 45292, 1704067200},
-                           Days{"MJD", 60310, 1704067200},
-                           Days{"time", 739252, 1704067200},
-                           Days{"time", 2460310.5, 1704067200}}) {
+  for (const Days& days : {Days{"time", 45292, 1704067200}, Days{"MJD", 60310, 1704067200},
+                           Days{"time", 739252, 1704067200}, Days{"time", 2460310.5, 1704067200}}) {
     for (const double step_s : {0.01, 1.0, 10.0, 60.0}) {
       INFO(days.header << " " << days.first << " " << step_s);
-      const Recording r = with_stamps(days.header, [&](int i) {
-        return fmt::format("{:.12f}", days.first + 0.25 + i * step_s / 86400);
-      });
+      const Recording r = with_stamps(
+          days.header, [&](int i) { return fmt::format("{:.12f}", days.first + 0.25 + i * step_s / 86400); });
       CHECK(r.info.time.unit == "d");
       CHECK(r.info.time.unit_guessed);
       CHECK(r.info.time.rate_hz == Approx(1 / step_s).epsilon(1e-3));
@@ -366,12 +326,11 @@ TEST_CASE("counts of days are read to the millisecond, as a guess") {
             Approx(static_cast<double>(days.start_s + 21600)).margin(0.001));
     }
   }
-  const Recording pair = with_stamps(
-      "MJD,sod", [](int i) { return fmt::format("{},{}", 60310 + i / 200, i % 200 * 432); });
+  const Recording pair =
+      with_stamps("MJD,sod", [](int i) { return fmt::format("{},{}", 60310 + i / 200, i % 200 * 432); });
   CHECK(pair.info.time.rate_hz == Approx(1.0 / 432));
   ReadOptions hours;
-  for (const auto& [unit, rate] :
-       {std::pair{"min", 1.0 / 60}, {"h", 1.0 / 3600}, {"d", 1.0 / 86400}}) {
+  for (const auto& [unit, rate] : {std::pair{"min", 1.0 / 60}, {"h", 1.0 / 3600}, {"d", 1.0 / 86400}}) {
     hours.time_unit = unit;
     CHECK(with_stamps(
               "t", [](int i) { return std::to_string(i); }, hours)

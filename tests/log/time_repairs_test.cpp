@@ -10,8 +10,7 @@ TEST_CASE("of a gap, what lies in the window counts") {
   const double dt = 10;
   const auto stretch = [&](std::int64_t from, std::int64_t to) {
     const GridStretch inside = gap_in_window(5, 100, dt, from, to);  // points at 110 … 150
-    return std::vector<std::int64_t>{
-        inside.first, inside.last, static_cast<std::int64_t>(inside.count())};
+    return std::vector<std::int64_t>{inside.first, inside.last, static_cast<std::int64_t>(inside.count())};
   };
   CHECK(stretch(0, INT64_MAX) == std::vector<std::int64_t>{1, 5, 5});
   CHECK(stretch(125, INT64_MAX) == std::vector<std::int64_t>{3, 5, 3});

@@ -83,9 +83,7 @@ struct MemoryReader final : TopicReader {
     first.integers = false;
     return first;
   }
-  void select(std::size_t,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time_field,
+  void select(std::size_t, const std::vector<std::size_t>& fields, std::optional<std::size_t> time_field,
               StampUnit wanted_unit) override {
     wanted = fields;
     time = time_field;
@@ -93,8 +91,7 @@ struct MemoryReader final : TopicReader {
   }
   bool next(RowBlock& block, std::size_t most, Findings&) override {
     for (; at < rows.size() && block.rows < most; ++at, ++block.rows) {
-      for (std::size_t c = 0; c < wanted.size(); ++c)
-        block.columns[c].push_back(rows[at][wanted[c]]);
+      for (std::size_t c = 0; c < wanted.size(); ++c) block.columns[c].push_back(rows[at][wanted[c]]);
       if (time)
         block.time_ns.push_back(std::llround(rows[at][*time] * static_cast<double>(unit)));
       else if (!own_stamps.empty())
@@ -106,9 +103,7 @@ struct MemoryReader final : TopicReader {
   std::uint64_t bytes_read() const override { return at; }
 };
 
-void take_all(RowSource& rows,
-              std::vector<std::vector<double>>& columns,
-              std::vector<std::int64_t>& stamps,
+void take_all(RowSource& rows, std::vector<std::vector<double>>& columns, std::vector<std::int64_t>& stamps,
               Findings& warnings) {
   RowBlock block;
   while (rows.next(block, warnings)) {
@@ -181,11 +176,10 @@ TEST_CASE("the only topic with numbers, or the only sensor's, is taken, of sever
   CHECK(choice({topics[0], topics[2], topics[3]}, {}) == "/imu0:");
   const auto chosen = choose_topic({topics[0], topics[3]}, {}, "a.bag");
   REQUIRE(chosen);
-  CHECK(chosen->guess ==
-        "topic: /imu0, the only one of 2 that is a sensor's (`topic` takes another one)");
-  CHECK_THROWS_WITH(refuse_without_topic(topics, "a.bag"),
-                    Catch::Contains("E0427") && Catch::Contains("holds 4 topics") &&
-                        Catch::Contains("`topic` /imu0 chooses one"));
+  CHECK(chosen->guess == "topic: /imu0, the only one of 2 that is a sensor's (`topic` takes another one)");
+  CHECK_THROWS_WITH(refuse_without_topic(topics, "a.bag"), Catch::Contains("E0427") &&
+                                                               Catch::Contains("holds 4 topics") &&
+                                                               Catch::Contains("`topic` /imu0 chooses one"));
   CHECK_THROWS_WITH(refuse_without_topic({topics[2]}, "a.bag"),
                     Catch::Contains("E0426") && Catch::Contains("/camera: images"));
   CHECK_THROWS_WITH(refuse_without_topic({}, "a.bag"), Catch::Contains("holds no messages"));
@@ -193,13 +187,10 @@ TEST_CASE("the only topic with numbers, or the only sensor's, is taken, of sever
 
 TEST_CASE("what names no topic, or several, is refused with the way out") {
   const auto topics = flight();
-  CHECK_THAT(choice(topics, asking({}, "/imu2")),
-             Catch::Contains("E0425") && Catch::Contains("did you mean"));
+  CHECK_THAT(choice(topics, asking({}, "/imu2")), Catch::Contains("E0425") && Catch::Contains("did you mean"));
   CHECK_THAT(choice(topics, asking({}, "/camera")), Catch::Contains("cannot be read: images"));
-  CHECK_THAT(choice(topics, asking({"w.x"})),
-             Catch::Contains("several topics have this channel: /imu0, /imu1"));
-  CHECK_THAT(choice(topics, asking({"/imu0/w.x", "/imu1/w.x"})),
-             Catch::Contains("clock of its own"));
+  CHECK_THAT(choice(topics, asking({"w.x"})), Catch::Contains("several topics have this channel: /imu0, /imu1"));
+  CHECK_THAT(choice(topics, asking({"/imu0/w.x", "/imu1/w.x"})), Catch::Contains("clock of its own"));
   CHECK_THAT(choice(topics, asking({"nothing"})), Catch::Contains("no topic has a channel"));
 }
 
@@ -247,8 +238,7 @@ TEST_CASE("fields that no sensor measures are left out unless asked for, and tha
   reader->usual = {0};
   const Opened log(std::move(reader), asking({}, "/pose"));
   CHECK(log.names() == "x ");
-  CHECK_THAT(log.rows->info().dialect.back(),
-             Catch::Contains("1 field left out") && Catch::Contains("such as t"));
+  CHECK_THAT(log.rows->info().dialect.back(), Catch::Contains("1 field left out") && Catch::Contains("such as t"));
   reader = pose_reader();
   reader->usual = {0};
   CHECK(Opened(std::move(reader), asking({"/pose/t"})).names() == "t ");
@@ -263,8 +253,7 @@ TEST_CASE("a pattern names several topics, of which channels choose") {
   CHECK(several(topics, asking({"/imu1/w.y"}, "/imu?")) == "/imu1: w.y");
   CHECK(several(topics, asking({"/imu?/w.y"}, "/imu?")) == "/imu0: w.y /imu1: w.y");
   CHECK(several(topics, asking({"!w.y"}, "/imu?")) == "/imu0: !w.y /imu1: !w.y");
-  CHECK_THAT(several(topics, asking({"w.z"}, "/imu?")),
-             Catch::Contains("E0320") && Catch::Contains("/imu1/w.y"));
+  CHECK_THAT(several(topics, asking({"w.z"}, "/imu?")), Catch::Contains("E0320") && Catch::Contains("/imu1/w.y"));
 }
 
 namespace {
@@ -276,8 +265,7 @@ std::size_t opened = 0;
 std::unique_ptr<TopicReader> next_clock(const std::string&, const ReadOptions&) {
   auto reader = std::make_unique<MemoryReader>();
   reader->stamps_ns = clocks[opened++];
-  for (std::size_t i = 0; i < reader->stamps_ns.size(); ++i)
-    reader->rows.push_back({static_cast<double>(i), 0});
+  for (std::size_t i = 0; i < reader->stamps_ns.size(); ++i) reader->rows.push_back({static_cast<double>(i), 0});
   return reader;
 }
 
@@ -294,21 +282,18 @@ struct Joined {
     const std::string path = (folder / "a.bag").string();
     std::ofstream(path, std::ios::binary) << "abc";
     const auto topics = flight();
-    rows = open_joined_topics(
-        choose_topics(topics, options, path), topics, next_clock, path, "bag", options);
+    rows = open_joined_topics(choose_topics(topics, options, path), topics, next_clock, path, "bag", options);
     take_all(*rows, columns, stamps, warnings);
   }
 };
 
 std::size_t missing(const std::vector<double>& values) {
-  return static_cast<std::size_t>(
-      std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }));
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }));
 }
 
 std::vector<std::int64_t> clock_of(std::size_t n, double first, double step) {
   std::vector<std::int64_t> out;
-  for (std::size_t i = 0; i < n; ++i)
-    out.push_back(std::llround(first + step * static_cast<double>(i)));
+  for (std::size_t i = 0; i < n; ++i) out.push_back(std::llround(first + step * static_cast<double>(i)));
   return out;
 }
 
@@ -317,8 +302,7 @@ std::vector<std::int64_t> clock_of(std::size_t n, double first, double step) {
 TEST_CASE("topics of one rate share rows, at the stamps of the first, however far apart they are") {
   for (const double behind : {0.0, 50.0, 480.0, 520.0, 950.0, -400.0}) {
     INFO(behind);
-    const Joined log({clock_of(5000, 1e6, 1000), clock_of(5000, 1e6 + behind, 1000)},
-                     asking({"w.x"}, "/imu?"));
+    const Joined log({clock_of(5000, 1e6, 1000), clock_of(5000, 1e6 + behind, 1000)}, asking({"w.x"}, "/imu?"));
     CHECK(log.rows->info().channels[1].name == "/imu1/w.x");
     CHECK(log.rows->info().channels[1].every == 1);
     CHECK(log.stamps.size() <= 5001);
@@ -329,8 +313,7 @@ TEST_CASE("topics of one rate share rows, at the stamps of the first, however fa
   }
 }
 
-TEST_CASE(
-    "a topic goes on where another one pauses, and one row is lost where a clock passes another") {
+TEST_CASE("a topic goes on where another one pauses, and one row is lost where a clock passes another") {
   auto paused = clock_of(5000, 0, 1000);
   paused.erase(paused.begin() + 2000, paused.begin() + 3000);
   const Joined log({paused, clock_of(5000, 300, 1000)}, asking({"w.x"}, "/imu?"));
@@ -341,8 +324,7 @@ TEST_CASE(
   CHECK(log.columns[0][4000] == 3000);
 
   for (const double step : {999.5, 1000.5}) {
-    const Joined drift({clock_of(20000, 0, 1000), clock_of(20000, 100, step)},
-                       asking({"w.x"}, "/imu?"));
+    const Joined drift({clock_of(20000, 0, 1000), clock_of(20000, 100, step)}, asking({"w.x"}, "/imu?"));
     INFO(step);
     CHECK(drift.stamps.size() <= 20010);
     CHECK(missing(drift.columns[0]) <= 20);

@@ -21,18 +21,12 @@ using namespace libchar;
 namespace {
 
 // A raw reading as make.py makes it.
-int flight_count(int i, int axis) {
-  return (37 * i + 101 * axis) % 2001 - 1000;
-}
+int flight_count(int i, int axis) { return (37 * i + 101 * axis) % 2001 - 1000; }
 
 // A number that was stored as a float.
-double ulog_f32(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
+double ulog_f32(double x) { return static_cast<double>(static_cast<float>(x)); }
 
-std::string flight(const std::string& name) {
-  return test::fixture("flight/" + name).string();
-}
+std::string flight(const std::string& name) { return test::fixture("flight/" + name).string(); }
 
 ReadOptions of_topic(const std::string& topic, std::vector<std::string> channels = {}) {
   ReadOptions options;
@@ -48,8 +42,7 @@ std::uint64_t count_of(const LogInfo& info, std::string_view code) {
 
 std::string channels_of(const LogInfo& info) {
   std::string all;
-  for (const Channel& channel : info.channels)
-    all += fmt::format("{}[{}] ", channel.name, channel.unit);
+  for (const Channel& channel : info.channels) all += fmt::format("{}[{}] ", channel.name, channel.unit);
   return all;
 }
 
@@ -71,13 +64,9 @@ std::string little(std::uint64_t value, int bytes) {
   return text;
 }
 
-std::string ulog_message(char type, const std::string& body) {
-  return little(body.size(), 2) + type + body;
-}
+std::string ulog_message(char type, const std::string& body) { return little(body.size(), 2) + type + body; }
 
-std::string ulog_start() {
-  return std::string("ULog\x01\x12\x35\x01", 8) + little(1000, 8);
-}
+std::string ulog_start() { return std::string("ULog\x01\x12\x35\x01", 8) + little(1000, 8); }
 
 }  // namespace
 
@@ -93,8 +82,7 @@ TEST_CASE("ULog: FIFO messages are samples at their own instants, scale times co
   REQUIRE(gyro.info.samples == 480);
   const auto scale = ulog_f32(2000 * std::numbers::pi / 180 / 32768);
   for (int i = 0; i < 480; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      REQUIRE(gyro.samples[axis][i] == flight_count(i, axis) * scale);
+    for (int axis = 0; axis < 3; ++axis) REQUIRE(gyro.samples[axis][i] == flight_count(i, axis) * scale);
 
   const Recording accel = read_recording(flight("fifo.ulg"), of_topic("sensor_accel_fifo"));
   CHECK(channels_of(accel.info) == "x[m/s^2] y[m/s^2] z[m/s^2] ");
@@ -138,8 +126,8 @@ TEST_CASE("ULog: instances, nested messages, arrays, padding and every type by v
   CHECK(dropout->count == 2);
   CHECK(dropout->sentence.find("23 ms in all") != std::string::npos);
 
-  const Recording esc = read_recording(flight("instances.ulg"),
-                                       of_topic("esc_status", {"esc[0].pair[0]", "esc[1].rpm"}));
+  const Recording esc =
+      read_recording(flight("instances.ulg"), of_topic("esc_status", {"esc[0].pair[0]", "esc[1].rpm"}));
   CHECK(esc.samples[0][23] == -115);
   CHECK(esc.samples[1][23] == 1115);
 
@@ -168,8 +156,7 @@ TEST_CASE("ULog: appended data are read, and the message in front that was cut i
   CHECK(count_of(mag.info, "cut_message") == 1);
   CHECK(mag.samples[0][59] == ulog_f32(0.2 + 59e-4));
   bool said = false;
-  for (const std::string& line : mag.info.dialect)
-    said = said || line.find("data appended at byte") == 0;
+  for (const std::string& line : mag.info.dialect) said = said || line.find("data appended at byte") == 0;
   CHECK(said);
 }
 
@@ -181,8 +168,7 @@ TEST_CASE("ULog: version 0 as PX4 1.4 wrote it, pressure in hPa, a topic without
   CHECK(both.info.channels.size() == 11);
   CHECK(both.info.time.rate_hz == Approx(250).epsilon(1e-12));
   CHECK(both.samples[4][7] == ulog_f32(flight_count(7, 1) * 1e-2));
-  CHECK_THROWS_WITH(read_recording(flight("old.ulg"), of_topic("commander_state")),
-                    Catch::Contains("E0315"));
+  CHECK_THROWS_WITH(read_recording(flight("old.ulg"), of_topic("commander_state")), Catch::Contains("E0315"));
 }
 
 TEST_CASE("ULog: what damage reaches is left out and counted, all else is right") {
@@ -244,9 +230,7 @@ TEST_CASE("ULog: rows do not depend on the size of blocks") {
       const Recording parts = read_recording(flight(name), options);
       REQUIRE(parts.info.samples == whole.info.samples);
       for (std::size_t c = 0; c < whole.samples.size(); ++c)
-        CHECK(std::memcmp(parts.samples[c].data(),
-                          whole.samples[c].data(),
-                          whole.info.samples * sizeof(double)) == 0);
+        CHECK(std::memcmp(parts.samples[c].data(), whole.samples[c].data(), whole.info.samples * sizeof(double)) == 0);
     }
   }
 }
@@ -269,8 +253,7 @@ TEST_CASE("ULog: what cannot be read is refused in a sentence") {
 
 TEST_CASE("ULog: a topic whose definition cannot be used says why") {
   const auto why = [](const std::string& definitions, const std::string& name) {
-    const std::string log = ulog_start() + definitions +
-                            ulog_message('A', std::string("\0\1\0", 3) + name) +
+    const std::string log = ulog_start() + definitions + ulog_message('A', std::string("\0\1\0", 3) + name) +
                             ulog_message('D', std::string("\1\0", 2) + std::string(9, 'a'));
     const test::MemoryLog file(log);
     const std::vector<LogTopic> topics = log_listing(file.path(), {}).topics;
@@ -278,8 +261,7 @@ TEST_CASE("ULog: a topic whose definition cannot be used says why") {
     return topics[0].why_not;
   };
   CHECK(why("", "lost") == "the log does not define its format lost");
-  CHECK(why(ulog_message('F', "a:uint64_t timestamp;b x;"), "a") ==
-        "the log does not define its format b");
+  CHECK(why(ulog_message('F', "a:uint64_t timestamp;b x;"), "a") == "the log does not define its format b");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;a x;"), "a") == "its format holds itself");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;float[70000] x;"), "a") ==
         "its format is longer than a message can be");
@@ -289,8 +271,7 @@ TEST_CASE("ULog: a topic whose definition cannot be used says why") {
         "its fields have names of more than 255 characters");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;nonsense;"), "a") ==
         "its format has a field that is none: nonsense");
-  CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;") +
-                ulog_message('F', "a:uint64_t timestamp;int8_t x;"),
+  CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;") + ulog_message('F', "a:uint64_t timestamp;int8_t x;"),
             "a") == "the log defines its format twice, and not alike");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;"), "a").empty());
 }
@@ -339,8 +320,7 @@ TEST_CASE("ULog: a stamp of zero among others is none") {
   CHECK(rows.samples[0][38] == 19.5);
 }
 
-TEST_CASE(
-    "ULog: more samples than a FIFO message holds are counted, and those that it holds read") {
+TEST_CASE("ULog: more samples than a FIFO message holds are counted, and those that it holds read") {
   std::string whole = test::slurp(flight("fifo.ulg"));
   const std::string mark = std::string("D\0\0", 3);
   const std::size_t first = whole.find(mark);

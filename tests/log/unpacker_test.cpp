@@ -17,8 +17,7 @@ namespace {
 
 std::string rows_text() {
   std::string text = "t,x\n";
-  for (int k = 0; k < 60; ++k)
-    text += std::to_string(k) + "," + std::to_string(k * 7919 % 1000) + "\n";
+  for (int k = 0; k < 60; ++k) text += std::to_string(k) + "," + std::to_string(k * 7919 % 1000) + "\n";
   return text;
 }
 

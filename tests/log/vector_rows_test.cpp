@@ -26,18 +26,15 @@ Parsed parse(std::string text, bool crlf = false) {
   Parsed out;
   out.values.assign(1000, 0);
   out.stamps.assign(1000, 0);
-  const VectorColumn columns[] = {{.use = VectorColumn::Use::stamp, .stamps = out.stamps.data()},
-                                  {.use = VectorColumn::Use::value,
-                                   .values = out.values.data(),
-                                   .fractional = &out.fractional}};
+  const VectorColumn columns[] = {
+      {.use = VectorColumn::Use::stamp, .stamps = out.stamps.data()},
+      {.use = VectorColumn::Use::value, .values = out.values.data(), .fractional = &out.fractional}};
   std::vector<std::uint32_t> scratch;
   out.result = parse_vector_rows({text.data(), size}, ',', crlf, columns, 1000, scratch);
   return out;
 }
 
-bool same_bits(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 }  // namespace
 
@@ -61,8 +58,7 @@ TEST_CASE("vector rows: known numbers") {
   CHECK_FALSE(parse("0,1\n0,-20\n").fractional);
   CHECK(parse("0,5.\n").fractional);
   CHECK(parse("0,1e3\n").fractional);
-  CHECK_FALSE(parse("0,1\n0,\n")
-                  .fractional);  // found by fuzzing: a refused field made its column fractional
+  CHECK_FALSE(parse("0,1\n0,\n").fractional);  // found by fuzzing: a refused field made its column fractional
   CHECK_FALSE(parse("0,00000000000000000007\n").fractional);  // the same, 20 digits
   CHECK(parse("0,1\r\n", true).result.rows == 1);
   CHECK(parse("0,1\n", true).result.rows == 0);
@@ -103,8 +99,8 @@ TEST_CASE("vector rows: the same bits as std::from_chars on random numbers of ev
     std::vector<double> expected;
     for (int row = 0; row < 1000; ++row) {
       char number[64];
-      const double value = (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5) *
-                           std::pow(10.0, static_cast<double>(random() % 12));
+      const double value =
+          (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5) * std::pow(10.0, static_cast<double>(random() % 12));
       switch (random() % 4) {
         case 0:
           std::snprintf(number, sizeof number, "%.*f", static_cast<int>(random() % 15), value);
@@ -113,10 +109,7 @@ TEST_CASE("vector rows: the same bits as std::from_chars on random numbers of ev
           std::snprintf(number, sizeof number, "%.*g", static_cast<int>(1 + random() % 17), value);
           break;
         case 2:
-          std::snprintf(number,
-                        sizeof number,
-                        "%lld",
-                        static_cast<long long>(random() >> (11 + random() % 50)));
+          std::snprintf(number, sizeof number, "%lld", static_cast<long long>(random() >> (11 + random() % 50)));
           break;
         default:
           *std::to_chars(number, number + sizeof number, value).ptr = '\0';
@@ -130,38 +123,21 @@ TEST_CASE("vector rows: the same bits as std::from_chars on random numbers of ev
     REQUIRE(p.result.rows == 1000);
     REQUIRE(p.result.consumed == text.size());
     for (std::size_t i = 0; i < 1000; ++i)
-      if (!same_bits(p.values[i], expected[i]))
-        FAIL("row " << i << ": " << p.values[i] << " against " << expected[i]);
+      if (!same_bits(p.values[i], expected[i])) FAIL("row " << i << ": " << p.values[i] << " against " << expected[i]);
   }
 }
 
 TEST_CASE("vector rows: one unusual field among regular ones is found in whatever row it stands") {
   LIBCHAR_NEEDS_VECTOR_ROWS();
   std::mt19937_64 random(8);
-  for (const char* unusual : {"",
-                              "nan",
-                              "1.2.3",
-                              ".",
-                              "-",
-                              "-.",
-                              "1 ",
-                              "+1",
-                              "1_0",
-                              "--1",
-                              "\"1\"",
-                              "1/2",
-                              "1:2",
-                              ",",
-                              "1,2",
-                              "12345678901234567x",
-                              "x"}) {
+  for (const char* unusual : {"", "nan", "1.2.3", ".", "-", "-.", "1 ", "+1", "1_0", "--1", "\"1\"", "1/2", "1:2", ",",
+                              "1,2", "12345678901234567x", "x"}) {
     for (int at = 0; at < 23; ++at) {
       std::string text;
       std::vector<double> expected;
       for (int row = 0; row < 23; ++row) {
         char number[64];
-        std::snprintf(
-            number, sizeof number, "%.9g", static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
+        std::snprintf(number, sizeof number, "%.9g", static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5);
         text += "5," + std::string(row == at ? unusual : number) + "\n";
         expected.push_back(std::strtod(number, nullptr));
       }
@@ -180,18 +156,9 @@ TEST_CASE("vector rows: fields that fours cannot take, among those they can") {
     for (int row = 0; row < 12; ++row) text += "5," + (row == 6 ? special : "-1.5") + "\n";
     return text;
   };
-  for (const std::string special : {"1.",
-                                    "-7.",
-                                    "1e-3",
-                                    "9007199254740991",
-                                    "9007199254740990.5",
-                                    "0.1234567890123456",
-                                    "-0.12345678901234567",
-                                    "0000000000000.25",
-                                    "-0",
-                                    "-0.0",
-                                    "999999999999999.9",
-                                    "123456789.12345678"}) {
+  for (const std::string special :
+       {"1.", "-7.", "1e-3", "9007199254740991", "9007199254740990.5", "0.1234567890123456", "-0.12345678901234567",
+        "0000000000000.25", "-0", "-0.0", "999999999999999.9", "123456789.12345678"}) {
     CAPTURE(special);
     const Parsed p = parse(rows_of(special));
     REQUIRE(p.result.rows == 12);

@@ -16,9 +16,7 @@ using ColumnValues = std::vector<double>;
 
 namespace {
 
-LogInfo info_of(const std::vector<Channel>& channels,
-                double rate_hz = 200,
-                std::optional<std::int64_t> start = {}) {
+LogInfo info_of(const std::vector<Channel>& channels, double rate_hz = 200, std::optional<std::int64_t> start = {}) {
   LogInfo info;
   info.channels = channels;
   info.time.rate_hz = rate_hz;
@@ -27,11 +25,8 @@ LogInfo info_of(const std::vector<Channel>& channels,
 }
 
 // Written in blocks of uneven length, as readers deliver them.
-std::vector<std::string> write(const std::string& path,
-                               const LogInfo& info,
-                               const std::vector<ColumnValues>& samples,
-                               const WriteOptions& options = {},
-                               std::size_t step = 1000) {
+std::vector<std::string> write(const std::string& path, const LogInfo& info, const std::vector<ColumnValues>& samples,
+                               const WriteOptions& options = {}, std::size_t step = 1000) {
   const auto writer = open_log_writer(path, info, options);
   for (std::size_t at = 0; at < samples[0].size(); at += step) {
     std::vector<std::span<const double>> block;
@@ -45,23 +40,15 @@ std::vector<std::string> write(const std::string& path,
 
 std::vector<std::uint64_t> bits(const ColumnValues& samples) {
   std::vector<std::uint64_t> all;
-  for (const double x : samples)
-    all.push_back(std::isnan(x) ? 0x7ff8000000000000U : std::bit_cast<std::uint64_t>(x));
+  for (const double x : samples) all.push_back(std::isnan(x) ? 0x7ff8000000000000U : std::bit_cast<std::uint64_t>(x));
   return all;
 }
 
 // Every bit pattern that is a finite double, and the odd missing one.
 ColumnValues any_doubles(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  ColumnValues values = {0.0,
-                         -0.0,
-                         5e-324,
-                         -2.2250738585072014e-308,
-                         std::numeric_limits<double>::max(),
-                         1.0 / 3,
-                         0.1,
-                         1e22,
-                         123456789012345680.0};
+  ColumnValues values = {0.0,     -0.0, 5e-324, -2.2250738585072014e-308, std::numeric_limits<double>::max(),
+                         1.0 / 3, 0.1,  1e22,   123456789012345680.0};
   while (values.size() < n) {
     const double x = std::bit_cast<double>(random());
     values.push_back(std::isfinite(x) && random() % 50 != 0 ? x : kMissing);
@@ -73,10 +60,8 @@ ColumnValues any_doubles(std::size_t n, std::uint64_t seed) {
 
 TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
   const test::TemporaryFolder folder;
-  const std::vector<ColumnValues> samples = {
-      any_doubles(5000, 1), any_doubles(5000, 2), any_doubles(5000, 3)};
-  const LogInfo info =
-      info_of({{"gyro_x", "deg/s"}, {"gyro_y", "deg/s"}, {"it's, \"odd\"", ""}}, 200);
+  const std::vector<ColumnValues> samples = {any_doubles(5000, 1), any_doubles(5000, 2), any_doubles(5000, 3)};
+  const LogInfo info = info_of({{"gyro_x", "deg/s"}, {"gyro_y", "deg/s"}, {"it's, \"odd\"", ""}}, 200);
   int count = 0;
   for (const char* file : {"a.csv", "b.npy", "c.f64"}) {
     for (const char* order : {"interleaved", "planar"}) {
@@ -95,8 +80,7 @@ TEST_CASE("CSV, NPY and raw of the same data read back to the same bits") {
           REQUIRE(got.samples.size() == 3);
           for (std::size_t c = 0; c < 3; ++c) CHECK(bits(got.samples[c]) == bits(samples[c]));
           CHECK(got.info.time.rate_hz == Approx(200).epsilon(1e-12));
-          const bool has_names =
-              std::string(file) != "b.npy" || std::string(order) == "interleaved";
+          const bool has_names = std::string(file) != "b.npy" || std::string(order) == "interleaved";
           CHECK(got.info.channels[0].name == (has_names ? "gyro_x" : "c0"));
           CHECK(got.info.channels[2].name == (has_names ? "it's, \"odd\"" : "c2"));
           ++count;
@@ -179,8 +163,7 @@ TEST_CASE("missing samples of a lone channel without stamps are not lost") {
 
 TEST_CASE("a channel name is no formula for a spreadsheet") {
   const test::TemporaryFolder folder;
-  write((folder / "a.csv").string(),
-        info_of({{"=1+1", ""}, {"@x", "V"}, {"-y", ""}, {"a\"b", ""}}, 0),
+  write((folder / "a.csv").string(), info_of({{"=1+1", ""}, {"@x", "V"}, {"-y", ""}, {"a\"b", ""}}, 0),
         {{1}, {2}, {3}, {4}});
   CHECK(test::slurp(folder / "a.csv") == "\"'=1+1\",\"'@x[V]\",\"'-y\",\"a\"\"b\"\n1,2,3,4\n");
 }
@@ -200,8 +183,7 @@ TEST_CASE("an output is whole or absent, and nothing is overwritten unasked") {
     CHECK(test::slurp(path) == before);
   }
   std::size_t files = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path()))
-    ++files;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
   CHECK(files == 4);  // the three and one sidecar: nothing temporary is left
 }
 
@@ -229,9 +211,8 @@ TEST_CASE("thousands of named channels do not fit a .npy header and say so") {
   const test::TemporaryFolder folder;
   std::vector<Channel> channels;
   for (int i = 0; i < 2000; ++i) channels.push_back({"sensor_" + std::to_string(i), ""});
-  const auto losses = write((folder / "a.npy").string(),
-                            info_of(channels, 0),
-                            std::vector<ColumnValues>(2000, ColumnValues{1, 2}));
+  const auto losses =
+      write((folder / "a.npy").string(), info_of(channels, 0), std::vector<ColumnValues>(2000, ColumnValues{1, 2}));
   REQUIRE(losses.size() == 1);
   CHECK_THAT(losses[0], Catch::Contains("channel names"));
   CHECK(read_recording((folder / "a.npy").string()).info.channels.size() == 2000);

@@ -43,16 +43,9 @@ struct Written {
     return fmt::format(
         "delimiter '{}' {} stamps {} words {} header {} quotes {} front {} columns {} rows {} "
         "digits {}",
-        delimiter == '\t' ? "tab" : std::string(1, delimiter),
-        comma ? "comma" : "point",
-        static_cast<int>(stamps),
-        static_cast<int>(words),
-        static_cast<int>(header),
-        static_cast<int>(quotes),
-        static_cast<int>(front),
-        columns,
-        rows,
-        digits);
+        delimiter == '\t' ? "tab" : std::string(1, delimiter), comma ? "comma" : "point", static_cast<int>(stamps),
+        static_cast<int>(words), static_cast<int>(header), static_cast<int>(quotes), static_cast<int>(front), columns,
+        rows, digits);
   }
 };
 
@@ -69,8 +62,7 @@ std::string in_quotes(const std::string& text) {
 
 std::string line_of(const Written& w, const std::vector<std::string>& cells) {
   std::string out;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    out += (c == 0 ? "" : std::string(1, w.delimiter)) + cells[c];
+  for (std::size_t c = 0; c < cells.size(); ++c) out += (c == 0 ? "" : std::string(1, w.delimiter)) + cells[c];
   return out + (w.crlf ? "\r\n" : "\n");
 }
 
@@ -81,8 +73,7 @@ double step_of(const Written& w) {
 
 std::vector<std::string> stamp_cells(const Written& w, std::size_t row) {
   const auto clock = [&](std::size_t tenths) {
-    return fmt::format(
-        "{:02d}:{:02d}:{:02d}", tenths / 36000 % 24, tenths / 600 % 60, tenths / 10 % 60);
+    return fmt::format("{:02d}:{:02d}:{:02d}", tenths / 36000 % 24, tenths / 600 % 60, tenths / 10 % 60);
   };
   const std::size_t day = 11 + row / 86400;
   switch (w.stamps) {
@@ -98,11 +89,8 @@ std::vector<std::string> stamp_cells(const Written& w, std::size_t row) {
     case Stamps::date_and_clock:
       return {fmt::format("{:02d}.11.2026", day), clock(10 * row)};
     case Stamps::slashes:
-      return {fmt::format("11/{:02d}/2026{}{:02d}:{:02d}",
-                          20 + row / 1440,
-                          w.delimiter == ' ' ? "T" : " ",
-                          row / 60 % 24,
-                          row % 60)};
+      return {fmt::format("11/{:02d}/2026{}{:02d}:{:02d}", 20 + row / 1440, w.delimiter == ' ' ? "T" : " ",
+                          row / 60 % 24, row % 60)};
     default:
       return {};
   }
@@ -141,11 +129,9 @@ std::string words(const Written& w, std::size_t row) {
 
 void write_front(Written& w) {
   const std::string end = w.crlf ? "\r\n" : "\n";
-  if (w.front == Front::comments)
-    w.text += "# Logger 17, made in May; serial 4" + end + "# bench" + end;
+  if (w.front == Front::comments) w.text += "# Logger 17, made in May; serial 4" + end + "# bench" + end;
   if (w.front == Front::semicolons) w.text += "; Logger 17, made in May" + end + "; bench" + end;
-  if (w.front == Front::preamble)
-    w.text += "Logger type 17" + end + "Booting... ok" + end + "IMU found at 0x68" + end;
+  if (w.front == Front::preamble) w.text += "Logger type 17" + end + "Booting... ok" + end + "IMU found at 0x68" + end;
 }
 
 void write_header(Written& w) {
@@ -153,8 +139,7 @@ void write_header(Written& w) {
   std::vector<std::string> names = stamp_names(w), units(names.size(), "");
   const bool brackets = w.header == Header::units_in_names;
   for (std::size_t c = 0; c < w.columns; ++c) {
-    names.push_back(
-        fmt::format("ch{}{}", c, brackets ? (w.delimiter == ' ' ? "[V]" : " [V]") : ""));
+    names.push_back(fmt::format("ch{}{}", c, brackets ? (w.delimiter == ' ' ? "[V]" : " [V]") : ""));
     units.emplace_back("V");
   }
   if (w.words != Words::none) {
@@ -182,8 +167,7 @@ void write_rows(Written& w, std::mt19937_64& random) {
       for (std::string& cell : cells) cell = in_quotes(cell);
     if (w.words != Words::none) cells.push_back(words(w, row));
     const bool plain_words = w.words != Words::tuples && w.words != Words::newlines;
-    if (plain_words && w.words != Words::none &&
-        (w.quotes == Quotes::words || w.quotes == Quotes::all))
+    if (plain_words && w.words != Words::none && (w.quotes == Quotes::words || w.quotes == Quotes::all))
       cells.back() = in_quotes(cells.back());
     w.text += line_of(w, cells);
   }
@@ -193,8 +177,7 @@ void write_rows(Written& w, std::mt19937_64& random) {
 bool sensible(const Written& w) {
   if (w.delimiter == ',' && w.comma && w.quotes != Quotes::all) return false;
   if (w.delimiter == ' ' && w.header == Header::units_below) return false;
-  if (w.delimiter == ' ' && (w.words == Words::sparse || w.words == Words::late))
-    return w.quotes == Quotes::all;
+  if (w.delimiter == ' ' && (w.words == Words::sparse || w.words == Words::late)) return w.quotes == Quotes::all;
   if (w.front == Front::semicolons && w.delimiter == ';') return false;
   if (w.stamps == Stamps::none && w.header == Header::none && w.words != Words::none) return false;
   return true;
@@ -237,8 +220,7 @@ Written written(std::mt19937_64& random) {
 
 // "" when all is right, else what is wrong.
 std::string wrong(const Written& w, const Recording& r) {
-  if (r.info.channels.size() != w.columns)
-    return fmt::format("{} channels", r.info.channels.size());
+  if (r.info.channels.size() != w.columns) return fmt::format("{} channels", r.info.channels.size());
   for (std::size_t c = 0; c < w.columns; ++c) {
     if (r.samples[c] != w.values[c]) return fmt::format("values of channel {}", c);
     if (w.header == Header::none) continue;
@@ -266,13 +248,11 @@ TEST_CASE("written dialects: none is read wrong in silence, 98 of 100 are read")
       const Recording r = test::read_text(w.text, options);
       const std::string what = wrong(w, r);
       read += what.empty();
-      const bool said =
-          std::any_of(r.info.guesses.begin(), r.info.guesses.end(), [](const std::string& guess) {
-            return guess.find("`decimal` decide") != std::string::npos;
-          });
+      const bool said = std::any_of(r.info.guesses.begin(), r.info.guesses.end(), [](const std::string& guess) {
+        return guess.find("`decimal` decide") != std::string::npos;
+      });
       silent += !what.empty() && !said;
-      if (!what.empty())
-        report += fmt::format("{}: {}: {}\n", said ? "NAMED" : "SILENT", what, w.title());
+      if (!what.empty()) report += fmt::format("{}: {}: {}\n", said ? "NAMED" : "SILENT", what, w.title());
     } catch (const Error& error) {
       report += fmt::format("REFUSED: {}: {}\n", w.title(), error.what());
     }

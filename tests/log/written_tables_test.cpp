@@ -39,9 +39,7 @@ std::string channels_of(const Recording& r) {
   return out;
 }
 
-std::string shortest_row(int k) {
-  return fmt::format("{},{},{}", k, 0.5 * k, 2 * k);
-}
+std::string shortest_row(int k) { return fmt::format("{},{},{}", k, 0.5 * k, 2 * k); }
 
 }  // namespace
 
@@ -84,23 +82,21 @@ TEST_CASE("quoted cells hold line ends, quotes and delimiters, in blocks of any 
 }
 
 TEST_CASE("integers are known as such beside quoted cells that hold commas and fractions") {
-  const std::string text = table(
-      "t,n,note", 300, [](int k) { return fmt::format("{},{},\"0.5,1.5\n2.5,x\"", k, k % 7); });
+  const std::string text =
+      table("t,n,note", 300, [](int k) { return fmt::format("{},{},\"0.5,1.5\n2.5,x\"", k, k % 7); });
   CHECK(read_text(text).info.channels[0].integer);
 }
 
 TEST_CASE("a quote that never closes is named where it opens") {
-  const std::string text = table("t,x,note", 40, [](int k) {
-    return fmt::format("{},{},{}", k, 0.5 * k, k == 20 ? "\"open" : "\"shut\"");
-  });
+  const std::string text =
+      table("t,x,note", 40, [](int k) { return fmt::format("{},{},{}", k, 0.5 * k, k == 20 ? "\"open" : "\"shut\""); });
   for (const std::size_t block : {1U, 64U, 1U << 21U}) {
     ReadOptions options;
     options.block_bytes = block;
     CHECK_THAT(failure(text, options), Contains("log.csv:22:7 ") && Contains("E0306"));
   }
   // An inch mark opens nothing.
-  const Recording r =
-      read_text(table("t,x,size", 9, [](int k) { return fmt::format("{},{},pipe 5\"", k, k); }));
+  const Recording r = read_text(table("t,x,size", 9, [](int k) { return fmt::format("{},{},pipe 5\"", k, k); }));
   CHECK(r.info.channels.size() == 1);
 }
 
@@ -123,9 +119,8 @@ TEST_CASE("a column with words here and there, or only behind the first rows, is
     CHECK(channels_of(r) == "x[] ");
     CHECK(said(r.info.dialect, "columns of words: note"));
   }
-  const std::string late = table("t,x,note", 300, [](int k) {
-    return fmt::format("{},{},{}", k, 0.5 * k, k < 200 ? "0" : "fault");
-  });
+  const std::string late =
+      table("t,x,note", 300, [](int k) { return fmt::format("{},{},{}", k, 0.5 * k, k < 200 ? "0" : "fault"); });
   CHECK_THAT(failure(late), Contains("log.csv:202:") && Contains("`channels` '!note'"));
   ReadOptions but;
   but.channels = {"!note"};
@@ -133,8 +128,7 @@ TEST_CASE("a column with words here and there, or only behind the first rows, is
 }
 
 TEST_CASE("all channels but some: by name, position and pattern") {
-  const std::string text =
-      table("t,gx,gy,temp", 5, [](int k) { return fmt::format("{},{},{},{}", k, k, k, k); });
+  const std::string text = table("t,gx,gy,temp", 5, [](int k) { return fmt::format("{},{},{},{}", k, k, k, k); });
   const auto left = [&](std::vector<std::string> words) {
     ReadOptions options;
     options.channels = std::move(words);
@@ -152,8 +146,7 @@ TEST_CASE("all channels but some: by name, position and pattern") {
 }
 
 TEST_CASE("UTF-16 is read in either order of its bytes, also cut in two") {
-  const std::string text =
-      table("t [s]\tTemp [°C]", 50, [](int k) { return fmt::format("{}\t{}", k, 0.5 * k); });
+  const std::string text = table("t [s]\tTemp [°C]", 50, [](int k) { return fmt::format("{}\t{}", k, 0.5 * k); });
   for (const bool big : {false, true}) {
     std::string wide = big ? "\xFE\xFF" : "\xFF\xFE";
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -174,17 +167,16 @@ TEST_CASE("UTF-16 is read in either order of its bytes, also cut in two") {
 }
 
 TEST_CASE("comments may begin with a semicolon where it separates nothing") {
-  const Recording r =
-      read_text(";Title, http://example.org\n;SampleRate, 100,Hz\n;Headers, time,Ax,Ay,Az\n" +
-                table("0.000,1,2,3", 20, [](int k) {
-                  return fmt::format("{:.3f},{},2,{}\n; still there", 0.01 * (k + 1), k, k);
-                }));
+  const Recording r = read_text(";Title, http://example.org\n;SampleRate, 100,Hz\n;Headers, time,Ax,Ay,Az\n" +
+                                table("0.000,1,2,3", 20, [](int k) {
+                                  return fmt::format("{:.3f},{},2,{}\n; still there", 0.01 * (k + 1), k, k);
+                                }));
   CHECK(channels_of(r) == "Ax[] Ay[] Az[] ");
   CHECK_FALSE(said(r.info.guesses, "could be"));
   CHECK(r.info.time.rate_hz == Approx(100));
   CHECK(count(r, "comment_line") == 20);
-  const Recording index = read_text(
-      table(";time;gx", 9, [](int k) { return fmt::format("{};{};{}", k, 0.1 * k, k * k); }));
+  const Recording index =
+      read_text(table(";time;gx", 9, [](int k) { return fmt::format("{};{};{}", k, 0.1 * k, k * k); }));
   CHECK(channels_of(index) == "gx[] ");
 }
 
@@ -196,9 +188,7 @@ TEST_CASE("names with commas in them are known by the blanks behind those") {
 
 TEST_CASE("rows that cannot be read are dropped and counted where that is asked for") {
   const auto chatter = [](const char* noise) {
-    return table("t,x,y", 60, [=](int k) {
-      return k == 30 ? noise : fmt::format("{},{},{}", k, 0.5 * k, 2 * k);
-    });
+    return table("t,x,y", 60, [=](int k) { return k == 30 ? noise : fmt::format("{},{},{}", k, 0.5 * k, 2 * k); });
   };
   ReadOptions drop;
   drop.missing.bad_rows = true;
@@ -221,9 +211,8 @@ TEST_CASE("without stamps a row that cannot be read is a missing sample, and cha
   ReadOptions drop;
   drop.missing.bad_rows = true;
   drop.rate_hz = 10;
-  const std::string text = table("x,y", 40, [](int k) {
-    return k == 20 ? "7" : fmt::format("{},{}{}", k % 7, k, k == 30 ? "\nWARN: i2c" : "");
-  });
+  const std::string text = table(
+      "x,y", 40, [](int k) { return k == 20 ? "7" : fmt::format("{},{}{}", k % 7, k, k == 30 ? "\nWARN: i2c" : ""); });
   const Recording r = read_text(text, drop);
   REQUIRE(r.samples[0].size() == 40);
   CHECK(std::isnan(r.samples[0][20]));
@@ -234,23 +223,22 @@ TEST_CASE("without stamps a row that cannot be read is a missing sample, and cha
 TEST_CASE("a table of which more than one row in ten cannot be read is refused") {
   ReadOptions drop;
   drop.missing.bad_rows = true;
-  const std::string text = table(
-      "t,x", 100, [](int k) { return k % 5 == 4 ? "noise" : fmt::format("{},{}", k, k * k); });
+  const std::string text =
+      table("t,x", 100, [](int k) { return k % 5 == 4 ? "noise" : fmt::format("{},{}", k, k * k); });
   CHECK_THAT(failure(text, drop), Contains("E0335") && Contains("20 of 100 rows"));
 }
 
 TEST_CASE("facts in front of a table are used: scales of .gcsv, the rate of SLIST") {
-  const Recording gcsv = read_text(
-      "GYROFLOW IMU LOG\nversion,1.3\ntscale,0.002\ngscale,0.5\nascale,0.25\n" +
-      table("t,gx,ax", 20, [](int k) { return fmt::format("{},{},{}", k, 2 * k, 4 * k); }));
+  const Recording gcsv =
+      read_text("GYROFLOW IMU LOG\nversion,1.3\ntscale,0.002\ngscale,0.5\nascale,0.25\n" +
+                table("t,gx,ax", 20, [](int k) { return fmt::format("{},{},{}", k, 2 * k, 4 * k); }));
   CHECK(channels_of(gcsv) == "gx[rad/s] ax[g] ");
   CHECK(gcsv.samples[0][3] == 3);
   CHECK(gcsv.samples[1][3] == 3);
   CHECK(gcsv.info.time.rate_hz == Approx(500));
-  const Recording slist = read_text(table(
-      "TIMESERIES IU_ANMO_00_BHZ_R, 50 samples, 20 sps, 2018-01-01T00:00:00.000000, SLIST, INTEGER",
-      50,
-      [](int k) { return fmt::format("{}", k * 7919 % 100); }));
+  const Recording slist =
+      read_text(table("TIMESERIES IU_ANMO_00_BHZ_R, 50 samples, 20 sps, 2018-01-01T00:00:00.000000, SLIST, INTEGER", 50,
+                      [](int k) { return fmt::format("{}", k * 7919 % 100); }));
   CHECK(slist.info.time.rate_hz == 20);
   CHECK(slist.samples[0].size() == 50);
 }
@@ -274,8 +262,8 @@ TEST_CASE("units with brackets are units, in names and apart") {
 }
 
 TEST_CASE("a channel in another unit of the log is converted, never relabelled") {
-  const std::string text = table(
-      "t,wz[rad/s],T[degC],n", 9, [](int k) { return fmt::format("{},{},{},{}", k, k, k, k); });
+  const std::string text =
+      table("t,wz[rad/s],T[degC],n", 9, [](int k) { return fmt::format("{},{},{},{}", k, k, k, k); });
   ReadOptions options;
   options.channel_unit = {"wz=deg/s", "n=V"};
   const Recording r = read_text(text, options);
@@ -296,13 +284,8 @@ TEST_CASE("a channel in another unit of the log is converted, never relabelled")
 TEST_CASE("the whole of a long file says which number of a date is the day") {
   std::string text = "date,x\n";
   for (int k = 0; k < 130000; ++k)
-    text += fmt::format("{:02d}/{:02d}/2024 {:02d}:{:02d}:{:02d},{}\n",
-                        1 + k / 8640,
-                        5,
-                        k / 360 % 24,
-                        k / 6 % 60,
-                        10 * (k % 6),
-                        k % 10);
+    text += fmt::format("{:02d}/{:02d}/2024 {:02d}:{:02d}:{:02d},{}\n", 1 + k / 8640, 5, k / 360 % 24, k / 6 % 60,
+                        10 * (k % 6), k % 10);
   REQUIRE(text.size() > 5U << 19U);
   const Recording r = read_text(text);
   CHECK(r.info.time.rate_hz == Approx(0.1));

@@ -45,9 +45,8 @@ TEST_CASE("control chart: a value far off and a shift are seen") {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = gauss() + (i < 40 ? 0 : 1.5);
   values[12] = -9;
   const ControlChart chart = control_chart(values);
-  CHECK(std::any_of(chart.beyond.begin(), chart.beyond.end(), [](const ChartValue& v) {
-    return v.index == 12 && v.value == -9;
-  }));
+  CHECK(std::any_of(chart.beyond.begin(), chart.beyond.end(),
+                    [](const ChartValue& v) { return v.index == 12 && v.value == -9; }));
   CHECK(chart.beyond.size() <= 3);
   CHECK(chart.zones.of(ZoneRule::eight_in_a_row).signals >= 1);
 }

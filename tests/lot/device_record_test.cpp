@@ -100,14 +100,12 @@ TEST_CASE("a device record holds what a lot looks at") {
   CHECK(value(DeviceQuantity::turn_on_bias).value == 0.1 + 0.2);
   CHECK(value(DeviceQuantity::turn_on_bias).sd == Approx(mean_sd).epsilon(0.05));
   CHECK(value(DeviceQuantity::temperature_coefficient).value == -0.012);
-  CHECK(value(DeviceQuantity::temperature_coefficient).sd ==
-        Approx(0.001 / 1.959964).epsilon(1e-6));
+  CHECK(value(DeviceQuantity::temperature_coefficient).sd == Approx(0.001 / 1.959964).epsilon(1e-6));
   CHECK_FALSE(r.channels[1].fitted);
   CHECK(gyro.mean == 0.1 + 0.2);
   CHECK(std::isnan(r.channels[1].mean));
   CHECK(r.warnings == std::vector<std::string>{"2 × a gap (first: line 7)"});
-  CHECK(record_of(recording(), SampleKind::phase).channels[0].find(DeviceQuantity::turn_on_bias) ==
-        nullptr);
+  CHECK(record_of(recording(), SampleKind::phase).channels[0].find(DeviceQuantity::turn_on_bias) == nullptr);
 }
 
 TEST_CASE("the one channel in °C beside others is a thermometer") {
@@ -193,8 +191,7 @@ TEST_CASE("a device record that is none is refused with file, place and key") {
   CHECK_THAT(refusal("\"version\":1", "\"version\":2"), Contains("version"));
   CHECK_THAT(refusal("\"device\":", "\"devise\":"), Contains("device is missing"));
   CHECK_THAT(refusal("\"detected\"", "\"found\""), Contains("white_noise.status"));
-  CHECK_THAT(refusal("\"value\":0.005", "\"value\":-0.005"),
-             Contains("channels[0].values.white_noise.value"));
+  CHECK_THAT(refusal("\"value\":0.005", "\"value\":-0.005"), Contains("channels[0].values.white_noise.value"));
   CHECK_THAT(refusal("\"rate_hz\":100.0", "\"rate_hz\":\"fast\""), Contains("rate_hz"));
   CHECK_THAT(refusal("\"ci95\":[", "\"ci95\":[1,"), Contains("two numbers"));
   CHECK_THAT(refusal("{", ""), Contains("r.jsonl:1"));
@@ -202,8 +199,7 @@ TEST_CASE("a device record that is none is refused with file, place and key") {
   CHECK(refusal("\"type\":", "\"colour\":\"red\",\"type\":") == "accepted");
 }
 
-TEST_CASE(
-    "the fast way to read a record and the slow one agree, on good lines and on broken ones") {
+TEST_CASE("the fast way to read a record and the slow one agree, on good lines and on broken ones") {
   test::Gaussian gauss(3);
   const std::string good = device_record_text(filled());
   DeviceRecord bare = filled();
@@ -217,8 +213,7 @@ TEST_CASE(
   for (int i = 0; i < 20000; ++i) {
     std::string line = plain;
     const auto at = static_cast<std::size_t>(gauss.uniform() * static_cast<double>(line.size()));
-    const char letter =
-        letters[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(letters.size()))];
+    const char letter = letters[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(letters.size()))];
     const double way = gauss.uniform();
     if (way < 0.4)
       line[at] = letter;

@@ -16,9 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-const QuantityLot& find(const FleetLot& lot,
-                        const std::string& group,
-                        DeviceQuantity quantity,
+const QuantityLot& find(const FleetLot& lot, const std::string& group, DeviceQuantity quantity,
                         const std::string& type = "mems") {
   for (const QuantityLot& q : lot.quantities)
     if (q.group == group && q.quantity == quantity && q.type == type) return q;
@@ -34,14 +32,11 @@ NoiseLimits limits(const std::string& value) {
       "limits.yaml");
 }
 
-bool holds(const Interval& i, double value) {
-  return i.low <= value && value <= i.high;
-}
+bool holds(const Interval& i, double value) { return i.low <= value && value <= i.high; }
 
 }  // namespace
 
-TEST_CASE(
-    "a fleet has mean, spread, quantiles and a chart of each quantity, a kind of its logarithms") {
+TEST_CASE("a fleet has mean, spread, quantiles and a chart of each quantity, a kind of its logarithms") {
   const auto records = test::made_lot({}, 1);
   const FleetLot lot = fleet_lot(records);
   CHECK(lot.devices == 200);
@@ -95,13 +90,11 @@ TEST_CASE("a fleet's result does not depend on the order of its records") {
   for (std::size_t q = 0; q < after.quantities.size(); ++q) {
     CHECK(after.quantities[q].group == before.quantities[q].group);
     CHECK(after.quantities[q].figures->mean == before.quantities[q].figures->mean);
-    CHECK(after.quantities[q].figures->spread_ci95.high ==
-          before.quantities[q].figures->spread_ci95.high);
+    CHECK(after.quantities[q].figures->spread_ci95.high == before.quantities[q].figures->spread_ci95.high);
     if (after.quantities[q].batch_difference)
       CHECK(after.quantities[q].batch_difference->p == before.quantities[q].batch_difference->p);
   }
-  for (std::size_t i = 0; i < devices.size(); ++i)
-    CHECK(records[after.order[i]].device == devices[i]);
+  for (std::size_t i = 0; i < devices.size(); ++i) CHECK(records[after.order[i]].device == devices[i]);
   CHECK(devices[1] == "imu2");
   CHECK(devices[9] == "imu10");
 }
@@ -114,11 +107,9 @@ TEST_CASE("a device that does not belong to its fleet is named with its reason, 
   REQUIRE(lot.worst.size() == 2);
   CHECK(lot.outlying == 2);
   CHECK(records[lot.worst[0].recording].device == "imu41");
-  CHECK_THAT(
-      lot.worst[0].reasons[0],
-      Contains("gyro_x: Bias instability") && Contains("times that of the others (p < 0.0001)"));
-  CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio ==
-        Approx(1.5).epsilon(0.2));
+  CHECK_THAT(lot.worst[0].reasons[0],
+             Contains("gyro_x: Bias instability") && Contains("times that of the others (p < 0.0001)"));
+  CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio == Approx(1.5).epsilon(0.2));
   CHECK(lot.stands_out[16]);
   CHECK_FALSE(lot.stands_out[17]);
   CHECK_THAT(lot.verdict, Contains("2 devices stand out from their kind: imu17, imu41."));
@@ -165,8 +156,7 @@ TEST_CASE("what all channels of a device share is no alarm where every device ha
 
 TEST_CASE("a fleet without a device that stands out names one in 1 %") {
   int named = 0;
-  for (std::uint64_t seed = 100; seed < 300; ++seed)
-    named += fleet_lot(test::made_lot({}, seed)).outlying > 0;
+  for (std::uint64_t seed = 100; seed < 300; ++seed) named += fleet_lot(test::made_lot({}, seed)).outlying > 0;
   CHECK(named <= 8);  // 2 are expected; more than 8 by chance: 0.02 %
 }
 
@@ -207,9 +197,8 @@ TEST_CASE("batches that differ are told apart, and their devices' spread is not 
   CHECK(b.batch_difference->within == Approx(0.2).epsilon(0.2));
   CHECK(b.batch_difference->between == Approx(std::log(1.3) / std::sqrt(2)).epsilon(0.25));
   CHECK(find(lot, "gyro_x", DeviceQuantity::random_walk).batch_difference->p > 1e-4);
-  CHECK_THAT(lot.verdict,
-             Contains("in 2 batches") && Contains("Batches differ: Bias instability of") &&
-                 Contains("Values change along the lot: Bias instability of gyro_"));
+  CHECK_THAT(lot.verdict, Contains("in 2 batches") && Contains("Batches differ: Bias instability of") &&
+                              Contains("Values change along the lot: Bias instability of gyro_"));
   CHECK_THAT(fleet_lot(test::made_lot({}, 8)).verdict, !Contains("Values change"));
 }
 
@@ -288,8 +277,7 @@ TEST_CASE("units of one quantity are converted, unlike ones are not compared") {
   options.limits["mems"] = limits("2.5e-3");
   const FleetLot lot = fleet_lot(records, options);
   CHECK(lot.notes ==
-        std::vector<std::string>{
-            "gyro_x of mems, gyro_y of mems: recorded in deg/s, rad/s, compared in deg/s."});
+        std::vector<std::string>{"gyro_x of mems, gyro_y of mems: recorded in deg/s, rad/s, compared in deg/s."});
   REQUIRE(lot.quantities.size() == one_unit.quantities.size());
   for (std::size_t q = 0; q < lot.quantities.size(); ++q) {
     const QuantityLot &a = lot.quantities[q], &b = one_unit.quantities[q];
@@ -365,14 +353,12 @@ TEST_CASE("channels without a unit are no kind of their own") {
   for (std::size_t i = 0; i < 4; ++i)
     for (RecordedChannel& c : records[i].channels) c.unit = "";
   const FleetLot lot = fleet_lot(records);
-  for (const QuantityLot& q : lot.quantities)
-    CHECK((!q.of_kind || q.group == "angular_rate in deg/s"));
+  for (const QuantityLot& q : lot.quantities) CHECK((!q.of_kind || q.group == "angular_rate in deg/s"));
   CHECK(find(lot, "angular_rate in deg/s", DeviceQuantity::white_noise).counts.members == 392);
   REQUIRE(lot.notes.size() == 2);
-  CHECK(
-      lot.notes[0] ==
-      "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
-      "and 193 more): compared within each.");
+  CHECK(lot.notes[0] ==
+        "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
+        "and 193 more): compared within each.");
 }
 
 TEST_CASE("a device with recordings in two batches is of the first, and said so by name") {
@@ -420,18 +406,15 @@ TEST_CASE("devices are held against limits, and the lot's capability is that of 
   CHECK(lot.worst.size() == c.fail);
   CHECK_THAT(lot.worst[0].reasons[0], Contains("allowed 3e-3 deg/s (0.003000 deg/s)"));
   CHECK_FALSE(find(lot, "gyro_y", DeviceQuantity::bias_instability).capability);
-  CHECK_THAT(
-      lot.verdict,
-      Contains(fmt::format("Of 200 devices held against limits, {} fail", c.fail)) &&
-          Contains(fmt::format("{} not decided, {} keep all of them.", c.not_decided, c.pass)));
+  CHECK_THAT(lot.verdict, Contains(fmt::format("Of 200 devices held against limits, {} fail", c.fail)) &&
+                              Contains(fmt::format("{} not decided, {} keep all of them.", c.not_decided, c.pass)));
 }
 
 TEST_CASE("a fleet of nothing, and limits of a type that is not there, are refused") {
   CHECK_THROWS_WITH(fleet_lot({}), Contains("E0752") && Contains("at least one device record"));
   FleetLotOptions options;
   options.limits["fog"] = limits("3e-3");
-  CHECK_THROWS_WITH(fleet_lot(test::made_lot({}, 16), options),
-                    Contains("E0751") && Contains("the types are mems"));
+  CHECK_THROWS_WITH(fleet_lot(test::made_lot({}, 16), options), Contains("E0751") && Contains("the types are mems"));
 }
 
 TEST_CASE("one device is a fleet without statistics") {
@@ -439,12 +422,10 @@ TEST_CASE("one device is a fleet without statistics") {
   made.devices = 1;
   const FleetLot lot = fleet_lot(test::made_lot(made, 17));
   CHECK_FALSE(find(lot, "gyro_x", DeviceQuantity::white_noise).figures);
-  CHECK(lot.verdict ==
-        "1 device. Too few of a kind to say which stands out: at least 4 are needed.");
+  CHECK(lot.verdict == "1 device. Too few of a kind to say which stands out: at least 4 are needed.");
 }
 
-TEST_CASE(
-    "a result that is not there yet is no failure, and where there is none nobody is judged") {
+TEST_CASE("a result that is not there yet is no failure, and where there is none nobody is judged") {
   auto records = test::made_lot({}, 19);
   records.resize(4);
   for (DeviceRecord& r : records) r.channels.clear();
@@ -456,8 +437,7 @@ TEST_CASE(
   const FleetLot lot = fleet_lot(records);
   CHECK(lot.failed == std::vector<std::size_t>{0});
   CHECK(lot.awaited == std::vector<std::size_t>{1, 2, 3});
-  CHECK(
-      lot.verdict ==
-      "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
-      "yet. There is no result to judge.");
+  CHECK(lot.verdict ==
+        "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
+        "yet. There is no result to judge.");
 }

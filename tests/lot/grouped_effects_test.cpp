@@ -17,8 +17,7 @@ struct Grouped {
   std::vector<std::size_t> group;
 };
 
-Grouped made(
-    std::size_t groups, std::size_t each, double between, double within, test::Gaussian& gauss) {
+Grouped made(std::size_t groups, std::size_t each, double between, double within, test::Gaussian& gauss) {
   Grouped out;
   for (std::size_t g = 0; g < groups; ++g) {
     const double b = between * gauss();

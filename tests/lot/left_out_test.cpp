@@ -39,8 +39,7 @@ TEST_CASE("left out: of a lot whose smallest are missing the mean and the spread
       }
     }
     const RandomEffects effects = random_effects(y, v);
-    const auto left =
-        left_out(DeviceQuantity::random_walk, counts_of(y.size(), missing), y, v, effects);
+    const auto left = left_out(DeviceQuantity::random_walk, counts_of(y.size(), missing), y, v, effects);
     REQUIRE(left);
     plain += effects.mean_ci95.low <= 0 && 0 <= effects.mean_ci95.high;
     mean += left->mean_ci95.low <= 1 && 1 <= left->mean_ci95.high;
@@ -60,8 +59,7 @@ TEST_CASE("left out: nothing where all count, and of what is not left out for be
   CHECK_FALSE(left_out(DeviceQuantity::random_walk, counts_of(4, 0), y, v, effects));
   CHECK_FALSE(left_out(DeviceQuantity::turn_on_bias, counts_of(4, 1), y, v, effects));
   CHECK_FALSE(left_out(DeviceQuantity::gauss_markov_time, counts_of(4, 1), y, v, effects));
-  const auto zero =
-      left_out(DeviceQuantity::temperature_coefficient, counts_of(4, 1), y, v, effects);
+  const auto zero = left_out(DeviceQuantity::temperature_coefficient, counts_of(4, 1), y, v, effects);
   REQUIRE(zero);
   CHECK(zero->factor == Approx(1.25));
   CHECK(zero->mean_ci95.low == Approx(0.8 * effects.mean_ci95.low));

@@ -19,12 +19,7 @@ struct Squares {
 };
 
 /// Each found by an energy of chi-square with `dof` over what lies beneath.
-Squares made(std::size_t count,
-             double mean,
-             double spread,
-             double beneath,
-             int dof,
-             test::Gaussian& gauss,
+Squares made(std::size_t count, double mean, double spread, double beneath, int dof, test::Gaussian& gauss,
              double samples = 1000) {
   Squares out;
   for (std::size_t i = 0; i < count; ++i) {
@@ -38,9 +33,7 @@ Squares made(std::size_t count,
   return out;
 }
 
-bool in_interval(const Interval& i, double value) {
-  return i.low <= value && value <= i.high;
-}
+bool in_interval(const Interval& i, double value) { return i.low <= value && value <= i.high; }
 
 }  // namespace
 

@@ -12,9 +12,7 @@ using Catch::Contains;
 
 namespace {
 
-const LotDifference& find(const FleetComparison& c,
-                          const std::string& group,
-                          DeviceQuantity quantity) {
+const LotDifference& find(const FleetComparison& c, const std::string& group, DeviceQuantity quantity) {
   for (const LotDifference& d : c.differences)
     if (d.group == group && d.quantity == quantity) return d;
   FAIL("no such quantity of " << group);
@@ -36,8 +34,7 @@ TEST_CASE("lots that are alike differ in 5 % of comparisons") {
     int alarms = 0;
     constexpr int kLots = 400;
     for (std::uint64_t i = 0; i < kLots; ++i)
-      alarms += any(
-          compare_lots(test::made_lot(made, 20000 + 2 * i), test::made_lot(made, 20001 + 2 * i)));
+      alarms += any(compare_lots(test::made_lot(made, 20000 + 2 * i), test::made_lot(made, 20001 + 2 * i)));
     CAPTURE(devices, alarms);
     CHECK(alarms <= 0.093 * kLots);  // 5 % and four standard deviations
   }
@@ -73,8 +70,7 @@ TEST_CASE("lots that differ are told apart, by how much and with which probabili
   int white = 0, flicker = 0, bias = 0, covered = 0, wrong = 0;
   constexpr int kLots = 100;
   for (std::uint64_t i = 0; i < kLots; ++i) {
-    const FleetComparison c =
-        compare_lots(test::made_lot(made, 60000 + 2 * i), test::made_lot(other, 60001 + 2 * i));
+    const FleetComparison c = compare_lots(test::made_lot(made, 60000 + 2 * i), test::made_lot(other, 60001 + 2 * i));
     const LotDifference& n = find(c, "gyro_x", DeviceQuantity::white_noise);
     white += n.mean_differs;
     wrong += n.spread_differs;
@@ -94,24 +90,20 @@ TEST_CASE("a comparison says what differs in sentences") {
   other.mean[0] *= 1.08;
   other.mean[1] *= 3;
   other.bias_spread *= 2;
-  const FleetComparison c = compare_lots(
-      test::made_lot(made, 1), test::made_lot(other, 2), {.name_a = "March", .name_b = "April"});
+  const FleetComparison c =
+      compare_lots(test::made_lot(made, 1), test::made_lot(other, 2), {.name_a = "March", .name_b = "April"});
   CHECK(c.tests == 16);
   const LotDifference& n = find(c, "gyro_x", DeviceQuantity::white_noise);
-  CHECK_THAT(n.sentence,
-             Contains("gyro_x of mems: White noise of April is ") &&
-                 Contains(" % larger than of March [") && Contains("p < 0.0001"));
-  CHECK_THAT(find(c, "gyro_x", DeviceQuantity::bias_instability).sentence,
-             Contains("times that of March"));
+  CHECK_THAT(n.sentence, Contains("gyro_x of mems: White noise of April is ") &&
+                             Contains(" % larger than of March [") && Contains("p < 0.0001"));
+  CHECK_THAT(find(c, "gyro_x", DeviceQuantity::bias_instability).sentence, Contains("times that of March"));
   CHECK_THAT(find(c, "gyro_x", DeviceQuantity::turn_on_bias).sentence,
              Contains("devices of April scatter by") && Contains("deg/s"));
-  CHECK_THAT(find(c, "gyro_x", DeviceQuantity::random_walk).sentence,
-             Contains("no difference is resolved"));
+  CHECK_THAT(find(c, "gyro_x", DeviceQuantity::random_walk).sentence, Contains("no difference is resolved"));
   CHECK_THAT(c.verdict, Contains("16 tests: 6 of 8 quantities differ."));
 }
 
-TEST_CASE(
-    "Holm: the probabilities of all are those of each times the tests that are left, in order") {
+TEST_CASE("Holm: the probabilities of all are those of each times the tests that are left, in order") {
   const FleetComparison c = compare_lots(test::made_lot({}, 1), test::made_lot({}, 2));
   std::vector<std::pair<double, double>> p;
   for (const LotDifference& d : c.differences) {
@@ -137,9 +129,8 @@ TEST_CASE("what cannot be compared is said, and lots without a common channel ar
   }
   const FleetComparison c = compare_lots(a, b);
   REQUIRE(c.not_compared.size() == 3);
-  CHECK_THAT(c.not_compared[0],
-             Contains("200 of 200 devices of A and of 0 of 200 devices of B: too few of B for "
-                      "means."));
+  CHECK_THAT(c.not_compared[0], Contains("200 of 200 devices of A and of 0 of 200 devices of B: too few of B for "
+                                         "means."));
   CHECK(c.not_compared[1] == "gyro_y of mems in deg/s: only in A.");
   CHECK(c.not_compared[2] == "gyro_z of mems in deg/s: only in B.");
   for (DeviceRecord& r : b) r.type = "fog";

@@ -56,8 +56,7 @@ TEST_CASE("the mean of many fits is not moved by those that were found too large
 
 TEST_CASE("short records do not weigh as long ones, whatever was found in them") {
   // One of ten samples, found half as large again.
-  const std::vector<double> spread_y = {
-      1, 1.001, 1.002, 1.0005, 1.5, 1.0, 1.001, 1.002, 1.0, 1.001};
+  const std::vector<double> spread_y = {1, 1.001, 1.002, 1.0005, 1.5, 1.0, 1.001, 1.002, 1.0, 1.001};
   const std::vector<double> spread_v = {1e-6, 1e-6, 1e-6, 1e-6, 1, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6};
   std::vector<double> lengths(10, 1e6);
   lengths[4] = 10;
@@ -86,8 +85,7 @@ TEST_CASE("a coefficient in a lot is that of the model of all terms") {
   CHECK(log_coefficient(c).y == std::log(2.0));
 }
 
-TEST_CASE(
-    "values that are known well have the arithmetic mean and standard deviation of a sample") {
+TEST_CASE("values that are known well have the arithmetic mean and standard deviation of a sample") {
   const std::vector<double> value = {1, 2, 4, 3, 2.5}, samples(5, 100), v(5, 1e-12);
   std::vector<double> y = value;
   for (double& x : y) x = std::log(x);

@@ -12,10 +12,7 @@ using namespace libchar;
 namespace {
 
 /// Devices with a random walk about `mean`, found over as much again; small ones are not detected.
-std::vector<DeviceRecord> made_walks(std::size_t devices,
-                                     double mean,
-                                     double spread,
-                                     test::Gaussian& gauss) {
+std::vector<DeviceRecord> made_walks(std::size_t devices, double mean, double spread, test::Gaussian& gauss) {
   constexpr int kDof = 20;
   test::MadeLot made;
   made.devices = devices;
@@ -70,8 +67,7 @@ TEST_CASE("a lot's mean and spread are of all devices, also of those that are no
   CHECK(spread >= 51);
 }
 
-TEST_CASE(
-    "where a square is not known, or few are detected, figures are of those counted or none") {
+TEST_CASE("where a square is not known, or few are detected, figures are of those counted or none") {
   test::Gaussian gauss(4);
   std::vector<DeviceRecord> records = made_walks(100, 2, 0.2, gauss);
   for (DeviceRecord& r : records) {

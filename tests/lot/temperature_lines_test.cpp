@@ -18,9 +18,7 @@ const QuantityLot* find(const FleetLot& lot, DeviceQuantity quantity) {
   return nullptr;
 }
 
-bool contains(const Interval& i, double value) {
-  return i.low <= value && value <= i.high;
-}
+bool contains(const Interval& i, double value) { return i.low <= value && value <= i.high; }
 
 test::MadeLot of_devices(std::size_t count) {
   test::MadeLot made;
@@ -53,8 +51,7 @@ TEST_CASE("coefficients by recordings at several temperatures hold the truth") {
     REQUIRE(tc != nullptr);
     REQUIRE(tc->temperatures);
     REQUIRE(tc->temperatures->slopes.size() == kDevices);
-    for (std::size_t d = 0; d < kDevices; ++d)
-      device += contains(tc->temperatures->slopes[d].ci95, drawn.slope[d]);
+    for (std::size_t d = 0; d < kDevices; ++d) device += contains(tc->temperatures->slopes[d].ci95, drawn.slope[d]);
     mean += contains(tc->figures->mean_ci95, how.slope);
     spread += contains(tc->figures->spread_ci95, how.slope_spread);
     repeat += contains(bias->repeats->within_ci95, how.scatter);
@@ -67,8 +64,7 @@ TEST_CASE("coefficients by recordings at several temperatures hold the truth") {
   CHECK(repeat >= 0.84 * kLots);
 }
 
-TEST_CASE(
-    "temperature does not make the bias repeat worse, and the bias is that at one temperature") {
+TEST_CASE("temperature does not make the bias repeat worse, and the bias is that at one temperature") {
   test::MadeTemperatures how;
   how.at_c = {-40, 25, 25, 85, 85};
   const FleetLot lot = fleet_lot(test::made_temperature_lot(of_devices(60), how, 5).records);
@@ -145,12 +141,10 @@ TEST_CASE("a lot of coefficients is of one way to find them, the one that more d
 TEST_CASE("two lots are compared by their slopes over temperature too") {
   test::MadeTemperatures other;
   other.slope *= 2;
-  const FleetComparison c =
-      compare_lots(test::made_temperature_lot(of_devices(30), {}, 1).records,
-                   test::made_temperature_lot(of_devices(30), other, 2).records);
-  const auto tc = std::find_if(c.differences.begin(), c.differences.end(), [](const auto& d) {
-    return d.quantity == DeviceQuantity::temperature_coefficient;
-  });
+  const FleetComparison c = compare_lots(test::made_temperature_lot(of_devices(30), {}, 1).records,
+                                         test::made_temperature_lot(of_devices(30), other, 2).records);
+  const auto tc = std::find_if(c.differences.begin(), c.differences.end(),
+                               [](const auto& d) { return d.quantity == DeviceQuantity::temperature_coefficient; });
   REQUIRE(tc != c.differences.end());
   CHECK(tc->mean_differs);
   CHECK(contains(tc->change_ci95, 2e-3));
@@ -163,8 +157,6 @@ TEST_CASE("devices without a slope are devices of their lot too, where slopes ar
   test::append(a, test::made_lot(others, 3));
   const FleetComparison c = compare_lots(a, test::made_lot(of_devices(20), 2));
   REQUIRE(!c.not_compared.empty());
-  CHECK_THAT(
-      c.not_compared[0],
-      Contains(
-          "known of 10 of 20 devices of A and of 0 of 20 devices of B: too few of B for means"));
+  CHECK_THAT(c.not_compared[0],
+             Contains("known of 10 of 20 devices of A and of 0 of 20 devices of B: too few of B for means"));
 }

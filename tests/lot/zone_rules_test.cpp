@@ -42,15 +42,13 @@ TEST_CASE("zone rules: as many signals as is said to be expected by chance") {
   for (const ZoneFinding& rule : found.rule) {
     CAPTURE(rule.by_chance);
     CHECK(rule.by_chance > 700);
-    CHECK(std::abs(static_cast<double>(rule.signals) - rule.by_chance) <
-          4.5 * std::sqrt(rule.by_chance));
+    CHECK(std::abs(static_cast<double>(rule.signals) - rule.by_chance) < 4.5 * std::sqrt(rule.by_chance));
   }
   // The combination, of charts whose limits are known: Champ and Woodall's 91.75 values to the first signal.
   int any = 0;
   constexpr int kCharts = 4000;
   for (int i = 0; i < kCharts; ++i)
-    for (const ZoneFindings one = zone_findings(steady(100, gauss), 0, 1);
-         const ZoneFinding& rule : one.rule)
+    for (const ZoneFindings one = zone_findings(steady(100, gauss), 0, 1); const ZoneFinding& rule : one.rule)
       if (rule.signals > 0) {
         ++any;
         break;
@@ -74,8 +72,7 @@ TEST_CASE("zone rules: steady charts do not alarm, shifts, trends and wild value
     trend += control_chart(changed).zones.alarm;
     changed = x;
     changed[77] = -7;
-    wild +=
-        control_chart(changed).zones.rule[static_cast<std::size_t>(ZoneRule::beyond_3_sigma)].alarm;
+    wild += control_chart(changed).zones.rule[static_cast<std::size_t>(ZoneRule::beyond_3_sigma)].alarm;
   }
   CHECK(clean <= 12);  // 4 are expected at most
   CHECK(shift >= 0.9 * kCharts);

@@ -80,8 +80,7 @@ TEST_CASE("model file: numbers are numbers to YAML 1.1 readers too") {
   // YAML 1.1 float: a point is compulsory, and an exponent carries a sign.
   const std::regex number_1_1(R"([-+]?([0-9][0-9_]*)\.[0-9]*([eE][-+][0-9]+)?)");
   const std::regex looks_numeric(R"([-+]?[0-9.]+([eE][-+]?[0-9]+)?)");
-  const std::regex value(
-      R"((value|upper95|rate_hz|mean|resolution|duration_s|bandwidth_hz): ([^ #\n]+))");
+  const std::regex value(R"((value|upper95|rate_hz|mean|resolution|duration_s|bandwidth_hz): ([^ #\n]+))");
   std::size_t seen = 0;
   for (std::sregex_iterator it(text.begin(), text.end(), value), end; it != end; ++it) {
     const std::string word = (*it)[2];
@@ -114,8 +113,7 @@ TEST_CASE("model file: hostile text stays text") {
   CHECK(file["unit"].IsNull());
 }
 
-TEST_CASE(
-    "model file: a Gauss-Markov process reads back, and one that is not there is not written") {
+TEST_CASE("model file: a Gauss-Markov process reads back, and one that is not there is not written") {
   const auto result = test::synthetic_imu();
   SensorModel m = model_of(result, 0);
   CHECK(model_yaml(m).find("gauss_markov") == std::string::npos);
@@ -152,8 +150,7 @@ TEST_CASE("model files: Kalibr's and imu_utils' are read, each by its own conven
   CHECK(*one[0][Term::white].value == Approx(4.0e-3 / 20));
   CHECK(*one[0][Term::flicker].value == Approx(2.0e-5 / 0.664).epsilon(1e-3));
   CHECK_FALSE(one[0][Term::walk].value);
-  const auto fork =
-      read_model_list(write("c.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + axes));
+  const auto fork = read_model_list(write("c.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + axes));
   CHECK(*fork[0][Term::white].value == 4.0e-3);
   CHECK(*fork[0][Term::walk].value == 2.0e-5);
 }

@@ -15,8 +15,8 @@ namespace {
 
 SensorModel small_model(const std::string& channel) {
   return parse_sensor_model(
-      "format: sensor-model\nversion: 1\nunit: rad/s\nrate_hz: 200\ndensity: two-sided\nchannel: " +
-          channel + "\nwhite_noise: 1e-4\n",
+      "format: sensor-model\nversion: 1\nunit: rad/s\nrate_hz: 200\ndensity: two-sided\nchannel: " + channel +
+          "\nwhite_noise: 1e-4\n",
       "m.yaml");
 }
 

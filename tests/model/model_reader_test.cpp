@@ -17,9 +17,7 @@ namespace {
 
 const std::string kHead = "format: sensor-model\nversion: 1\nunit: rad/s\nrate_hz: 200\n";
 
-SensorModel parse(const std::string& body) {
-  return parse_sensor_model(kHead + body, "m.yaml");
-}
+SensorModel parse(const std::string& body) { return parse_sensor_model(kHead + body, "m.yaml"); }
 
 std::string refusal(const std::string& text, const std::string& file = "m.yaml") {
   try {
@@ -31,8 +29,8 @@ std::string refusal(const std::string& text, const std::string& file = "m.yaml")
 }
 
 double white_of(const std::string& unit, const std::string& density, double value = 1) {
-  return *parse("density: " + density + "\nwhite_noise: {value: " + std::to_string(value) +
-                ", unit: \"" + unit + "\"}\n")
+  return *parse("density: " + density + "\nwhite_noise: {value: " + std::to_string(value) + ", unit: \"" + unit +
+                "\"}\n")
               .noise[0]
               .value;
 }
@@ -79,8 +77,7 @@ TEST_CASE("model reader: units of data sheets become the two-sided density of th
   const auto unit = find_noise_unit(Term::white, "µg/√Hz", "m/s^2");
   REQUIRE(unit);
   CHECK(unit->factor == Approx(9.80665e-6).epsilon(1e-14));
-  CHECK(find_noise_unit(Term::white, "m/s/√h", "g")->factor ==
-        Approx(1 / 60.0 / 9.80665).epsilon(1e-14));
+  CHECK(find_noise_unit(Term::white, "m/s/√h", "g")->factor == Approx(1 / 60.0 / 9.80665).epsilon(1e-14));
   CHECK(find_noise_unit(Term::walk, "m/s^3/√Hz", "m/s^2")->factor == 1);
   CHECK(find_noise_unit(Term::white, "counts/√Hz", "counts")->factor == 1);
   CHECK(find_noise_unit(Term::white, "U/√Hz", "")->density);
@@ -95,16 +92,15 @@ TEST_CASE("model reader: units of data sheets become the two-sided density of th
 }
 
 TEST_CASE("model reader: a density without its side is asked for") {
-  CHECK(refusal(kHead + "white_noise: 0.005\n")
-            .starts_with("m.yaml:5:14: error E0545: white_noise: a density"));
-  CHECK(refusal(kHead + "white_noise: {value: 1, unit: \"rad/s/√Hz\"}\n")
-            .find("density: one-sided") != std::string::npos);
+  CHECK(refusal(kHead + "white_noise: 0.005\n").starts_with("m.yaml:5:14: error E0545: white_noise: a density"));
+  CHECK(refusal(kHead + "white_noise: {value: 1, unit: \"rad/s/√Hz\"}\n").find("density: one-sided") !=
+        std::string::npos);
   CHECK(refusal(kHead + "white_noise: {value: 1, unit: \"deg/√h\"}\n").empty());
 }
 
 TEST_CASE("model reader: a term without a value keeps its status") {
-  const SensorModel m = parse(
-      "random_walk: {value: null, unit: \"rad/s/√s\", upper95: 2.0e-05, status: not_detected}\n");
+  const SensorModel m =
+      parse("random_walk: {value: null, unit: \"rad/s/√s\", upper95: 2.0e-05, status: not_detected}\n");
   CHECK(m.noise[2].status == Status::not_detected);
   CHECK_FALSE(m.noise[2].value);
   CHECK(*m.noise[2].upper95 == 2e-5);
@@ -117,8 +113,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
     INFO(body);
     CHECK(refusal(kHead + body).starts_with("m.yaml:" + begin));
   };
-  starts("white_niose: 1\n",
-         "5:1: error E0540: unknown key; got \"white_niose\"; hint: did you mean white_noise?");
+  starts("white_niose: 1\n", "5:1: error E0540: unknown key; got \"white_niose\"; hint: did you mean white_noise?");
   starts("density: two-sided\nwhite_noise: -1e-3\n", "6:14: error E0543");
   starts("density: two-sided\nwhite_noise: .inf\n", "6:14: error E0541");
   starts("density: two-sided\nwhite_noise: 1,5\n", "6:14: error E0541");
@@ -128,8 +123,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("white_noise: {value: 1, unit: deg/h}\n", "5:31: error E0545");
   starts("white_noise: {value: 1, unit: \"rad/s·√s\", status: detectd}\n", "5:54: error E0544");
   starts("white_noise: {status: detected}\n", "5:14: error E0545");
-  starts("scale_factor: {value: 1, sprad: 0.1}\n",
-         "5:26: error E0540: unknown key in scale_factor");
+  starts("scale_factor: {value: 1, sprad: 0.1}\n", "5:26: error E0540: unknown key in scale_factor");
   starts("bias: 3\n", "5:7: error E0541");
   starts("noise_shape: {kind: boxcar}\n", "5:21: error E0545");
   starts("noise_shape: {kind: measured, frequency_hz: [1, 2], ratio: [1]}\n", "5:");
@@ -143,8 +137,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   // A key that the kind does not use would be believed to say something.
   starts("noise_shape: {kind: boxcar, taps: 4, ratio: [1]}\n", "5:45: error E0545");
   starts("noise_shape: {kind: none, taps: 4}\n", "5:33: error E0545");
-  starts("noise_shape: {kind: measured, taps: 4, frequency_hz: [1], ratio: [1]}\n",
-         "5:37: error E0545");
+  starts("noise_shape: {kind: measured, taps: 4, frequency_hz: [1], ratio: [1]}\n", "5:37: error E0545");
   starts("deterministic: [{kind: step, size: 1}]\n", "5:24: error E0545");
   starts("deterministic: [{kind: ramp, size: 1, per_s: 1, at_s: 3}]\n", "5:");
   starts("deterministic: [{kind: warm-up, size: 1, tau_s: 0}]\n", "5:");
@@ -156,13 +149,10 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
             .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));
   CHECK(refusal("format: sensor-model\nversion: 2\n").starts_with("m.yaml:2:10: error E0546"));
   CHECK(refusal("version: 1\n").starts_with("m.yaml:1:1: error E0546"));
-  CHECK(refusal(R"({"format":"sensor-model","version":1,"unit":"rad/s","white_noise":null})",
-                "m.json")
-            .empty());
-  CHECK(refusal(R"({"format":"sensor-model","version":1.0})", "m.json")
-            .starts_with("m.json:1:36: error E0546"));
-  CHECK(refusal(R"({"format":"sensor-model","version":1,"bandwidth_hz":"x"})", "m.json")
-            .find("bandwidth_hz") != std::string::npos);
+  CHECK(refusal(R"({"format":"sensor-model","version":1,"unit":"rad/s","white_noise":null})", "m.json").empty());
+  CHECK(refusal(R"({"format":"sensor-model","version":1.0})", "m.json").starts_with("m.json:1:36: error E0546"));
+  CHECK(refusal(R"({"format":"sensor-model","version":1,"bandwidth_hz":"x"})", "m.json").find("bandwidth_hz") !=
+        std::string::npos);
 }
 
 TEST_CASE("model reader: a file that does not say where it is from was written by hand") {
@@ -216,8 +206,7 @@ TEST_CASE("model reader: every example of docs/models.md is read") {
   CHECK(examples == 2);
   // 5.5 mdps/√Hz one-sided, 7 deg/h read off the floor
   const std::size_t begin = page.find("```yaml\n") + 8;
-  const SensorModel sheet =
-      parse_sensor_model(page.substr(begin, page.find("```", begin) - begin), "sheet");
+  const SensorModel sheet = parse_sensor_model(page.substr(begin, page.find("```", begin) - begin), "sheet");
   CHECK(*sheet.noise[0].value == Approx(5.5e-3 * std::numbers::pi / 180 / std::numbers::sqrt2));
   CHECK(*sheet.noise[1].value == Approx(7.0 / 3600 * std::numbers::pi / 180 / 0.6642824703));
 }

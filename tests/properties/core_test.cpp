@@ -39,19 +39,14 @@ Record all_of(const Moments& m) {
   return {m.mean(), m.variance(), m.skewness(), m.kurtosis(), m.minimum(), m.maximum()};
 }
 
-std::string any_text() {
-  return *rc::gen::string<std::string>();
-}
+std::string any_text() { return *rc::gen::string<std::string>(); }
 
 Eigen::MatrixXd matrix(int rows, int columns) {
-  const Record values =
-      *rc::gen::container<Record>(static_cast<std::size_t>(rows * columns), between(-4, 4));
+  const Record values = *rc::gen::container<Record>(static_cast<std::size_t>(rows * columns), between(-4, 4));
   return Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, columns);
 }
 
-double norm(const Eigen::MatrixXd& m) {
-  return m.size() == 0 ? 0 : m.cwiseAbs().maxCoeff();
-}
+double norm(const Eigen::MatrixXd& m) { return m.size() == 0 ? 0 : m.cwiseAbs().maxCoeff(); }
 
 }  // namespace
 
@@ -102,8 +97,7 @@ TEST_CASE("property: an offset moves the mean and nothing else, as far as sums a
     const Record y = record(2, 200);
     const Moments plain = moments_of(y), moved = moments_of(shifted(y, 0x1p30));
     RC_ASSERT(near(moved.mean() - 0x1p30, plain.mean(), 1e-6) || std::abs(plain.mean()) < 1e-5);
-    RC_ASSERT(
-        same_bits({moved.variance(), moved.skewness()}, {plain.variance(), plain.skewness()}));
+    RC_ASSERT(same_bits({moved.variance(), moved.skewness()}, {plain.variance(), plain.skewness()}));
   });
 }
 TEST_CASE("property: a power of two scales mean and deviation exactly") {
@@ -111,10 +105,9 @@ TEST_CASE("property: a power of two scales mean and deviation exactly") {
     const Record y = record(2, 200);
     const int power = *rc::gen::inRange(-60, 60);
     const Moments plain = moments_of(y), big = moments_of(scaled(y, power));
-    RC_ASSERT(same_bits({big.mean(), big.standard_deviation(), big.kurtosis()},
-                        {std::ldexp(plain.mean(), power),
-                         std::ldexp(plain.standard_deviation(), power),
-                         plain.kurtosis()}));
+    RC_ASSERT(
+        same_bits({big.mean(), big.standard_deviation(), big.kurtosis()},
+                  {std::ldexp(plain.mean(), power), std::ldexp(plain.standard_deviation(), power), plain.kurtosis()}));
   });
 }
 TEST_CASE("property: a mirrored record has the mirrored mean and the same spread") {
@@ -161,8 +154,7 @@ TEST_CASE("property: a median has half of the values on either side, in any orde
 TEST_CASE("property: lower and upper middle are values, and the mean of them is the median") {
   holds([] {
     Record y = record(1, 60);
-    const double lower = median_in_place(y, Middle::lower),
-                 upper = median_in_place(y, Middle::upper);
+    const double lower = median_in_place(y, Middle::lower), upper = median_in_place(y, Middle::upper);
     RC_ASSERT(std::count(y.begin(), y.end(), lower) > 0);
     RC_ASSERT(std::count(y.begin(), y.end(), upper) > 0);
     RC_ASSERT((lower + upper) / 2 == median_in_place(y));
@@ -181,8 +173,7 @@ TEST_CASE("property: the mean of random effects lies among the values and moves 
   holds([] {
     const Record value = record(2, 12);
     const Record variance = *rc::gen::container<Record>(value.size(), between(0.1, 4));
-    const RandomEffects plain = random_effects(value, variance),
-                        moved = random_effects(shifted(value, 1024), variance);
+    const RandomEffects plain = random_effects(value, variance), moved = random_effects(shifted(value, 1024), variance);
     const auto [low, high] = std::minmax_element(value.begin(), value.end());
     RC_ASSERT(plain.mean >= *low - 1e-9 * std::abs(*low));
     RC_ASSERT(plain.mean <= *high + 1e-9 * std::abs(*high));
@@ -201,8 +192,7 @@ TEST_CASE("property: a chi-square quantile is undone by its distribution") {
 TEST_CASE("property: an interval of a deviation holds it and grows with the confidence") {
   holds([] {
     const double edf = *between(1, 1000), deviation = *between(0.01, 100);
-    const Interval narrow = chi_square_interval(deviation, edf, 0.5),
-                   wide = chi_square_interval(deviation, edf, 0.99);
+    const Interval narrow = chi_square_interval(deviation, edf, 0.5), wide = chi_square_interval(deviation, edf, 0.99);
     RC_ASSERT(wide.low < narrow.low);
     RC_ASSERT(wide.high > narrow.high);
     RC_ASSERT(wide.low < deviation);
@@ -226,8 +216,7 @@ TEST_CASE("property: a binomial distribution and its tail sum to one") {
 TEST_CASE("property: the residual of least squares is orthogonal to the columns") {
   holds([] {
     const int columns = *rc::gen::inRange(1, 5), rows = columns + *rc::gen::inRange(1, 12);
-    const Eigen::MatrixXd a = matrix(rows, columns) + 9 * Eigen::MatrixXd::Identity(rows, columns),
-                          b = matrix(rows, 1);
+    const Eigen::MatrixXd a = matrix(rows, columns) + 9 * Eigen::MatrixXd::Identity(rows, columns), b = matrix(rows, 1);
     const Eigen::MatrixXd x = least_squares(a, b);
     RC_ASSERT(norm(a.transpose() * (a * x - b)) < 1e-10 * (1 + norm(b)) * norm(a) * rows);
     const PivotedSolution pivoted = pivoted_least_squares(a, b.col(0));
@@ -241,8 +230,7 @@ TEST_CASE("property: a column twice costs a rank and no accuracy of the sum") {
     const Eigen::MatrixXd b = matrix(12, 1);
     Eigen::MatrixXd twice(12, 4);
     twice << a, a.col(1);
-    const PivotedSolution one = pivoted_least_squares(a, b.col(0)),
-                          two = pivoted_least_squares(twice, b.col(0));
+    const PivotedSolution one = pivoted_least_squares(a, b.col(0)), two = pivoted_least_squares(twice, b.col(0));
     RC_ASSERT(two.rank == 3);
     RC_ASSERT(norm(twice * two.x - a * one.x) < 1e-9);
     const PivotedSolution shortest = shortest_least_squares(twice, b.col(0), 1e-12);
@@ -252,14 +240,12 @@ TEST_CASE("property: a column twice costs a rank and no accuracy of the sum") {
 TEST_CASE("property: a Cholesky factor gives its matrix back, and solves with it") {
   holds([] {
     const int n = *rc::gen::inRange(1, 6);
-    const Eigen::MatrixXd root = matrix(n, n),
-                          a = root * root.transpose() + Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd root = matrix(n, n), a = root * root.transpose() + Eigen::MatrixXd::Identity(n, n);
     const auto l = cholesky_factor(a);
     RC_ASSERT(l.has_value());
     RC_ASSERT(norm(*l * l->transpose() - a) < 1e-12 * norm(a) * n);
     RC_ASSERT(norm(a * cholesky_inverse(a) - Eigen::MatrixXd::Identity(n, n)) < 1e-9 * norm(a));
-    RC_ASSERT(norm(inverse_cholesky_factor(a) * *l - Eigen::MatrixXd::Identity(n, n)) <
-              1e-9 * norm(a));
+    RC_ASSERT(norm(inverse_cholesky_factor(a) * *l - Eigen::MatrixXd::Identity(n, n)) < 1e-9 * norm(a));
   });
 }
 TEST_CASE("property: a matrix with a negative eigenvalue has no Cholesky factor") {
@@ -275,8 +261,7 @@ TEST_CASE("property: eigenvalues ascend and eigenvectors give the matrix back") 
     const Eigen::MatrixXd half = matrix(n, n), a = half + half.transpose();
     const SymmetricEigen eigen = symmetric_eigen(a);
     for (int i = 1; i < n; ++i) RC_ASSERT(eigen.values[i] >= eigen.values[i - 1]);
-    RC_ASSERT(norm(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a) <
-              1e-10 * (1 + norm(a)));
+    RC_ASSERT(norm(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a) < 1e-10 * (1 + norm(a)));
   });
 }
 TEST_CASE("property: a projector off columns leaves nothing of them, twice is once") {
@@ -296,16 +281,14 @@ TEST_CASE("property: a digest does not depend on the pieces of a text") {
     whole.update(text);
     std::string_view rest = text;
     while (!rest.empty()) {
-      const auto n =
-          static_cast<std::size_t>(*rc::gen::inRange(1, static_cast<int>(rest.size()) + 1));
+      const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, static_cast<int>(rest.size()) + 1));
       parts.update(rest.substr(0, n));
       rest.remove_prefix(n);
     }
     RC_ASSERT(whole.finish() == parts.finish());
   });
 }
-TEST_CASE(
-    "property: a text for the terminal has no control characters, and printing it twice is once") {
+TEST_CASE("property: a text for the terminal has no control characters, and printing it twice is once") {
   holds([] {
     const std::string shown = printable(any_text());
     for (const char c : shown) RC_ASSERT(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
@@ -333,8 +316,7 @@ TEST_CASE("property: a channel's file name is short, visible and one of its own"
   holds([] {
     std::set<std::string> taken;
     const std::string name = any_text();
-    const std::string first = unused_file_name_for(name, taken),
-                      second = unused_file_name_for(name, taken);
+    const std::string first = unused_file_name_for(name, taken), second = unused_file_name_for(name, taken);
     RC_ASSERT(first != second);
     RC_ASSERT(!first.empty() && first.size() <= 100 && first[0] != '.');
     RC_ASSERT(first.find('/') == std::string::npos);
@@ -360,9 +342,7 @@ TEST_CASE("property: a star matches everything, a name without signs itself alon
 }
 TEST_CASE("property: the order of names is strict and total") {
   holds([] {
-    const auto name = [] {
-      return *rc::gen::container<std::string>(rc::gen::elementOf(std::string("a0129b")));
-    };
+    const auto name = [] { return *rc::gen::container<std::string>(rc::gen::elementOf(std::string("a0129b"))); };
     const std::string a = name(), b = name(), c = name();
     RC_ASSERT(!comes_before(a, a));
     RC_ASSERT((a == b) == (!comes_before(a, b) && !comes_before(b, a)));

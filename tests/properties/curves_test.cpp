@@ -24,15 +24,9 @@ DeviationType any_type() {
   return rows[static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(rows.size())))].type;
 }
 
-int fewest(DeviationType type) {
-  return std::max(8, static_cast<int>(deviation_row(type).span(1)) + 2);
-}
+int fewest(DeviationType type) { return std::max(8, static_cast<int>(deviation_row(type).span(1)) + 2); }
 
-AllanCurve curve(const Record& y,
-                 DeviationType type,
-                 double dt = 1,
-                 TauGrid grid = TauGrid::dense,
-                 int threads = 1) {
+AllanCurve curve(const Record& y, DeviationType type, double dt = 1, TauGrid grid = TauGrid::dense, int threads = 1) {
   AllanOptions options;
   options.type = type;
   options.grid = grid;
@@ -46,17 +40,10 @@ Record values(const AllanCurve& c) {
   return out;
 }
 
-Record deviations(const Record& y, DeviationType type, double dt = 1) {
-  return values(curve(y, type, dt));
-}
+Record deviations(const Record& y, DeviationType type, double dt = 1) { return values(curve(y, type, dt)); }
 
-Spectrum welch_of(const Record& y,
-                  std::uint64_t segment,
-                  Window window = Window::hann,
-                  double overlap = 0.5,
-                  Detrend detrend = Detrend::constant,
-                  Sides sides = Sides::one,
-                  Scaling scaling = Scaling::psd,
+Spectrum welch_of(const Record& y, std::uint64_t segment, Window window = Window::hann, double overlap = 0.5,
+                  Detrend detrend = Detrend::constant, Sides sides = Sides::one, Scaling scaling = Scaling::psd,
                   int threads = 1) {
   WelchOptions options;
   options.segment = segment;
@@ -75,8 +62,7 @@ std::uint64_t any_segment(const Record& y) {
 
 /// Of the samples of whole segments side by side, without offset taken off.
 double mean_square(const Record& y, std::size_t samples) {
-  return std::inner_product(
-             y.begin(), y.begin() + static_cast<std::ptrdiff_t>(samples), y.begin(), 0.0) /
+  return std::inner_product(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(samples), y.begin(), 0.0) /
          static_cast<double>(samples);
 }
 
@@ -101,8 +87,8 @@ TEST_CASE("property: an offset on the grid changes no bit of a deviation") {
 TEST_CASE("property: overlapping deviations of a record read backwards are the same") {
   holds([] {
     const Record y = record(8, 120);
-    const DeviationType type = *rc::gen::element(
-        DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev);
+    const DeviationType type =
+        *rc::gen::element(DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev, DeviationType::totdev);
     RC_ASSERT(near(deviations(turned(y), type), deviations(y, type), 1e-13));
   });
 }
@@ -113,8 +99,7 @@ TEST_CASE("property: at one sample plain, overlapping, modified and total deviat
     RC_ASSERT(near(deviations(y, DeviationType::oadev)[0], plain, 1e-13));
     RC_ASSERT(near(deviations(y, DeviationType::mdev)[0], plain, 1e-13));
     RC_ASSERT(near(deviations(y, DeviationType::totdev)[0], plain, 1e-13));
-    RC_ASSERT(
-        near(deviations(y, DeviationType::hdev)[0], deviations(y, DeviationType::ohdev)[0], 1e-14));
+    RC_ASSERT(near(deviations(y, DeviationType::hdev)[0], deviations(y, DeviationType::ohdev)[0], 1e-14));
   });
 }
 TEST_CASE("property: the plain deviation at m is that of means of m at one") {
@@ -122,30 +107,25 @@ TEST_CASE("property: the plain deviation at m is that of means of m at one") {
     const int m = *rc::gen::inRange(1, 9);
     const Record y = record(4 * m, 160);
     Record means;
-    for (std::size_t i = 0; i + static_cast<std::size_t>(m) <= y.size();
-         i += static_cast<std::size_t>(m))
+    for (std::size_t i = 0; i + static_cast<std::size_t>(m) <= y.size(); i += static_cast<std::size_t>(m))
       means.push_back(std::accumulate(y.begin() + static_cast<std::ptrdiff_t>(i),
-                                      y.begin() + static_cast<std::ptrdiff_t>(i) + m,
-                                      0.0) /
+                                      y.begin() + static_cast<std::ptrdiff_t>(i) + m, 0.0) /
                       m);
     AllanOptions options;
     options.type = DeviationType::adev;
     options.grid = TauGrid::list;
     options.taus_s = {static_cast<double>(m)};
-    RC_ASSERT(near(allan_deviation(y, 1, options).points[0].deviation,
-                   deviations(means, DeviationType::adev)[0],
-                   1e-12));
+    RC_ASSERT(
+        near(allan_deviation(y, 1, options).points[0].deviation, deviations(means, DeviationType::adev)[0], 1e-12));
   });
 }
 TEST_CASE("property: the time deviation is the modified one times tau over root three") {
   holds([] {
     const Record y = record(8, 120);
     const double dt = *between(0.001, 10);
-    const AllanCurve modified = curve(y, DeviationType::mdev, dt),
-                     time = curve(y, DeviationType::tdev, dt);
+    const AllanCurve modified = curve(y, DeviationType::mdev, dt), time = curve(y, DeviationType::tdev, dt);
     for (std::size_t i = 0; i < modified.points.size(); ++i)
-      RC_ASSERT(near(time.points[i].deviation,
-                     modified.points[i].tau_s * modified.points[i].deviation / std::sqrt(3.0),
+      RC_ASSERT(near(time.points[i].deviation, modified.points[i].tau_s * modified.points[i].deviation / std::sqrt(3.0),
                      1e-14));
   });
 }
@@ -181,19 +161,16 @@ TEST_CASE("property: every deviation is its definition to twelve digits") {
 TEST_CASE("property: terms are those that fit into the record") {
   holds([] {
     const Record y = record(8, 120);
-    for (const AllanPoint& p : curve(y, DeviationType::oadev).points)
-      RC_ASSERT(p.terms == y.size() + 1 - 2 * p.m);
-    for (const AllanPoint& p : curve(y, DeviationType::ohdev).points)
-      RC_ASSERT(p.terms == y.size() + 1 - 3 * p.m);
-    for (const AllanPoint& p : curve(y, DeviationType::adev).points)
-      RC_ASSERT(p.terms == y.size() / p.m - 1);
+    for (const AllanPoint& p : curve(y, DeviationType::oadev).points) RC_ASSERT(p.terms == y.size() + 1 - 2 * p.m);
+    for (const AllanPoint& p : curve(y, DeviationType::ohdev).points) RC_ASSERT(p.terms == y.size() + 1 - 3 * p.m);
+    for (const AllanPoint& p : curve(y, DeviationType::adev).points) RC_ASSERT(p.terms == y.size() / p.m - 1);
   });
 }
 TEST_CASE("property: another interval between samples changes tau and no deviation") {
   holds([] {
     const Record y = record(8, 120);
-    const DeviationType type = *rc::gen::element(
-        DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::hdev);
+    const DeviationType type =
+        *rc::gen::element(DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::hdev);
     RC_ASSERT(same_bits(deviations(y, type, 0.01), deviations(y, type, 3)));
   });
 }
@@ -203,8 +180,8 @@ TEST_CASE("property: the phase of a rate has the rate's deviations") {
     Record phase{0};
     for (const double v : y) phase.push_back(phase.back() + v);
     AllanOptions options;
-    options.type = *rc::gen::element(
-        DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev);
+    options.type =
+        *rc::gen::element(DeviationType::adev, DeviationType::oadev, DeviationType::mdev, DeviationType::ohdev);
     options.grid = TauGrid::dense;
     const Record of_rate = values(allan_deviation(y, 1, options));
     options.data = DataKind::phase;
@@ -216,8 +193,8 @@ TEST_CASE("property: threads change no bit of a deviation") {
     const Record y = with_gaps(record(60, 300), 40);
     const DeviationType type = any_type();
     try {
-      RC_ASSERT(same_bits(values(curve(y, type, 1, TauGrid::octave, 1)),
-                          values(curve(y, type, 1, TauGrid::octave, 4))));
+      RC_ASSERT(
+          same_bits(values(curve(y, type, 1, TauGrid::octave, 1)), values(curve(y, type, 1, TauGrid::octave, 4))));
     } catch (const Error& error) {
       RC_ASSERT(!error.problem().what.empty());
     }
@@ -244,8 +221,7 @@ TEST_CASE("property: the stream's first three octaves are those of full overlap"
     const Record y = record(8, 300);
     const Record full = values(curve(y, DeviationType::oadev, 1, TauGrid::octave)),
                  streamed = values(pyramid_deviation(y, 1));
-    for (std::size_t i = 0; i < 3 && i < streamed.size(); ++i)
-      RC_ASSERT(near(streamed[i], full[i], 1e-13));
+    for (std::size_t i = 0; i < 3 && i < streamed.size(); ++i) RC_ASSERT(near(streamed[i], full[i], 1e-13));
   });
 }
 TEST_CASE("property: one missing sample hurts the terms that touch it, no more") {
@@ -266,8 +242,7 @@ TEST_CASE("property: a mixture's Allan variance is the sum of its terms'") {
     for (double& t : theta) t = *between(0, 4);
     const double m = *rc::gen::inRange(1, 5000), dt = *between(0.001, 1);
     double sum = 0;
-    for (std::size_t i = 0; i < kTerms; ++i)
-      sum += theta[i] * unit_allan_variance(static_cast<Term>(i), m, dt);
+    for (std::size_t i = 0; i < kTerms; ++i) sum += theta[i] * unit_allan_variance(static_cast<Term>(i), m, dt);
     RC_ASSERT(near(allan_variance(theta, m, dt), sum, 1e-13));
   });
 }
@@ -276,8 +251,7 @@ TEST_CASE("property: a density integrates to the mean square (rectangular window
     const Record y = record(16, 200);
     const std::uint64_t segment = any_segment(y);
     const Spectrum s = welch_of(y, segment, Window::rectangular, 0, Detrend::none);
-    const double integral =
-        std::accumulate(s.value.begin(), s.value.end(), 0.0) * 50 / static_cast<double>(segment);
+    const double integral = std::accumulate(s.value.begin(), s.value.end(), 0.0) * 50 / static_cast<double>(segment);
     const double square = mean_square(y, static_cast<std::size_t>(s.segments * segment));
     RC_ASSERT(std::abs(integral - square) <= 1e-12 * square);
   });
@@ -287,8 +261,7 @@ TEST_CASE("property: a power of two scales a density by its square, exactly") {
     const Record y = record(16, 200);
     const std::uint64_t segment = any_segment(y);
     const int power = *rc::gen::inRange(-200, 200);
-    RC_ASSERT(same_bits(welch_of(scaled(y, power), segment).value,
-                        scaled(welch_of(y, segment).value, 2 * power)));
+    RC_ASSERT(same_bits(welch_of(scaled(y, power), segment).value, scaled(welch_of(y, segment).value, 2 * power)));
   });
 }
 TEST_CASE("property: an offset that is taken off leaves the density") {
@@ -317,12 +290,8 @@ TEST_CASE("property: one segment turned round in a circle keeps its density") {
   holds([] {
     const Record y = record(16, 200);
     Record circled = y;
-    std::rotate(circled.begin(),
-                circled.begin() + *rc::gen::inRange(0, static_cast<int>(y.size())),
-                circled.end());
-    const auto of = [](const Record& x) {
-      return welch_of(x, x.size(), Window::rectangular, 0).value;
-    };
+    std::rotate(circled.begin(), circled.begin() + *rc::gen::inRange(0, static_cast<int>(y.size())), circled.end());
+    const auto of = [](const Record& x) { return welch_of(x, x.size(), Window::rectangular, 0).value; };
     RC_ASSERT(near(of(circled), of(y), 1e-12));
     RC_ASSERT(near(of(turned(y)), of(y), 1e-12));
   });
@@ -333,28 +302,22 @@ TEST_CASE("property: one side holds what both hold, and the root is the root") {
     const std::uint64_t segment = any_segment(y);
     const Spectrum one = welch_of(y, segment),
                    two = welch_of(y, segment, Window::hann, 0.5, Detrend::constant, Sides::two),
-                   root = welch_of(
-                       y, segment, Window::hann, 0.5, Detrend::constant, Sides::one, Scaling::lsd);
-    const auto sum = [](const Spectrum& s) {
-      return std::accumulate(s.value.begin(), s.value.end(), 0.0);
-    };
+                   root = welch_of(y, segment, Window::hann, 0.5, Detrend::constant, Sides::one, Scaling::lsd);
+    const auto sum = [](const Spectrum& s) { return std::accumulate(s.value.begin(), s.value.end(), 0.0); };
     RC_ASSERT(near(sum(one), sum(two), 1e-12));
-    for (std::size_t k = 0; k < one.value.size(); ++k)
-      RC_ASSERT(root.value[k] == std::sqrt(one.value[k]));
+    for (std::size_t k = 0; k < one.value.size(); ++k) RC_ASSERT(root.value[k] == std::sqrt(one.value[k]));
   });
 }
 TEST_CASE("property: density and power differ by the noise bandwidth") {
   holds([] {
     const Record y = record(16, 200);
     const std::uint64_t segment = any_segment(y);
-    const Window window = *rc::gen::element(
-        Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top);
+    const Window window =
+        *rc::gen::element(Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top);
     const Spectrum density = welch_of(y, segment, window),
-                   power = welch_of(
-                       y, segment, window, 0.5, Detrend::constant, Sides::one, Scaling::ps);
+                   power = welch_of(y, segment, window, 0.5, Detrend::constant, Sides::one, Scaling::ps);
     for (std::size_t k = 0; k < density.value.size(); ++k)
-      RC_ASSERT(std::abs(power.value[k] - density.value[k] * density.enbw_hz) <=
-                1e-12 * std::abs(power.value[k]));
+      RC_ASSERT(std::abs(power.value[k] - density.value[k] * density.enbw_hz) <= 1e-12 * std::abs(power.value[k]));
   });
 }
 TEST_CASE("property: a streamed spectrum has the bits of the whole, threads or not") {
@@ -422,9 +385,7 @@ TEST_CASE("property: windows are symmetric about their middle") {
   holds([] {
     const auto n = static_cast<std::size_t>(*rc::gen::inRange(8, 300));
     const Record w = window_values(
-        *rc::gen::element(
-            Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top),
-        n);
+        *rc::gen::element(Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top), n);
     for (std::size_t i = 1; i < n; ++i) RC_ASSERT(std::abs(w[i] - w[n - i]) < 1e-14);
   });
 }

@@ -50,9 +50,7 @@ SensorModel any_model() {
   return model;
 }
 
-Record simulated(const SensorModel& model,
-                 std::uint64_t seed,
-                 std::size_t samples,
+Record simulated(const SensorModel& model, std::uint64_t seed, std::size_t samples,
                  const std::function<std::size_t()>& block) {
   ArraySimulation simulation;
   simulation.rate_hz = model.rate_hz;
@@ -91,8 +89,7 @@ TEST_CASE("property: a curve without noise gives its coefficients back") {
       // Deviations of few degrees of freedom lie below the truth in the mean of their logarithm,
       // and are taken so: an exact curve comes out a little high, by a small part of what is stated
       // as uncertainty.
-      RC_ASSERT(std::abs(std::log(*fit.term[i].value / std::sqrt(theta[i]))) <=
-                0.3 * fit.term[i].relative_sd + 1e-5);
+      RC_ASSERT(std::abs(std::log(*fit.term[i].value / std::sqrt(theta[i]))) <= 0.3 * fit.term[i].relative_sd + 1e-5);
     }
   });
 }
@@ -110,12 +107,10 @@ TEST_CASE("property: a record in another unit has the coefficients in that unit"
   holds([](std::uint64_t seed) {
     const Record y = white(seed, 400);
     const int power = *rc::gen::inRange(-100, 100);
-    const NoiseFit plain = fit_record(y, 100, nullptr),
-                   other = fit_record(scaled(y, power), 100, nullptr);
+    const NoiseFit plain = fit_record(y, 100, nullptr), other = fit_record(scaled(y, power), 100, nullptr);
     for (std::size_t i = 0; i < kTerms; ++i) {
       RC_ASSERT(plain.term[i].status == other.term[i].status);
-      if (plain.term[i].value)
-        RC_ASSERT(near(*other.term[i].value, std::ldexp(*plain.term[i].value, power), 1e-5));
+      if (plain.term[i].value) RC_ASSERT(near(*other.term[i].value, std::ldexp(*plain.term[i].value, power), 1e-5));
     }
   });
 }
@@ -135,8 +130,7 @@ TEST_CASE("property: a bound is relative, and falls with the length of the recor
     Mixture larger = theta;
     for (double& t : larger) t *= 49;
     const TermSet fitted = {true, true, true, false, false};
-    const auto plain = cramer_rao(theta, 100, 1e5, fitted),
-               scaled_up = cramer_rao(larger, 100, 1e5, fitted),
+    const auto plain = cramer_rao(theta, 100, 1e5, fitted), scaled_up = cramer_rao(larger, 100, 1e5, fitted),
                longer = cramer_rao(theta, 100, 4e5, fitted);
     for (std::size_t i = 0; i < 3; ++i) {
       RC_ASSERT(near(plain[i].value(), scaled_up[i].value(), 1e-9));
@@ -196,10 +190,8 @@ TEST_CASE("property: a simulated record does not depend on the blocks it is take
     const SensorModel model = any_model();
     const Record whole = simulated(model, seed, 500, [] { return std::size_t{500}; });
     RC_ASSERT(whole.size() == 500);
-    RC_ASSERT(same_bits(
-        simulated(
-            model, seed, 500, [] { return static_cast<std::size_t>(*rc::gen::inRange(1, 200)); }),
-        whole));
+    RC_ASSERT(same_bits(simulated(model, seed, 500, [] { return static_cast<std::size_t>(*rc::gen::inRange(1, 200)); }),
+                        whole));
   });
 }
 TEST_CASE("property: a longer simulation begins like a shorter one of the same noise") {

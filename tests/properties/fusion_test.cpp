@@ -36,29 +36,20 @@ Case any_case(int least = 3, Eigen::Index instants = 60) {
   for (Eigen::Index k = 0; k < instants; ++k) {
     x += noise.normal();
     for (Eigen::Index i = 0; i < n; ++i)
-      out.y(i, k) = std::ldexp(
-          std::round(std::ldexp(x + std::sqrt(out.array.noise_levels[i]) * noise.normal(), 20)),
-          -20);
+      out.y(i, k) =
+          std::ldexp(std::round(std::ldexp(x + std::sqrt(out.array.noise_levels[i]) * noise.normal(), 20)), -20);
   }
   return out;
 }
 
-const fusion::Entry& any_of(const std::vector<std::string>& names) {
-  return algorithm(*rc::gen::elementOf(names));
-}
+const fusion::Entry& any_of(const std::vector<std::string>& names) { return algorithm(*rc::gen::elementOf(names)); }
 
 /// Means whose weights are never negative.
-const std::vector<std::string> kMeans = {
-    "mean", "median", "inverse-variance", "covariance-intersection", "minque", "random-weighting"};
+const std::vector<std::string> kMeans = {"mean",   "median",          "inverse-variance", "covariance-intersection",
+                                         "minque", "random-weighting"};
 /// These and what calibrates or follows the past, without a reference.
-const std::vector<std::string> kBlind = {"mean",
-                                         "median",
-                                         "inverse-variance",
-                                         "covariance-intersection",
-                                         "minque",
-                                         "random-weighting",
-                                         "blind-calibration",
-                                         "kalman-takens"};
+const std::vector<std::string> kBlind = {"mean",   "median",           "inverse-variance",  "covariance-intersection",
+                                         "minque", "random-weighting", "blind-calibration", "kalman-takens"};
 
 ::test::Run run_of(const fusion::Entry& entry, const Case& c, Eigen::Index block = 1 << 20) {
   const auto runner = entry.make(c.array, Settings(entry.options));
@@ -81,9 +72,7 @@ Case turned_round(Case c) {
   return c;
 }
 
-double largest_gap(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
+double largest_gap(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
 void sprinkle_gaps(Case& c, int rarity) {
   for (double& v : c.y.reshaped())
@@ -119,8 +108,7 @@ TEST_CASE("property: an input moved by 2^20 moves the estimate alike") {
   holds([] {
     const Case c = any_case();
     const fusion::Entry& entry = any_of(kBlind);
-    RC_ASSERT(largest_gap(run_of(entry, moved(c, 0x1p20)).x.array() - 0x1p20, run_of(entry, c).x) <
-              1e-8);
+    RC_ASSERT(largest_gap(run_of(entry, moved(c, 0x1p20)).x.array() - 0x1p20, run_of(entry, c).x) < 1e-8);
   });
 }
 TEST_CASE("property: another unit is another unit of the estimate") {
@@ -145,8 +133,7 @@ TEST_CASE("property: blocks of any size give the same bits, missing samples or n
     Case c = any_case();
     sprinkle_gaps(c, *rc::gen::element(5, 50));
     const fusion::Entry& entry = any_of(kBlind);
-    RC_ASSERT(
-        ::test::same_values(run_of(entry, c, *rc::gen::inRange(1, 40)).x, run_of(entry, c).x));
+    RC_ASSERT(::test::same_values(run_of(entry, c, *rc::gen::inRange(1, 40)).x, run_of(entry, c).x));
   });
 }
 TEST_CASE("property: a variance is not negative, and no estimate has none") {
@@ -165,8 +152,7 @@ TEST_CASE("property: a mean has an estimate wherever one sample is") {
   holds([] {
     Case c = any_case();
     sprinkle_gaps(c, 2);
-    const ::test::Run out =
-        run_of(algorithm(*rc::gen::element<std::string>("mean", "median", "inverse-variance")), c);
+    const ::test::Run out = run_of(algorithm(*rc::gen::element<std::string>("mean", "median", "inverse-variance")), c);
     for (Eigen::Index k = 0; k < out.x.cols(); ++k)
       RC_ASSERT(std::isnan(out.x(0, k)) == !(c.y.col(k).array() == c.y.col(k).array()).any());
   });
@@ -176,8 +162,7 @@ TEST_CASE("property: fused variance is no larger than the best sensor's") {
     const Case c = any_case(1);
     const ::test::Run out = run_of(algorithm("inverse-variance"), c);
     RC_ASSERT(out.variance.maxCoeff() <= c.array.noise_levels.minCoeff() * (1 + 1e-14));
-    RC_ASSERT(std::abs(1 / out.variance(0, 0) - c.array.noise_levels.cwiseInverse().sum()) <
-              1e-9 / out.variance(0, 0));
+    RC_ASSERT(std::abs(1 / out.variance(0, 0) - c.array.noise_levels.cwiseInverse().sum()) < 1e-9 / out.variance(0, 0));
   });
 }
 TEST_CASE("property: all noise levels times a constant leave the estimate") {
@@ -199,8 +184,8 @@ TEST_CASE("property: a sensor of deviation 1e150 changes nothing") {
     more.array.noise_levels.tail(1).setConstant(1e300);
     more.y.conservativeResize(more.array.channels, Eigen::NoChange);
     more.y.bottomRows(1).setConstant(*between(-1e6, 1e6));
-    RC_ASSERT(largest_gap(run_of(algorithm("inverse-variance"), more).x,
-                          run_of(algorithm("inverse-variance"), c).x) < 1e-12);
+    RC_ASSERT(largest_gap(run_of(algorithm("inverse-variance"), more).x, run_of(algorithm("inverse-variance"), c).x) <
+              1e-12);
   });
 }
 TEST_CASE("property: a sensor twice is that sensor once with half the variance") {
@@ -213,8 +198,7 @@ TEST_CASE("property: a sensor twice is that sensor once with half the variance")
     twice.array.noise_levels.tail(1) = twice.array.noise_levels.head(1);
     twice.y.conservativeResize(twice.array.channels, Eigen::NoChange);
     twice.y.bottomRows(1) = twice.y.topRows(1).eval();
-    const ::test::Run a = run_of(algorithm("inverse-variance"), once),
-                      b = run_of(algorithm("inverse-variance"), twice);
+    const ::test::Run a = run_of(algorithm("inverse-variance"), once), b = run_of(algorithm("inverse-variance"), twice);
     RC_ASSERT(largest_gap(a.x, b.x) < 1e-10);
     RC_ASSERT(std::abs(a.variance(0, 0) / b.variance(0, 0) - 1) < 1e-12);
   });
@@ -224,13 +208,11 @@ TEST_CASE("property: what all inputs add is added to their estimates") {
     Case c = any_case(5);
     const Eigen::Index n = c.array.channels;
     c.array.observation_matrix = Eigen::MatrixXd::Ones(n, 2);
-    for (Eigen::Index i = 0; i < n; ++i)
-      c.array.observation_matrix(i, 1) = static_cast<double>(i) + *between(0, 0.5);
+    for (Eigen::Index i = 0; i < n; ++i) c.array.observation_matrix(i, 1) = static_cast<double>(i) + *between(0, 0.5);
     const Eigen::Vector2d b(*between(-5, 5), *between(-5, 5));
     Case added = c;
     added.y.colwise() += c.array.observation_matrix * b;
-    const fusion::Entry& entry =
-        algorithm(*rc::gen::element<std::string>("mean", "inverse-variance"));
+    const fusion::Entry& entry = algorithm(*rc::gen::element<std::string>("mean", "inverse-variance"));
     const Eigen::MatrixXd expected = run_of(entry, c).x.colwise() + b;
     RC_ASSERT(largest_gap(run_of(entry, added).x, expected) < 1e-8);
   });
@@ -246,8 +228,7 @@ TEST_CASE("property: learnt weights do not depend on the order of the instants")
       WeightLearner learner(c.array.channels);
       for (Eigen::Index k = 0; k < c.y.cols(); ++k) {
         const Eigen::Index at = backwards ? c.y.cols() - 1 - k : k;
-        learner.add(Sample(c.y.data() + at * c.y.rows(), c.y.rows()),
-                    x[static_cast<std::size_t>(at)]);
+        learner.add(Sample(c.y.data() + at * c.y.rows(), c.y.rows()), x[static_cast<std::size_t>(at)]);
       }
       LeastSquaresForm form;
       return learner.weights(form).weights;
@@ -261,8 +242,7 @@ TEST_CASE("property: who cannot run on an array says so in a sentence, who can r
   holds([] {
     const Case c = any_case(1, 5);
     const auto all = algorithms();
-    const fusion::Entry& entry =
-        all[static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(all.size())))];
+    const fusion::Entry& entry = all[static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(all.size())))];
     const std::string why = why_not(*entry.description, c.array);
     if (!why.empty()) {
       RC_ASSERT(why.find(entry.description->name) == 0);

@@ -22,8 +22,7 @@ void holds(Property&& property) {
 
 /// Multiples of 2^-10 up to 1024: sums and differences of a few thousand of them are exact.
 inline rc::Gen<double> on_grid() {
-  return rc::gen::map(rc::gen::inRange(-(1 << 20), 1 << 20),
-                      [](int k) { return std::ldexp(k, -10); });
+  return rc::gen::map(rc::gen::inRange(-(1 << 20), 1 << 20), [](int k) { return std::ldexp(k, -10); });
 }
 
 /// Any finite double, all exponents alike.
@@ -38,8 +37,7 @@ inline rc::Gen<double> any_finite() {
 }
 
 inline rc::Gen<double> between(double low, double high) {
-  return rc::gen::map(rc::gen::inRange(0, 1 << 20),
-                      [=](int k) { return low + (high - low) * std::ldexp(k, -20); });
+  return rc::gen::map(rc::gen::inRange(0, 1 << 20), [=](int k) { return low + (high - low) * std::ldexp(k, -20); });
 }
 
 template <class T>
@@ -49,9 +47,7 @@ rc::Gen<std::vector<T>> several(int least, int most, const rc::Gen<T>& each) {
   });
 }
 
-inline Record record(int least, int most) {
-  return *several(least, most, on_grid());
-}
+inline Record record(int least, int most) { return *several(least, most, on_grid()); }
 
 /// One in `rarity` is missing.
 inline Record with_gaps(Record y, int rarity) {
@@ -65,8 +61,7 @@ template <class Take>
 void in_pieces(const Record& y, Take take) {
   std::span<const double> rest = y;
   while (!rest.empty()) {
-    const auto n =
-        static_cast<std::size_t>(*rc::gen::inRange(1, static_cast<int>(rest.size()) + 1));
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, static_cast<int>(rest.size()) + 1));
     take(rest.first(n));
     rest = rest.subspan(n);
   }
@@ -80,13 +75,10 @@ inline Record shifted(Record y, double by) {
   for (double& v : y) v += by;
   return y;
 }
-inline Record turned(const Record& y) {
-  return {y.rbegin(), y.rend()};
-}
+inline Record turned(const Record& y) { return {y.rbegin(), y.rend()}; }
 
 inline bool same_bits(const Record& a, const Record& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 inline bool near(double a, double b, double relative) {
   return a == b || std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
@@ -96,8 +88,7 @@ inline bool near(const Record& a, const Record& b, double relative) {
   double largest = 0;
   for (const double v : b) largest = std::max(largest, std::abs(v));
   bool out = a.size() == b.size();
-  for (std::size_t i = 0; out && i < a.size(); ++i)
-    out = std::abs(a[i] - b[i]) <= relative * largest;
+  for (std::size_t i = 0; out && i < a.size(); ++i) out = std::abs(a[i] - b[i]) <= relative * largest;
   return out;
 }
 

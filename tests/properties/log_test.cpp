@@ -34,9 +34,7 @@ std::vector<Record> any_columns() {
   return out;
 }
 
-void write_as(const std::string& path,
-              const std::vector<Record>& columns,
-              const WriteOptions& options = {}) {
+void write_as(const std::string& path, const std::vector<Record>& columns, const WriteOptions& options = {}) {
   LogInfo info;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     info.channels.emplace_back();
@@ -70,31 +68,15 @@ bool same_samples(const std::vector<Record>& a, const std::vector<Record>& b) {
 
 /// Rows of cells that a log may hold, good and bad.
 std::string any_table() {
-  static const std::vector<std::string> cells = {"1",
-                                                 "-2.5",
-                                                 "3e7",
-                                                 "",
-                                                 "nan",
-                                                 "1e400",
-                                                 "x",
-                                                 "0.1",
-                                                 "007",
-                                                 "1,5",
-                                                 "\"4\"",
-                                                 "-",
-                                                 "+3",
-                                                 "0x10",
-                                                 "1e-400",
-                                                 "5 "};
-  std::string out =
-      *rc::gen::element<std::string>("t,a,b\n", "a,b\n", "", "# note\nt[s],a[deg/s]\n");
+  static const std::vector<std::string> cells = {"1",   "-2.5", "3e7",   "",  "nan", "1e400", "x",      "0.1",
+                                                 "007", "1,5",  "\"4\"", "-", "+3",  "0x10",  "1e-400", "5 "};
+  std::string out = *rc::gen::element<std::string>("t,a,b\n", "a,b\n", "", "# note\nt[s],a[deg/s]\n");
   const int rows = *rc::gen::inRange(0, 12);
   for (int r = 0; r < rows; ++r) {
     const int columns = *rc::gen::inRange(1, 4);
     for (int c = 0; c < columns; ++c)
-      out += (c > 0 ? "," : "") + (*rc::gen::inRange(0, 6) > 0
-                                       ? std::to_string(r) + "." + std::to_string(c)
-                                       : *rc::gen::elementOf(cells));
+      out += (c > 0 ? "," : "") +
+             (*rc::gen::inRange(0, 6) > 0 ? std::to_string(r) + "." + std::to_string(c) : *rc::gen::elementOf(cells));
     out += *rc::gen::element<std::string>("\n", "\n", "\n", "\r\n", "");
   }
   return out;
@@ -168,8 +150,7 @@ TEST_CASE(
   holds([] {
     const BlockReading read = reading_of(any_table(), 1 << 16, 1);
     if (!read.refused.empty()) return;
-    RC_ASSERT(read.info.rows ==
-              read.info.rows_used + read.info.rows_dropped + read.info.rows_outside);
+    RC_ASSERT(read.info.rows == read.info.rows_used + read.info.rows_dropped + read.info.rows_outside);
     RC_ASSERT(read.samples.size() == read.info.channels.size());
   });
 }
@@ -177,8 +158,7 @@ TEST_CASE("property: blocks and threads change nothing of what is read or refuse
   holds([] {
     const std::string table = any_table();
     const BlockReading whole = reading_of(table, 1 << 16, 1),
-                       parts = reading_of(table,
-                                          static_cast<std::size_t>(*rc::gen::inRange(1, 60)),
+                       parts = reading_of(table, static_cast<std::size_t>(*rc::gen::inRange(1, 60)),
                                           *rc::gen::inRange(1, 4));
     RC_ASSERT(parts.refused == whole.refused);
     RC_ASSERT(same_samples(parts.samples, whole.samples));

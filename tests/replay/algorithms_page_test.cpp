@@ -12,10 +12,7 @@ using namespace libchar;
 TEST_CASE("docs/replay.md: the table of algorithms") {
   std::string rows = "| name | algorithm | source | needs |\n|---|---|---|---|\n";
   for (const fusion::Entry& entry : fusion::algorithms())
-    rows += fmt::format("| `{}` | {} | {} | {} |\n",
-                        entry.description->name,
-                        entry.description->title,
-                        entry.description->source,
-                        fmt::join(needs_in_words(*entry.description), "; "));
+    rows += fmt::format("| `{}` | {} | {} | {} |\n", entry.description->name, entry.description->title,
+                        entry.description->source, fmt::join(needs_in_words(*entry.description), "; "));
   test::check_docs_table("replay.md", "table", "algorithms", rows);
 }

@@ -29,8 +29,8 @@ std::string three_sensors(int rows) {
   for (int k = 0; k < rows; ++k) {
     const double a = motion(k) + noise(), b = 1.03 * motion(k - 0.4) + noise();
     const double c = motion(k) + 0.5 + noise();
-    text += std::to_string(0.01 * k) + "," + std::to_string(a) + "," + std::to_string(b) + "," +
-            std::to_string(c) + "," + std::to_string(motion(k)) + "\n";
+    text += std::to_string(0.01 * k) + "," + std::to_string(a) + "," + std::to_string(b) + "," + std::to_string(c) +
+            "," + std::to_string(motion(k)) + "\n";
   }
   return text;
 }
@@ -38,8 +38,7 @@ std::string three_sensors(int rows) {
 struct AlignedBench {
   AlignedBench() { bench.put("three.csv", three_sensors(4000)); }
   ReplayResult run(const std::string& more, std::size_t block = 0, bool no_skip = false) const {
-    const Scene scene =
-        bench.read("format: scene\nversion: 1\nrecording: three.csv\nsensors: [a, b, c]\n" + more);
+    const Scene scene = bench.read("format: scene\nversion: 1\nrecording: three.csv\nsensors: [a, b, c]\n" + more);
     ReplayOptions options;
     options.algorithms = {{"mean", {}}};
     options.block = block;
@@ -72,8 +71,7 @@ TEST_CASE("align: taught by the reference, the mean of the sensors is as good as
 TEST_CASE("align: the same bits for any size of block, with and without skipping") {
   const AlignedBench bench;
   const std::string blind = "align: {learn: [0, 15]}\nevaluation: [16, end]\n";
-  const ReplayResult one = bench.run(blind, 1), many = bench.run(blind, 1000),
-                     all = bench.run(blind, 0, true);
+  const ReplayResult one = bench.run(blind, 1), many = bench.run(blind, 1000), all = bench.run(blind, 0, true);
   CHECK(one.algorithms[0].rmse == many.algorithms[0].rmse);
   CHECK(one.algorithms[0].rmse == all.algorithms[0].rmse);
   CHECK(one.alignment->learnt.channels[1].delay == many.alignment->learnt.channels[1].delay);
@@ -82,8 +80,7 @@ TEST_CASE("align: the same bits for any size of block, with and without skipping
 
 TEST_CASE("align: reported only, the sensors are fused as recorded") {
   const AlignedBench bench;
-  const ReplayResult only =
-      bench.run("align: {learn: [0, 15], apply: false}\nevaluation: [16, end]\n");
+  const ReplayResult only = bench.run("align: {learn: [0, 15], apply: false}\nevaluation: [16, end]\n");
   const ReplayResult recorded = bench.run("evaluation: [16, end]\n");
   CHECK(only.algorithms[0].rmse == recorded.algorithms[0].rmse);
   CHECK(only.alignment->budget.after < 0.1 * only.alignment->budget.before);
@@ -103,8 +100,7 @@ TEST_CASE("align: learnt and judged on the same stretch is warned of, other wind
   CHECK_THROWS_WITH(replay(two), Catch::Contains("E0911"));
 }
 
-TEST_CASE(
-    "align: the report has the terms and the budget, and the scene is written as it was read") {
+TEST_CASE("align: the report has the terms and the budget, and the scene is written as it was read") {
   const AlignedBench bench;
   const ReplayResult result = bench.run(
       "align: {learn: [0, 15], terms: [delay, gain], interpolation: cubic, by: sensors}\n"
@@ -122,19 +118,14 @@ TEST_CASE(
   CHECK(scene_yaml(bench.bench.read(written, "again.yaml")) == written);
 }
 
-TEST_CASE(
-    "align: weights are those of the run, and instants where delayed sensors have ended are cut") {
+TEST_CASE("align: weights are those of the run, and instants where delayed sensors have ended are cut") {
   test::SceneBench bench;
   std::string text = "t[s],a,b,c,x\n";
   test::Gaussian gauss(3);
   const auto motion = [](double t) { return std::sin(0.04 * t) + 2 * std::sin(0.011 * t + 1); };
   for (int k = 0; k < 6000; ++k)
-    text += fmt::format("{},{},{},{},{}\n",
-                        0.01 * k,
-                        motion(k - 5.4) + 0.01 * gauss(),
-                        motion(k + 1.3) + 0.02 * gauss(),
-                        motion(k) + 0.1 * gauss(),
-                        motion(k));
+    text += fmt::format("{},{},{},{},{}\n", 0.01 * k, motion(k - 5.4) + 0.01 * gauss(),
+                        motion(k + 1.3) + 0.02 * gauss(), motion(k) + 0.1 * gauss(), motion(k));
   bench.put("log.csv", text);
   const Scene scene = bench.read(
       "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c]\nreference: x\n"

@@ -31,8 +31,7 @@ std::string uneven_log(std::uint64_t seed) {
     std::snprintf(cell, sizeof cell, "%.2f", 0.01 * k);
     out += cell;
     for (int i = 0; i < 4; ++i) {
-      std::snprintf(
-          cell, sizeof cell, ",%.8g", 5 * std::sin(0.02 * k) + loud * (1 + 0.2 * i) * gauss());
+      std::snprintf(cell, sizeof cell, ",%.8g", 5 * std::sin(0.02 * k) + loud * (1 + 0.2 * i) * gauss());
       out += cell;
     }
     out += '\n';
@@ -146,8 +145,8 @@ TEST_CASE("budget: stretches lie in order, within the run, on whole cells of the
           CHECK(share.cost_s <= budget);
           continue;
         }
-        const auto cell = static_cast<std::int64_t>(
-            ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
+        const auto cell =
+            static_cast<std::int64_t>(ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
         std::int64_t before = 0, instants = 0;
         for (const BlindStretch& s : share.stretches) {
           CHECK(s.from >= before);

@@ -50,16 +50,14 @@ TEST_CASE("choice: the smallest error, and of ties the mended and the cheaper") 
   CHECK(chosen({{"mean", 1.2, 1, 1.3, 1}, {"minque", 1.0, .9, 1.1, 50}}) == "minque");
   CHECK(chosen({{"mean", 1.009, 1, 1.3, 1}, {"minque", 1.0, .9, 1.1, 50}}) == "mean");
   CHECK(chosen({{"minque-published", .995, .9, 1.1, 1}, {"minque", 1.0, .9, 1.1, 50}}) == "minque");
-  CHECK(chosen({{"minque-published", .5, .4, .6, 1}, {"minque", 1.0, .9, 1.1, 50}}) ==
-        "minque-published");
+  CHECK(chosen({{"minque-published", .5, .4, .6, 1}, {"minque", 1.0, .9, 1.1, 50}}) == "minque-published");
   // Without a reference a score holds the noise of the sensor that is left out: less than one per cent may decide.
   CHECK(chosen({{"mean", 1.009, 1, 1.3, 1}, {"minque", 1.0, .9, 1.1, 50}}, false) == "minque");
   CHECK(chosen({{"median", 1, 1, 1.3, 2}, {"mean", 1, 1, 1.3, 1}}, false) == "mean");
 }
 
 TEST_CASE("choice: a method whose interval spans a decade does not win") {
-  CHECK(chosen({{"kalman-takens", .006, .00012, .29, 1}, {"minque", .033, .0329, .0333, 50}}) ==
-        "minque");
+  CHECK(chosen({{"kalman-takens", .006, .00012, .29, 1}, {"minque", .033, .0329, .0333, 50}}) == "minque");
   CHECK(chosen({{"kalman-takens", .006, .00012, .29, 1}}) == "kalman-takens");
 }
 
@@ -78,12 +76,8 @@ TEST_CASE(
   test::Gaussian gauss(9);
   for (int k = 0; k < 4000; ++k) {
     const double x = 2 * std::sin(0.05 * k), drift = std::sin(0.002 * k);
-    text += fmt::format("{},{},{},{},{}\n",
-                        0.01 * k,
-                        x + 0.01 * gauss(),
-                        x + 0.5 + drift + 0.3 * gauss(),
-                        x - 0.9 + 0.3 * gauss(),
-                        x);
+    text += fmt::format("{},{},{},{},{}\n", 0.01 * k, x + 0.01 * gauss(), x + 0.5 + drift + 0.3 * gauss(),
+                        x - 0.9 + 0.3 * gauss(), x);
   }
   bench.put("log.csv", text);
   const std::string head =
@@ -102,7 +96,6 @@ TEST_CASE(
   REQUIRE(alone.best);
   CHECK(alone.algorithms[*alone.best].label == "best-axes");
   CHECK(alone.best_fusion == "mean");
-  CHECK_THAT(
-      fmt::format("{}", fmt::join(verdict_sentences(alone, false), " ")),
-      Contains("best-axes takes a alone.") && Contains("the error of mean, the best fusion, is"));
+  CHECK_THAT(fmt::format("{}", fmt::join(verdict_sentences(alone, false), " ")),
+             Contains("best-axes takes a alone.") && Contains("the error of mean, the best fusion, is"));
 }

@@ -26,17 +26,13 @@ struct UnitCase {
 };
 
 std::string log_in(const UnitCase& units, double first) {
-  std::string text = fmt::format(
-      "t[s],a[{}],b[{}],c[{}],x[{}]\n", units.first, units.others, units.others, units.others);
+  std::string text =
+      fmt::format("t[s],a[{}],b[{}],c[{}],x[{}]\n", units.first, units.others, units.others, units.others);
   test::Gaussian gauss(5);
   for (int k = 0; k < 3000; ++k) {
     const double x = 3 * std::sin(0.03 * k);
-    text += fmt::format("{},{},{},{},{}\n",
-                        0.01 * k,
-                        first * (x + 0.1 * gauss()),
-                        x + 0.1 * gauss(),
-                        x + 0.2 * gauss(),
-                        x);
+    text +=
+        fmt::format("{},{},{},{},{}\n", 0.01 * k, first * (x + 0.1 * gauss()), x + 0.1 * gauss(), x + 0.2 * gauss(), x);
   }
   return text;
 }
@@ -73,13 +69,11 @@ TEST_CASE("units of a scene: sensors of one quantity are converted to the refere
   test::SceneBench bench;
   bench.put("log.csv", log_in({"deg/s", "deg/s", 1}, 1));
   const ReplayResult alike = replay(bench.read(kUnitScene));
-  for (const UnitCase& units : {UnitCase{"rad/s", "deg/s", std::acos(-1.0) / 180},
-                                UnitCase{"g", "m/s^2", 1 / 9.80665},
+  for (const UnitCase& units : {UnitCase{"rad/s", "deg/s", std::acos(-1.0) / 180}, UnitCase{"g", "m/s^2", 1 / 9.80665},
                                 UnitCase{"Pa", "hPa", 100}}) {
     bench.put("log.csv", log_in(units, units.factor));
     const ReplayResult result = replay(bench.read(kUnitScene));
-    CHECK(test::named(result, "mean").rmse ==
-          Approx(test::named(alike, "mean").rmse).epsilon(1e-4));
+    CHECK(test::named(result, "mean").rmse == Approx(test::named(alike, "mean").rmse).epsilon(1e-4));
     CHECK(result.sensors[0].unit == units.others);
     CHECK_THAT(fmt::format("{}", fmt::join(result.plan, "\n")),
                Contains(fmt::format("converts to {}: a from {}", units.others, units.first)));
@@ -88,14 +82,10 @@ TEST_CASE("units of a scene: sensors of one quantity are converted to the refere
     KeptColumns fused;
     FuseOptions options;
     options.algorithm = "mean";
-    fuse(bench.path("log.csv"),
-         parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml"),
-         fused,
-         options);
+    fuse(bench.path("log.csv"), parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml"), fused, options);
     double squares = 0;
     for (int k = 0; k < 3000; ++k)
-      squares +=
-          std::pow(fused.columns[0][static_cast<std::size_t>(k)] - 3 * std::sin(0.03 * k), 2);
+      squares += std::pow(fused.columns[0][static_cast<std::size_t>(k)] - 3 * std::sin(0.03 * k), 2);
     CHECK(std::sqrt(squares / 3000) == Approx(test::named(alike, "mean").rmse).epsilon(1e-3));
   }
 }

@@ -30,13 +30,8 @@ Json algorithm(const std::string& label, double rmse, double low, double high, d
 }
 
 Json skipped(const std::string& label) {
-  return {{"name", label},
-          {"label", label},
-          {"status", "skipped"},
-          {"why", "needs"},
-          {"rmse", nullptr},
-          {"rmse_ci95", nullptr},
-          {"regret", nullptr}};
+  return {{"name", label},   {"label", label},       {"status", "skipped"}, {"why", "needs"},
+          {"rmse", nullptr}, {"rmse_ci95", nullptr}, {"regret", nullptr}};
 }
 
 // A report of two sensors with the keys that replay writes.
@@ -56,13 +51,9 @@ Json report() {
       {"sensors",
        {{{"name", "left"}, {"unit", "m"}, {"rmse", 2.0}, {"h", {1}}, {"noise_variance", 4}},
         {{"name", "right"}, {"unit", "m"}, {"rmse", 3.0}, {"h", {1}}}}},
-      {"faults",
-       {{{"sensor", "left"}, {"kind", "bias"}, {"value", 1}, {"from_s", 5}, {"to_s", nullptr}}}},
+      {"faults", {{{"sensor", "left"}, {"kind", "bias"}, {"value", 1}, {"from_s", 5}, {"to_s", nullptr}}}},
       {"best", "mean"},
-      {"algorithms",
-       {algorithm("mean", 1.0, 0.9, 1.1),
-        algorithm("median", 1.2, 1.15, 1.3),
-        skipped("tilt-kalman")}}};
+      {"algorithms", {algorithm("mean", 1.0, 0.9, 1.1), algorithm("median", 1.2, 1.15, 1.3), skipped("tilt-kalman")}}};
 }
 
 libchar::ReplayReport summary(const Json& json, const std::string& name = "report.json") {
@@ -124,8 +115,7 @@ std::string check_error(const std::string& text) {
 
 TEST_CASE("comparison: changes, and what the intervals say of them") {
   Json b = report();
-  b["algorithms"] = {algorithm("mean", 0.8, 0.75, 0.85, 12),
-                     algorithm("median", 1.25, 1.2, 1.4, 5),
+  b["algorithms"] = {algorithm("mean", 0.8, 0.75, 0.85, 12), algorithm("median", 1.25, 1.2, 1.4, 5),
                      algorithm("minque", 0.7, 0.6, 0.8)};
   b["best"] = "minque";
   const auto c = compared(report(), b);
@@ -158,8 +148,7 @@ TEST_CASE("comparison: a report against itself is equal and passes every check")
   CHECK(c.unlike.empty());
   CHECK(c.remarks.empty());
   for (const auto& row : c.algorithms)
-    CHECK(row.difference ==
-          (row.both_ran() ? libchar::Difference::equal : libchar::Difference::unknown));
+    CHECK(row.difference == (row.both_ran() ? libchar::Difference::equal : libchar::Difference::unknown));
   for (const char* check : {"rmse+0%", "regret+0%", "ns_per_sample+0%", "peak_bytes+0%"})
     CHECK(failures(c, libchar::parse_comparison_check(check)).empty());
 }
@@ -178,28 +167,23 @@ TEST_CASE("comparison: unlike scenes are refused by what differs") {
              Contains("sensors stand in another order"));
   CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["unit"] = "mm"; }),
              Contains("unit of sensor right: m in A, mm in B"));
-  CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["h"] = {-1}; }),
-             Contains("row h of sensor right"));
+  CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["h"] = {-1}; }), Contains("row h of sensor right"));
   CHECK_THAT(refused_after([](Json& b) { b["sensors"][0]["rmse"] = 2.1; }),
              Contains("sensor left alone has an RMSE of 2 in A, 2.1 in B"));
   CHECK_THAT(refused_after([](Json& b) { b["evaluation"]["from_s"] = 10; }),
              Contains("evaluation: 0 s to 50 s in A, 10 s to 50 s in B"));
   CHECK_THAT(refused_after([](Json& b) { b["instants"] = 4999; }),
              Contains("instants of the evaluation: 5000 in A, 4999 in B"));
-  CHECK_THAT(refused_after([](Json& b) { b["rate_hz"] = 200; }),
-             Contains("rate: 100 Hz in A, 200 Hz in B"));
-  CHECK_THAT(refused_after([](Json& b) { b["reference"] = nullptr; }),
-             Contains("reference: one in A, none in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["rate_hz"] = 200; }), Contains("rate: 100 Hz in A, 200 Hz in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["reference"] = nullptr; }), Contains("reference: one in A, none in B"));
   CHECK_THAT(refused_after([](Json& b) { b["reference"]["lag_s"] = 0.2; }),
              Contains("lag behind the reference: 0.1 s in A, 0.2 s in B"));
-  CHECK_THAT(refused_after([](Json& b) { b["reference"]["use"] = "interpolated"; }),
-             Contains("use of the reference"));
+  CHECK_THAT(refused_after([](Json& b) { b["reference"]["use"] = "interpolated"; }), Contains("use of the reference"));
   CHECK_THAT(refused_after([](Json& b) { b["inputs"][0]["name"] = "angle"; }),
              Contains("true inputs that the other does not have: truth in A, angle in B"));
   CHECK_THAT(refused_after([](Json& b) { b["faults"][0]["value"] = 2; }),
              Contains("fault 1: left bias 1 from 5 s in A, left bias 2 from 5 s in B"));
-  CHECK_THAT(refused_after([](Json& b) { b["faults"] = Json::array(); }),
-             Contains("number of faults: 1 in A, 0 in B"));
+  CHECK_THAT(refused_after([](Json& b) { b["faults"] = Json::array(); }), Contains("number of faults: 1 in A, 0 in B"));
 }
 
 TEST_CASE("comparison: simulations are told apart by seed, then by what was simulated") {
@@ -223,19 +207,16 @@ TEST_CASE("comparison: settings that differ are remarked, not refused") {
   b["algorithms"][0]["options"]["gamma"] = 0.999;
   const auto c = compared(report(), b);
   CHECK(c.unlike.empty());
-  CHECK(c.remarks == std::vector<std::string>{"program: 0.1.0 in A, 0.2.0 in B",
-                                              "learning window: none in A, 0 s to 10 s in B",
-                                              "algorithms were told other noise levels of left",
-                                              "mean.gamma: 0.99 in A, 0.999 in B"});
+  CHECK(c.remarks == std::vector<std::string>{
+                         "program: 0.1.0 in A, 0.2.0 in B", "learning window: none in A, 0 s to 10 s in B",
+                         "algorithms were told other noise levels of left", "mean.gamma: 0.99 in A, 0.999 in B"});
 }
 
 TEST_CASE("comparison: checks hold at their limit and fail above it") {
   Json b = report();
   b["algorithms"][0] = algorithm("mean", 1.0625, 1, 1.1, 15);
   const auto c = compared(report(), b);
-  const auto failing = [&](const char* text) {
-    return failures(c, libchar::parse_comparison_check(text));
-  };
+  const auto failing = [&](const char* text) { return failures(c, libchar::parse_comparison_check(text)); };
   CHECK(failing("rmse+6.25%").empty());
   REQUIRE(failing("rmse+6.2%").size() == 1);
   CHECK(failing("rmse+6.2%")[0] == "mean: rmse 1 in A, 1.0625 in B: 6.25 % more, 6.2 % is allowed");
@@ -264,25 +245,13 @@ TEST_CASE("comparison: checks hold at their limit and fail above it") {
 
 TEST_CASE("comparison: a check that cannot fail is refused") {
   const auto c = compared(report(), report());
-  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("tilt-kalman:rmse+5%")),
-                    Contains("E0923"));
-  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("medain:rmse+5%")),
-                    Contains("did you mean median?"));
-  for (const char* text : {"",
-                           "rmse",
-                           "rmse+5",
-                           "rmse+%",
-                           "rmse+-5%",
-                           "rmse+nan%",
-                           "rmse+inf%",
-                           "+5%",
-                           ":rmse+5%",
-                           "speed+5%",
-                           "rmse-5%"})
+  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("tilt-kalman:rmse+5%")), Contains("E0923"));
+  CHECK_THROWS_WITH(failures(c, libchar::parse_comparison_check("medain:rmse+5%")), Contains("did you mean median?"));
+  for (const char* text :
+       {"", "rmse", "rmse+5", "rmse+%", "rmse+-5%", "rmse+nan%", "rmse+inf%", "+5%", ":rmse+5%", "speed+5%", "rmse-5%"})
     CHECK_THAT(check_error(text), Contains("E0922"));
   CHECK_THAT(check_error("ns_per_smaple+5%"), Contains("did you mean ns_per_sample?"));
-  CHECK(libchar::parse_comparison_check("minque (gamma=0.9):rmse+5%").label ==
-        "minque (gamma=0.9)");
+  CHECK(libchar::parse_comparison_check("minque (gamma=0.9):rmse+5%").label == "minque (gamma=0.9)");
 }
 
 TEST_CASE("comparison: what is no report of a replay is refused with its place") {
@@ -293,17 +262,14 @@ TEST_CASE("comparison: what is no report of a replay is refused with its place")
              Contains("r.json:2:12") && Contains("E0920") && Contains("\"characterization\""));
   CHECK_THAT(reading_error_after([](Json& r) { r["version"] = 2; }),
              Contains("r.json:3:") && Contains("is newer than this program"));
-  for (const char* key :
-       {"scene", "rate_hz", "instants", "evaluation", "inputs", "sensors", "algorithms"})
-    CHECK_THAT(reading_error_after([&](Json& r) { r.erase(key); }),
-               Contains(std::string(key) + " is missing"));
+  for (const char* key : {"scene", "rate_hz", "instants", "evaluation", "inputs", "sensors", "algorithms"})
+    CHECK_THAT(reading_error_after([&](Json& r) { r.erase(key); }), Contains(std::string(key) + " is missing"));
   for (const char* key : {"name", "status"})
     CHECK_THAT(reading_error_after([&](Json& r) { r["algorithms"][1].erase(key); }),
                Contains("algorithms[1]." + std::string(key) + " is missing"));
   CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["rmse"] = "x"; }),
              Contains("r.json:9") && Contains("algorithms[1].rmse: expected a number"));
-  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["rmse"] = -1; }),
-             Contains("algorithms[1].rmse"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["rmse"] = -1; }), Contains("algorithms[1].rmse"));
   CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["status"] = "won"; }),
              Contains("expected one of ran, skipped"));
   CHECK_THAT(reading_error_after([](Json& r) {
@@ -312,8 +278,7 @@ TEST_CASE("comparison: what is no report of a replay is refused with its place")
              Contains("algorithms[1].rmse_ci95"));
   CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["label"] = "mean"; }),
              Contains("algorithms[1].label: stands twice"));
-  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"] = {1}; }),
-             Contains("algorithms[0]: expected a map"));
+  CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"] = {1}; }), Contains("algorithms[0]: expected a map"));
   CHECK_THAT(reading_error_after([](Json& r) {
                r["evaluation"] = {{"from_s", 5}, {"to_s", 5}};
              }),
@@ -351,11 +316,8 @@ TEST_CASE("comparison: as JSON and as Markdown") {
   CHECK(json["algorithms"][1]["rmse_change"] == 0);
   CHECK(json["a"]["best"] == "mean");
   const std::string page = comparison_markdown(c);
-  CHECK_THAT(page,
-             Contains("| me\\|an \\<b\\> | 1 | – | – | 10 ns | – | – | 1000 B | – | only in A |"));
-  CHECK_THAT(
-      page,
-      Contains("| median | 1.2 | 1.2 | 0 % | 10 ns | 10 ns | 0 % | 1000 B | 1000 B | equal |"));
+  CHECK_THAT(page, Contains("| me\\|an \\<b\\> | 1 | – | – | 10 ns | – | – | 1000 B | – | only in A |"));
+  CHECK_THAT(page, Contains("| median | 1.2 | 1.2 | 0 % | 10 ns | 10 ns | 0 % | 1000 B | 1000 B | equal |"));
   CHECK_THAT(page, Contains("# \\# x"));
   CHECK(page.find("tilt-kalman") == std::string::npos);
 }

@@ -8,9 +8,7 @@ using namespace libchar;
 
 namespace {
 
-ReplayResult watched_run(const std::string& faults,
-                         const std::string& algorithms,
-                         const std::string& more = "") {
+ReplayResult watched_run(const std::string& faults, const std::string& algorithms, const std::string& more = "") {
   const test::SceneBench bench;
   std::string text =
       "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 300, seed: 3,"
@@ -48,8 +46,7 @@ TEST_CASE("detection: delays over the rate of false alarms, at the usual one tho
 TEST_CASE(
     "detection: any algorithm that has the detector, with its own recovery, else nothing is "
     "computed") {
-  const ReplayResult watched =
-      watched_run(kTwoFaults, "[{name: mean, fault_detection: 1, recovery_window: 400}]");
+  const ReplayResult watched = watched_run(kTwoFaults, "[{name: mean, fault_detection: 1, recovery_window: 400}]");
   REQUIRE(watched.detection.size() == 6);
   CHECK(watched.detection[3].answers[0].returned_s == watched.algorithms[0].answers[0].returned_s);
   CHECK(watched_run(kTwoFaults, "[mean]").detection.empty());

@@ -56,9 +56,7 @@ TEST_CASE("scores: neither the block size nor the merging of cells changes the s
 
 namespace {
 
-int covering(double truth,
-             int records,
-             const std::function<std::vector<double>(std::uint64_t)>& error) {
+int covering(double truth, int records, const std::function<std::vector<double>(std::uint64_t)>& error) {
   int covered = 0;
   for (int seed = 1; seed <= records; ++seed) {
     const ErrorScore s = score(metered(error(static_cast<std::uint64_t>(seed))), 1);
@@ -88,14 +86,12 @@ double expected_rms(const Mixture& coefficients) {
 TEST_CASE("scores: intervals cover for errors without, with short and with endless correlation") {
   for (const double memory : {0.0, 0.9, 0.98}) {
     CAPTURE(memory);
-    const int covered =
-        covering(1, 200, [&](std::uint64_t seed) { return errors(20000, memory, seed); });
+    const int covered = covering(1, 200, [&](std::uint64_t seed) { return errors(20000, memory, seed); });
     CHECK(covered >= 180);
     CHECK(covered < 200);
   }
   for (const Mixture& noise : {Mixture{0, 1, 0, 0, 0}, Mixture{3, 1, 0, 0, 0}}) {
-    const int covered = covering(
-        expected_rms(noise), 200, [&](std::uint64_t seed) { return of_design(noise, seed); });
+    const int covered = covering(expected_rms(noise), 200, [&](std::uint64_t seed) { return of_design(noise, seed); });
     CAPTURE(noise[0], covered);
     CHECK(covered >= 174);  // 180 of those that have one; a few flicker records look like a walk
   }
@@ -159,8 +155,7 @@ TEST_CASE("scores: a spike hides the ratio of errors, and not that one is larger
   // Equal by nature: no more often than it says.
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const ErrorMeter a = metered(errors(4000, 0.5, seed)),
-                     b = metered(errors(4000, 0.5, 1000 + seed));
+    const ErrorMeter a = metered(errors(4000, 0.5, seed)), b = metered(errors(4000, 0.5, 1000 + seed));
     alarms += larger_throughout({&a}, {&b}) < 0.01;
   }
   CHECK(alarms <= 6);

@@ -42,13 +42,8 @@ std::string four_sensors(const LogOptions& o = {}) {
     const double a = motion(t) + o.noise * o.noisy * gauss() + (2 * k >= o.rows ? o.fault : 0);
     const double b = 1.03 * motion(t - late) + o.noise * gauss();
     const double c = motion(t) + 0.5 + o.noise * gauss(), d = motion(t) + 3 * o.noise * gauss();
-    text += fmt::format("{},{},{},{},{},{}\n",
-                        shortest(k / o.rate_hz),
-                        shortest(a),
-                        shortest(b),
-                        shortest(c),
-                        k % 53 == 20 ? "" : shortest(d),
-                        shortest(motion(t)));
+    text += fmt::format("{},{},{},{},{},{}\n", shortest(k / o.rate_hz), shortest(a), shortest(b), shortest(c),
+                        k % 53 == 20 ? "" : shortest(d), shortest(motion(t)));
   }
   return text;
 }
@@ -71,9 +66,7 @@ struct FuseBench {
     result = replay(read, options, no_progress(), workspace);
     learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   }
-  FuseResult fuse_log(KeptColumns& kept,
-                      const FuseOptions& options,
-                      const std::string& log = "log.csv") const {
+  FuseResult fuse_log(KeptColumns& kept, const FuseOptions& options, const std::string& log = "log.csv") const {
     return fuse(bench.path(log), learnt, kept, options);
   }
   std::string refusal(const FuseOptions& options, const std::string& log = "log.csv") const {
@@ -113,12 +106,11 @@ TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, b
       "  - {name: a, noise: 0.02}\n  - {name: b, noise: 0.02, scale: 0.5, unit: deg/s}\n"
       "  - {name: c, noise: 0.02}\n  - {name: d, noise: 0.06}\n";
   const std::string head = "format: scene\nversion: 1\nrecording: log.csv\n";
-  const std::string aligned = GENERATE(std::string(),
-                                       std::string("align: {learn: [0, 15]}\n"),
+  const std::string aligned = GENERATE(std::string(), std::string("align: {learn: [0, 15]}\n"),
                                        std::string("align: {learn: run, interpolation: cubic}\n"));
-  const FuseBench bench(head + all + "reference: x\nlearning: [0, 15]\nevaluation: [0, end]\n" +
-                            "fault_free_s: 10\n" + aligned,
-                        four_sensors({.fault = 3}));
+  const FuseBench bench(
+      head + all + "reference: x\nlearning: [0, 15]\nevaluation: [0, end]\n" + "fault_free_s: 10\n" + aligned,
+      four_sensors({.fault = 3}));
   int applied = 0;
   for (const LearntAlgorithm& algorithm : bench.learnt.algorithms) {
     INFO(algorithm.label);
@@ -138,8 +130,7 @@ TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, b
     small.block = 7;
     KeptColumns pieces;
     bench.fuse_log(pieces, small);
-    for (std::size_t c = 0; c < kept.columns.size(); ++c)
-      CHECK(differences(kept.columns[c], pieces.columns[c]) == 0);
+    for (std::size_t c = 0; c < kept.columns.size(); ++c) CHECK(differences(kept.columns[c], pieces.columns[c]) == 0);
   }
   CHECK(applied >= 15);
 }
@@ -163,10 +154,8 @@ TEST_CASE("fuse: rest, several inputs and a tilt as the replay has them") {
   }
   SECTION("trends and filters run over the new log") {
     const std::string prepared =
-        GENERATE(std::string("high_pass_hz: 0.05\n"),
-                 std::string("band_hz: [0.05, 20]\n"),
-                 std::string("detrend: line\n"),
-                 std::string("align: {learn: [0, 35]}\nhigh_pass_hz: 0.1\n"));
+        GENERATE(std::string("high_pass_hz: 0.05\n"), std::string("band_hz: [0.05, 20]\n"),
+                 std::string("detrend: line\n"), std::string("align: {learn: [0, 35]}\nhigh_pass_hz: 0.1\n"));
     const FuseBench bench(kScene + prepared);
     KeptColumns kept;
     bench.fuse_log(kept, by("mean"));
@@ -242,8 +231,7 @@ TEST_CASE("fuse: where another log is healthy nobody knows unless it is said") {
 
 TEST_CASE("fuse: a sensor that the log does not have") {
   const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\n");
-  bench.bench.put("less.csv",
-                  four_sensors({.head = "t[s],a[deg/s],b[deg/s],e[deg/s],d[deg/s],y[deg/s]"}));
+  bench.bench.put("less.csv", four_sensors({.head = "t[s],a[deg/s],b[deg/s],e[deg/s],d[deg/s],y[deg/s]"}));
   KeptColumns kept;
   const FuseResult fused = bench.fuse_log(kept, by("least-squares"), "less.csv");
   REQUIRE(fused.warnings.find("sensor_not_in_log") != nullptr);
@@ -269,11 +257,9 @@ TEST_CASE("fuse: a sensor that the log does not have") {
 
 TEST_CASE("fuse: what does not fit is refused in a sentence") {
   const FuseBench bench(kNoisyScene + "reference: x\nlearning: [0, 15]\n");
-  bench.bench.put("rad.csv",
-                  four_sensors({.head = "t[s],a[rad/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
+  bench.bench.put("rad.csv", four_sensors({.head = "t[s],a[rad/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
   CHECK(bench.refusal(by("mean"), "rad.csv").empty());  // converted: see below
-  bench.bench.put("volt.csv",
-                  four_sensors({.head = "t[s],a[V],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
+  bench.bench.put("volt.csv", four_sensors({.head = "t[s],a[V],b[deg/s],c[deg/s],d[deg/s],x[deg/s]"}));
   CHECK_THAT(bench.refusal(by("mean"), "volt.csv"), Contains("V") && Contains("another unit"));
   bench.bench.put("dps.csv", four_sensors({.head = "t[s],a[dps],b,c[°/s],d[deg/s],x"}));
   CHECK(bench.refusal(by("mean"), "dps.csv").empty());
@@ -345,8 +331,7 @@ TEST_CASE("fuse: the file names what is wrong with it, and where") {
   CHECK_THAT(refused("version: 1", "version: 2"), Contains("f.yaml:3:10") && Contains("newer"));
   CHECK_THAT(refused("recommended:", "recomended:"), Contains("did you mean recommended"));
   CHECK_THAT(refused("weights: [", "weights: [.nan, "), Contains("weights") && Contains("f.yaml:"));
-  CHECK_THAT(refused("weights: [", "weights: [0.5, "),
-             Contains("expected 4 numbers, found 5") && Contains("f.yaml:"));
+  CHECK_THAT(refused("weights: [", "weights: [0.5, "), Contains("expected 4 numbers, found 5") && Contains("f.yaml:"));
   CHECK_THAT(refused("gains:", "gain:"), Contains("learnt."));
   CHECK_THAT(refused("name: \"b\"", "name: \"a\""), Contains("two sensors have the name a"));
   CHECK_THAT(refused("complete: true", ""), Contains("cut off"));
@@ -357,14 +342,12 @@ TEST_CASE("fuse: the file names what is wrong with it, and where") {
 }
 
 TEST_CASE("fuse: numbers of the file read back to the same bits") {
-  const FuseBench bench(kScene +
-                        "reference: x\nlearning: [0, 15]\nalign: {learn: [0, 15]}\nrest: [0, 2]\n");
+  const FuseBench bench(kScene + "reference: x\nlearning: [0, 15]\nalign: {learn: [0, 15]}\nrest: [0, 2]\n");
   CHECK(fusion_yaml(bench.learnt) == fusion_yaml(bench.result.learnt));
   const LearntFusion& written = bench.result.learnt;
   for (std::size_t i = 0; i < written.sensors.size(); ++i) {
     CHECK(written.sensors[i].offset == bench.learnt.sensors[i].offset);
-    CHECK(written.sensors[i].alignment.delay_samples ==
-          bench.learnt.sensors[i].alignment.delay_samples);
+    CHECK(written.sensors[i].alignment.delay_samples == bench.learnt.sensors[i].alignment.delay_samples);
     CHECK(written.sensors[i].noise_variance == bench.learnt.sensors[i].noise_variance);
   }
   for (std::size_t k = 0; k < written.algorithms.size(); ++k)
@@ -398,8 +381,7 @@ TEST_CASE("fuse: no sensor of the same noise is called noisier in 200 logs") {
     StepNoiseMeter meter(h, instants);
     Eigen::MatrixXd y(4, instants);
     for (Eigen::Index k = 0; k < instants; ++k)
-      for (Eigen::Index i = 0; i < 4; ++i)
-        y(i, k) = deviation[i] * (i == 0 ? first : 1) * gauss() + 100;
+      for (Eigen::Index i = 0; i < 4; ++i) y(i, k) = deviation[i] * (i == 0 ? first : 1) * gauss() + 100;
     meter.push(y);
     return meter.result();
   };
@@ -412,10 +394,8 @@ TEST_CASE("fuse: no sensor of the same noise is called noisier in 200 logs") {
     warn_of_noise(names, learnt, noise(4000, 2), other);
     alarms += same.empty() ? 0 : 1;
     const Finding* warning = other.find("noise_changed");
-    found += warning != nullptr && warning->where.rows.size() == 1 &&
-                     warning->where.rows[0].starts_with("a is")
-                 ? 1
-                 : 0;
+    found +=
+        warning != nullptr && warning->where.rows.size() == 1 && warning->where.rows[0].starts_with("a is") ? 1 : 0;
   }
   CHECK(alarms == 0);
   CHECK(found >= 195);
@@ -430,13 +410,8 @@ TEST_CASE("fuse: deviations of simulated sensors hold their errors") {
       "align: {learn: run, terms: [bias]}\n");
   bench.bench.put("new.csv", four_sensors({.rows = 20000, .seed = 31}));
   const Recording log = read_recording(bench.bench.path("new.csv"));
-  for (const char* label : {"mean",
-                            "inverse-variance",
-                            "minque",
-                            "random-weighting",
-                            "least-squares",
-                            "shrunk-least-squares",
-                            "non-negative-least-squares"}) {
+  for (const char* label : {"mean", "inverse-variance", "minque", "random-weighting", "least-squares",
+                            "shrunk-least-squares", "non-negative-least-squares"}) {
     INFO(label);
     KeptColumns kept;
     bench.fuse_log(kept, by(label), "new.csv");
@@ -467,7 +442,6 @@ TEST_CASE("fuse: the noise of hundreds of sensors is told in closed form, sensor
   REQUIRE(found.size() == static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) {
     REQUIRE(found[static_cast<std::size_t>(i)]);
-    CHECK(found[static_cast<std::size_t>(i)]->log_variance ==
-          Approx(std::log(i % 2 == 0 ? 1.0 : 9.0)).margin(0.35));
+    CHECK(found[static_cast<std::size_t>(i)]->log_variance == Approx(std::log(i % 2 == 0 ? 1.0 : 9.0)).margin(0.35));
   }
 }

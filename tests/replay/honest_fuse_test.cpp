@@ -21,9 +21,7 @@ namespace {
 constexpr int kHonestRows = 12000;
 constexpr double kHonestHz = 100;
 
-double honest_truth(int k) {
-  return 2 * std::sin(0.0071 * k) + std::sin(0.0213 * k + 1);
-}
+double honest_truth(int k) { return 2 * std::sin(0.0071 * k) + std::sin(0.0213 * k + 1); }
 
 /// Four sensors, each off by a gain, an offset and its noise; part of the noise common to all.
 /// `spoil`: what one sensor reads instead.
@@ -103,8 +101,7 @@ TEST_CASE("fuse: standard deviations cover 92 to 97 % on another log, whatever t
     int stated = 0;
     for (const LearntAlgorithm& algorithm : bench.learnt.algorithms) {
       if (!algorithm.refused.empty() || algorithm.sd_factor.empty()) continue;
-      INFO(algorithm.label << (*align == 0 ? "" : ", aligned") << ", factor "
-                           << algorithm.sd_factor[0]);
+      INFO(algorithm.label << (*align == 0 ? "" : ", aligned") << ", factor " << algorithm.sd_factor[0]);
       KeptColumns kept;
       bench.fuse_log(honest_log(2), algorithm.label, kept);
       const double share = coverage(kept);
@@ -122,8 +119,7 @@ TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median
   Eigen::MatrixXd y(5, 20000);
   for (Eigen::Index k = 0; k < y.cols(); ++k) {
     const double x = honest_truth(static_cast<int>(k));
-    for (Eigen::Index i = 0; i < 5; ++i)
-      y(i, k) = (i == 4 ? 1.1 * x + 0.5 : x) + (i == 4 ? 0.2 : 0.001) * gauss();
+    for (Eigen::Index i = 0; i < 5; ++i) y(i, k) = (i == 4 ? 1.1 * x + 0.5 : x) + (i == 4 ? 0.2 : 0.001) * gauss();
   }
   meter.push(y);
   const auto learnt = meter.result();
@@ -171,8 +167,7 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
     const std::string places = told(honest_log(7, spoil));
     CHECK_THAT(places, Contains("b: up to"));
     CHECK_THAT(places, Contains("to the end"));
-    CHECK_THAT(places,
-               Contains(std::string(kind) == "from the middle" ? "from 5" : "from the start"));
+    CHECK_THAT(places, Contains(std::string(kind) == "from the middle" ? "from 5" : "from the start"));
     CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
   }
 }

@@ -40,20 +40,18 @@ Columns all_of(const Instants& instants, std::int64_t from, std::int64_t to, std
 std::string numbered(std::size_t rows, double rate_hz) {
   std::string text = "t[s],a[deg/s],b[deg/s],x[deg/s]\n";
   for (std::size_t k = 0; k < rows; ++k)
-    text += std::to_string(static_cast<double>(k) / rate_hz) + "," + std::to_string(k) + "," +
-            std::to_string(2 * k) + "," + std::to_string(100 + k) + "\n";
+    text += std::to_string(static_cast<double>(k) / rate_hz) + "," + std::to_string(k) + "," + std::to_string(2 * k) +
+            "," + std::to_string(100 + k) + "\n";
   return text;
 }
 
 }  // namespace
 
-TEST_CASE(
-    "instants: a short text is parsed once, a longer one and other logs again for each pass") {
+TEST_CASE("instants: a short text is parsed once, a longer one and other logs again for each pass") {
   const test::SceneBench bench;
   const auto without_its_file = [&](std::size_t rows) {
     bench.put("log.csv", numbered(rows, 10));
-    const Scene scene = bench.read(
-        kHead + "recording: log.csv\nsensors: [{name: a, scale: -0.5}, b]\nreference: x\n");
+    const Scene scene = bench.read(kHead + "recording: log.csv\nsensors: [{name: a, scale: -0.5}, b]\nreference: x\n");
     const Instants instants(scene, no_progress());
     const auto count = instants.info().count;
     const Columns before = all_of(instants, 0, count, 1000);
@@ -91,8 +89,7 @@ TEST_CASE("instants: columns of the recording in blocks of the size that was ask
     const Columns part = all_of(instants, 13, 777, size);
     CHECK(part.samples == whole.samples.middleCols(13, 764));
     CHECK(part.truth == whole.truth.middleCols(13, 764));
-    for (std::size_t b = 0; b + 1 < part.sizes.size(); ++b)
-      CHECK(part.sizes[b] == static_cast<Eigen::Index>(size));
+    for (std::size_t b = 0; b + 1 < part.sizes.size(); ++b) CHECK(part.sizes[b] == static_cast<Eigen::Index>(size));
   }
   instants.set_offsets({1, 2});
   CHECK(all_of(instants, 7, 8, 1).samples(1, 0) == 12);
@@ -113,10 +110,10 @@ TEST_CASE("instants: times in seconds are instants at or after them") {
 TEST_CASE("instants: faults of the scene are injected, whatever window is read") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(1000, 10));
-  const Scene scene = bench.read(
-      kHead +
-      "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, to_s: "
-      "30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
+  const Scene scene =
+      bench.read(kHead +
+                 "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, to_s: "
+                 "30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
   const Instants instants(scene, no_progress());
   const Columns columns = all_of(instants, 250, 600, 64);
   CHECK(columns.samples(1, 0) == 2 * 199);
@@ -128,11 +125,11 @@ TEST_CASE("instants: faults of the scene are injected, whatever window is read")
 
 TEST_CASE("instants: a simulation is the same in every pass") {
   const test::SceneBench bench;
-  const Scene scene = bench.read(
-      kHead +
-      "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, {kind: "
-      "sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: gyro.sensor.yaml, h: [1, 0]}, "
-      "{name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
+  const Scene scene =
+      bench.read(kHead +
+                 "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, {kind: "
+                 "sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: gyro.sensor.yaml, h: [1, 0]}, "
+                 "{name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
   const Instants instants(scene, no_progress());
   const Columns first = all_of(instants, 0, 5000, 1000), second = all_of(instants, 0, 5000, 777);
   CHECK(first.samples == second.samples);
@@ -149,13 +146,11 @@ TEST_CASE("instants: a slow reference is compared with means over its intervals"
     const bool missing = t >= 40 && t < 46;
     log += std::to_string(t) + "," + std::to_string(t) + "," + (missing ? "" : "1") + "\n";
   }
-  for (int j = 0; j < 20; ++j)
-    station += std::to_string(10 * j) + "," + (j == 2 ? "" : std::to_string(7 * j)) + "\n";
+  for (int j = 0; j < 20; ++j) station += std::to_string(10 * j) + "," + (j == 2 ? "" : std::to_string(7 * j)) + "\n";
   bench.put("log.csv", log);
   bench.put("station.csv", station);
-  const Scene scene = bench.read(
-      kHead +
-      "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: station.csv}\n");
+  const Scene scene =
+      bench.read(kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: station.csv}\n");
   const Instants instants(scene, no_progress());
   CHECK(instants.info().averaged == 10);
   CHECK(instants.info().rate_hz == Approx(0.1));
@@ -179,9 +174,8 @@ TEST_CASE("instants: reference and recording without a common time are refused")
   const test::SceneBench bench;
   bench.put("log.csv", "t[s],a\n0,1\n1,1\n2,1\n3,2\n");
   bench.put("station.csv", "t[s],x\n1000,1\n1010,2\n1020,2\n");
-  const Scene scene = bench.read(
-      kHead +
-      "recording: log.csv\nsensors: [a]\nreference: {channels: [x], recording: station.csv}\n");
+  const Scene scene =
+      bench.read(kHead + "recording: log.csv\nsensors: [a]\nreference: {channels: [x], recording: station.csv}\n");
   CHECK_THROWS_WITH(Instants(scene, no_progress()), Catch::Contains("E0902"));
 }
 
@@ -189,12 +183,10 @@ TEST_CASE("instants: a faster reference, and a lag, are interpolated") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(100, 10));
   std::string fast = "t[s],x\n";
-  for (int j = 0; j < 400; ++j)
-    fast += std::to_string(j * 0.04) + "," + std::to_string(j * 0.04) + "\n";
+  for (int j = 0; j < 400; ++j) fast += std::to_string(j * 0.04) + "," + std::to_string(j * 0.04) + "\n";
   bench.put("fast.csv", fast);
-  const Scene scene = bench.read(
-      kHead +
-      "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: fast.csv}\n");
+  const Scene scene =
+      bench.read(kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], recording: fast.csv}\n");
   Instants instants(scene, no_progress());
   const Columns columns = all_of(instants, 0, 100, 100);
   for (Eigen::Index k = 0; k < 100; ++k)
@@ -203,8 +195,8 @@ TEST_CASE("instants: a faster reference, and a lag, are interpolated") {
   const Columns late = all_of(instants, 0, 100, 100);
   CHECK(std::isnan(late.truth(0, 2)));  // before the reference begins
   CHECK(late.truth(0, 10) == Approx(0.75));
-  const Scene own = bench.read(
-      kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], lag_s: 0.05}\n");
+  const Scene own =
+      bench.read(kHead + "recording: log.csv\nsensors: [a, b]\nreference: {channels: [x], lag_s: 0.05}\n");
   CHECK(all_of(Instants(own, no_progress()), 0, 100, 100).truth(0, 10) == Approx(109.5));
 }
 
@@ -247,8 +239,7 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
     t += k == 200 ? 0.5 : 0.01 * (1 + 0.6 * std::sin(0.1 * k));
   }
   bench.put("log.csv", log);
-  const ResampledLog even =
-      read_resampled(bench.path("log.csv"), {}, {"b", "a"}, 50, 2, no_progress());
+  const ResampledLog even = read_resampled(bench.path("log.csv"), {}, {"b", "a"}, 50, 2, no_progress());
   REQUIRE(even.samples.size() == 2);
   std::size_t missing = 0;
   for (std::size_t i = 0; i < even.samples[1].size(); ++i) {
@@ -261,16 +252,14 @@ TEST_CASE("resampling: a straight line by its stamps, gaps stay") {
   CHECK(missing >= 23);
   CHECK(missing <= 25);
   bench.put("bare.csv", "a,b\n1,2\n2,3\n");
-  CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, 1, no_progress()),
-                    Catch::Contains("E0907"));
+  CHECK_THROWS_WITH(read_resampled(bench.path("bare.csv"), {}, {"a"}, 50, 1, no_progress()), Catch::Contains("E0907"));
 }
 
 TEST_CASE("instants: uneven stamps in any unit give the same instants") {
   const test::SceneBench bench;
   const auto resampled = [&](const std::string& column, double seconds) {
     std::string log = column + ",a\n";
-    for (int k = 0; k < 302; ++k)
-      log += fmt::format("{:.9f},{}\n", (k + (k % 3) * 0.1) / seconds, k * k % 17);
+    for (int k = 0; k < 302; ++k) log += fmt::format("{:.9f},{}\n", (k + (k % 3) * 0.1) / seconds, k * k % 17);
     bench.put("log.csv", log);
     return read_resampled(bench.path("log.csv"), {}, {"a"}, 2, 1, no_progress()).samples[0];
   };
@@ -282,8 +271,7 @@ TEST_CASE("instants: uneven stamps in any unit give the same instants") {
     const std::vector<double> got = resampled(column, seconds);
     REQUIRE(got.size() == expected.size());
     double worst = 0;
-    for (std::size_t i = 0; i < got.size(); ++i)
-      worst = std::max(worst, std::abs(got[i] - expected[i]));
+    for (std::size_t i = 0; i < got.size(); ++i) worst = std::max(worst, std::abs(got[i] - expected[i]));
     CHECK(worst < 1e-3);
   }
 }
@@ -291,11 +279,9 @@ TEST_CASE("instants: uneven stamps in any unit give the same instants") {
 TEST_CASE("instants: a reference angle is interpolated the short way round") {
   const test::SceneBench bench;
   std::string log = "t[s],w[deg/s],x[g],z[g],angle[deg]\n";
-  for (int k = 0; k < 10; ++k)
-    log += std::to_string(k) + ",10,0,1," + std::to_string(k < 5 ? 175 + k : k - 185) + "\n";
+  for (int k = 0; k < 10; ++k) log += std::to_string(k) + ",10,0,1," + std::to_string(k < 5 ? 175 + k : k - 185) + "\n";
   bench.put("log.csv", log);
-  const std::string scene =
-      "sensors: [w, x, z]\ntilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n";
+  const std::string scene = "sensors: [w, x, z]\ntilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\n";
   const auto truth = [&](const std::string& text) {
     const Scene read = bench.read(text);
     const Instants instants(read, no_progress());
@@ -318,14 +304,12 @@ TEST_CASE("resampling: devices that are sampled in turn each go by their own sta
   for (int k = 0; k < 60; ++k)
     for (const int second : {0, 1}) {
       const double t = 10 * k + 4 * second;
-      if (k % 10 != 7 || second == 0)
-        log += fmt::format("{},{},{}\n", t, second == 0 ? "a" : "b", 2 * t);
+      if (k % 10 != 7 || second == 0) log += fmt::format("{},{},{}\n", t, second == 0 ? "a" : "b", 2 * t);
     }
   bench.put("log.csv", log);
   ReadOptions reading;
   reading.kinds.group_by = "id";
-  const ResampledLog even =
-      read_resampled(bench.path("log.csv"), reading, {"a", "b"}, 0.1, 2, no_progress());
+  const ResampledLog even = read_resampled(bench.path("log.csv"), reading, {"a", "b"}, 0.1, 2, no_progress());
   REQUIRE(even.samples.size() == 2);
   CHECK(std::isnan(even.samples[1][0]));  // before its first
   for (std::size_t i = 1; i + 1 < even.samples[1].size(); ++i) {

@@ -19,8 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // A sum of sines up to 0.3 of the rate, without a common period: defined at any time.
 double motion(double t) {
   double x = 0;
-  for (int i = 1; i <= 12; ++i)
-    x += std::sin(0.157 * std::pow(i, 0.97) * t + 1.7 * i * i) / std::sqrt(i);
+  for (int i = 1; i <= 12; ++i) x += std::sin(0.157 * std::pow(i, 0.97) * t + 1.7 * i * i) / std::sqrt(i);
   return x;
 }
 

@@ -77,8 +77,7 @@ TEST_CASE("white noise: held, filtered, band-limited, as it is", "[noise_level]"
         m.white_hold_s = hold_s;
         m.bandwidth_hz = filtered ? std::optional(8.0) : std::nullopt;
         // Held longer than a sample there are fewer independent values.
-        CHECK(simulated(m, 50, 4).variance ==
-              Approx(sample_noise_variance(m, 50, 4)).epsilon(0.02));
+        CHECK(simulated(m, 50, 4).variance == Approx(sample_noise_variance(m, 50, 4)).epsilon(0.02));
       }
   }
 }
@@ -90,8 +89,7 @@ TEST_CASE("the scenes of the source", "[noise_level]") {
     m.white_hold_s = 0.0005;
     m.bandwidth_hz = 200;
     CHECK(sample_noise_variance(m, 1000, 4) / 5e-3 == Approx(608.43).epsilon(2e-5));
-    CHECK(simulated(m, 1000, 4).variance ==
-          Approx(sample_noise_variance(m, 1000, 4)).epsilon(0.005));
+    CHECK(simulated(m, 1000, 4).variance == Approx(sample_noise_variance(m, 1000, 4)).epsilon(0.005));
     const double white = sample_noise_variance(m, 1000, 4);
     set(m, Term::flicker, std::sqrt(2 * std::numbers::pi * 5e-3));
     m.flicker_hold_s = 1;
@@ -136,8 +134,7 @@ TEST_CASE("flicker and random walk: Allan variance at one sample", "[noise_level
         INFO(hold_s << (filtered ? " filtered" : ""));
         m.flicker_hold_s = hold_s;
         m.bandwidth_hz = filtered ? std::optional(8.0) : std::nullopt;
-        CHECK(simulated(m, 100, 4).half_square_difference ==
-              Approx(sample_noise_variance(m, 100, 4)).epsilon(0.015));
+        CHECK(simulated(m, 100, 4).half_square_difference == Approx(sample_noise_variance(m, 100, 4)).epsilon(0.015));
       }
   }
 }

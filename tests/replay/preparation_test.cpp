@@ -57,8 +57,7 @@ TEST_CASE(
   CHECK(filter.settling == 330);
 }
 
-TEST_CASE(
-    "band filter: a step is below a thousandth once it has settled, an offset leaves nothing") {
+TEST_CASE("band filter: a step is below a thousandth once it has settled, an offset leaves nothing") {
   for (const double corner_hz : {0.01, 0.5, 20.0}) {
     const BandFilter filter = band_filter(corner_hz, 0, 100);
     std::vector<double> x(static_cast<std::size_t>(3 * filter.settling), 1e6);
@@ -73,8 +72,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "band filter: short gaps are bridged, long ones begin anew and are missing until settled") {
+TEST_CASE("band filter: short gaps are bridged, long ones begin anew and are missing until settled") {
   const BandFilter filter = band_filter(0.1, 0, 100);
   REQUIRE(filter.settling == 1650);
   REQUIRE(filter.bridged == 16);
@@ -136,22 +134,15 @@ std::string drifting_log() {
   };
   for (int k = 0; k < 2000; ++k) {
     const double t = 0.02 * k, x = std::sin(std::numbers::pi * t);
-    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f}\n",
-                        t,
-                        x + 3 + 0.1 * t + 0.1 * noise(),
-                        x - 2 + 0.1 * noise(),
+    text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f}\n", t, x + 3 + 0.1 * t + 0.1 * noise(), x - 2 + 0.1 * noise(),
                         x + 0.5);
   }
   return text;
 }
 
-const std::string kDriftScene =
-    "format: scene\nversion: 1\nrecording: drift.csv\nsensors: [a, b]\n";
+const std::string kDriftScene = "format: scene\nversion: 1\nrecording: drift.csv\nsensors: [a, b]\n";
 
-Eigen::MatrixXd rows_of(const Instants& instants,
-                        std::int64_t from,
-                        std::int64_t to,
-                        std::size_t size) {
+Eigen::MatrixXd rows_of(const Instants& instants, std::int64_t from, std::int64_t to, std::size_t size) {
   Eigen::MatrixXd out(3, to - from);
   instants.pass(from, to, size, no_progress(), [&](const InstantBlock& b) {
     out.block(0, b.first - from, 2, b.samples.cols()) = b.samples;
@@ -162,16 +153,14 @@ Eigen::MatrixXd rows_of(const Instants& instants,
 
 }  // namespace
 
-TEST_CASE(
-    "preparation: one filter for sensors and reference, the same from wherever a pass begins") {
+TEST_CASE("preparation: one filter for sensors and reference, the same from wherever a pass begins") {
   const test::SceneBench bench;
   bench.put("drift.csv", drifting_log());
   const Scene scene = bench.read(kDriftScene + "reference: ref\nhigh_pass_hz: 0.1\n");
   Instants instants(scene, no_progress());
   CHECK(instants.settled() == 825);
   const Eigen::MatrixXd whole = rows_of(instants, 0, 2000, 4096);
-  for (const std::size_t size : {1, 100, 333})
-    CHECK(rows_of(instants, 700, 1500, size) == whole.middleCols(700, 800));
+  for (const std::size_t size : {1, 100, 333}) CHECK(rows_of(instants, 700, 1500, size) == whole.middleCols(700, 800));
   const auto settled = whole.rightCols(1175);
   // What is left is the wave, and no offset.
   CHECK(std::abs(settled.row(0).mean()) < 0.3);
@@ -179,10 +168,8 @@ TEST_CASE(
   CHECK(settled.row(2).array().abs().maxCoeff() > 0.9);
   // Offsets are taken off behind it.
   instants.set_offsets({1, 0});
-  CHECK((rows_of(instants, 900, 1000, 64).row(0) - whole.row(0).segment(900, 100))
-            .array()
-            .abs()
-            .maxCoeff() == Approx(1).epsilon(1e-12));
+  CHECK((rows_of(instants, 900, 1000, 64).row(0) - whole.row(0).segment(900, 100)).array().abs().maxCoeff() ==
+        Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("preparation: each row without its own mean or line") {
@@ -234,12 +221,9 @@ TEST_CASE("replay: the reference's offset is found, subtracted, and said") {
   bench.put("drift.csv", text);
   ReplayOptions options;
   options.algorithms = {{"mean", {}, 0, 0}};
-  const auto run = [&](const std::string& more) {
-    return replay(bench.read(kDriftScene + more), options);
-  };
+  const auto run = [&](const std::string& more) { return replay(bench.read(kDriftScene + more), options); };
   const ReplayResult plain = run("reference: ref\nlearning: [0, 20]\n");
-  const ReplayResult found =
-      run("reference: {channels: ref, offset: estimate}\nlearning: [0, 20]\n");
+  const ReplayResult found = run("reference: {channels: ref, offset: estimate}\nlearning: [0, 20]\n");
   REQUIRE(found.reference_offset);
   // A fused log is told of it.
   REQUIRE(found.learnt.inputs.at(0).reference_offset);
@@ -273,12 +257,10 @@ TEST_CASE("replay: behind a filter levels are those behind it, and the start is 
   CHECK(*whole.sensors[0].noise_variance == Approx(0.04).epsilon(1e-12));
   CHECK(whole.algorithms[1].ran);
   const ReplayResult band = replay(bench.read(models + "band_hz: [0.2, 5]\n"), options);
-  CHECK(*band.sensors[0].noise_variance ==
-        Approx(0.04 * band_filter(0.2, 5, 50).noise_gain).epsilon(1e-9));
+  CHECK(*band.sensors[0].noise_variance == Approx(0.04 * band_filter(0.2, 5, 50).noise_gain).epsilon(1e-9));
   CHECK_FALSE(band.algorithms[1].ran);
   CHECK(band.warnings.find("learning_before_settled") == nullptr);
-  const ReplayResult early =
-      replay(bench.read(models + "band_hz: [0.2, 5]\nlearning: [0, 5]\n"), options);
+  const ReplayResult early = replay(bench.read(models + "band_hz: [0.2, 5]\nlearning: [0, 5]\n"), options);
   CHECK(early.warnings.find("learning_before_settled") != nullptr);
   CHECK(band.algorithms[0].inputs[0].error.samples == 2000 - 413);
   CHECK(band.algorithms[0].rmse < 0.1 * whole.algorithms[0].rmse);
@@ -294,7 +276,6 @@ TEST_CASE("instants: parts of a slow reference's intervals at the ends are said"
   const Scene scene = bench.read(kDriftScene + "reference: {channels: ref, recording: slow.csv}\n");
   const Instants instants(scene, no_progress());
   CHECK(instants.info().count == 39);
-  CHECK_THAT(
-      instants.info().reference_use,
-      Contains("the first 0.5 s and the last 0.5 s of the recording") && Contains("not used"));
+  CHECK_THAT(instants.info().reference_use,
+             Contains("the first 0.5 s and the last 0.5 s of the recording") && Contains("not used"));
 }

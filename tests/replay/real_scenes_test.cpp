@@ -15,12 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path real(const std::string& name) {
-  return test::fixture("scenes") / "real" / name;
-}
+fs::path real(const std::string& name) { return test::fixture("scenes") / "real" / name; }
 
-ReplayResult run(const std::string& name,
-                 const std::vector<std::string>& algorithms,
+ReplayResult run(const std::string& name, const std::vector<std::string>& algorithms,
                  const std::optional<TimeWindow>& evaluation = {}) {
   const Scene scene = read_scene_file(real(name).string(), {.allow_outside = true});
   ReplayOptions options;
@@ -39,8 +36,7 @@ const AlgorithmResult& of(const ReplayResult& result, const std::string& label) 
 
 }  // namespace
 
-TEST_CASE("real scenes are read when they may name files outside, and said in the README",
-          "[real]") {
+TEST_CASE("real scenes are read when they may name files outside, and said in the README", "[real]") {
   NEEDS_SHARED("data/INDEX.md");
   const std::string readme = test::slurp(real("README.md"));
   std::size_t seen = 0;
@@ -61,11 +57,10 @@ TEST_CASE("air monitors: hourly errors", "[real]") {
     const char* scene;
     double rmse[3], bias[3], mean;
   };
-  const Known all[] = {
-      {"air-pm25.yaml", {3.5321, 3.5075, 3.9301}, {-3.0913, -3.1149, -3.6343}, 3.615},
-      // Unit 1: 3.7756 with an hour that has a few minutes only.
-      {"air-o3.yaml", {3.6499, 8.7549, 10.599}, {2.7725, 2.3992, -2.2655}, 6.758},
-      {"air-temp.yaml", {1.4768, 1.3765, 1.5283}, {1.0811, 1.052, 1.2462}, 1.452}};
+  const Known all[] = {{"air-pm25.yaml", {3.5321, 3.5075, 3.9301}, {-3.0913, -3.1149, -3.6343}, 3.615},
+                       // Unit 1: 3.7756 with an hour that has a few minutes only.
+                       {"air-o3.yaml", {3.6499, 8.7549, 10.599}, {2.7725, 2.3992, -2.2655}, 6.758},
+                       {"air-temp.yaml", {1.4768, 1.3765, 1.5283}, {1.0811, 1.052, 1.2462}, 1.452}};
   for (const Known& known : all) {
     INFO(known.scene);
     const ReplayResult result = run(known.scene, {"mean"}, TimeWindow{});
@@ -83,8 +78,7 @@ TEST_CASE("eight gyroscopes: offsets at rest, leave-one-out", "[real]") {
   NEEDS_SHARED("data/array_mimu4444_exp1.csv");
   const ReplayResult result = run("mimu-gyro-x.yaml", {"mean"});
   const double bias[] = {-1.4593, 0.15724, -1.9401, 0.79545, -0.7835, -0.78187, -0.97528, 0.53724};
-  for (std::size_t i = 0; i < 8; ++i)
-    CHECK(result.sensors[i].offset == Approx(bias[i]).epsilon(1e-4));
+  for (std::size_t i = 0; i < 8; ++i) CHECK(result.sensors[i].offset == Approx(bias[i]).epsilon(1e-4));
   REQUIRE(of(result, "mean").blind);
   CHECK(of(result, "mean").blind->leave_one_out_rms > 4);
   // Poses and slow turns only: a twentieth of it.
@@ -116,9 +110,8 @@ TEST_CASE("aligned arrays: learnt on one stretch, better on another", "[real]") 
 
 TEST_CASE("tilt on a robot: the lag of 0.10 s is found, the errors are the known ones", "[real]") {
   NEEDS_SHARED("data/tilt_robot_mpu9150_path1_150mms.csv");
-  const ReplayResult roll = run("tilt-robot-roll.yaml",
-                                {"tilt-gyroscope", "tilt-accelerometer", "tilt-complementary"},
-                                TimeWindow{});
+  const ReplayResult roll =
+      run("tilt-robot-roll.yaml", {"tilt-gyroscope", "tilt-accelerometer", "tilt-complementary"}, TimeWindow{});
   CHECK(roll.lag_estimated);
   CHECK(roll.lag_s == Approx(0.10).margin(0.01));
   // Known with a lag of exactly 0.10 s, from 16.513 s: 1.884, 4.121, 2.064. The robot moves in the second
@@ -135,23 +128,18 @@ TEST_CASE("tilt on a robot: the lag of 0.10 s is found, the errors are the known
 // interpolated the short way round.
 TEST_CASE("tilt by hand", "[real]") {
   NEEDS_SHARED("data/tilt_broad_02_undisturbed_slow_rotation_B.npy");
-  const ReplayResult first =
-      run("tilt-broad-35-53.yaml", {"tilt-accelerometer", "tilt-complementary"}, TimeWindow{});
+  const ReplayResult first = run("tilt-broad-35-53.yaml", {"tilt-accelerometer", "tilt-complementary"}, TimeWindow{});
   CHECK(std::abs(first.lag_s) < 0.01);
   CHECK(of(first, "tilt-accelerometer").rmse == Approx(1.882).epsilon(0.1));
   CHECK(of(first, "tilt-complementary").rmse < 0.6);
-  const ReplayResult second =
-      run("tilt-broad-75-101.yaml", {"tilt-accelerometer", "tilt-complementary"}, TimeWindow{});
+  const ReplayResult second = run("tilt-broad-75-101.yaml", {"tilt-accelerometer", "tilt-complementary"}, TimeWindow{});
   CHECK(of(second, "tilt-accelerometer").rmse == Approx(2.50).epsilon(0.05));
   CHECK(of(second, "tilt-complementary").rmse < 0.99);
 }
 
-TEST_CASE(
-    "the neural simplex on real arrays: never worse than its baseline, its hand-overs are told",
-    "[real]") {
+TEST_CASE("the neural simplex on real arrays: never worse than its baseline, its hand-overs are told", "[real]") {
   NEEDS_SHARED("data/INDEX.md");
-  for (const char* scene :
-       {"mimu-gyro-y.yaml", "dot-gyro-z-aligned.yaml", "air-temp.yaml", "air-o3.yaml"}) {
+  for (const char* scene : {"mimu-gyro-y.yaml", "dot-gyro-z-aligned.yaml", "air-temp.yaml", "air-o3.yaml"}) {
     INFO(scene);
     const ReplayResult result = run(scene, {"minque", "neural-simplex"});
     const AlgorithmResult &baseline = of(result, "minque"), &simplex = of(result, "neural-simplex");

@@ -79,17 +79,14 @@ TEST_CASE("every shipped scene: nobody beats the optimum of fixed weights withou
     const Scene scene = short_scene(path);
     const ReplayResult result = replay(scene);
     for (const AlgorithmResult& a : result.algorithms)
-      if (a.ran &&
-          (a.label == "mean" || a.label == "inverse-variance" || a.label == "least-squares"))
+      if (a.ran && (a.label == "mean" || a.label == "inverse-variance" || a.label == "least-squares"))
         CHECK(a.regret > -0.01);
     CHECK(result.inputs[0].optimum_rmse > 0);
     for (const AlgorithmResult& a : result.algorithms)
       if (a.ran && a.weights.size() == 1 && a.label != "least-squares-published" &&
-          a.label.find("published") == std::string::npos &&
-          a.label.find("blind") == std::string::npos) {
+          a.label.find("published") == std::string::npos && a.label.find("blind") == std::string::npos) {
         INFO(a.label);
-        CHECK(std::accumulate(a.weights[0].begin(), a.weights[0].end(), 0.0) ==
-              Approx(1).epsilon(1e-12));
+        CHECK(std::accumulate(a.weights[0].begin(), a.weights[0].end(), 0.0) == Approx(1).epsilon(1e-12));
       }
   }
 }

@@ -39,13 +39,8 @@ inline std::string numbers(const ReplayResult& r) {
   for (const InputResult& i : r.inputs) add(i.optimum_rmse);
   for (const AlgorithmResult& a : r.algorithms) {
     out += a.label + a.why + (a.as_good_as_best ? "*" : "");
-    for (const double v : {a.rmse,
-                           a.rmse_ci95.low,
-                           a.rmse_ci95.high,
-                           a.regret,
-                           a.availability,
-                           a.weight_distance,
-                           a.variance_error})
+    for (const double v :
+         {a.rmse, a.rmse_ci95.low, a.rmse_ci95.high, a.regret, a.availability, a.weight_distance, a.variance_error})
       add(v);
     for (const InputScore& i : a.inputs) {
       add(i.error.bias);

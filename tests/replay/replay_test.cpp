@@ -20,14 +20,12 @@ namespace {
 
 std::string array_scene(std::size_t samples, const std::string& more) {
   std::string text =
-      "format: scene\nversion: 1\nname: array\nsimulate:\n  rate_hz: 100\n  samples: " +
-      std::to_string(samples) +
+      "format: scene\nversion: 1\nname: array\nsimulate:\n  rate_hz: 100\n  samples: " + std::to_string(samples) +
       "\n  seed: 5\n  truth: {kind: noise, standard_deviation: 2, bandwidth_hz: 3}\nsensors:\n";
   const char* levels[] = {"3e-3", "4e-3", "5e-3", "6e-3", "7e-3", "8e-3"};
   for (int i = 0; i < 6; ++i)
     text += "  - {name: g" + std::to_string(i + 1) +
-            ", model: {unit: rad/s, rate_hz: 100, density: two-sided, white_noise: {value: " +
-            levels[i] + "}}}\n";
+            ", model: {unit: rad/s, rate_hz: 100, density: two-sided, white_noise: {value: " + levels[i] + "}}}\n";
   return text + more;
 }
 
@@ -61,8 +59,7 @@ TEST_CASE("replay: the RMSE of the mean is that of a loop over the samples") {
 
 TEST_CASE("replay: what needs a reference is trained in its window and scored behind it") {
   const test::SceneBench bench;
-  const Scene scene =
-      bench.read(array_scene(6000, "learning: [0, 20]\nalgorithms: [least-squares, mean]\n"));
+  const Scene scene = bench.read(array_scene(6000, "learning: [0, 20]\nalgorithms: [least-squares, mean]\n"));
   const ReplayResult result = replay(scene);
   CHECK(result.instants == 4000);
   CHECK(result.start_s == 20);
@@ -70,8 +67,7 @@ TEST_CASE("replay: what needs a reference is trained in its window and scored be
   REQUIRE(trained.ran);
   CHECK(trained.regret < 0.02);
   REQUIRE(trained.weights.size() == 1);
-  CHECK(std::accumulate(trained.weights[0].begin(), trained.weights[0].end(), 0.0) ==
-        Approx(1).epsilon(1e-12));
+  CHECK(std::accumulate(trained.weights[0].begin(), trained.weights[0].end(), 0.0) == Approx(1).epsilon(1e-12));
   CHECK(trained.weight_distance < 0.1);
   CHECK(result.work.learnt == 2000 + 2 * 4000);  // it, and the two bounds that tell the optimum
   CHECK(trained.learning_s > 0);
@@ -82,9 +78,8 @@ TEST_CASE("replay: nothing is learnt that nobody needs") {
   const Scene scene = bench.read(array_scene(3000, "learning: [0, 10]\nalgorithms: [mean]\n"));
   const auto plan = explain_replay(scene);
   const auto said = [&](const std::string& sentence) {
-    return std::any_of(plan.begin(), plan.end(), [&](const std::string& s) {
-      return s.find(sentence) != std::string::npos;
-    });
+    return std::any_of(plan.begin(), plan.end(),
+                       [&](const std::string& s) { return s.find(sentence) != std::string::npos; });
   };
   CHECK(said("the learning window is not read"));
   const ReplayResult lean = replay(scene);
@@ -110,9 +105,8 @@ TEST_CASE("replay: without skipping the numbers of all algorithms are the same")
 
 TEST_CASE("replay: scores do not depend on the block size") {
   const test::SceneBench bench;
-  const Scene scene = bench.read(array_scene(
-      4000,
-      "learning: [0, 10]\nfaults: [{sensor: g1, kind: bias, value: 3, from_s: 25, to_s: 30}]\n"));
+  const Scene scene = bench.read(
+      array_scene(4000, "learning: [0, 10]\nfaults: [{sensor: g1, kind: bias, value: 3, from_s: 25, to_s: 30}]\n"));
   ReplayOptions options;
   const ReplayResult standard = replay(scene);
   for (const std::size_t block : {1, 37, 100000}) {
@@ -126,18 +120,16 @@ TEST_CASE("replay: scores do not depend on the block size") {
       CHECK(a.rmse == b.rmse);
       CHECK(a.inputs[0].error.maximum == b.inputs[0].error.maximum);
       REQUIRE(a.faults.size() == b.faults.size());
-      for (std::size_t f = 0; f < a.faults.size(); ++f)
-        CHECK(a.faults[f].from_s == b.faults[f].from_s);
+      for (std::size_t f = 0; f < a.faults.size(); ++f) CHECK(a.faults[f].from_s == b.faults[f].from_s);
     }
   }
 }
 
 TEST_CASE("replay: faults that the scene knows are answered") {
   const test::SceneBench bench;
-  const Scene scene =
-      bench.read(array_scene(12000,
-                             "faults: [{sensor: g2, kind: bias, value: 5, from_s: 60, to_s: 80}]\n"
-                             "algorithms: [minque, mean]\n"));
+  const Scene scene = bench.read(array_scene(12000,
+                                             "faults: [{sensor: g2, kind: bias, value: 5, from_s: 60, to_s: 80}]\n"
+                                             "algorithms: [minque, mean]\n"));
   const ReplayResult result = replay(scene);
   const AlgorithmResult& minque = named(result, "minque");
   REQUIRE(minque.answers.size() == 1);
@@ -154,8 +146,7 @@ TEST_CASE("replay: faults that the scene knows are answered") {
 
 TEST_CASE("replay: intervals know when sensors fail, behind a warm-up too") {
   const test::SceneBench bench;
-  const std::string fault =
-      "faults:\n  - {sensor: g1, kind: scale, value: 0, from_s: 50}\nalgorithms: [mean]\n";
+  const std::string fault = "faults:\n  - {sensor: g1, kind: scale, value: 0, from_s: 50}\nalgorithms: [mean]\n";
   for (const char* warm_up : {"", "warm_up_s: 20\n"}) {
     const ReplayResult result = replay(bench.read(array_scene(10000, fault + warm_up)));
     const AlgorithmResult& mean = named(result, "mean");
@@ -177,8 +168,7 @@ TEST_CASE("replay: no reference, leave-one-out and split arrays of equal sensors
     log += "\n";
   }
   bench.put("array.csv", log);
-  const Scene scene =
-      bench.read("format: scene\nversion: 1\nrecording: array.csv\nsensors: [a, b, c, d, e, f]\n");
+  const Scene scene = bench.read("format: scene\nversion: 1\nrecording: array.csv\nsensors: [a, b, c, d, e, f]\n");
   const ReplayResult result = replay(scene);
   const AlgorithmResult& mean = named(result, "mean");
   REQUIRE(mean.blind);
@@ -199,8 +189,8 @@ TEST_CASE("replay: a rest gives offsets and noise levels") {
   std::string log = "t[s],a,b,c\n";
   for (int k = 0; k < 3000; ++k) {
     const double x = k < 1000 ? 0 : std::sin(0.01 * k), e = k % 2 == 0 ? 1 : -1;
-    log += std::to_string(k * 0.01) + "," + std::to_string(x + 5 + 0.1 * e) + "," +
-           std::to_string(x - 3 - 0.2 * e) + "," + std::to_string(x + 0.4 * e) + "\n";
+    log += std::to_string(k * 0.01) + "," + std::to_string(x + 5 + 0.1 * e) + "," + std::to_string(x - 3 - 0.2 * e) +
+           "," + std::to_string(x + 0.4 * e) + "\n";
   }
   bench.put("array.csv", log);
   const Scene scene = bench.read(
@@ -221,8 +211,8 @@ TEST_CASE("replay: two inputs, each with its own scores and optimum") {
       "noise, name: a, bandwidth_hz: 3}, {kind: noise, name: w, bandwidth_hz: 2}]\nsensors:\n";
   for (int i = 0; i < 6; ++i)
     text += "  - {name: s" + std::to_string(i) + ", h: [1, " + std::to_string(0.1 * i - 0.25) +
-            "], model: {unit: m/s^2, density: two-sided, white_noise: {value: " +
-            std::to_string(1e-2 * (i + 1)) + "}}}\n";
+            "], model: {unit: m/s^2, density: two-sided, white_noise: {value: " + std::to_string(1e-2 * (i + 1)) +
+            "}}}\n";
   const ReplayResult result = replay(bench.read(text));
   const AlgorithmResult& minque = named(result, "minque");
   REQUIRE(minque.ran);
@@ -245,9 +235,9 @@ TEST_CASE("replay: an estimated lag aligns sensors and reference") {
     log += "," + std::to_string(x(t)) + "\n";
   }
   bench.put("late.csv", log);
-  const ReplayResult result = replay(
-      bench.read("format: scene\nversion: 1\nrecording: late.csv\nsensors: [a, b, c]\nreference: "
-                 "{channels: [x], lag_s: estimate}\nalgorithms: [mean]\n"));
+  const ReplayResult result =
+      replay(bench.read("format: scene\nversion: 1\nrecording: late.csv\nsensors: [a, b, c]\nreference: "
+                        "{channels: [x], lag_s: estimate}\nalgorithms: [mean]\n"));
   CHECK(result.lag_estimated);
   CHECK(result.lag_s == Approx(0.137).margin(0.002));
   CHECK(named(result, "mean").rmse < 0.01);
@@ -255,8 +245,8 @@ TEST_CASE("replay: an estimated lag aligns sensors and reference") {
 
 TEST_CASE("replay: one algorithm twice with different options has two names") {
   const test::SceneBench bench;
-  const ReplayResult result = replay(bench.read(array_scene(
-      3000, "algorithms: [{name: minque, gamma: 0.99}, {name: minque, gamma: 0.999}]\n")));
+  const ReplayResult result = replay(
+      bench.read(array_scene(3000, "algorithms: [{name: minque, gamma: 0.99}, {name: minque, gamma: 0.999}]\n")));
   CHECK(named(result, "minque (gamma=0.99)").ran);
   CHECK(named(result, "minque (gamma=0.999)").ran);
 }
@@ -274,19 +264,13 @@ TEST_CASE("replay: refusals name the place") {
   const std::string typo = said(array_scene(100, "algorithms:\n  - minqe\n"));
   CHECK_THAT(typo, Contains("did you mean minque?"));
   CHECK_THAT(typo, Contains("s.yaml:"));
-  CHECK_THAT(said(array_scene(100, "algorithms: [{name: minque, gama: 0.9}]\n")),
-             Contains("gamma"));
+  CHECK_THAT(said(array_scene(100, "algorithms: [{name: minque, gama: 0.9}]\n")), Contains("gamma"));
   CHECK_THAT(said(array_scene(100, "algorithms: [mean, mean]\n")), Contains("E0904"));
   CHECK_THAT(said(array_scene(1000, "evaluation: [20, 30]\n")), Contains("after the end"));
-  CHECK_THAT(said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, bb]\n"),
-             Contains("did you mean b"));
-  CHECK_THAT(
-      said(
-          "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nalgorithms: [minque]\n"),
-      Contains("E0905"));
-  CHECK_THAT(
-      said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nreference: zz\n"),
-      Contains("zz"));
+  CHECK_THAT(said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, bb]\n"), Contains("did you mean b"));
+  CHECK_THAT(said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nalgorithms: [minque]\n"),
+             Contains("E0905"));
+  CHECK_THAT(said("format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b]\nreference: zz\n"), Contains("zz"));
 }
 
 TEST_CASE("replay: of many sensors without reference some are left out in turn") {
@@ -303,9 +287,8 @@ TEST_CASE("replay: of many sensors without reference some are left out in turn")
     log += "\n";
   }
   bench.put("many.csv", log);
-  const ReplayResult result =
-      replay(bench.read("format: scene\nversion: 1\nrecording: many.csv\nsensors: [" + names +
-                        "]\nalgorithms: [mean]\n"));
+  const ReplayResult result = replay(
+      bench.read("format: scene\nversion: 1\nrecording: many.csv\nsensors: [" + names + "]\nalgorithms: [mean]\n"));
   REQUIRE(named(result, "mean").blind);
   const auto& each = named(result, "mean").blind->leave_one_out;
   CHECK(std::count_if(each.begin(), each.end(), [](double v) { return v > 0; }) == 32);
@@ -318,13 +301,13 @@ TEST_CASE("replay: a sensor with every second sample takes nothing from the othe
   for (int k = 0; k < 3000; ++k) {
     const double x = std::sin(0.01 * k);
     log += std::to_string(0.01 * k) + "," + std::to_string(x + 0.01 * (k % 3)) + "," +
-           std::to_string(x - 0.02 * (k % 5)) + "," +
-           (k % 2 == 0 ? std::to_string(x + 0.01 * (k % 7)) : "") + "," + std::to_string(x) + "\n";
+           std::to_string(x - 0.02 * (k % 5)) + "," + (k % 2 == 0 ? std::to_string(x + 0.01 * (k % 7)) : "") + "," +
+           std::to_string(x) + "\n";
   }
   bench.put("half.csv", log);
-  const ReplayResult result = replay(
-      bench.read("format: scene\nversion: 1\nrecording: half.csv\nsensors: [a, b, c]\nreference: "
-                 "x\nlearning: [0, 10]\n"));
+  const ReplayResult result =
+      replay(bench.read("format: scene\nversion: 1\nrecording: half.csv\nsensors: [a, b, c]\nreference: "
+                        "x\nlearning: [0, 10]\n"));
   CHECK(named(result, "mean").availability == 1);
   CHECK_FALSE(named(result, "mean").inputs[0].allan.points.empty());
   // It needs all three at once, so that no two of its errors follow each other.
@@ -337,8 +320,7 @@ TEST_CASE("replay: a sensor with every second sample takes nothing from the othe
 TEST_CASE("replay: what cannot be scored or does not change is said") {
   const test::SceneBench bench;
   std::string log = "t[s],a,b,c,x\n";
-  for (int k = 0; k < 500; ++k)
-    log += std::to_string(0.01 * k) + ",1,1,1," + std::to_string(k) + "\n";
+  for (int k = 0; k < 500; ++k) log += std::to_string(0.01 * k) + ",1,1,1," + std::to_string(k) + "\n";
   bench.put("flat.csv", log);
   const std::string scene = "format: scene\nversion: 1\nrecording: flat.csv\nsensors: [a, b, c]\n";
   const ReplayResult result = replay(bench.read(scene));
@@ -346,8 +328,7 @@ TEST_CASE("replay: what cannot be scored or does not change is said") {
   CHECK(result.warnings.find("constant_sensor")->count == 3);
   CHECK(named(result, "mean").as_good_as_best);
   CHECK(named(result, "median").as_good_as_best);
-  CHECK_THROWS_WITH(replay(bench.read(scene + "reference: {channels: [x], lag_s: 100}\n")),
-                    Contains("E0902"));
+  CHECK_THROWS_WITH(replay(bench.read(scene + "reference: {channels: [x], lag_s: 100}\n")), Contains("E0902"));
   const ReplayResult golden = replay(bench.read(scene + "reference: b\n"));
   REQUIRE(golden.warnings.find("reference_is_a_sensor") != nullptr);
   CHECK(golden.warnings.find("reference_is_a_sensor")->count == 1);
@@ -376,24 +357,22 @@ std::string five_sensors(int rows, const std::function<std::string(int, int)>& c
   return log;
 }
 
-const std::string kFive =
-    "format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, c, d, e]\n";
+const std::string kFive = "format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, c, d, e]\n";
 
 }  // namespace
 
 TEST_CASE("replay: a sensor that dies at once is left out of everything, with a sentence") {
   const test::SceneBench bench;
   const std::string more = "reference: x\nlearning: [0, 20]\n";
-  bench.put("five.csv", five_sensors(4000, [](int i, int k) {
-              return i == 2 && k > 0 ? std::string() : std::string("keep");
-            }));
+  bench.put("five.csv",
+            five_sensors(4000, [](int i, int k) { return i == 2 && k > 0 ? std::string() : std::string("keep"); }));
   const ReplayResult dead = replay(bench.read(kFive + more));
   REQUIRE(dead.warnings.find("sensor_without_samples") != nullptr);
   CHECK(dead.warnings.find("sensor_without_samples")->where.rows == std::vector<std::string>{"c"});
   // What the others give is what they give without it, bit for bit.
   bench.put("four.csv", five_sensors(4000, [](int, int) { return std::string("keep"); }));
-  const ReplayResult four = replay(
-      bench.read("format: scene\nversion: 1\nrecording: four.csv\nsensors: [a, b, d, e]\n" + more));
+  const ReplayResult four =
+      replay(bench.read("format: scene\nversion: 1\nrecording: four.csv\nsensors: [a, b, d, e]\n" + more));
   int compared = 0;
   for (const AlgorithmResult& algorithm : four.algorithms) {
     if (!algorithm.ran) continue;
@@ -420,8 +399,7 @@ TEST_CASE("replay: a sensor that freezes is left out of everything, with its pla
             }));
   const ReplayResult frozen = replay(bench.read(kFive));
   REQUIRE(frozen.warnings.find("frozen_sensor") != nullptr);
-  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0),
-             Catch::StartsWith("c from 2"));
+  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0), Catch::StartsWith("c from 2"));
   CHECK(std::isnan(named(frozen, "mean").blind->leave_one_out[2]));
   // A fault that the scene puts in is there to be found.
   bench.put("good.csv", five_sensors(4000, [](int, int) { return std::string("keep"); }));
@@ -438,8 +416,7 @@ TEST_CASE("replay: a sensor that freezes near the end has its weight until then"
             }));
   const ReplayResult frozen = replay(bench.read(kFive));
   REQUIRE(frozen.warnings.find("frozen_sensor") != nullptr);
-  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0),
-             Catch::StartsWith("c from 3"));
+  CHECK_THAT(frozen.warnings.find("frozen_sensor")->where.rows.at(0), Catch::StartsWith("c from 3"));
   CHECK(named(frozen, "mean").weights.at(0)[2] == Approx(0.2));
   CHECK(frozen.sensors[2].missing == Approx(0.1));
 }
@@ -447,12 +424,11 @@ TEST_CASE("replay: a sensor that freezes near the end has its weight until then"
 TEST_CASE("replay: a sensor that repeats another one is named") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));
-  const ReplayResult twice = replay(
-      bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, "
-                 "channel: a}, d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
+  const ReplayResult twice =
+      replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, "
+                        "channel: a}, d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
   REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
-  CHECK(twice.warnings.find("copied_sensor")->where.rows ==
-        std::vector<std::string>{"again repeats a"});
+  CHECK(twice.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"again repeats a"});
   CHECK(twice.sensors[2].copy_of == "a");
   CHECK(twice.sensors[3].copy_of.empty());
   const std::vector<double> w = named(twice, "optimal-weights").weights.at(0);
@@ -463,12 +439,10 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
 TEST_CASE("replay: the warm-up runs and is not scored") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int i, int k) {
-              return i == 0 && k < 500 ? std::string(k % 2 == 0 ? "100" : "101")
-                                       : std::string("keep");
+              return i == 0 && k < 500 ? std::string(k % 2 == 0 ? "100" : "101") : std::string("keep");
             }));
   const std::string scene = kFive + "reference: x\nalgorithms: [mean, median]\n";
-  const ReplayResult all = replay(bench.read(scene)),
-                     warm = replay(bench.read(scene + "warm_up_s: 5\n"));
+  const ReplayResult all = replay(bench.read(scene)), warm = replay(bench.read(scene + "warm_up_s: 5\n"));
   CHECK(named(all, "mean").rmse > 5);
   CHECK(named(warm, "mean").rmse < 0.2);
   CHECK(named(warm, "mean").inputs[0].error.samples == 2500);

@@ -19,8 +19,8 @@ TEST_CASE("replay view: best first, those without a score behind, each that ran 
   ReplayResult r = test::synthetic_replay();
   r.algorithms[1].rmse = std::nan("");
   const ReplayView view = replay_view(r);
-  const auto ran = std::count_if(
-      r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) { return a.ran; });
+  const auto ran =
+      std::count_if(r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) { return a.ran; });
   REQUIRE(view.ranked.size() == static_cast<std::size_t>(ran));
   for (std::size_t i = 1; i < view.ranked.size(); ++i)
     CHECK_FALSE(view.ranked[i]->result->rmse < view.ranked[i - 1]->result->rmse);
@@ -130,8 +130,7 @@ TEST_CASE("replay view: tracks of any number of algorithms fit a page, and keep 
   const std::size_t divisor = track_divisor(r);
   CHECK(divisor > 1);
   const ReplayView view = replay_view(r);
-  CHECK(view.algorithms[3].weight_track.high ==
-        merged_bins(r.algorithms[3].weight_track, divisor).high);
+  CHECK(view.algorithms[3].weight_track.high == merged_bins(r.algorithms[3].weight_track, divisor).high);
   const Timeline merged = merged_bins(r.algorithms[3].weight_track, divisor);
   CHECK(merged.time_s.size() == (400 + divisor - 1) / divisor);
   CHECK(*std::max_element(merged.high[4].begin(), merged.high[4].end()) == 7.5);
@@ -147,8 +146,7 @@ TEST_CASE("replay: the front holds exactly what no method beats in both") {
     const AlgorithmResult& a = r.algorithms[i];
     bool beaten = !a.ran || a.bound;
     for (const AlgorithmResult& b : r.algorithms)
-      beaten =
-          beaten || (b.ran && !b.bound && b.rmse < a.rmse && b.ns_per_sample < a.ns_per_sample);
+      beaten = beaten || (b.ran && !b.bound && b.rmse < a.rmse && b.ns_per_sample < a.ns_per_sample);
     INFO(a.label);
     CHECK(front.time[i] == !beaten);
     CHECK(view.algorithms[i].on_time_front == !beaten);

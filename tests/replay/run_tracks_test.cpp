@@ -19,8 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 Timeline enveloped(const std::vector<double>& values, std::size_t bins, std::size_t block) {
   Envelope envelope(static_cast<std::int64_t>(values.size()), bins);
   for (std::size_t at = 0; at < values.size(); at += block)
-    envelope.push(static_cast<std::int64_t>(at),
-                  static_cast<Eigen::Index>(std::min(block, values.size() - at)),
+    envelope.push(static_cast<std::int64_t>(at), static_cast<Eigen::Index>(std::min(block, values.size() - at)),
                   [&](Eigen::Index k) { return values[at + static_cast<std::size_t>(k)]; });
   Timeline out;
   envelope.add_to(out, 100, 10);
@@ -69,12 +68,10 @@ TEST_CASE("envelope: blocks of any size give the same") {
   for (int k = 0; k < 1003; ++k) values.push_back(std::sin(0.7 * k) * k);
   const Timeline whole = enveloped(values, 100, values.size());
   CHECK(whole.time_s.size() == 92);  // of 11 each
-  for (const std::size_t block : {1, 5, 11, 12, 500})
-    CHECK(enveloped(values, 100, block).high == whole.high);
+  for (const std::size_t block : {1, 5, 11, 12, 500}) CHECK(enveloped(values, 100, block).high == whole.high);
 }
 
-TEST_CASE(
-    "close-ups: at the faults and where scoring begins, apart from each other, within the run") {
+TEST_CASE("close-ups: at the faults and where scoring begins, apart from each other, within the run") {
   const auto places = close_up_places(100000, 500, {600, 50000, 99990, -5, 50100, 200000}, 10);
   REQUIRE(places.size() == 3);  // 600 and 50100 are too near to others, two are outside
   CHECK(places[0].from == 500);
@@ -92,8 +89,7 @@ TEST_CASE(
 TEST_CASE("replay: keeps the run of the best method and of the best single sensor") {
   const test::SceneBench bench;
   bench.put("three.csv", log_of(5000, true));
-  const ReplayResult r =
-      replay(bench.read(scene_of("reference: truth\nwarm_up_s: 2\nalgorithms: [mean, median]\n")));
+  const ReplayResult r = replay(bench.read(scene_of("reference: truth\nwarm_up_s: 2\nalgorithms: [mean, median]\n")));
   REQUIRE(r.best);
   REQUIRE(r.algorithms[*r.best].label == "median");
   CHECK(r.tracks.algorithm == r.best);
@@ -162,8 +158,7 @@ TEST_CASE("replay: the run that is kept does not depend on the block size") {
     REQUIRE(other.tracks.close_ups.size() == 2);
     const std::vector<double>&a = other.tracks.close_ups[1].run.sensor.high[0],
           &b = standard.tracks.close_ups[1].run.sensor.high[0];
-    CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-      return x == y || (std::isnan(x) && std::isnan(y));
-    }));
+    CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                     [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); }));
   }
 }

@@ -24,16 +24,12 @@ struct SceneBench {
   void put(const std::string& name, const std::string& text) const {
     std::ofstream(path(name), std::ios::binary) << text;
   }
-  libchar::Scene read(const std::string& text,
-                      const std::string& name = "s.yaml",
-                      bool allow_outside = false) const {
+  libchar::Scene read(const std::string& text, const std::string& name = "s.yaml", bool allow_outside = false) const {
     put(name, text);
     return libchar::read_scene_file(path(name), {allow_outside});
   }
   /// The refusal without the folder in front; empty when the scene is read.
-  std::string refusal(const std::string& text,
-                      const std::string& name = "s.yaml",
-                      bool allow_outside = false) const {
+  std::string refusal(const std::string& text, const std::string& name = "s.yaml", bool allow_outside = false) const {
     try {
       read(text, name, allow_outside);
     } catch (const libchar::Error& error) {

@@ -18,9 +18,7 @@ namespace {
 
 constexpr int kPerInterval = 8, kIntervals = 400;
 
-double slow_motion(double k) {
-  return 3 * std::sin(0.11 * k) + 2 * std::sin(0.047 * k + 1) + std::sin(0.19 * k + 2);
-}
+double slow_motion(double k) { return 3 * std::sin(0.11 * k) + 2 * std::sin(0.047 * k + 1) + std::sin(0.19 * k + 2); }
 
 double mean_of_motion(double from) {
   double sum = 0;
@@ -38,15 +36,11 @@ void put_slow(const test::SceneBench& bench, const std::string& samples, double 
   test::Gaussian gauss(21);
   std::string sensors = "t[s],a,b,c\n", reference = "t[s],r\n";
   for (int k = 0; k < kPerInterval * kIntervals; ++k)
-    sensors += fmt::format("{},{},{},{}\n",
-                           0.01 * k,
-                           slow_motion(k - late) + 0.05 * gauss(),
-                           slow_motion(k - late) + 0.4 + 0.05 * gauss(),
-                           slow_motion(k - late) + 0.1 * gauss());
+    sensors += fmt::format("{},{},{},{}\n", 0.01 * k, slow_motion(k - late) + 0.05 * gauss(),
+                           slow_motion(k - late) + 0.4 + 0.05 * gauss(), slow_motion(k - late) + 0.1 * gauss());
   for (int j = 2; j < kIntervals - 2; ++j)
-    reference += fmt::format("{},{}\n",
-                             0.01 * kPerInterval * j,
-                             reference_value(samples, kPerInterval * j) + 0.01 * gauss());
+    reference +=
+        fmt::format("{},{}\n", 0.01 * kPerInterval * j, reference_value(samples, kPerInterval * j) + 0.01 * gauss());
   bench.put("sensors.csv", sensors);
   bench.put("slow.csv", reference);
 }
@@ -58,9 +52,7 @@ ReplayResult run_slow(const test::SceneBench& bench, const std::string& more) {
                  more + "}\n"));
 }
 
-double best_of(const ReplayResult& result) {
-  return result.algorithms[*result.best].rmse;
-}
+double best_of(const ReplayResult& result) { return result.algorithms[*result.best].rmse; }
 
 }  // namespace
 
@@ -70,18 +62,14 @@ TEST_CASE("slow reference: each of the four readings is told from the others by 
     INFO(samples);
     test::SceneBench bench;
     put_slow(bench, samples);
-    const ReplayResult declared = run_slow(bench, ", samples: " + samples),
-                       estimated = run_slow(bench, "");
+    const ReplayResult declared = run_slow(bench, ", samples: " + samples), estimated = run_slow(bench, "");
     CHECK(best_of(declared) < 0.04);
     CHECK(best_of(estimated) <= 1.05 * best_of(declared));
     CHECK(estimated.rate_hz == declared.rate_hz);
-    CHECK_THAT(estimated.reference_use,
-               Contains(samples == "instant" ? "its values are samples" : samples));
+    CHECK_THAT(estimated.reference_use, Contains(samples == "instant" ? "its values are samples" : samples));
     CHECK(declared.reference_use.find("likelihood") == std::string::npos);
     for (const std::string_view other : SceneReference::kReadings)
-      if (other != one)
-        CHECK(best_of(run_slow(bench, ", samples: " + std::string(other))) >
-              1.2 * best_of(estimated));
+      if (other != one) CHECK(best_of(run_slow(bench, ", samples: " + std::string(other))) > 1.2 * best_of(estimated));
   }
 }
 

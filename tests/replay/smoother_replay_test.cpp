@@ -24,17 +24,13 @@ const std::string kSmoothed =
 
 std::string walking_sensors() {
   std::string text = "sensors:\n";
-  for (const auto& [name, white, walk] : {std::tuple{"a", 0.01, 0.02},
-                                          std::tuple{"b", 0.01, 0.02},
-                                          std::tuple{"c", 0.04, 0.002},
-                                          std::tuple{"d", 0.04, 0.002}})
+  for (const auto& [name, white, walk] : {std::tuple{"a", 0.01, 0.02}, std::tuple{"b", 0.01, 0.02},
+                                          std::tuple{"c", 0.04, 0.002}, std::tuple{"d", 0.04, 0.002}})
     text += fmt::format(
         "  - {{name: {}, model: {{unit: rad/s, density: two-sided, white_noise: {{value: {}, unit: "
         "rad/s/√Hz}},"
         " random_walk: {{value: {}, unit: rad/s/√s}}}}}}\n",
-        name,
-        white,
-        walk);
+        name, white, walk);
   return text;
 }
 
@@ -53,8 +49,7 @@ std::string log_of_walks(double fault = 0) {
     text += shortest(k / 20.0);
     for (int i = 0; i < 4; ++i) {
       const double failed = i == 2 && k > 1500 ? fault : 0;
-      text +=
-          "," + shortest(std::sin(0.1 * k) + walk[i] + failed + (i < 2 ? 0.045 : 0.18) * gauss());
+      text += "," + shortest(std::sin(0.1 * k) + walk[i] + failed + (i < 2 ? 0.045 : 0.18) * gauss());
       walk[i] += (i < 2 ? 0.02 : 0.002) / std::sqrt(20.0) * gauss();
     }
     text += "\n";
@@ -76,18 +71,16 @@ TEST_CASE("smoother: with a reference it is scored and explained") {
   CHECK(result.algorithms[2].rmse == Approx(smoother.rmse).epsilon(1e-9));  // no sensor fails
   CHECK(filter.remarks.find("looks_ahead") == nullptr);
   CHECK(smoother.remarks.find("looks_ahead") != nullptr);
-  const std::string looks =
-      "looks at the whole evaluation before it estimates: virtual-sensor (smoothed=1),";
-  CHECK(std::any_of(result.plan.begin(), result.plan.end(), [&](const std::string& sentence) {
-    return sentence.starts_with(looks);
-  }));
+  const std::string looks = "looks at the whole evaluation before it estimates: virtual-sensor (smoothed=1),";
+  CHECK(std::any_of(result.plan.begin(), result.plan.end(),
+                    [&](const std::string& sentence) { return sentence.starts_with(looks); }));
 }
 
 TEST_CASE("smoother: without a reference every part looks ahead as well") {
   const test::SceneBench bench;
   bench.put("walks.csv", log_of_walks());
-  const ReplayResult result = replay(bench.read(
-      "format: scene\nversion: 1\nrecording: walks.csv\n" + walking_sensors() + kSmoothed));
+  const ReplayResult result =
+      replay(bench.read("format: scene\nversion: 1\nrecording: walks.csv\n" + walking_sensors() + kSmoothed));
   const AlgorithmResult &filter = result.algorithms[0], &smoother = result.algorithms[1];
   REQUIRE(smoother.blind);
   for (const double one : smoother.blind->leave_one_out) CHECK(std::isfinite(one));
@@ -101,8 +94,7 @@ TEST_CASE("smoother: a log is fused as it was in the replay, a sensor that fails
   KeptColumns replayed;
   ReplayWorkspace workspace;
   workspace.estimates = &replayed;
-  const Scene scene = bench.read("format: scene\nversion: 1\nrecording: walks.csv\n" +
-                                 walking_sensors() + kSmoothed);
+  const Scene scene = bench.read("format: scene\nversion: 1\nrecording: walks.csv\n" + walking_sensors() + kSmoothed);
   const ReplayResult result = replay(scene, {}, no_progress(), workspace);
   const LearntFusion learnt = parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml");
   double squares[3] = {};

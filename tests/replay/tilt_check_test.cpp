@@ -19,9 +19,7 @@ struct Instant {
 };
 
 /// What is said of 200 s at 100 Hz of a tilt that swings by `swing` rad, each instant changed by `change`; "": nothing.
-std::string said(double swing,
-                 const std::function<void(Instant&)>& change,
-                 double disturbance = 0) {
+std::string said(double swing, const std::function<void(Instant&)>& change, double disturbance = 0) {
   test::Gaussian normal(5);
   Eigen::MatrixXd samples(3, 20000);
   double wind = 0;
@@ -30,8 +28,7 @@ std::string said(double swing,
     const double angle = swing * std::sin(w * t);
     wind += 0.05 * (normal() - wind);
     Instant now{swing * w * std::cos(w * t) + 0.05 + 0.01 * normal(),
-                9.81 * std::sin(angle) + 0.1 * normal() + disturbance * wind,
-                9.81 * std::cos(angle) + 0.1 * normal()};
+                9.81 * std::sin(angle) + 0.1 * normal() + disturbance * wind, 9.81 * std::cos(angle) + 0.1 * normal()};
     change(now);
     samples.col(k) << now.rate, now.x, now.z;
   }
@@ -52,12 +49,10 @@ TEST_CASE("tilt check: signs, exchanged axes, units and another axis are told") 
   CHECK_THAT(said(0.8, [](Instant& i) { i.x = -i.x; }), Contains("the other way"));
   CHECK_THAT(said(0.8, [](Instant& i) { std::swap(i.x, i.z); }), Contains("the other way"));
   CHECK_THAT(said(0.8, [](Instant& i) { i.rate *= 57.29578; }), Contains("57.3 times"));
-  CHECK_THAT(said(0.8, [](Instant& i) { i.rate = 0.01 * std::sin(1000 * i.z); }),
-             Contains("another axis"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate = 0.01 * std::sin(1000 * i.z); }), Contains("another axis"));
 }
 
-TEST_CASE(
-    "tilt check: a delay of the gyroscope or of the accelerometers is told, a lever arm is none") {
+TEST_CASE("tilt check: a delay of the gyroscope or of the accelerometers is told, a lever arm is none") {
   const auto late_by = [](bool gyroscope) {
     return [gyroscope, line = std::vector<Instant>()](Instant& now) mutable {
       line.push_back(now);

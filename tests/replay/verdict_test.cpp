@@ -35,11 +35,8 @@ std::string array_log(const std::vector<Sensor>& sensors, std::size_t rows, std:
     char cell[32];
     for (const Sensor& sensor : sensors) {
       const double offset = sensor.offset + (10 * k < 6 * rows ? 0 : sensor.jump);
-      std::snprintf(cell,
-                    sizeof cell,
-                    ",%.9g",
-                    sensor.gain * x + offset +
-                        sensor.noise * gauss() * (gauss.uniform() < sensor.outliers ? 30 : 1));
+      std::snprintf(cell, sizeof cell, ",%.9g",
+                    sensor.gain * x + offset + sensor.noise * gauss() * (gauss.uniform() < sensor.outliers ? 30 : 1));
       out += cell;
     }
     std::snprintf(cell, sizeof cell, ",%.9g\n", x);
@@ -59,8 +56,7 @@ std::string scene_of(std::size_t sensors, const std::string& more) {
 TEST_CASE("verdict: whether fusion pays is said against the best single sensor, by name") {
   const test::SceneBench bench;
   bench.put("array.csv", array_log({{1}, {1}, {0.9}, {1}, {1}}, 8000, 1));
-  ReplayResult result =
-      replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean, median]\n")));
+  ReplayResult result = replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean, median]\n")));
   REQUIRE(result.best_sensor == std::size_t{2});
   CHECK(result.best_over_sensor->high < 0.6);
   CHECK_THAT(test::verdict_of(result, false),
@@ -68,8 +64,7 @@ TEST_CASE("verdict: whether fusion pays is said against the best single sensor, 
 
   bench.put("array.csv", array_log({{1}, {1}, {0.1}, {1}, {1}}, 8000, 2));
   result = replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean]\n")));
-  CHECK_THAT(test::verdict_of(result, false),
-             StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
+  CHECK_THAT(test::verdict_of(result, false), StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
 }
 
 TEST_CASE(
@@ -79,8 +74,7 @@ TEST_CASE(
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
     const test::SceneBench bench;
-    bench.put("array.csv",
-              array_log({{0.05}, {0.07}, {0.5}, {1}, {3}, {5, 0, 0.8}, {5, 0, 1.3}}, 20000, seed));
+    bench.put("array.csv", array_log({{0.05}, {0.07}, {0.5}, {1}, {3}, {5, 0, 0.8}, {5, 0, 1.3}}, 20000, seed));
     const std::string methods = "algorithms: [mean, median, minque]\n";
     const ReplayResult blind = replay(bench.read(scene_of(7, methods)));
     const ReplayResult seen = replay(bench.read(scene_of(7, "reference: truth\n" + methods)));
@@ -99,12 +93,10 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   REQUIRE(result.best);
   CHECK(result.algorithms[*result.best].label == "median");
   CHECK_THAT(test::verdict_of(result, false),
-             StartsWith("Use median") && Contains("Scores do not decide") &&
-                 Contains("a stretch at rest"));
+             StartsWith("Use median") && Contains("Scores do not decide") && Contains("a stretch at rest"));
   result = replay(bench.read(scene_of(4, "algorithms: [mean]\n")));
   CHECK_FALSE(result.best);
-  CHECK_THAT(test::verdict_of(result, false),
-             StartsWith("No method is recommended") && Contains("a stretch at rest"));
+  CHECK_THAT(test::verdict_of(result, false), StartsWith("No method is recommended") && Contains("a stretch at rest"));
   result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
   CHECK_FALSE(result.offsets_decide);
   CHECK(result.best);
@@ -136,8 +128,7 @@ TEST_CASE(
   std::size_t said = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const test::SceneBench bench;
-    bench.put("array.csv",
-              array_log({{1, 1}, {0.7, -2}, {1.5, 0.5}, {1, 3}, {1.2, -1}}, 8000, seed));
+    bench.put("array.csv", array_log({{1, 1}, {0.7, -2}, {1.5, 0.5}, {1, 3}, {1.2, -1}}, 8000, seed));
     const ReplayResult result = replay(bench.read(scene_of(5, "algorithms: [mean, median]\n")));
     said += result.warnings.find("sensor_failing") != nullptr ? 1 : 0;
     said += result.warnings.find("sensor_apart") != nullptr ? 1 : 0;
@@ -145,8 +136,7 @@ TEST_CASE(
   CHECK(said == 0);
 }
 
-TEST_CASE(
-    "verdict: outliers of all sensors name none of them, and do not hide the one that fails") {
+TEST_CASE("verdict: outliers of all sensors name none of them, and do not hide the one that fails") {
   for (const double share : {1e-4, 1e-3, 1e-2})
     for (const std::size_t n : {3U, 4U, 6U})
       for (const double jump : {0., 25.}) {
@@ -155,8 +145,7 @@ TEST_CASE(
         sensors[1].jump = jump;
         const test::SceneBench bench;
         bench.put("array.csv", array_log(sensors, 20000, n));
-        const ReplayResult result =
-            replay(bench.read(scene_of(n, "algorithms: [mean, median, minque]\n")));
+        const ReplayResult result = replay(bench.read(scene_of(n, "algorithms: [mean, median, minque]\n")));
         if (jump == 0) CHECK(result.warnings.find("fault_watch_stood_down") == nullptr);
         const Finding* failing = result.warnings.find("sensor_failing");
         REQUIRE((failing != nullptr) == (jump > 0));
@@ -168,8 +157,7 @@ TEST_CASE(
 TEST_CASE("verdict: one per cent is no difference") {
   const test::SceneBench bench;
   bench.put("array.csv", array_log({{1}, {1.02}, {0.98}, {1}}, 60000, 4));
-  const ReplayResult result =
-      replay(bench.read(scene_of(4, "reference: truth\nalgorithms: [mean, minque]\n")));
+  const ReplayResult result = replay(bench.read(scene_of(4, "reference: truth\nalgorithms: [mean, minque]\n")));
   CHECK(named(result, "mean").as_good_as_best);
   CHECK(named(result, "minque").as_good_as_best);
   CHECK_THAT(test::verdict_of(result, false), Contains("Within one per cent of it"));
@@ -180,8 +168,8 @@ TEST_CASE("verdict: a record of a few instants tells no method from another") {
   for (const int rows : {2, 3, 7}) {
     std::string text = "t[s],a[V],b[V],c[V]\n";
     for (int k = 0; k < rows; ++k)
-      text += std::to_string(k) + "," + std::to_string(k % 2) + "," + std::to_string(k % 3) +
-              ",0." + std::to_string(7 * k % 5) + "\n";
+      text += std::to_string(k) + "," + std::to_string(k % 2) + "," + std::to_string(k % 3) + ",0." +
+              std::to_string(7 * k % 5) + "\n";
     bench.put("few.csv", text);
     const ReplayResult result =
         replay(bench.read("format: scene\nversion: 1\nrecording: few.csv\nsensors: [a, b, c]\n"));

@@ -37,15 +37,13 @@ TEST_CASE("csv cell: quoted as RFC 4180 says, and never a formula") {
   CHECK(csv_cell("a,b") == "\"a,b\"");
   CHECK(csv_cell("say \"hi\"") == "\"say \"\"hi\"\"\"");
   CHECK(csv_cell("two\nlines") == "\"two\nlines\"");
-  for (const char* start : {"=", "+", "-", "@", "\t"})
-    CHECK(csv_cell(std::string(start) + "1")[0] == '\'');
+  for (const char* start : {"=", "+", "-", "@", "\t"}) CHECK(csv_cell(std::string(start) + "1")[0] == '\'');
   CHECK(csv_cell("\r1") == "\"'\r1\"");
   CHECK(csv_cell("=HYPERLINK(\"x\")") == "\"'=HYPERLINK(\"\"x\"\")\"");
   CHECK(csv_cell("").empty());
 }
 
 TEST_CASE("html comment: only its own end ends it") {
-  for (const char* text : {"a-->b", "a--!>b", "-----", "--"})
-    CHECK(html_comment(text).find("--") == std::string::npos);
+  for (const char* text : {"a-->b", "a--!>b", "-----", "--"}) CHECK(html_comment(text).find("--") == std::string::npos);
   CHECK(html_comment("plain - text") == "plain - text");
 }

@@ -45,15 +45,13 @@ std::vector<DeviceRecord> two_batches(std::size_t each = 100) {
 
 std::string csv_of(const std::vector<DeviceRecord>& records) {
   std::string out;
-  write_coefficients_csv(
-      records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
+  write_coefficients_csv(records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
   return out;
 }
 
 std::string npz_of(const std::vector<DeviceRecord>& records) {
   std::string out;
-  write_coefficients_npz(
-      records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
+  write_coefficients_npz(records, fleet_lot(records), [&](std::string_view piece) { out += piece; });
   return out;
 }
 
@@ -137,16 +135,13 @@ TEST_CASE("the report of a lot at several temperatures says where its coefficien
     }
   CHECK(found == 2);
   const std::string page = fleet_html(report);
-  CHECK_THAT(
-      page,
-      Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at "
-               "-20 to 60 °C") &&
-          Contains("Coefficients of 12 devices"));
+  CHECK_THAT(page, Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at "
+                            "-20 to 60 °C") &&
+                       Contains("Coefficients of 12 devices"));
   CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature of each"));
 }
 
-TEST_CASE(
-    "a mean that leaves devices out says by how much it can be off, a chart what chance brings") {
+TEST_CASE("a mean that leaves devices out says by how much it can be off, a chart what chance brings") {
   auto records = test::made_lot({}, 21);
   for (std::size_t i = 0; i < 40; ++i) {
     RecordedValue& k = records[i].channels[0].values[2];
@@ -169,30 +164,16 @@ TEST_CASE(
   }
   CHECK(left_out == 2);  // of the channel and of its kind
   const std::string page = fleet_html(report);
-  CHECK_THAT(page,
-             Contains(", too large by up to ") && Contains("40 are not in it (40 not detected)"));
+  CHECK_THAT(page, Contains(", too large by up to ") && Contains("40 are not in it (40 not detected)"));
   CHECK_THAT(page, Contains("four of five beyond 1 σ") && Contains("expected by chance"));
 }
 
 TEST_CASE("numbers of any size make a lot, a page and a document") {
   test::Gaussian gauss(6);
-  const std::vector<double> wild = {0,
-                                    -0.0,
-                                    1e308,
-                                    -1e308,
-                                    1e-308,
-                                    5e-324,
-                                    1e-170,
-                                    1e170,
-                                    kNone,
-                                    1,
-                                    -1,
-                                    std::numeric_limits<double>::infinity(),
-                                    1e-60,
-                                    1e60};
-  const auto any = [&] {
-    return wild[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(wild.size()))];
-  };
+  const std::vector<double> wild = {0,      -0.0,  1e308, -1e308, 1e-308, 5e-324,
+                                    1e-170, 1e170, kNone, 1,      -1,     std::numeric_limits<double>::infinity(),
+                                    1e-60,  1e60};
+  const auto any = [&] { return wild[static_cast<std::size_t>(gauss.uniform() * static_cast<double>(wild.size()))]; };
   for (int round = 0; round < 60; ++round) {
     test::MadeLot made;
     made.devices = round % 3 == 0 ? 6 : 80;
@@ -218,8 +199,7 @@ TEST_CASE("numbers of any size make a lot, a page and a document") {
     CHECK(test::schema_fault(dump_json(fleet_json(report))) == "");
     // Of the drawings, not of the scripts behind them.
     const std::string page = fleet_html(report), body = page.substr(0, page.find("<script"));
-    for (const char* const bad :
-         {"=\"nan", "=\"-nan", "nan,", ",nan", "inf,", ",inf", "=\"inf", "=\"-inf"}) {
+    for (const char* const bad : {"=\"nan", "=\"-nan", "nan,", ",nan", "inf,", ",inf", "=\"inf", "=\"-inf"}) {
       CAPTURE(round, bad);
       const std::size_t at = body.find(bad);
       CHECK(at == std::string::npos);
@@ -235,8 +215,7 @@ TEST_CASE("the table of coefficients holds every number to its last digit") {
   const auto rows = cells_of(csv_of(records));
   CHECK(rows.size() == 1 + 2 * 39);
   const std::size_t device = column_of(rows[0], "device"), channel = column_of(rows[0], "channel"),
-                    white = column_of(rows[0], "white_noise"),
-                    high = column_of(rows[0], "turn_on_bias_high95"),
+                    white = column_of(rows[0], "white_noise"), high = column_of(rows[0], "turn_on_bias_high95"),
                     status = column_of(rows[0], "random_walk_status");
   CHECK(std::count(rows[0].begin(), rows[0].end(), "quantization") == 0);
   std::size_t found = 0;
@@ -261,8 +240,7 @@ TEST_CASE("the tables give deviations in the unit of the value, and the batch of
   records.push_back(again);
   const auto rows = cells_of(csv_of(records));
   const std::size_t device = column_of(rows[0], "device"), batch = column_of(rows[0], "batch"),
-                    channel = column_of(rows[0], "channel"),
-                    white = column_of(rows[0], "white_noise_sd"),
+                    channel = column_of(rows[0], "channel"), white = column_of(rows[0], "white_noise_sd"),
                     bias = column_of(rows[0], "turn_on_bias_sd");
   std::size_t found = 0;
   for (const auto& row : rows) {
@@ -319,8 +297,7 @@ TEST_CASE("an archive of arrays above four gigabytes, made small: sizes and plac
   };
   const auto entry = [](const std::string& text, std::size_t at, std::size_t bytes) {
     std::uint64_t value = 0;
-    for (std::size_t i = bytes; i-- > 0;)
-      value = value << 8U | static_cast<std::uint8_t>(text[at + i]);
+    for (std::size_t i = bytes; i-- > 0;) value = value << 8U | static_cast<std::uint8_t>(text[at + i]);
     return value;
   };
   const std::string plain = archive(1000);
@@ -367,8 +344,7 @@ TEST_CASE("the page of a fleet grows by names, not by drawings") {
   CHECK(each < 60);  // bytes: name, type, batch, state
 }
 
-TEST_CASE(
-    "the page of a fleet links the worst devices, and no name becomes a tag or another address") {
+TEST_CASE("the page of a fleet links the worst devices, and no name becomes a tag or another address") {
   auto records = two_batches();
   const std::string bad = "<script>alert(1)</script>\"'";
   records[7].device = bad;
@@ -377,9 +353,7 @@ TEST_CASE(
   const FleetLot lot = fleet_lot(records);
   const std::string page = fleet_html({records, &lot, bad, {bad}, {}});
   CHECK_THAT(page, !Contains("<script>alert") && !Contains("href=\"javascript:"));
-  CHECK_THAT(
-      page,
-      Contains("href=\"./javascript%3A%3Cscript%3Ealert%281%29%3C/script%3E%22%27/report.html\""));
+  CHECK_THAT(page, Contains("href=\"./javascript%3A%3Cscript%3Ealert%281%29%3C/script%3E%22%27/report.html\""));
   CHECK_THAT(page, Contains("id=\"device-search\""));
 }
 
@@ -387,12 +361,10 @@ TEST_CASE("the text of a fleet has its table and its worst devices") {
   const auto records = two_batches();
   const FleetLot lot = fleet_lot(records);
   const std::string text = fleet_text({records, &lot, "", {}, {}});
-  CHECK_THAT(text,
-             Contains("1 device stands out") && Contains("gyro_x") &&
-                 Contains("the worst first:\n  imu8  gyro_x: Bias instability"));
-  CHECK_THAT(text,
-             Contains("1 recording could not be characterized") &&
-                 Contains("\ncould not be characterized:\n  imu10  is empty\n"));
+  CHECK_THAT(text, Contains("1 device stands out") && Contains("gyro_x") &&
+                       Contains("the worst first:\n  imu8  gyro_x: Bias instability"));
+  CHECK_THAT(text, Contains("1 recording could not be characterized") &&
+                       Contains("\ncould not be characterized:\n  imu10  is empty\n"));
 }
 
 TEST_CASE("results that are not there yet stand apart from those that cannot be") {
@@ -410,9 +382,7 @@ TEST_CASE("results that are not there yet stand apart from those that cannot be"
   CHECK(document["awaited_count"] == 3);
   CHECK(document["awaited"][0]["device"] == "imu21");
   const std::string page = fleet_html(report);
-  CHECK_THAT(page,
-             Contains("1 recording could not be characterized") &&
-                 Contains("3 recordings without a result yet"));
+  CHECK_THAT(page, Contains("1 recording could not be characterized") && Contains("3 recordings without a result yet"));
 }
 
 TEST_CASE("the list of devices tells the recordings of one apart") {
@@ -450,6 +420,5 @@ TEST_CASE("a comparison of lots keeps its schema and has a table") {
   const FleetComparison c = compare_lots(a, b, {.name_a = "March", .name_b = "April"});
   const std::string document = dump_json(fleet_comparison_json(c));
   CHECK(test::schema_fault(document) == "");
-  CHECK_THAT(fleet_comparison_text(c),
-             Contains("mean of March") && Contains("larger than of March ["));
+  CHECK_THAT(fleet_comparison_text(c), Contains("mean of March") && Contains("larger than of March ["));
 }

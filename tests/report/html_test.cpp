@@ -29,15 +29,8 @@ std::string without_assets(std::string page) {
 
 TEST_CASE("html: asks for nothing from anywhere") {
   const std::string page = without_assets(html_report(test::synthetic_imu()));
-  for (const char* word : {"src=",
-                           "href=\"http",
-                           "@import",
-                           "url(",
-                           "<link",
-                           "<iframe",
-                           "<img",
-                           " style=\"",
-                           " onclick"}) {
+  for (const char* word :
+       {"src=", "href=\"http", "@import", "url(", "<link", "<iframe", "<img", " style=\"", " onclick"}) {
     INFO(word);
     CHECK(test::count(page, word) == 0);
   }
@@ -102,13 +95,8 @@ TEST_CASE("html: every number of a channel stands in a table too") {
   CHECK(test::count(page, "One-sided power spectral density</h3>") == result.channels.size());
   CHECK(test::count(page, result.log.sha256) >= 1);
   CHECK(test::count(page, "&#39;out dir&#39;") == 1);  // the command, quoted as a shell wants it
-  for (const char* word : {"deg/√h",
-                           "deg/h",
-                           "µg/√Hz",
-                           "gyroscope_noise_density",
-                           "IEEE 952",
-                           "not detected",
-                           "undetermined"}) {
+  for (const char* word :
+       {"deg/√h", "deg/h", "µg/√Hz", "gyroscope_noise_density", "IEEE 952", "not detected", "undetermined"}) {
     INFO(word);
     CHECK(test::count(page, word) > 0);
   }
@@ -127,8 +115,8 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     return;
   }
   const test::TemporaryFolder folder;
-  for (const auto& [name, result] : {std::pair{"plain.html", test::synthetic_imu()},
-                                     std::pair{"hostile.html", test::hostile()}}) {
+  for (const auto& [name, result] :
+       {std::pair{"plain.html", test::synthetic_imu()}, std::pair{"hostile.html", test::hostile()}}) {
     // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its
     // own.
     const std::string path = (folder / name).string(), log = path + ".log";
@@ -139,11 +127,9 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     std::istringstream lines(test::slurp(log));
     for (std::string line; std::getline(lines, line);) {
       if (line.find("error :") != std::string::npos &&
-          !std::regex_search(
-              line,
-              std::regex(
-                  "Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) "
-                  "invalid")))
+          !std::regex_search(line,
+                             std::regex("Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) "
+                                        "invalid")))
         complaints += line + "\n";
     }
     CHECK(complaints.empty());
@@ -165,8 +151,7 @@ TEST_CASE("html: of a thousand channels those are drawn that ask for a look, and
     if (here) least_shown = std::min(least_shown, c.judgement.rating);
     CHECK(here == c.in_detail);
   }
-  for (const ChannelView& c : view.channels)
-    worst_left_out += !c.in_detail && c.judgement.rating > least_shown ? 1 : 0;
+  for (const ChannelView& c : view.channels) worst_left_out += !c.in_detail && c.judgement.rating > least_shown ? 1 : 0;
   CHECK(shown == kMostInDetail);
   CHECK(worst_left_out == 0);
   CHECK(test::count(page, "<li class=\"good\">") + test::count(page, "<li class=\"caution\">") +

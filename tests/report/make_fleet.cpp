@@ -48,8 +48,7 @@ std::vector<DeviceRecord> fleet_of(std::size_t devices) {
 
 std::vector<DeviceRecord> hostile_fleet() {
   std::vector<DeviceRecord> records = fleet_of(40);
-  const std::string bad =
-      "\"><img src=x onerror=\"window.broken=1\"></script><script>window.broken=1</script>";
+  const std::string bad = "\"><img src=x onerror=\"window.broken=1\"></script><script>window.broken=1</script>";
   for (DeviceRecord& r : records) {
     r.type = "javascript:window.broken=1" + bad;
     r.batch += bad;
@@ -85,9 +84,7 @@ int main(int argc, char** argv) {
     const auto half = static_cast<std::ptrdiff_t>(records.size() / 2);
     const std::vector<DeviceRecord> first(records.begin(), records.begin() + half),
         second(records.begin() + half, records.end());
-    write_whole_file(folder + "/comparison.json",
-                     dump_json(fleet_comparison_json(compare_lots(first, second))),
-                     true);
+    write_whole_file(folder + "/comparison.json", dump_json(fleet_comparison_json(compare_lots(first, second))), true);
     write_whole_file(folder + "/lot.txt", fleet_text({records, &lot, "", {}, {}}), true);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_fleet: %s\n", error.what());

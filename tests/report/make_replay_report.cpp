@@ -16,13 +16,11 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const std::string kind = argv[1], folder = argv[2];
   try {
-    const auto result = kind.ends_with(".yaml")
-                            ? libchar::replay(libchar::read_scene_file(kind, {true}))
-                            : test::synthetic_replay_of_kind(kind);
+    const auto result = kind.ends_with(".yaml") ? libchar::replay(libchar::read_scene_file(kind, {true}))
+                                                : test::synthetic_replay_of_kind(kind);
     std::filesystem::create_directories(folder);
     libchar::write_whole_file(folder + "/report.html", libchar::replay_html(result), true);
-    libchar::write_whole_file(
-        folder + "/report.json", libchar::dump_json(libchar::replay_json(result)), true);
+    libchar::write_whole_file(folder + "/report.json", libchar::dump_json(libchar::replay_json(result)), true);
     libchar::write_whole_file(folder + "/report.md", libchar::replay_markdown(result), true);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_replay_report: %s\n", error.what());

@@ -23,13 +23,11 @@ int main(int argc, char** argv) {
                                           : test::synthetic_imu();
     std::filesystem::create_directories(folder);
     libchar::write_whole_file(folder + "/report.html", libchar::html_report(result), true);
-    libchar::write_whole_file(
-        folder + "/report.json", libchar::dump_json(libchar::json_report(result)), true);
+    libchar::write_whole_file(folder + "/report.json", libchar::dump_json(libchar::json_report(result)), true);
     libchar::write_whole_file(folder + "/curves.csv", libchar::csv_curves(result), true);
     if (const auto& c = result.channels[0]; c.fit) {
       libchar::write_whole_file(folder + "/model.sensor.yaml",
-                                libchar::model_yaml(libchar::sensor_model_from(c, result.log)),
-                                true);
+                                libchar::model_yaml(libchar::sensor_model_from(c, result.log)), true);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_report: %s\n", error.what());

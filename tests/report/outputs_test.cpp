@@ -60,16 +60,8 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   CHECK(report["version"] == 1);
   CHECK(keys_of(report).back() == "measured");
   CHECK(report["measured"]["seconds"] == 1.25);
-  for (const char* key : {"tool",
-                          "command",
-                          "config",
-                          "input",
-                          "findings",
-                          "recording",
-                          "allan",
-                          "spectrum",
-                          "fit",
-                          "quality"})
+  for (const char* key :
+       {"tool", "command", "config", "input", "findings", "recording", "allan", "spectrum", "fit", "quality"})
     CHECK(report.contains(key));
   CHECK(report["input"][0]["sha256"] == result.log.sha256);
   CHECK(report["input"][0]["bytes"] == result.log.bytes);
@@ -82,16 +74,14 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   CHECK(allan["type"] == "oadev");
   const Json& curve = allan["channels"][0];
   const std::size_t n = result.channels[0].allan.points.size();
-  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "model"})
-    CHECK(curve[key].size() == n);
+  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "model"}) CHECK(curve[key].size() == n);
   CHECK(curve["ci95"][3].size() == 2);
 
   const Json& spectrum = report["spectrum"];
   CHECK(spectrum["format"] == "spectrum");
   CHECK(spectrum["sides"] == "one");
   CHECK(spectrum["scaling"] == "psd");
-  for (const char* key : {"frequency_hz", "value", "dof"})
-    CHECK(spectrum["channels"][0][key].size() == 320);
+  for (const char* key : {"frequency_hz", "value", "dof"}) CHECK(spectrum["channels"][0][key].size() == 320);
 
   const Json& fit = report["fit"];
   CHECK(fit["format"] == "noise-fit");
@@ -115,8 +105,7 @@ TEST_CASE(
     for (std::size_t i = 0; i < points.size(); ++i) {
       CHECK(back["allan"]["channels"][c]["deviation"][i].get<double>() == points[i].deviation);
     }
-    CHECK(back["fit"]["channels"][c]["white_noise"]["value"].get<double>() ==
-          *result.channels[c].fit->term[0].value);
+    CHECK(back["fit"]["channels"][c]["white_noise"]["value"].get<double>() == *result.channels[c].fit->term[0].value);
   }
   CHECK_NOTHROW(parse_json(dump_json(json_report(test::hostile())), "report.json"));
   CHECK_NOTHROW(parse_json(dump_json(json_report(test::barely_anything())), "report.json"));
@@ -135,24 +124,10 @@ TEST_CASE("report.json: null stands only where a status says why") {
 TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   const auto result = test::synthetic_imu();
   const auto rows = rows_of(csv_curves(result));
-  CHECK(rows[0] == std::vector<std::string>{"curve",
-                                            "channel",
-                                            "unit",
-                                            "x_unit",
-                                            "x",
-                                            "value",
-                                            "low68",
-                                            "high68",
-                                            "low95",
-                                            "high95",
-                                            "dof",
-                                            "terms",
-                                            "model",
-                                            "model_low95",
-                                            "model_high95"});
+  CHECK(rows[0] == std::vector<std::string>{"curve", "channel", "unit", "x_unit", "x", "value", "low68", "high68",
+                                            "low95", "high95", "dof", "terms", "model", "model_low95", "model_high95"});
   std::size_t expected = 1;
-  for (const ChannelResult& c : result.channels)
-    expected += c.allan.points.size() + c.spectrum.value.size();
+  for (const ChannelResult& c : result.channels) expected += c.allan.points.size() + c.spectrum.value.size();
   CHECK(rows.size() == expected);
   for (const auto& row : rows) REQUIRE(row.size() == 15);
   const auto& points = result.channels[0].allan.points;
@@ -162,8 +137,7 @@ TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   }
   CHECK(rows[points.size() + 1][0] == "psd_one_sided");
   CHECK(rows[points.size() + 1][2] == "(deg/s)²/Hz");
-  const double low = *parse_double(rows[points.size() + 1][8]),
-               high = *parse_double(rows[points.size() + 1][9]);
+  const double low = *parse_double(rows[points.size() + 1][8]), high = *parse_double(rows[points.size() + 1][9]);
   CHECK(low < result.channels[0].spectrum.value[0]);
   CHECK(high > result.channels[0].spectrum.value[0]);
 }
@@ -224,8 +198,7 @@ TEST_CASE("verdict: says what is fine, what is not, and where") {
   CHECK(verdict_of(result).find("acc_z") != std::string::npos);
   result.channels.pop_back();
   CHECK(verdict_of(result).find("all 5 channels") != std::string::npos);
-  CHECK(verdict_of(test::barely_anything()).find("No fit was possible for gyr_x, gyr_y") !=
-        std::string::npos);
+  CHECK(verdict_of(test::barely_anything()).find("No fit was possible for gyr_x, gyr_y") != std::string::npos);
   result.channels.clear();
   CHECK(verdict_of(result) == "The recording holds no channel to characterize.");
 }

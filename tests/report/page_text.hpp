@@ -21,8 +21,7 @@ inline std::size_t cells_of(const std::string& row) {
   static const std::regex cell("<t[hd](?: [^>]*)?>");
   static const std::regex span("colspan=\"([0-9]+)\"");
   std::size_t n = 0;
-  for (auto it = std::sregex_iterator(row.begin(), row.end(), cell); it != std::sregex_iterator();
-       ++it) {
+  for (auto it = std::sregex_iterator(row.begin(), row.end(), cell); it != std::sregex_iterator(); ++it) {
     std::smatch wide;
     const std::string tag = it->str();
     n += std::regex_search(tag, wide, span) ? std::stoul(wide[1]) : 1;

@@ -29,9 +29,7 @@ struct OneLot {
   FleetReport report;
 };
 
-std::string lot_page(const Characterization& device) {
-  return fleet_html(OneLot(device).report);
-}
+std::string lot_page(const Characterization& device) { return fleet_html(OneLot(device).report); }
 
 PooledRuns pooled_of(const std::vector<Characterization>& runs) {
   PooledRuns out;
@@ -59,8 +57,7 @@ std::string runs_page(const Characterization& run) {
 
 TEST_CASE("pages of several recordings: names from files never become elements") {
   const std::string plain_lot = lot_page(test::synthetic_imu()), lot = lot_page(test::hostile());
-  const std::string plain_runs = runs_page(test::synthetic_imu()),
-                    runs = runs_page(test::hostile());
+  const std::string plain_runs = runs_page(test::synthetic_imu()), runs = runs_page(test::hostile());
   for (const auto& [page, plain] : {std::pair(&lot, &plain_lot), std::pair(&runs, &plain_runs)}) {
     CHECK(test::count(*page, "<script") == test::count(*plain, "<script"));
     CHECK(test::count(*page, "<img") == 0);

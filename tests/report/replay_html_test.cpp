@@ -13,8 +13,7 @@ namespace {
 
 // The page without the parts that are ours byte for byte.
 std::string without_replay_assets(std::string page) {
-  for (const std::string_view asset :
-       {chart_js(), page_common_js(), replay_page_js(), page_css(), replay_page_css()}) {
+  for (const std::string_view asset : {chart_js(), page_common_js(), replay_page_js(), page_css(), replay_page_css()}) {
     const std::size_t at = page.find(asset);
     REQUIRE(at != std::string::npos);
     page.erase(at, asset.size());
@@ -22,17 +21,14 @@ std::string without_replay_assets(std::string page) {
   return page;
 }
 
-std::string tables_of(const std::string& page) {
-  return page.substr(0, page.find("<script id=\"report-data\""));
-}
+std::string tables_of(const std::string& page) { return page.substr(0, page.find("<script id=\"report-data\"")); }
 
 }  // namespace
 
 TEST_CASE("replay html: asks for nothing from anywhere") {
   for (const char* kind : {"plain", "blind", "inputs", "nothing", "hostile"}) {
     INFO(kind);
-    const std::string page =
-        without_replay_assets(replay_html(test::synthetic_replay_of_kind(kind)));
+    const std::string page = without_replay_assets(replay_html(test::synthetic_replay_of_kind(kind)));
     for (const char* word : {" src=\"", "href=\"http", "@import", "url(", "style=\""})
       CHECK(test::count(tables_of(page), word) == 0);
     CHECK(test::count(page, "default-src 'none'; script-src 'sha256-") == 1);
@@ -82,14 +78,12 @@ TEST_CASE("replay html: a figure an input, and no figure without anything to dra
   CHECK(test::count(two, "data-kind=\"error-allan\"") == 2);
   const std::string none = tables_of(replay_html(test::nothing_scored()));
   CHECK(test::count(none, "<figure") == test::count(none, "data-kind=\"sensors\""));
-  CHECK(!std::regex_search(without_replay_assets(replay_html(test::nothing_scored())),
-                           std::regex("\\b(nan|inf)\\b")));
+  CHECK(!std::regex_search(without_replay_assets(replay_html(test::nothing_scored())), std::regex("\\b(nan|inf)\\b")));
 }
 
 TEST_CASE("replay html: the run stands first, with the error below it and what it is beside") {
   const std::string page = tables_of(without_replay_assets(replay_html(test::synthetic_replay())));
-  const std::size_t signal = page.find("data-kind=\"signal\""),
-                    error = page.find("data-kind=\"error\"");
+  const std::size_t signal = page.find("data-kind=\"signal\""), error = page.find("data-kind=\"error\"");
   REQUIRE(signal != std::string::npos);
   CHECK(signal < error);
   CHECK(page.find("<figure") < signal);
@@ -97,8 +91,7 @@ TEST_CASE("replay html: the run stands first, with the error below it and what i
   CHECK(error < page.find("data-kind=\"ranking\""));
   CHECK(test::count(page, "gyr_0, the best single sensor") == 1);
   CHECK(test::count(page, "data-kind=\"deviations\"") == 0);
-  const std::string blind =
-      tables_of(without_replay_assets(replay_html(test::without_reference())));
+  const std::string blind = tables_of(without_replay_assets(replay_html(test::without_reference())));
   CHECK(test::count(blind, "data-kind=\"signal\"") == 1);
   CHECK(test::count(blind, "data-kind=\"error\"") == 0);
   CHECK(test::count(blind, "data-kind=\"deviations\"") == 1);
@@ -135,8 +128,7 @@ TEST_CASE("replay markdown: tables keep their columns whatever the names hold") 
       continue;
     }
     std::size_t bars = 0;
-    for (std::size_t i = 0; i < line.size(); ++i)
-      bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
+    for (std::size_t i = 0; i < line.size(); ++i) bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
     INFO(line);
     if (columns == 0) columns = bars;
     CHECK(bars == columns);

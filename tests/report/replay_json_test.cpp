@@ -35,8 +35,7 @@ TEST_CASE("replay json: the keys that scripts rely on") {
   CHECK(a["faults"][1]["to_s"].is_null());
   CHECK(a["answers"][1]["found_after_s"].is_null());
   CHECK(j["faults"][2]["to_s"].is_null());
-  const auto skips = std::find_if(
-      r.algorithms.begin(), r.algorithms.end(), [](const auto& one) { return !one.ran; });
+  const auto skips = std::find_if(r.algorithms.begin(), r.algorithms.end(), [](const auto& one) { return !one.ran; });
   REQUIRE(skips != r.algorithms.end());
   const Json& skipped = j["algorithms"][skips - r.algorithms.begin()];
   CHECK(skipped["status"] == "skipped");

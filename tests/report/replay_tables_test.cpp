@@ -21,9 +21,7 @@ std::string inputs_of(const ReplayResult& r) {
   for (const Table& table : input_tables(replay_view(r))) out += html_table(table);
   return out;
 }
-std::string needs_of(const ReplayResult& r) {
-  return html_table(needs_table(replay_view(r)));
-}
+std::string needs_of(const ReplayResult& r) { return html_table(needs_table(replay_view(r))); }
 
 // The page without what is ours byte for byte, and without the document in it.
 std::string body_of(const ReplayResult& result) {
@@ -36,8 +34,7 @@ std::string body_of(const ReplayResult& result) {
 
 // Each kind of result that a replay can end in.
 const std::vector<std::string>& kinds() {
-  static const std::vector<std::string> all = {
-      "plain", "large", "inputs", "blind", "nothing", "hostile"};
+  static const std::vector<std::string> all = {"plain", "large", "inputs", "blind", "nothing", "hostile"};
   return all;
 }
 
@@ -107,8 +104,7 @@ TEST_CASE("replay page: nanoseconds stand in front only where the rate makes the
 TEST_CASE("replay page: every row of every table has the cells of its head") {
   for (const std::string& kind : kinds()) {
     INFO(kind);
-    CHECK(test::rows_that_do_not_fit(body_of(test::synthetic_replay_of_kind(kind))) ==
-          std::vector<std::string>());
+    CHECK(test::rows_that_do_not_fit(body_of(test::synthetic_replay_of_kind(kind))) == std::vector<std::string>());
   }
 }
 

@@ -15,8 +15,7 @@ using Catch::Contains;
 namespace {
 
 ReportedCharacterization reported_imu() {
-  return parse_characterization_report(dump_json(json_report(test::synthetic_imu())),
-                                       "report.json");
+  return parse_characterization_report(dump_json(json_report(test::synthetic_imu())), "report.json");
 }
 
 }  // namespace
@@ -40,8 +39,7 @@ TEST_CASE("coefficients as Markdown, LaTeX and CSV, of all channels or of some")
 }
 
 TEST_CASE("a ranking is a table, best first") {
-  const ReplayReport report =
-      parse_replay_report(dump_json(replay_json(test::synthetic_replay())), "report.json");
+  const ReplayReport report = parse_replay_report(dump_json(replay_json(test::synthetic_replay())), "report.json");
   const std::string csv = ranking_table(report, TableFormat::csv);
   double last = 0;
   std::size_t rows = 0;

@@ -25,8 +25,7 @@ ArraySimulation two_sensors() {
 
 TEST_CASE("a simulation in text: length, the draws of models that spread, the other files") {
   const ArraySimulation simulation = two_sensors();
-  const std::string text =
-      simulation_text(simulation, {{{1, 0}, {1.5, -0.25}}, {"o.csv", "o.scene.yaml"}, 3});
+  const std::string text = simulation_text(simulation, {{{1, 0}, {1.5, -0.25}}, {"o.csv", "o.scene.yaml"}, 3});
   CHECK(text ==
         "o.csv: 500 samples of 3 channels at 200 Hz, 2.5 s, seed 7\n"
         "  spread: drew scale factor 1.5, bias -0.25 deg/s\n"

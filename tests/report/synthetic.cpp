@@ -67,10 +67,7 @@ Spectrum synthetic_spectrum(const Truth& t, std::mt19937_64& random) {
   return s;
 }
 
-Coefficient synthetic_coefficient(double truth,
-                                  double relative_sd,
-                                  double limit,
-                                  std::mt19937_64& random) {
+Coefficient synthetic_coefficient(double truth, double relative_sd, double limit, std::mt19937_64& random) {
   Coefficient c;
   c.bound = relative_sd;
   if (truth == 0) {
@@ -136,10 +133,7 @@ Trace synthetic_trace(const Truth& t, std::mt19937_64& random) {
   return trace;
 }
 
-ChannelResult synthetic_channel(const std::string& name,
-                                const std::string& unit,
-                                const Truth& t,
-                                std::uint64_t seed) {
+ChannelResult synthetic_channel(const std::string& name, const std::string& unit, const Truth& t, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   ChannelResult c;
   c.channel = {name, unit, false};
@@ -179,8 +173,7 @@ Characterization synthetic_imu() {
   log.time.gaps = 2;
   log.time.missing_samples = 37;
   log.warnings.add("gap", "grid points without a row are kept as missing", "line 4211", 37);
-  log.warnings.add(
-      "duplicate_timestamp", "rows with the stamp of the row before are dropped", "line 90112", 1);
+  log.warnings.add("duplicate_timestamp", "rows with the stamp of the row before are dropped", "line 90112", 1);
   log.guesses = {"time unit: us, from the magnitude of the stamps"};
   log.dialect = {"delimiter ,", "header in line 1", "units in square brackets"};
   const Truth gyro, accelerometer{2e-3, 3e-4, 2e-5, 200, 200000};
@@ -201,14 +194,11 @@ Characterization synthetic_imu() {
   bad.fit->goodness = {412.0, 125, 3e-33};
   bad.fit->second_opinion->agrees = false;
   bad.fit->second_opinion->sentence = "White noise differs by 6.1 combined sd.";
-  bad.fit->remedies.push_back({"spikes",
-                               "kurtosis of differences 29.8 > 3.2",
-                               "212 samples replaced by the mean of their neighbours",
-                               212});
+  bad.fit->remedies.push_back(
+      {"spikes", "kurtosis of differences 29.8 > 3.2", "212 samples replaced by the mean of their neighbours", 212});
   bad.fit->term[1].status = Status::undetermined;
   bad.fit->findings = {
-      finding("lowest_left_out",
-              "The record cannot tell bias instability from random walk: record 4 × as long.")};
+      finding("lowest_left_out", "The record cannot tell bias instability from random walk: record 4 × as long.")};
   bad.fit->bandwidth_hz = 62.0;
   bad.fit->bandwidth_ci95 = Interval{60.5, 63.6};
   bad.lines = {{50.0, 2.1e-3, 340, 0.02}, {100.0, 4e-4, 21, 0.02}};
@@ -217,10 +207,8 @@ Characterization synthetic_imu() {
   bad.quality.difference_kurtosis = 29.8;
   bad.quality.findings = {finding("saturated", "14 samples stand at 19.6133: widen the range")};
   for (ChannelResult& c : result.channels) c.quality.missing = 37;
-  result.settings = {
-      part_entry("allan", {{"type", "oadev"}, {"grid", "octave"}}),
-      part_entry("spectrum",
-                 {{"window", "hann"}, {"segment", std::uint64_t{50000}}, {"overlap", 0.5}})};
+  result.settings = {part_entry("allan", {{"type", "oadev"}, {"grid", "octave"}}),
+                     part_entry("spectrum", {{"window", "hann"}, {"segment", std::uint64_t{50000}}, {"overlap", 0.5}})};
   result.command = {"sensorchar", "characterize", "recordings/imu_2h.csv", "-o", "out dir"};
   result.seconds = 1.25;
   return result;
@@ -273,8 +261,7 @@ Characterization many_channels(std::size_t count) {
   Characterization result = synthetic_imu();
   result.channels.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    result.channels.push_back(
-        synthetic_channel("thermistor_" + std::to_string(i), "degC", {}, 100 + i));
+    result.channels.push_back(synthetic_channel("thermistor_" + std::to_string(i), "degC", {}, 100 + i));
   }
   return result;
 }
@@ -289,8 +276,8 @@ Characterization barely_anything() {
   result.channels[0].allan.points.clear();
   result.channels[0].spectrum = {};
   result.channels[1].allan.points.resize(1);
-  result.channels[1].allan.points[0] = {
-      1, 0.005, 0, 4, 0, {}, {}, false};  // constant data: a deviation of zero, no edf
+  result.channels[1].allan.points[0] = {1, 0.005, 0,  4,
+                                        0, {},    {}, false};  // constant data: a deviation of zero, no edf
   result.channels[1].channel.unit = "";
   result.channels[1].spectrum.value[3] = 0;
   result.log.time.from_stamps = false;

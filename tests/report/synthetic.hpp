@@ -28,17 +28,11 @@ double density(const Truth& t, double f);
 
 Spectrum synthetic_spectrum(const Truth& t, std::mt19937_64& random);
 
-Coefficient synthetic_coefficient(double truth,
-                                  double relative_sd,
-                                  double limit,
-                                  std::mt19937_64& random);
+Coefficient synthetic_coefficient(double truth, double relative_sd, double limit, std::mt19937_64& random);
 
 NoiseFit synthetic_fit(const Truth& t, std::mt19937_64& random);
 
-ChannelResult synthetic_channel(const std::string& name,
-                                const std::string& unit,
-                                const Truth& t,
-                                std::uint64_t seed);
+ChannelResult synthetic_channel(const std::string& name, const std::string& unit, const Truth& t, std::uint64_t seed);
 
 /// A log of three gyroscope and three accelerometer axes; the last gyroscope axis shows no random
 /// walk, the last accelerometer axis is troubled.

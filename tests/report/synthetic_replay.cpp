@@ -22,10 +22,7 @@ ErrorScore synthetic_score(double rmse, double bias) {
   return e;
 }
 
-Timeline synthetic_track(std::size_t series,
-                         std::size_t bins,
-                         double level,
-                         double duration_s,
+Timeline synthetic_track(std::size_t series, std::size_t bins, double level, double duration_s,
                          std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Timeline t;
@@ -57,9 +54,7 @@ InputScore synthetic_input(double rmse, double optimum, std::mt19937_64& random)
   return input;
 }
 
-AlgorithmResult synthetic_algorithm(const ReplayResult& r,
-                                    std::size_t index,
-                                    std::mt19937_64& random) {
+AlgorithmResult synthetic_algorithm(const ReplayResult& r, std::size_t index, std::mt19937_64& random) {
   const fusion::Entry& entry = fusion::algorithms()[index];
   AlgorithmResult a;
   a.label = std::string(entry.description->name);
@@ -69,8 +64,7 @@ AlgorithmResult synthetic_algorithm(const ReplayResult& r,
   a.bound = entry.description->needs.reference_throughout;
   a.availability = 1;
   const double rmse = 0.033 * (1 + 0.02 * static_cast<double>((index * 7) % 24));
-  for (const InputResult& input : r.inputs)
-    a.inputs.push_back(synthetic_input(rmse, input.optimum_rmse, random));
+  for (const InputResult& input : r.inputs) a.inputs.push_back(synthetic_input(rmse, input.optimum_rmse, random));
   a.rmse = rmse;
   a.rmse_ci95 = {0.99 * rmse, 1.01 * rmse};
   a.regret = rmse / 0.033 - 1;
@@ -84,10 +78,7 @@ AlgorithmResult synthetic_algorithm(const ReplayResult& r,
 }
 
 // As a replay keeps it: 1000 stretches, or every instant of a short one.
-RunStretch synthetic_stretch(const ReplayResult& r,
-                             std::size_t bins,
-                             double duration_s,
-                             std::mt19937_64& random) {
+RunStretch synthetic_stretch(const ReplayResult& r, std::size_t bins, double duration_s, std::mt19937_64& random) {
   RunStretch out;
   for (std::size_t j = 0; j < r.inputs.size(); ++j)
     out.inputs.push_back({synthetic_track(1, bins, 1, duration_s, random),
@@ -111,8 +102,7 @@ void judge(ReplayResult& r) {
   r.best.reset();
   for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
     const AlgorithmResult& a = r.algorithms[i];
-    if (a.ran && !a.bound && a.rmse > 0 && (!r.best || a.rmse < r.algorithms[*r.best].rmse))
-      r.best = i;
+    if (a.ran && !a.bound && a.rmse > 0 && (!r.best || a.rmse < r.algorithms[*r.best].rmse)) r.best = i;
   }
   if (!r.best) return;
   const double best = r.algorithms[*r.best].rmse;
@@ -176,8 +166,7 @@ ReplayResult synthetic_replay(std::size_t sensors, std::size_t inputs) {
     }
     if (i % 6 == 0) {
       a.watches_faults = true;
-      a.faults = {
-          {1, "variance", 40.02, 50.5}, {0, "variance", 90.1, {}}, {2, "variance", 10, 10.5}};
+      a.faults = {{1, "variance", 40.02, 50.5}, {0, "variance", 90.1, {}}, {2, "variance", 10, 10.5}};
       a.answers = {{0, 0.02, 0.5}, {1, {}, {}}, {2, 0.1, {}}};
     }
     if (fusion::algorithms()[i].description->needs.tilt && skipped++ < 3) {

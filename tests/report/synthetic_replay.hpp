@@ -15,15 +15,13 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ErrorScore synthetic_score(double rmse, double bias);
 
-Timeline synthetic_track(
-    std::size_t series, std::size_t bins, double level, double duration_s, std::mt19937_64& random);
+Timeline synthetic_track(std::size_t series, std::size_t bins, double level, double duration_s,
+                         std::mt19937_64& random);
 
 InputScore synthetic_input(double rmse, double optimum, std::mt19937_64& random);
 
 /// Algorithm `index` of the registry as it might have fared.
-AlgorithmResult synthetic_algorithm(const ReplayResult& r,
-                                    std::size_t index,
-                                    std::mt19937_64& random);
+AlgorithmResult synthetic_algorithm(const ReplayResult& r, std::size_t index, std::mt19937_64& random);
 
 void judge(ReplayResult& r);
 

@@ -12,8 +12,7 @@ namespace test {
 inline std::vector<libchar::OutputFile> written_fleet(const libchar::FleetReport& report) {
   const TemporaryFolder folder;
   std::vector<libchar::OutputFile> out;
-  for (const std::string& path :
-       libchar::write_fleet_report(report, folder.path() / "report", false))
+  for (const std::string& path : libchar::write_fleet_report(report, folder.path() / "report", false))
     out.push_back({std::filesystem::path(path).filename().string(), slurp(path)});
   return out;
 }

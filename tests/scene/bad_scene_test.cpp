@@ -63,22 +63,16 @@ const std::map<std::string, Case>& yaml_cases() {
       {"011_nan", {with_rate(".nan"), ":5:12: error E0541", "finite"}},
       {"012_1e400", {with_rate("1e400"), ":5:12: error E0541", ""}},
       {"013_neg_sigma",
-       {kHead + kBody + "faults:\n  - {sensor: a, kind: noise, value: -1e-3}\n",
-        ":6:37: error E0543",
+       {kHead + kBody + "faults:\n  - {sensor: a, kind: noise, value: -1e-3}\n", ":6:37: error E0543",
         "faults[0].value"}},
       {"014_comma_decimal", {with_rate("1,5"), ":5:12: error E0541", "point"}},
-      {"015_unit_suffix",
-       {with_rate("100 Hz"), ":5:12: error E0541", "write the number alone: it is in Hz"}},
-      {"016_unknown_key",
-       {kHead + kBody + "algoritms: [mean]\n", ":5:1: error E0540", "algorithms?"}},
+      {"015_unit_suffix", {with_rate("100 Hz"), ":5:12: error E0541", "write the number alone: it is in Hz"}},
+      {"016_unknown_key", {kHead + kBody + "algoritms: [mean]\n", ":5:1: error E0540", "algorithms?"}},
       {"017_version_99", {"format: scene\nversion: 99\n", ":2:10: error E0546", "newer"}},
       {"018_no_version", {"format: scene\n" + kBody, ":1:1: error E0546", "version is missing"}},
       {"019_tab_indent", {kHead + "sensors:\n\t- a\n", ":4:1: error E0522", "tab"}},
       {"020_two_docs", {kHead + kBody + "---\nversion: 1\n", "", "second document"}},
-      {"021_tag",
-       {kHead + "name: !!python/object/apply:os.system [\"echo PWN\"]\n",
-        ":3:7: error E0521",
-        "tags"}},
+      {"021_tag", {kHead + "name: !!python/object/apply:os.system [\"echo PWN\"]\n", ":3:7: error E0521", "tags"}},
       {"022_nul", {kHead + "name: x" + std::string(1, '\0') + "\n", ":3:8: error E0522", "zero"}},
       {"023_bom", {"\xEF\xBB\xBF" + kHead + kBody, "", ""}},
       {"024_empty", {"", ":1:1: error E0522", ""}},
@@ -106,11 +100,9 @@ const std::map<std::string, Case>& json_cases() {
       {"009_comment", {"{" + kJson + "} // c", ":1:", "E0601"}},
       {"010_trunc", {"{\"version\":", ":1:", "E0601"}},
       {"011_bom", {"\xEF\xBB\xBF{" + kJson + "}", "", ""}},
-      {"012_float_version",
-       {R"({"format":"scene","version":1.5})", ":1:29: error E0546", "version: 1"}},
+      {"012_float_version", {R"({"format":"scene","version":1.5})", ":1:29: error E0546", "version: 1"}},
       {"013_null",
-       {R"({"format":"scene","version":1,"recording":"log.csv","sensors":null})",
-        ":1:63: error E0542",
+       {R"({"format":"scene","version":1,"recording":"log.csv","sensors":null})", ":1:63: error E0542",
         "sensors is missing"}},
   };
   return cases;
@@ -212,8 +204,7 @@ TEST_CASE("bad scenes: names of files") {
     for (const std::string& text :
          {"sensors: [a]\nrecording: {file: \"" + c.name + "\"}\n",
           "sensors: [{name: a, model: \"" + c.name + "\"}]\nrecording: log.csv\n",
-          "sensors: [a]\nrecording: log.csv\nreference: {channels: [a], recording: \"" + c.name +
-              "\"}\n",
+          "sensors: [a]\nrecording: log.csv\nreference: {channels: [a], recording: \"" + c.name + "\"}\n",
           "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 1, samples: 1, truth: {kind: "
           "recording, file: \"" +
               c.name + "\"}}\n"})
@@ -258,8 +249,7 @@ TEST_CASE("bad scenes: names of sensors and outputs") {
   CHECK_THROWS_WITH(refuse_scene_outputs(clash, {bench.path("log.csv")}), Contains("E0504"));
   std::string many = kHead + "recording: log.csv\nsensors:\n";
   for (int i = 0; i < 100000; ++i) many += "  - {name: s" + std::to_string(i) + ", channel: x}\n";
-  CHECK_THAT(bench.refusal(many),
-             Contains("E0736: sensors: 100000 sensors are more than the 10000"));
+  CHECK_THAT(bench.refusal(many), Contains("E0736: sensors: 100000 sensors are more than the 10000"));
   CHECK_THAT(bench.refusal(kHead + "simulate: {rate_hz: 1, samples: 1}\nsensors: [{name: a, model: "
                                    "none, count: 10000}, {name: b, model: none}]\n"),
              Contains("E0736"));
@@ -269,8 +259,7 @@ TEST_CASE("bad scenes: names of sensors and outputs") {
 }
 
 TEST_CASE("bad scenes: every class has its case, with the verdict of EXPECT.tsv") {
-  for (const auto& [folder, cases] :
-       {std::pair{"yaml", &yaml_cases()}, std::pair{"json", &json_cases()}}) {
+  for (const auto& [folder, cases] : {std::pair{"yaml", &yaml_cases()}, std::pair{"json", &json_cases()}}) {
     const auto rows = expected(folder);
     CHECK(rows.size() == cases->size());
     for (const auto& [name, verdict] : rows) {

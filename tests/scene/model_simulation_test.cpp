@@ -35,20 +35,16 @@ TEST_CASE("sensors of models are named by channel or file, and told apart") {
   const ModelFolder models;
   const std::string named = models.model("a.sensor.yaml", "channel: gyr_x\nrate_hz: 100\n"),
                     nameless = models.model("b.sensor.yaml", "rate_hz: 100\n");
-  CHECK(sensor_names(simulation_of_models({named, nameless})) ==
-        std::vector<std::string>{"gyr_x", "b"});
-  CHECK(sensor_names(simulation_of_models({named, named})) ==
-        std::vector<std::string>{"gyr_x", "gyr_x_2"});
+  CHECK(sensor_names(simulation_of_models({named, nameless})) == std::vector<std::string>{"gyr_x", "b"});
+  CHECK(sensor_names(simulation_of_models({named, named})) == std::vector<std::string>{"gyr_x", "gyr_x_2"});
   ModelSimulationOptions options;
   options.devices = 3;
-  CHECK(sensor_names(simulation_of_models({nameless}, options)) ==
-        std::vector<std::string>{"b1", "b2", "b3"});
+  CHECK(sensor_names(simulation_of_models({nameless}, options)) == std::vector<std::string>{"b1", "b2", "b3"});
 }
 
 TEST_CASE("models of several rates need one that is said") {
   const ModelFolder models;
-  const std::string slow = models.model("a.yaml", "rate_hz: 50\n"),
-                    fast = models.model("b.yaml", "rate_hz: 200\n");
+  const std::string slow = models.model("a.yaml", "rate_hz: 50\n"), fast = models.model("b.yaml", "rate_hz: 200\n");
   CHECK(simulation_of_models({slow}).rate_hz == 50);
   CHECK_THROWS_WITH(simulation_of_models({slow, fast}),
                     Contains("200 Hz") && Contains("50 Hz") && Contains("`rate_hz`"));

@@ -30,8 +30,7 @@ struct ArrayBench : test::SceneBench {
   }
   std::vector<std::string> sensors(const Scene& scene) const {
     std::vector<std::string> out;
-    for (const SceneSensor& sensor : scene.sensors)
-      out.push_back(sensor.name + "=" + sensor.channel);
+    for (const SceneSensor& sensor : scene.sensors) out.push_back(sensor.name + "=" + sensor.channel);
     return out;
   }
   SensorRecording recording;
@@ -63,8 +62,7 @@ TEST_CASE("scene from a recording: the same as its own YAML read again") {
 TEST_CASE("scene from a recording: what cannot be one is refused in a sentence") {
   ArrayBench bench;
   SensorRecording& asked = bench.recording;
-  CHECK_THAT(bench.refused(asked),
-             Contains("E0749") && Contains("which channels") && Contains("g10, g2, g1, T, ref"));
+  CHECK_THAT(bench.refused(asked), Contains("E0749") && Contains("which channels") && Contains("g10, g2, g1, T, ref"));
   asked.sensors = {"x*"};
   CHECK_THAT(bench.refused(asked), Contains("E0320") && Contains("g10, g2, g1"));
   asked.sensors = {"g1", "T"};
@@ -109,12 +107,9 @@ TEST_CASE("scene from a recording: reference in a log of its own, models of a fo
 
 TEST_CASE("scene: a pattern in the list of sensors") {
   const ArrayBench bench;
-  const auto names = [&](const std::string& list) {
-    return bench.sensors(bench.read(kPatternHead + list));
-  };
+  const auto names = [&](const std::string& list) { return bench.sensors(bench.read(kPatternHead + list)); };
   CHECK(names("sensors: ['g*']\n") == SensorNames{"g1=g1", "g2=g2", "g10=g10"});
-  CHECK(names("sensors: [{channel: 'g?', scale: 2}, g10]\n") ==
-        SensorNames{"g1=g1", "g2=g2", "g10=g10"});
+  CHECK(names("sensors: [{channel: 'g?', scale: 2}, g10]\n") == SensorNames{"g1=g1", "g2=g2", "g10=g10"});
   CHECK(names("sensors: [g2, '*']\nreference: {channels: [ref, T], mean: true}\n") ==
         SensorNames{"g2=g2", "g1=g1", "g10=g10"});
   CHECK(names("sensors: [{name: left, channel: '?10'}]\n") == SensorNames{"left=g10"});
@@ -125,10 +120,9 @@ TEST_CASE("scene: a pattern in the list of sensors") {
 
 TEST_CASE("scene: patterns that mean nothing, or one name for many") {
   const ArrayBench bench;
-  CHECK_THAT(
-      bench.refusal(kPatternHead + "sensors: [g1, 'x*']\n"),
-      Contains("s.yaml:4:15: error E0738: sensors[1]: no channel matches this pattern in ") &&
-          Contains("it has g10, g2, g1, T, ref"));
+  CHECK_THAT(bench.refusal(kPatternHead + "sensors: [g1, 'x*']\n"),
+             Contains("s.yaml:4:15: error E0738: sensors[1]: no channel matches this pattern in ") &&
+                 Contains("it has g10, g2, g1, T, ref"));
   CHECK_THAT(bench.refusal(kPatternHead + "sensors: [{name: g, channel: 'g*'}]\n"),
              Contains("E0737") && Contains("one name for 3 channels"));
   CHECK_THAT(bench.refusal(kPatternHead + "sensors: ['re*', g1]\nreference: ref\n"),

@@ -37,15 +37,15 @@ std::string joined(const std::vector<std::string>& words) {
 
 TEST_CASE("scene: a recording, its sensors and what is known about it") {
   const test::SceneBench bench;
-  const Scene s = bench.read(
-      kSceneHead +
-      "name: three monitors\nrecording: {file: log.csv, rate_hz: 99.5, delimiter: \",\", decimal: "
-      "point, header: yes, names: [a, b], units: g, time_column: t, time_unit: s, skip_rows: 0, "
-      "format: csv, from_s: 0.01, to_s: 60}\nsensors:\n  - {name: left, channel: a}\n  - {channel: "
-      "b, h: 1, model: gyro.sensor.yaml}\n  - c\nreference: {channels: [pm25], recording: "
-      "station.csv, lag_s: estimate}\nlearning: [0, 10.5]\nevaluation: [10.5, end]\nfaults:\n  - "
-      "{sensor: left, kind: bias, value: -2, from_s: 3}\nalgorithms: [mean, {name: minque, gamma: "
-      "0.999, recovery: 5}]\n");
+  const Scene s =
+      bench.read(kSceneHead +
+                 "name: three monitors\nrecording: {file: log.csv, rate_hz: 99.5, delimiter: \",\", decimal: "
+                 "point, header: yes, names: [a, b], units: g, time_column: t, time_unit: s, skip_rows: 0, "
+                 "format: csv, from_s: 0.01, to_s: 60}\nsensors:\n  - {name: left, channel: a}\n  - {channel: "
+                 "b, h: 1, model: gyro.sensor.yaml}\n  - c\nreference: {channels: [pm25], recording: "
+                 "station.csv, lag_s: estimate}\nlearning: [0, 10.5]\nevaluation: [10.5, end]\nfaults:\n  - "
+                 "{sensor: left, kind: bias, value: -2, from_s: 3}\nalgorithms: [mean, {name: minque, gamma: "
+                 "0.999, recovery: 5}]\n");
   CHECK(s.name == "three monitors");
   CHECK(s.recording == bench.path("log.csv"));
   CHECK(*s.reading.rate_hz == 99.5);
@@ -56,8 +56,7 @@ TEST_CASE("scene: a recording, its sensors and what is known about it") {
   CHECK(s.sensors[0].name == "left");
   CHECK(s.sensors[0].channel == "a");
   CHECK(s.sensors[1].name == "b");
-  CHECK(*s.sensors[1].model->noise[0].value ==
-        Approx(0.3 * M_PI / 180 / std::sqrt(2.0)).epsilon(1e-14));
+  CHECK(*s.sensors[1].model->noise[0].value == Approx(0.3 * M_PI / 180 / std::sqrt(2.0)).epsilon(1e-14));
   CHECK(s.sensors[2].channel == "c");
   CHECK_FALSE(s.sensors[2].model);
   CHECK(s.reference->estimate_lag);
@@ -111,25 +110,21 @@ TEST_CASE("scene: a truth signal out of a recording") {
   CHECK_THAT(bench.refusal(text("50", "{kind: recording, file: motion.csv, channel: angle}")),
              Contains("E0742: simulate.truth.file: is a recording at 100 Hz, and the simulation "
                       "runs at 50 Hz"));
-  CHECK_THAT(bench.refusal(text("100", "{kind: recording, file: motion.csv}")),
-             Contains("holds 2 channels"));
-  CHECK_THAT(bench.refusal(text("100", "{kind: recording, channel: x}")),
-             Contains("file is missing"));
+  CHECK_THAT(bench.refusal(text("100", "{kind: recording, file: motion.csv}")), Contains("holds 2 channels"));
+  CHECK_THAT(bench.refusal(text("100", "{kind: recording, channel: x}")), Contains("file is missing"));
 }
 
 TEST_CASE("scene: what is written reads back to the same scene") {
   const test::SceneBench bench;
   for (const std::string& text :
-       {kRecorded,
-        kSimulated,
+       {kRecorded, kSimulated,
         kRecorded + "reference: {channels: [truth, b], mean: true, lag_s: -0.1}\nsimulated: {seed: "
                     "7, faults: [{sensor: b, kind: noise, value: 0.3}]}\nalgorithms: [{name: "
                     "takens, neighbours: 12}, mean]\n",
-        kSceneHead +
-            "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
-            "rate_hz: 1e12, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
-            "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
-            "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
+        kSceneHead + "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
+                     "rate_hz: 1e12, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
+                     "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
+                     "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
     const Scene s = bench.read(text);
     const std::string written = scene_yaml(s);
     const Scene again = bench.read(written, "again.yaml");
@@ -142,12 +137,10 @@ TEST_CASE("scene: what is written reads back to the same scene") {
       CHECK(again.sensors[i].channel == s.sensors[i].channel);
       CHECK(again.sensors[i].h == s.sensors[i].h);
       REQUIRE(again.sensors[i].model.has_value() == s.sensors[i].model.has_value());
-      if (s.sensors[i].model)
-        CHECK(model_yaml(*again.sensors[i].model) == model_yaml(*s.sensors[i].model));
+      if (s.sensors[i].model) CHECK(model_yaml(*again.sensors[i].model) == model_yaml(*s.sensors[i].model));
     }
     REQUIRE(again.faults.size() == s.faults.size());
-    for (std::size_t i = 0; i < s.faults.size(); ++i)
-      CHECK(again.faults[i].to_s == s.faults[i].to_s);
+    for (std::size_t i = 0; i < s.faults.size(); ++i) CHECK(again.faults[i].to_s == s.faults[i].to_s);
     CHECK(again.learning.has_value() == s.learning.has_value());
     CHECK(again.simulated.has_value() == s.simulated.has_value());
     // The same tree as JSON is the same scene.
@@ -232,8 +225,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("simulate: {rate_hz: 1, samples: 2}\n", "5:11: error E0735: simulate: a scene has");
   recorded("learning: [3, 3]\n", "5:11: error E0740: learning: expected 0 <= from < to");
   recorded("learning: [-1, 3]\n", "5:11: error E0740");
-  recorded("align: {learn: rest}\n",
-           "5:16: error E0748: align.learn: the scene has no such window");
+  recorded("align: {learn: rest}\n", "5:16: error E0748: align.learn: the scene has no such window");
   recorded("align: {learn: [3, 1]}\n", "5:16: error E0740");
   recorded("align: {terms: [phase]}\n", "5:16: error E0748: align.terms: phase is no term");
   recorded("align: {by: reference}\n", "5:13: error E0748: align.by: the scene has no reference");
@@ -248,8 +240,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("faults: [{sensor: b, kind: bias}]\n", "5:10: error E0542: faults[0].value is missing");
   recorded("faults: [{sensor: b, kind: stuck, value: 1}]\n",
            "5:42: error E0739: faults[0].value: a fault of kind stuck has no value");
-  recorded("faults: [{sensor: b, kind: dropout, from_s: 3, to_s: 2}]\n",
-           "5:54: error E0740: faults[0].to_s");
+  recorded("faults: [{sensor: b, kind: dropout, from_s: 3, to_s: 2}]\n", "5:54: error E0740: faults[0].to_s");
   recorded("faults: [{sensor: b, kind: noise, value: -1}]\n", "5:42: error E0543");
   recorded("algorithms: []\n", "5:13: error E0736: algorithms");
   recorded("algorithms: [{gamma: 1}]\n", "5:14: error E0737: algorithms[0]");
@@ -283,8 +274,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   const auto simulated = [&](const std::string& inside, const std::string& begin) {
     INFO(inside);
     CHECK_THAT(
-        bench.refusal(kSceneHead + "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 10, " +
-                      inside + "}\n"),
+        bench.refusal(kSceneHead + "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 10, " + inside + "}\n"),
         Catch::StartsWith("s.yaml:" + begin));
   };
   simulated("samples: 0", "4:34: error E0545: simulate.samples");
@@ -295,8 +285,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   simulated("samples: 1, duration_s: 1", "4:34: error E0735");
   simulated("samples: 9, oversampling: 0", "4:51: error E0545");
   simulated("samples: 9, truth: []", "4:44: error E0736");
-  simulated("samples: 9, truth: {kind: sin}",
-            "4:51: error E0544: simulate.truth.kind: expected one of");
+  simulated("samples: 9, truth: {kind: sin}", "4:51: error E0544: simulate.truth.kind: expected one of");
   simulated("samples: 9, truth: sin", "4:44: error E0544");
   simulated("samples: 9, truth: {kind: constant, amplitude: 2}",
             "4:61: error E0739: simulate.truth.amplitude: is a key of sine, chirp, uniform, "
@@ -313,17 +302,14 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
             "4:87: error E0737: simulate.truth[1].name");
   simulated("samples: 9, truth: {kind: points, points: [[0, 1], [0, 2]]}", "4:67: error E0545");
   simulated("samples: 9, truth: {kind: points, points: []}", "4:67: error E0736");
-  simulated("samples: 9, truth: {kind: zero, name: a}",
-            "4:11: error E0554: two channels would be called a");
+  simulated("samples: 9, truth: {kind: zero, name: a}", "4:11: error E0554: two channels would be called a");
   CHECK_THAT(bench.refusal(kSceneHead + "sensors: [a]\nsimulate: {rate_hz: 10, samples: 9}\n"),
              Contains("E0554") || Contains("E0743"));
-  CHECK_THAT(
-      bench.refusal(kSceneHead + "sensors: [{name: a}]\nsimulate: {rate_hz: 10, samples: 9}\n"),
-      Contains("E0743: sensors[0].model: a simulated sensor needs a model"));
-  CHECK_THAT(
-      bench.refusal(kSceneHead + "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, "
-                                 "model: none}]\nreference: trut\n"),
-      Contains("E0738: reference: trut is not a truth signal") && Contains("did you mean truth?"));
+  CHECK_THAT(bench.refusal(kSceneHead + "sensors: [{name: a}]\nsimulate: {rate_hz: 10, samples: 9}\n"),
+             Contains("E0743: sensors[0].model: a simulated sensor needs a model"));
+  CHECK_THAT(bench.refusal(kSceneHead + "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, "
+                                        "model: none}]\nreference: trut\n"),
+             Contains("E0738: reference: trut is not a truth signal") && Contains("did you mean truth?"));
   CHECK_THAT(bench.refusal("format: sensor-model\nversion: 1\n"), Contains("E0546"));
 }
 

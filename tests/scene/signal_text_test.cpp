@@ -23,11 +23,8 @@ TEST_CASE("a signal in one line says what the map of a scene says") {
 }
 
 TEST_CASE("a signal that cannot be read is refused at its place") {
-  CHECK_THROWS_WITH(parse_signal("sine,2", "`truth`"),
-                    Contains("`truth`: error E0721") && Contains("KIND,key=value"));
-  CHECK_THROWS_WITH(parse_signal("sinus", "`truth`"),
-                    Contains("`truth`") && Contains("did you mean sine?"));
-  CHECK_THROWS_WITH(parse_signal("sine,amplitud=1", "`truth`"),
-                    Contains("did you mean amplitude?"));
+  CHECK_THROWS_WITH(parse_signal("sine,2", "`truth`"), Contains("`truth`: error E0721") && Contains("KIND,key=value"));
+  CHECK_THROWS_WITH(parse_signal("sinus", "`truth`"), Contains("`truth`") && Contains("did you mean sine?"));
+  CHECK_THROWS_WITH(parse_signal("sine,amplitud=1", "`truth`"), Contains("did you mean amplitude?"));
   CHECK_THROWS_WITH(parse_signal("ramp", "`truth`"), Contains("slope is missing"));
 }

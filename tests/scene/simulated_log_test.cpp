@@ -28,8 +28,7 @@ ArraySimulation one_sensor() {
 
 TEST_CASE("a simulated log is written with the scene that replays it") {
   const test::TemporaryFolder folder;
-  const SimulatedRecording recording{
-      (folder / "a.csv").string(), (folder / "a.scene.yaml").string(), {}};
+  const SimulatedRecording recording{(folder / "a.csv").string(), (folder / "a.scene.yaml").string(), {}};
   const SimulatedLog written = simulate_log(one_sensor(), recording);
   CHECK(written.files == std::vector<std::string>{recording.file, recording.scene_file});
   CHECK(written.channels == 2);
@@ -50,8 +49,7 @@ TEST_CASE("a simulated log without a scene file is alone") {
 
 TEST_CASE("a simulated log leaves nothing behind where its scene cannot be written") {
   const test::TemporaryFolder folder;
-  const SimulatedRecording recording{
-      (folder / "a.csv").string(), (folder / "no/a.scene.yaml").string(), {}};
+  const SimulatedRecording recording{(folder / "a.csv").string(), (folder / "no/a.scene.yaml").string(), {}};
   CHECK_THROWS_AS(simulate_log(one_sensor(), recording), Error);
   CHECK(std::filesystem::is_empty(folder / ""));
 }

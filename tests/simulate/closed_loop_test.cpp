@@ -53,9 +53,7 @@ bool level_covers(const NoiseFit& fit, const Truth& truth) {
   const Mixture right = {truth.q * truth.q, truth.b * truth.b, truth.k * truth.k, 0, 0};
   const double expected = spectrum(right, 1, dt), found = spectrum(fit.theta, 1, dt);
   double variance = 0;
-  const auto weight = [&](std::size_t t) {
-    return fit.theta[t] * unit_spectrum(static_cast<Term>(t), 1, dt) / found;
-  };
+  const auto weight = [&](std::size_t t) { return fit.theta[t] * unit_spectrum(static_cast<Term>(t), 1, dt) / found; };
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) variance += weight(i) * weight(j) * fit.covariance[i][j];
   return std::abs(std::log(found / expected)) < 1.96 * std::sqrt(variance);
@@ -89,8 +87,7 @@ TEST_CASE("closed loop: gyroscope of [RV table 2.1]") {
 
 TEST_CASE("closed loop: accelerometer of [RV table 2.2], one-sided densities") {
   const double pi = std::numbers::pi;
-  const Truth truth = {
-      std::sqrt(3e-7 / 2), std::sqrt(pi * 1e-7), std::sqrt(2 * pi * pi * 5e-10), 100, 1000000};
+  const Truth truth = {std::sqrt(3e-7 / 2), std::sqrt(pi * 1e-7), std::sqrt(2 * pi * pi * 5e-10), 100, 1000000};
   // The composite at 1 Hz, one-sided, is the sum of the table's three densities (but for sampling).
   const Mixture theta = {truth.q * truth.q, truth.b * truth.b, truth.k * truth.k, 0, 0};
   CHECK(2 * spectrum(theta, 1, 1e-2) == Approx(3e-7 + 1e-7 + 5e-10).epsilon(1e-3));

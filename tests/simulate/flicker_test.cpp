@@ -17,9 +17,7 @@ namespace {
 
 const std::vector<std::uint64_t> kLengths = {1, 100, 5'000, 1'000'000, 300'000'000, 0};
 
-double longest(std::uint64_t length) {
-  return static_cast<double>(length == 0 ? kLongestFlicker : length);
-}
+double longest(std::uint64_t length) { return static_cast<double>(length == 0 ? kLongestFlicker : length); }
 
 /// Points from `low` to `high`, equally far apart in the logarithm.
 std::vector<double> spread(double low, double high, int count) {
@@ -50,17 +48,14 @@ TEST_CASE("impulse response, spectrum and variogram of the filter are those of f
     double response = std::fabs(test::flicker_response(filter, 0) - 1), power = 0, variogram = 0;
     for (double k : spread(1, std::max(2.0, n), 700)) {
       k = std::min(n, std::round(k));
-      response =
-          std::max(response, std::fabs(test::flicker_response(filter, k) / exact_response(k) - 1));
+      response = std::max(response, std::fabs(test::flicker_response(filter, k) / exact_response(k) - 1));
       const double exact = 4 / std::numbers::pi * odd_harmonic(k);
       variogram = std::max(variogram, std::fabs(test::flicker_variogram(filter, k) / exact - 1));
     }
     for (const double nu : spread(std::min(0.49, 0.5 / n), 0.5, 3000))
-      power = std::max(
-          power,
-          std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
-    UNSCOPED_INFO("length " << length << ", " << filter.loss.size() << " sections: response "
-                            << response << ", power " << power << ", variogram " << variogram);
+      power = std::max(power, std::fabs(test::flicker_power(filter, nu) * 2 * std::sin(std::numbers::pi * nu) - 1));
+    UNSCOPED_INFO("length " << length << ", " << filter.loss.size() << " sections: response " << response << ", power "
+                            << power << ", variogram " << variogram);
     CHECK(response < 6e-7);
     CHECK(power < 6e-7);
     CHECK(variogram < 6e-7);
@@ -74,12 +69,10 @@ TEST_CASE("the Allan variance of the filter's output is flicker's to 1e-6") {
   constexpr std::size_t most = 1U << 13U;
   std::vector<long double> s(2 * most + 1, 0.0L);
   for (std::size_t n = 1; n < 2 * most; ++n)
-    s[n + 1] = 2 * s[n] - s[n - 1] +
-               static_cast<long double>(test::flicker_variogram(filter, double(n))) / 2;
+    s[n + 1] = 2 * s[n] - s[n - 1] + static_cast<long double>(test::flicker_variogram(filter, double(n))) / 2;
   for (std::size_t m = 1; m <= most; m *= 2) {
     const long double avar = (s[2 * m] - 4 * s[m]) / static_cast<long double>(m * m);
-    CHECK(static_cast<double>(avar) ==
-          Approx(unit_allan_variance(Term::flicker, double(m), 1)).epsilon(1e-6));
+    CHECK(static_cast<double>(avar) == Approx(unit_allan_variance(Term::flicker, double(m), 1)).epsilon(1e-6));
   }
 }
 
@@ -137,8 +130,7 @@ TEST_CASE("started at rest, the record is that of the exact convolution") {
   CHECK(std::sqrt(error / power) < 5e-7);
 }
 
-TEST_CASE(
-    "a stationary start draws the states' joint distribution and counts from the level before") {
+TEST_CASE("a stationary start draws the states' joint distribution and counts from the level before") {
   const FlickerFilter filter = design_flicker(10'000);
   DeviateStream one({9, 0, Purpose::flicker_start}), two({9, 0, Purpose::flicker_start});
   std::vector<double> states = stationary_states(filter, one);
@@ -173,20 +165,17 @@ TEST_CASE("the increments of a stationary start are stationary") {
       for (std::size_t k = 0; k <= j; ++k) row[t][k] += filter.weight[j] * keep * factor[j * n + k];
     }
   for (std::size_t t = 1; t <= length; ++t)
-    for (std::size_t s = 1; s <= t; ++s)
-      row[t][n + s - 1] = test::flicker_response(filter, static_cast<double>(t - s));
+    for (std::size_t s = 1; s <= t; ++s) row[t][n + s - 1] = test::flicker_response(filter, static_cast<double>(t - s));
   for (std::size_t t = 0; t < length; ++t)
     for (std::size_t lag = 1; t + lag <= length; lag = 2 * lag + 1) {
       double sum = 0;
-      for (std::size_t k = 0; k < n + length; ++k)
-        sum += (row[t + lag][k] - row[t][k]) * (row[t + lag][k] - row[t][k]);
+      for (std::size_t k = 0; k < n + length; ++k) sum += (row[t + lag][k] - row[t][k]) * (row[t + lag][k] - row[t][k]);
       CHECK(sum == Approx(4 / std::numbers::pi * odd_harmonic(double(lag))).epsilon(6e-7));
     }
 }
 
 TEST_CASE("flicker does not depend on the size of the blocks, bit for bit") {
-  for (const std::uint64_t length :
-       {std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{0}}) {
+  for (const std::uint64_t length : {std::uint64_t{1000}, std::uint64_t{1'000'000}, std::uint64_t{0}}) {
     const FlickerFilter filter = design_flicker(length);
     std::vector<double> whole = normals(4, 5000), parts = whole;
     FlickerStream one(filter), two(filter);

@@ -48,8 +48,7 @@ double truncated_power(std::size_t taps, double nu) {
 TEST_CASE("coefficients agree with the 50-digit known answers") {
   const std::vector<double> h = column("fusion/kasdin.csv", 3), b = column("fusion/kasdin.csv", 4);
   REQUIRE(h.size() == 200);
-  const std::vector<double> got_h = test::kasdin_series(1, 200),
-                            got_b = test::kasdin_series(-1, 200);
+  const std::vector<double> got_h = test::kasdin_series(1, 200), got_b = test::kasdin_series(-1, 200);
   for (std::size_t k = 0; k < 200; ++k) {
     CHECK(got_h[k] == Approx(h[k]).epsilon(1.1e-14).margin(0));
     CHECK(got_b[k] == Approx(b[k]).epsilon(9.1e-15).margin(0));
@@ -57,8 +56,7 @@ TEST_CASE("coefficients agree with the 50-digit known answers") {
 }
 
 TEST_CASE("filtered records agree with the 50-digit known answers") {
-  const std::vector<double> w = column("fusion/kasdin_filter.csv", 1),
-                            x = column("fusion/kasdin_filter.csv", 3),
+  const std::vector<double> w = column("fusion/kasdin_filter.csv", 1), x = column("fusion/kasdin_filter.csv", 3),
                             exact = test::kasdin_filter(w);
   REQUIRE(w.size() >= 100);
   std::vector<double> recursive = w;

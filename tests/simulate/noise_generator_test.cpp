@@ -32,16 +32,11 @@ NoiseDesign design_of(const Mixture& coefficient, double rate_hz) {
 }
 
 /// Signal and noise of one sensor as its owner puts them together.
-std::vector<double> record(const NoiseDesign& design,
-                           std::uint64_t seed,
-                           std::uint64_t sensor,
-                           std::size_t n) {
+std::vector<double> record(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor, std::size_t n) {
   NoiseGenerator generator(design, seed, sensor);
   std::vector<double> before(n, 0.0), after(n, 0.0);
   generator.add(before, after);
-  const double a = design.bandwidth_hz
-                       ? std::exp(-2 * std::numbers::pi * *design.bandwidth_hz / design.rate_hz)
-                       : 0;
+  const double a = design.bandwidth_hz ? std::exp(-2 * std::numbers::pi * *design.bandwidth_hz / design.rate_hz) : 0;
   double y = generator.low_pass_start();
   for (std::size_t t = 0; t < n; ++t) {
     y = a * y + (1 - a) * before[t];
@@ -74,11 +69,9 @@ Agreement agreement(const NoiseDesign& design, const Mixture& assumed, std::uint
   AllanCurve curve;
   Eigen::ArrayXXd variance(10, records);
   for (int r = 0; r < records; ++r) {
-    curve = allan_deviation(
-        record(design, seed, static_cast<std::uint64_t>(r), n), dt, ten_octaves(dt));
+    curve = allan_deviation(record(design, seed, static_cast<std::uint64_t>(r), n), dt, ten_octaves(dt));
     REQUIRE(curve.points.size() == 10);
-    for (int j = 0; j < 10; ++j)
-      variance(j, r) = std::pow(curve.points[static_cast<std::size_t>(j)].deviation, 2);
+    for (int j = 0; j < 10; ++j) variance(j, r) = std::pow(curve.points[static_cast<std::size_t>(j)].deviation, 2);
   }
   Agreement result;
   Eigen::VectorXd off(10);
@@ -87,14 +80,13 @@ Agreement agreement(const NoiseDesign& design, const Mixture& assumed, std::uint
     const double expected = allan_variance(theta, static_cast<double>(point.m), dt);
     const double edf = equivalent_dof(curve.type, theta, point.m, point.terms, 1, dt);
     const double chi2 = records * edf * variance.row(j).mean() / expected;
-    result.worst_octave = std::min({result.worst_octave,
-                                    2 * chi_square_cdf(chi2, records * edf),
-                                    2 * chi_square_tail(chi2, records * edf)});
+    result.worst_octave = std::min(
+        {result.worst_octave, 2 * chi_square_cdf(chi2, records * edf), 2 * chi_square_tail(chi2, records * edf)});
     off[j] = variance.row(j).mean() - expected;
     const double spread = (variance.row(j) - expected).square().mean();
     const double unit = 2 * expected * expected / edf;  // its relative sd: chi-square, kurtosis
-    result.worst_spread = std::max(
-        result.worst_spread, std::fabs(spread / unit - 1) / std::sqrt((2 + 12 / edf) / records));
+    result.worst_spread =
+        std::max(result.worst_spread, std::fabs(spread / unit - 1) / std::sqrt((2 + 12 / edf) / records));
   }
   const Eigen::MatrixXd covariance = allan_covariance(curve, theta) / records;
   result.together = chi_square_tail(off.dot(test::solution(covariance, off).col(0)), 10);
@@ -123,8 +115,7 @@ double worst_bin(const NoiseDesign& design, std::size_t n, int records, const Ex
     const std::size_t high = std::min(n, low + std::max<std::size_t>(4, low));
     double sum = 0;
     for (std::size_t k = low; k < high; ++k) sum += energy[k] / expected(k) - 1;
-    worst = std::max(worst,
-                     std::fabs(sum) * std::sqrt(records / (2.0 * static_cast<double>(high - low))));
+    worst = std::max(worst, std::fabs(sum) * std::sqrt(records / (2.0 * static_cast<double>(high - low))));
     low = high;
   }
   return worst;
@@ -133,26 +124,16 @@ double worst_bin(const NoiseDesign& design, std::size_t n, int records, const Ex
 }  // namespace
 
 TEST_CASE("Allan curves of 200 records agree with the exact discrete curves, term by term") {
-  SECTION("white") {
-    check_curves(design_of({5e-3, 0, 0, 0, 0}, 200), 1);
-  }
-  SECTION("flicker") {
-    check_curves(design_of({0, 1e-3, 0, 0, 0}, 200), 2);
-  }
+  SECTION("white") { check_curves(design_of({5e-3, 0, 0, 0, 0}, 200), 1); }
+  SECTION("flicker") { check_curves(design_of({0, 1e-3, 0, 0, 0}, 200), 2); }
   SECTION("flicker, filter of the record's length") {
     NoiseDesign design = design_of({0, 1e-3, 0, 0, 0}, 200);
     design.length = 1U << 14U;
     check_curves(design, 3);
   }
-  SECTION("random walk") {
-    check_curves(design_of({0, 0, 1e-4, 0, 0}, 200), 4);
-  }
-  SECTION("quantization") {
-    check_curves(design_of({0, 0, 0, 1e-5, 0}, 200), 5);
-  }
-  SECTION("all together") {
-    check_curves(design_of({5e-3, 2e-2, 1e-2, 1e-4, 0}, 200), 6);
-  }
+  SECTION("random walk") { check_curves(design_of({0, 0, 1e-4, 0, 0}, 200), 4); }
+  SECTION("quantization") { check_curves(design_of({0, 0, 0, 1e-5, 0}, 200), 5); }
+  SECTION("all together") { check_curves(design_of({5e-3, 2e-2, 1e-2, 1e-4, 0}, 200), 6); }
 }
 
 // What the test above can see: a coefficient 1 % off, and flicker of a filter cut at 63 taps.
@@ -187,9 +168,8 @@ TEST_CASE("records at rest first show the known lack of slow flicker") {
 TEST_CASE("spectrum of simulated flicker over four decades") {
   constexpr std::size_t n = 1U << 16U;
   const NoiseDesign design = design_of({0, 2, 0, 0, 0}, 50);
-  CHECK(worst_bin(design, n, 64, [](std::size_t k) {
-          return 4 * dct_mean(static_cast<double>(k), n, 0.02)[1];
-        }) < 3.9);  // 15 bins
+  CHECK(worst_bin(design, n, 64, [](std::size_t k) { return 4 * dct_mean(static_cast<double>(k), n, 0.02)[1]; }) <
+        3.9);  // 15 bins
 }
 
 TEST_CASE("noise made sample by sample and low-passed has the spectrum that the fit assumes") {
@@ -201,12 +181,10 @@ TEST_CASE("noise made sample by sample and low-passed has the spectrum that the 
         }) < 3.9);
   // accuracy notes 1: AVAR/(Q^2/tau) with a corner of a quarter of the rate
   design.bandwidth_hz = 25;
-  const AllanCurve curve =
-      allan_deviation(record(design, 5, 0, 1'000'000), 0.01, ten_octaves(0.01));
+  const AllanCurve curve = allan_deviation(record(design, 5, 0, 1'000'000), 0.01, ten_octaves(0.01));
   const std::vector<double> known = {0.520, 0.693, 0.838, 0.919, 0.959};
   for (std::size_t j = 0; j < known.size(); ++j)
-    CHECK(std::pow(curve.points[j].deviation, 2) * curve.points[j].tau_s ==
-          Approx(known[j]).epsilon(0.012));
+    CHECK(std::pow(curve.points[j].deviation, 2) * curve.points[j].tau_s == Approx(known[j]).epsilon(0.012));
 }
 
 // First and second sample of many sensors: variance and covariance of the filtered noise.
@@ -274,14 +252,12 @@ TEST_CASE("samples do not depend on the size of the blocks, bit for bit") {
       design.flicker_method = method;
       design.truncated_taps = 50;
       NoiseGenerator one(design, 1, 7), two(design, 1, 7);
-      std::vector<double> before(n, 0.5), after(n, 0.25), before_parts = before,
-                                                          after_parts = after;
+      std::vector<double> before(n, 0.5), after(n, 0.25), before_parts = before, after_parts = after;
       one.add(before, after);
       std::size_t at = 0;
       for (std::size_t size = 1; at < n; size = size * 7 % 1300 + 1) {
         const std::size_t count = std::min(size, n - at);
-        two.add(std::span(before_parts).subspan(at, count),
-                std::span(after_parts).subspan(at, count));
+        two.add(std::span(before_parts).subspan(at, count), std::span(after_parts).subspan(at, count));
         at += count;
       }
       CHECK(before == before_parts);
@@ -293,11 +269,8 @@ TEST_CASE("a term does not change the samples of the others") {
   const auto one = [](const Mixture& m) { return record(design_of(m, 10), 3, 1, 3000); };
   const std::vector<double> all = one({1, 2, 3, 4, 5});
   std::vector<double> sum(all.size(), 0.0);
-  for (const Mixture& m : {Mixture{1, 0, 0, 0, 0},
-                           {0, 2, 0, 0, 0},
-                           {0, 0, 3, 0, 0},
-                           {0, 0, 0, 4, 0},
-                           {0, 0, 0, 0, 5}}) {
+  for (const Mixture& m :
+       {Mixture{1, 0, 0, 0, 0}, {0, 2, 0, 0, 0}, {0, 0, 3, 0, 0}, {0, 0, 0, 4, 0}, {0, 0, 0, 0, 5}}) {
     const std::vector<double> term = one(m);
     for (std::size_t t = 0; t < sum.size(); ++t) sum[t] += term[t];
   }
@@ -307,9 +280,7 @@ TEST_CASE("a term does not change the samples of the others") {
 TEST_CASE("sensors and seeds have noise of their own") {
   const NoiseDesign design = design_of({1, 0, 0, 0, 0}, 1);
   constexpr std::size_t n = 40'000;
-  const std::vector<std::vector<double>> x = {record(design, 1, 0, n),
-                                              record(design, 1, 1, n),
-                                              record(design, 2, 0, n),
+  const std::vector<std::vector<double>> x = {record(design, 1, 0, n), record(design, 1, 1, n), record(design, 2, 0, n),
                                               record(design, 2, 1, n)};
   for (std::size_t i = 0; i < x.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -322,8 +293,7 @@ TEST_CASE("sensors and seeds have noise of their own") {
 
 TEST_CASE("the ramp is exact and the walk starts at zero") {
   const std::vector<double> ramp = record(design_of({0, 0, 0, 0, -0.25}, 8), 1, 0, 100'000);
-  for (std::size_t t = 0; t < ramp.size(); ++t)
-    REQUIRE(ramp[t] == -0.25 * static_cast<double>(t) / 8);
+  for (std::size_t t = 0; t < ramp.size(); ++t) REQUIRE(ramp[t] == -0.25 * static_cast<double>(t) / 8);
   double first = 0;
   for (std::uint64_t r = 0; r < 4000; ++r)
     first += std::pow(record(design_of({0, 0, 6, 0, 0}, 4), 1, r, 1)[0], 2) / 4000;
@@ -393,8 +363,8 @@ TEST_CASE(
     double sum = 0;
     for (std::size_t t = lag; t < y.size(); ++t) sum += y[t] * y[t - lag];
     // sd of the estimate: sigma² sqrt((1 + phi²)/(1 - phi²)/n) = 0.0004 at lag 0
-    CHECK(std::abs(sum / static_cast<double>(y.size() - lag) -
-                   0.09 * std::pow(phi, static_cast<double>(lag))) < 0.0025);
+    CHECK(std::abs(sum / static_cast<double>(y.size() - lag) - 0.09 * std::pow(phi, static_cast<double>(lag))) <
+          0.0025);
   }
   double first = 0;
   for (std::uint64_t sensor = 0; sensor < 2000; ++sensor) {

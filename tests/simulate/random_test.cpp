@@ -20,9 +20,7 @@ std::vector<double> normals(const StreamKey& key, std::size_t n) {
   return out;
 }
 
-double normal_cdf(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
+double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// sqrt(n) times the largest distance between the empirical distribution and `cdf`.
 template <typename Cdf>
@@ -63,8 +61,7 @@ TEST_CASE("philox gives the published known answers") {
 TEST_CASE("a stream is the philox blocks of its key in order") {
   DeviateStream stream({7, 3, Purpose::walk});
   for (std::uint64_t block = 0; block < 40; ++block)
-    for (const std::uint64_t word :
-         philox({block, 0, 0, static_cast<std::uint64_t>(Purpose::walk)}, {7, 3}))
+    for (const std::uint64_t word : philox({block, 0, 0, static_cast<std::uint64_t>(Purpose::walk)}, {7, 3}))
       CHECK(stream.uniform() == static_cast<double>(word >> 11U) * 0x1.0p-53);
 }
 
@@ -118,8 +115,7 @@ TEST_CASE("normal deviates have the moments and the distribution of the normal l
         power[p] += std::pow(v, static_cast<double>(p)) / static_cast<double>(n);
     const double variance = power[2] - power[1] * power[1];
     const double kurtosis =
-        (power[4] - 4 * power[1] * power[3] + 6 * power[1] * power[1] * power[2]) /
-        (variance * variance);
+        (power[4] - 4 * power[1] * power[3] + 6 * power[1] * power[1] * power[2]) / (variance * variance);
     INFO("seed " << seed);
     CHECK(std::fabs(power[1]) * root < 3.3);  // standard deviations, two-sided 1e-3
     CHECK(std::fabs(variance - 1) * root / std::sqrt(2.0) < 3.3);
@@ -165,15 +161,9 @@ TEST_CASE("uniform deviates are uniform from 0 to below 1") {
 
 TEST_CASE("streams of different seed, sensor or purpose are uncorrelated") {
   constexpr std::size_t n = 100'000;
-  const std::vector<StreamKey> keys = {{1, 0, Purpose::white},
-                                       {1, 0, Purpose::flicker},
-                                       {1, 0, Purpose::walk},
-                                       {1, 1, Purpose::white},
-                                       {1, 1, Purpose::flicker},
-                                       {1, 2, Purpose::white},
-                                       {2, 0, Purpose::white},
-                                       {2, 1, Purpose::white},
-                                       {0, 1, Purpose::white},
+  const std::vector<StreamKey> keys = {{1, 0, Purpose::white}, {1, 0, Purpose::flicker}, {1, 0, Purpose::walk},
+                                       {1, 1, Purpose::white}, {1, 1, Purpose::flicker}, {1, 2, Purpose::white},
+                                       {2, 0, Purpose::white}, {2, 1, Purpose::white},   {0, 1, Purpose::white},
                                        {0, 2, Purpose::white}};
   std::vector<std::vector<double>> x;
   for (const StreamKey& key : keys) x.push_back(normals(key, n));
@@ -192,6 +182,5 @@ TEST_CASE("streams of different seed, sensor or purpose are uncorrelated") {
 // first version; another Boost.Random that moved them would show here.)
 TEST_CASE("the first deviates of a seed stay what they are") {
   CHECK(normals({1, 0, Purpose::white}, 4) ==
-        std::vector<double>{
-            -1.5248252747834246, -1.202456723386357, 2.2070818652025435, 0.45154033601968402});
+        std::vector<double>{-1.5248252747834246, -1.202456723386357, 2.2070818652025435, 0.45154033601968402});
 }

@@ -38,8 +38,7 @@ std::vector<std::vector<double>> run(const ArraySimulation& s, std::size_t rows,
   std::vector<std::vector<double>> all;
   for (auto block = simulator.next(rows); !block.empty(); block = simulator.next(rows)) {
     all.resize(block.size());
-    for (std::size_t c = 0; c < block.size(); ++c)
-      all[c].insert(all[c].end(), block[c].begin(), block[c].end());
+    for (std::size_t c = 0; c < block.size(); ++c) all[c].insert(all[c].end(), block[c].begin(), block[c].end());
   }
   return all;
 }
@@ -70,8 +69,7 @@ TEST_CASE("sensor array: the same bits for any block size and number of threads"
   }
 }
 
-TEST_CASE(
-    "sensor array: another seed and another device are other noise, rows of H weigh the truth") {
+TEST_CASE("sensor array: another seed and another device are other noise, rows of H weigh the truth") {
   ArraySimulation s = three_sensors(4000);
   const auto one = run(s, 512);
   s.seed = 2;
@@ -79,8 +77,7 @@ TEST_CASE(
   double ab = 0, aa = 0, bb = 0;
   for (std::size_t k = 0; k < one[0].size(); ++k) {
     const double truth = one[3][k];
-    CHECK(truth ==
-          Approx(std::sin(2 * 3.14159265358979323846 * static_cast<double>(k) / 100)).margin(1e-9));
+    CHECK(truth == Approx(std::sin(2 * 3.14159265358979323846 * static_cast<double>(k) / 100)).margin(1e-9));
     const double a = one[0][k] - one[0][0], b = one[1][k] - one[1][0];
     ab += a * b;
     aa += a * a;

@@ -28,10 +28,7 @@ SensorModel oracle_model() {
   return m;
 }
 
-std::vector<double> run(const SensorModel& m,
-                        std::vector<double> x,
-                        double temperature,
-                        bool from_zero = true) {
+std::vector<double> run(const SensorModel& m, std::vector<double> x, double temperature, bool from_zero = true) {
   SensorChain chain(m, {1000, 1, 0, from_zero});
   chain.run(x, std::vector<double>(x.size(), temperature));
   return x;
@@ -76,8 +73,7 @@ TEST_CASE("sensor chain: an identity model passes the input bit for bit") {
   m.rate_hz = 10;
   std::vector<double> y = x;
   SensorChain(m, {10, 1, 0, false}).run(y, {});
-  for (std::size_t i = 0; i < x.size(); ++i)
-    CHECK(((std::isnan(x[i]) && std::isnan(y[i])) || x[i] == y[i]));
+  for (std::size_t i = 0; i < x.size(); ++i) CHECK(((std::isnan(x[i]) && std::isnan(y[i])) || x[i] == y[i]));
 }
 
 TEST_CASE("sensor chain: the draws of a device are its own and spread as told") {
@@ -95,8 +91,7 @@ TEST_CASE("sensor chain: the draws of a device are its own and spread as told") 
   CHECK(scale.standard_deviation() == Approx(0.1).epsilon(0.05));
   CHECK(bias.mean() == Approx(-1).margin(0.5 / std::sqrt(4000.0) * 4));
   CHECK(bias.standard_deviation() == Approx(0.5).epsilon(0.05));
-  CHECK(SensorChain(m, {10, 7, 3, false}).draw().bias ==
-        SensorChain(m, {10, 7, 3, false}).draw().bias);
+  CHECK(SensorChain(m, {10, 7, 3, false}).draw().bias == SensorChain(m, {10, 7, 3, false}).draw().bias);
 }
 
 TEST_CASE("sensor chain: low-passed noise is stationary from the first sample") {
@@ -107,8 +102,7 @@ TEST_CASE("sensor chain: low-passed noise is stationary from the first sample") 
   const double a = std::exp(-2 * 3.14159265358979 * 0.01);
   for (const auto sampling : {NoiseSampling::per_sample, NoiseSampling::band_limited}) {
     m.noise_sampling = sampling;
-    const double expected =
-        sampling == NoiseSampling::per_sample ? 100 * (1 - a) / (1 + a) : 3.14159265358979;
+    const double expected = sampling == NoiseSampling::per_sample ? 100 * (1 - a) / (1 + a) : 3.14159265358979;
     Moments first;
     for (std::uint64_t device = 0; device < 3000; ++device) {
       std::vector<double> y(1, 0.0);
@@ -155,8 +149,7 @@ TEST_CASE("sensor chain: steps, warm-ups and ramps only when asked, across block
   SensorModel m;
   m.rate_hz = 10;
   using Kind = DeterministicTerm::Kind;
-  m.deterministic = {
-      {Kind::step, 5, 2, 0, 0, 0}, {Kind::warm_up, 0, 1, 0, 3, 0}, {Kind::ramp, 0, 0, 0, 0, 0.1}};
+  m.deterministic = {{Kind::step, 5, 2, 0, 0, 0}, {Kind::warm_up, 0, 1, 0, 3, 0}, {Kind::ramp, 0, 0, 0, 0, 0.1}};
   ChainOptions options{10, 1, 0};
   std::vector<double> none(100, 0.0), all(100, 0.0);
   SensorChain(m, options).run(none, {});

@@ -17,8 +17,7 @@ constexpr double kRate = 100;
 double power_gain(const std::vector<double>& h, double frequency_hz) {
   std::complex<double> sum = 0;
   for (std::size_t i = 0; i < h.size(); ++i)
-    sum += h[i] *
-           std::polar(1.0, -2 * std::numbers::pi * frequency_hz / kRate * static_cast<double>(i));
+    sum += h[i] * std::polar(1.0, -2 * std::numbers::pi * frequency_hz / kRate * static_cast<double>(i));
   return std::norm(sum);
 }
 
@@ -43,13 +42,11 @@ TEST_CASE("impulse responses have unit sum and the shape's gain") {
     CHECK(std::accumulate(h.begin(), h.end(), 0.0) == Approx(1));
     const bool exact = shape.kind != NoiseShape::Kind::measured;
     for (const double f : {0.5, 3.0, 7.0, 13.0, 21.0, 37.0})
-      CHECK(power_gain(h, f) ==
-            Approx(shape_ratio(shape, f, kRate)).epsilon(exact ? 1e-12 : 0.08).margin(1e-12));
+      CHECK(power_gain(h, f) == Approx(shape_ratio(shape, f, kRate)).epsilon(exact ? 1e-12 : 0.08).margin(1e-12));
   }
 }
 
-TEST_CASE(
-    "filtered noise is the convolution, stationary from the first sample, in pieces of any size") {
+TEST_CASE("filtered noise is the convolution, stationary from the first sample, in pieces of any size") {
   const NoiseShape shape{NoiseShape::Kind::bartlett, 6, {}, {}};
   const std::vector<double> h = shape_taps(shape, kRate);
   constexpr std::size_t kCount = 5000;

@@ -11,14 +11,10 @@ using namespace libchar;
 
 namespace {
 
-std::vector<double> run(const SignalSpec& spec,
-                        double rate,
-                        std::size_t n,
-                        std::size_t block = 1000) {
+std::vector<double> run(const SignalSpec& spec, double rate, std::size_t n, std::size_t block = 1000) {
   const auto source = make_signal(spec, rate, n, 3, 0);
   std::vector<double> x(n);
-  for (std::size_t at = 0; at < n; at += block)
-    source->next(std::span(x).subspan(at, std::min(block, n - at)), {});
+  for (std::size_t at = 0; at < n; at += block) source->next(std::span(x).subspan(at, std::min(block, n - at)), {});
   return x;
 }
 
@@ -61,8 +57,7 @@ TEST_CASE("signals: noise has its deviation and its correlation") {
   double lag = 0;
   for (std::size_t k = 1; k < x.size(); ++k) lag += x[k] * x[k - 1];
   CHECK(m.standard_deviation() == Approx(3).epsilon(0.03));
-  CHECK(lag / static_cast<double>(x.size()) / 9 ==
-        Approx(std::exp(-2 * std::numbers::pi * 0.05)).epsilon(0.05));
+  CHECK(lag / static_cast<double>(x.size()) / 9 == Approx(std::exp(-2 * std::numbers::pi * 0.05)).epsilon(0.05));
 }
 
 TEST_CASE("signals: a held uniform changes at its renewals only") {
@@ -104,8 +99,7 @@ TEST_CASE("signals: a walk spreads as its step says, and block sizes do not matt
 }
 
 TEST_CASE("signals: the derivative sums up to its signal, sine_of and cosine_of follow it") {
-  SignalSpec sine = of_kind("sine"), derivative = of_kind("derivative"),
-             cosine = of_kind("cosine_of");
+  SignalSpec sine = of_kind("sine"), derivative = of_kind("derivative"), cosine = of_kind("cosine_of");
   cosine.amplitude = 9.81;
   const auto x = run(sine, 50, 200);
   std::vector<double> rate(200), c(200);
@@ -119,8 +113,6 @@ TEST_CASE("signals: the derivative sums up to its signal, sine_of and cosine_of 
 }
 
 TEST_CASE("signals: an unknown kind names the nearest") {
-  CHECK_THROWS_WITH(make_signal(of_kind("sinus"), 1, 1, 1, 0),
-                    Catch::Contains("did you mean sine"));
-  for (const std::string& kind : signal_kinds())
-    CHECK((kind == "zero" || !signal_keys(kind).empty()));
+  CHECK_THROWS_WITH(make_signal(of_kind("sinus"), 1, 1, 1, 0), Catch::Contains("did you mean sine"));
+  for (const std::string& kind : signal_kinds()) CHECK((kind == "zero" || !signal_keys(kind).empty()));
 }

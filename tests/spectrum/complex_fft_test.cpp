@@ -20,8 +20,7 @@ std::vector<Complex> sum_of(const std::vector<Complex>& x) {
   const std::size_t n = x.size();
   std::vector<Complex> turns(n), out(n);
   for (std::size_t k = 0; k < n; ++k)
-    turns[k] =
-        std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
+    turns[k] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t t = 0; t < n; ++t) out[k] += x[t] * turns[k * t % n];
   return out;
@@ -55,17 +54,9 @@ double largest_error(std::size_t n, std::size_t count, std::size_t step, std::si
 }  // namespace
 
 TEST_CASE("complex transform: columns and rows against the sum that defines them") {
-  for (const std::size_t n : {std::size_t{16},
-                              std::size_t{128},
-                              std::size_t{200},
-                              std::size_t{250},
-                              std::size_t{400},
-                              std::size_t{500},
-                              std::size_t{625},
-                              std::size_t{800},
-                              std::size_t{1000},
-                              std::size_t{1200},
-                              std::size_t{1250}}) {
+  for (const std::size_t n :
+       {std::size_t{16}, std::size_t{128}, std::size_t{200}, std::size_t{250}, std::size_t{400}, std::size_t{500},
+        std::size_t{625}, std::size_t{800}, std::size_t{1000}, std::size_t{1200}, std::size_t{1250}}) {
     CAPTURE(n);
     CHECK(largest_error(n, 8, 8, 1) < 1e-12);  // columns
     CHECK(largest_error(n, 12, 12, 1) < 1e-12);

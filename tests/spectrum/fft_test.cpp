@@ -43,17 +43,15 @@ double relative_l2(const std::vector<long double>& wanted, const std::vector<lon
   return static_cast<double>(std::sqrt(error / norm));
 }
 
-const std::vector<std::size_t> kLengths = {1,   2,   3,   4,    5,    6,    7,    8,   9,
-                                           16,  17,  30,  31,   64,   97,   100,  127, 128,
-                                           243, 500, 511, 1009, 1024, 1025, 2048, 3001};
+const std::vector<std::size_t> kLengths = {1,  2,  3,   4,   5,   6,   7,   8,   9,    16,   17,   30,   31,
+                                           64, 97, 100, 127, 128, 243, 500, 511, 1009, 1024, 1025, 2048, 3001};
 
 // Relative error in the mean square. FFTW reaches about 0.3 eps sqrt(log2 n) where n has small
 // factors; large primes run through Rader's convolution and pay a few times
 // that.
 double limit(std::size_t n) {
   const double eps = std::numeric_limits<double>::epsilon();
-  return 0.6 * eps * std::sqrt(1 + std::log2(static_cast<double>(n))) *
-         (std::has_single_bit(n) ? 1 : 3);
+  return 0.6 * eps * std::sqrt(1 + std::log2(static_cast<double>(n))) * (std::has_single_bit(n) ? 1 : 3);
 }
 
 double dct_error(const std::vector<double>& y) {
@@ -64,8 +62,7 @@ double dct_error(const std::vector<double>& y) {
   REQUIRE(c.size() == n);
   for (std::size_t k = 0; k < n; ++k) {
     long double sum = 0;
-    for (std::size_t t = 0; t < n; ++t)
-      sum += static_cast<long double>(y[t]) * cosine(k * (2 * t + 1), 2 * n);
+    for (std::size_t t = 0; t < n; ++t) sum += static_cast<long double>(y[t]) * cosine(k * (2 * t + 1), 2 * n);
     wanted[k] = sum * std::sqrt((k == 0 ? 1.0L : 2.0L) / static_cast<long double>(n));
     got[k] = c[k];
   }
@@ -88,27 +85,18 @@ TEST_CASE("the coarse and fine twiddles hold over many blocks") {
   const auto y = gaussian(n, 3);
   Dct dct(n);
   const auto c = dct.transform(y);
-  for (const std::size_t k : {std::size_t{1},
-                              std::size_t{511},
-                              std::size_t{512},
-                              std::size_t{513},
-                              n / 2 - 1,
-                              n / 2,
-                              n / 2 + 1,
-                              n - 513,
-                              n - 1}) {
+  for (const std::size_t k : {std::size_t{1}, std::size_t{511}, std::size_t{512}, std::size_t{513}, n / 2 - 1, n / 2,
+                              n / 2 + 1, n - 513, n - 1}) {
     CAPTURE(k);
     long double sum = 0;
-    for (std::size_t t = 0; t < n; ++t)
-      sum += static_cast<long double>(y[t]) * cosine(k * (2 * t + 1), 2 * n);
+    for (std::size_t t = 0; t < n; ++t) sum += static_cast<long double>(y[t]) * cosine(k * (2 * t + 1), 2 * n);
     // The coefficients are of the order of one; the long double sum itself is good to about 1e-16.
     const double error = std::abs(c[k] - static_cast<double>(sum * std::sqrt(2.0L / n)));
     CHECK(error * 1e15 < 4);
   }
 }
 
-TEST_CASE(
-    "the cosine transform keeps the energy and survives an offset of 1e9 standard deviations") {
+TEST_CASE("the cosine transform keeps the energy and survives an offset of 1e9 standard deviations") {
   const std::size_t n = 4099;
   const auto y = gaussian(n, 5);
   auto shifted = y;
@@ -158,8 +146,7 @@ TEST_CASE("the real transform agrees with the sum in long double and inverts") {
     CAPTURE(error);
     CHECK(error < 1);
     const auto again = fft.inverse();
-    for (std::size_t t = 0; t < n; ++t)
-      REQUIRE(again[t] / static_cast<double>(n) == Approx(y[t]).margin(1e-14));
+    for (std::size_t t = 0; t < n; ++t) REQUIRE(again[t] / static_cast<double>(n) == Approx(y[t]).margin(1e-14));
   }
 }
 
@@ -170,19 +157,16 @@ TEST_CASE("an impulse is flat, a sine on a bin has one line, and energy is kept 
   fft.input()[0] = 1;
   for (const auto& bin : fft.transform()) REQUIRE(bin == std::complex<double>(1, 0));
 
-  for (std::size_t t = 0; t < n; ++t)
-    fft.input()[t] = std::sin(2 * std::numbers::pi * 37 * static_cast<double>(t) / n);
+  for (std::size_t t = 0; t < n; ++t) fft.input()[t] = std::sin(2 * std::numbers::pi * 37 * static_cast<double>(t) / n);
   const auto line = fft.transform();
-  for (std::size_t k = 0; k <= n / 2; ++k)
-    REQUIRE(std::abs(line[k]) == Approx(k == 37 ? 256.0 : 0.0).margin(1e-11));
+  for (std::size_t k = 0; k <= n / 2; ++k) REQUIRE(std::abs(line[k]) == Approx(k == 37 ? 256.0 : 0.0).margin(1e-11));
 
   const auto y = gaussian(n, 8);
   std::copy(y.begin(), y.end(), fft.input().begin());
   double time = 0, frequency = 0;
   for (const double v : y) time += v * v;
   const auto bins = fft.transform();
-  for (std::size_t k = 0; k <= n / 2; ++k)
-    frequency += std::norm(bins[k]) * (k == 0 || k == n / 2 ? 1 : 2);
+  for (std::size_t k = 0; k <= n / 2; ++k) frequency += std::norm(bins[k]) * (k == 0 || k == n / 2 ? 1 : 2);
   CHECK(frequency / n == Approx(time).epsilon(1e-14));
 }
 

@@ -29,8 +29,7 @@ std::vector<double> noise(std::size_t n, double offset, double drift) {
   for (std::size_t t = 0; t < n; ++t) {
     const double at = static_cast<double>(t);
     walk += 0.01 * normal(generator);
-    x[t] = normal(generator) + walk + offset + drift * at / static_cast<double>(n) +
-           std::sin(0.7391 * at);
+    x[t] = normal(generator) + walk + offset + drift * at / static_cast<double>(n) + std::sin(0.7391 * at);
   }
   return x;
 }
@@ -48,9 +47,7 @@ double largest(const std::vector<double>& values) {
 }
 
 // Amplitudes, against the largest of them: rounding of a transform is relative to its energy.
-void same_power(const std::vector<double>& got,
-                const std::vector<double>& wanted,
-                double tolerance) {
+void same_power(const std::vector<double>& got, const std::vector<double>& wanted, double tolerance) {
   REQUIRE(got.size() == wanted.size());
   const double scale = std::sqrt(largest(wanted));
   double worst = 0;
@@ -64,22 +61,18 @@ std::vector<double> power_by_segments(const std::vector<double>& x, std::size_t 
   const auto window = window_values(Window::hann, n);
   welch_detail::Periodogram periodogram(options, window);
   std::vector<double> power(n / 2 + 1, 0.0);
-  for (std::size_t t = 0; t + n <= x.size(); t += n / 2)
-    periodogram.add(x.data() + t, power.data());
+  for (std::size_t t = 0; t + n <= x.size(); t += n / 2) periodogram.add(x.data() + t, power.data());
   return power;
 }
 
 // The halves at x, x + h, …, two by two, into one sum; which segments were used, in order.
-std::vector<bool> push_all(HalfSegments& halves,
-                           const std::vector<double>& x,
-                           HalfSegments::Sums& sums,
+std::vector<bool> push_all(HalfSegments& halves, const std::vector<double>& x, HalfSegments::Sums& sums,
                            bool block = false) {
   const std::size_t h = halves.half(), count = x.size() / h;
   std::vector<bool> used;
   for (std::size_t i = 0; i < count; i += 2) {
     const auto a = halves.half_at(x.data() + i * h, block);
-    const auto b =
-        i + 1 < count ? halves.half_at(x.data() + (i + 1) * h, block) : HalfSegments::Half();
+    const auto b = i + 1 < count ? halves.half_at(x.data() + (i + 1) * h, block) : HalfSegments::Half();
     const auto [first, second] = halves.push(a, b, &sums, &sums);
     if (i > 0) used.push_back(first);
     if (i + 1 < count) used.push_back(second);
@@ -99,9 +92,7 @@ struct Taker final : BlockTaker {
     taken.emplace_back(samples.begin(), samples.end());
     return true;
   }
-  void push(std::span<const double> samples) override {
-    given.insert(given.end(), samples.begin(), samples.end());
-  }
+  void push(std::span<const double> samples) override { given.insert(given.end(), samples.begin(), samples.end()); }
   void take_power(std::vector<double> sums) override { power = std::move(sums); }
 };
 
@@ -109,16 +100,14 @@ std::size_t whole_blocks(const std::vector<double>& x, std::size_t length) {
   std::size_t count = 0;
   for (auto at = x.begin(); x.end() - at >= static_cast<std::ptrdiff_t>(length);
        at += static_cast<std::ptrdiff_t>(length))
-    count += std::none_of(
-        at, at + static_cast<std::ptrdiff_t>(length), [](double v) { return std::isnan(v); });
+    count += std::none_of(at, at + static_cast<std::ptrdiff_t>(length), [](double v) { return std::isnan(v); });
   return count;
 }
 
 // Bit for bit, but a missing sample is a missing sample.
 bool same_samples(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double one, double other) {
-    return one == other || (std::isnan(one) && std::isnan(other));
-  });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); });
 }
 
 }  // namespace
@@ -126,8 +115,7 @@ bool same_samples(const std::vector<double>& a, const std::vector<double>& b) {
 TEST_CASE("halves: the powers of whole segments, for lengths that split in every way") {
   for (const std::size_t n : {4096U, 4800U, 7680U, 8000U, 10000U, 20160U, 65536U}) {
     REQUIRE(HalfSegments::suits(segments_of(n)));
-    for (const auto& [offset, drift] :
-         {std::pair{0.0, 0.0}, std::pair{9.81, 3.0}, std::pair{-2e4, 500.0}}) {
+    for (const auto& [offset, drift] : {std::pair{0.0, 0.0}, std::pair{9.81, 3.0}, std::pair{-2e4, 500.0}}) {
       CAPTURE(n, offset, drift);
       const auto x = noise(2 * n + n / 2, offset, drift);
       HalfSegments halves(n);
@@ -201,12 +189,10 @@ TEST_CASE("halves: a last one without a partner changes nothing") {
   std::vector<double> power, wanted;
   halves.take_power(*rest, power);
   same_power(power, power_by_segments({x.begin() + h, x.begin() + 3 * h}, n), 1e-12);
-  halves.push(
-      halves.half_at(x.data() + 2 * h), halves.half_at(x.data() + 3 * h), rest.get(), rest.get());
+  halves.push(halves.half_at(x.data() + 2 * h), halves.half_at(x.data() + 3 * h), rest.get(), rest.get());
   push_all(again, {x.begin(), x.begin() + 2 * h}, *other);
   again.take_power(*other, wanted);
-  again.push(
-      again.half_at(x.data() + 2 * h), again.half_at(x.data() + 3 * h), other.get(), other.get());
+  again.push(again.half_at(x.data() + 2 * h), again.half_at(x.data() + 3 * h), other.get(), other.get());
   again.take_power(*other, wanted);
   halves.take_power(*rest, power);
   CHECK(power == wanted);

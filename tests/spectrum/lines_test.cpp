@@ -24,13 +24,11 @@ std::vector<double> coloured(std::size_t n, double exponent, unsigned seed) {
   auto bins = fft.coefficients();
   bins[0] = 0;
   for (std::size_t k = 1; k < bins.size(); ++k) {
-    const double size = std::pow(
-        2 * std::sin(std::numbers::pi * static_cast<double>(k) / (2 * static_cast<double>(n))),
-        -exponent / 2);
+    const double size =
+        std::pow(2 * std::sin(std::numbers::pi * static_cast<double>(k) / (2 * static_cast<double>(n))), -exponent / 2);
     // One after the other: compilers differ in the order of arguments.
     const double imaginary = normal(generator), real = normal(generator);
-    bins[k] =
-        size * std::complex<double>(real, imaginary) / std::sqrt(4.0 * static_cast<double>(n));
+    bins[k] = size * std::complex<double>(real, imaginary) / std::sqrt(4.0 * static_cast<double>(n));
   }
   const auto y = fft.inverse();
   return {y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n)};
@@ -44,12 +42,9 @@ WelchOptions line_segments(std::uint64_t n) {
 
 // Column `name` position of a plain little-endian double array file (version 1 header), rows of
 // equal size.
-std::vector<double> npy_column(const std::filesystem::path& path,
-                               std::size_t column,
-                               std::size_t columns) {
+std::vector<double> npy_column(const std::filesystem::path& path, std::size_t column, std::size_t columns) {
   const std::string bytes = test::slurp(path);
-  const std::size_t header =
-      10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
+  const std::size_t header = 10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
   std::vector<double> out;
   for (std::size_t at = header + 8 * column; at + 8 <= bytes.size(); at += 8 * columns) {
     double v = 0;
@@ -61,8 +56,7 @@ std::vector<double> npy_column(const std::filesystem::path& path,
 
 }  // namespace
 
-TEST_CASE(
-    "a sine of half a standard deviation between two bins is found, with frequency and amplitude") {
+TEST_CASE("a sine of half a standard deviation between two bins is found, with frequency and amplitude") {
   for (const Window window : {Window::hann, Window::blackman_harris, Window::flat_top})
     for (const double place : {0.0, 0.27, 0.5}) {
       CAPTURE(name_of(window), place);
@@ -79,8 +73,7 @@ TEST_CASE(
           const auto lines = find_lines(welch(y, rate, options));
           REQUIRE(lines.size() == 1);
           // The top of a flat top is flat: a parabola says less there.
-          CHECK(std::abs(lines[0].frequency_hz - frequency) <
-                (window == Window::flat_top ? 0.15 : 0.06) * rate / 4096);
+          CHECK(std::abs(lines[0].frequency_hz - frequency) < (window == Window::flat_top ? 0.15 : 0.06) * rate / 4096);
           CHECK(lines[0].amplitude == Approx(0.5).epsilon(0.03));
           CHECK(lines[0].width_hz < 6 * rate / 4096);
           CHECK(lines[0].excess > 10);
@@ -91,8 +84,8 @@ TEST_CASE(
 TEST_CASE("two lines are two, a strong line is one in spite of its leakage") {
   auto y = coloured(1U << 17U, 0, 2);
   for (std::size_t t = 0; t < y.size(); ++t)
-    y[t] += 1e3 * std::sin(0.5003 * static_cast<double>(t)) +
-            std::sin(1.7 * static_cast<double>(t)) + std::sin(1.75 * static_cast<double>(t));
+    y[t] += 1e3 * std::sin(0.5003 * static_cast<double>(t)) + std::sin(1.7 * static_cast<double>(t)) +
+            std::sin(1.75 * static_cast<double>(t));
   const auto lines = find_lines(welch(y, 2 * std::numbers::pi, line_segments(4096)));
   REQUIRE(lines.size() == 3);
   CHECK(lines[0].frequency_hz == Approx(0.5003).margin(2e-4));
@@ -132,8 +125,7 @@ TEST_CASE("the lines of a real unit: the gyroscope at 19.9 Hz, the accelerometer
   CHECK(has(find_lines(welch(npy_column(path, 2, 6), 100, line_segments(8192))), 19.8, 20.0));
   bool seen = false;
   for (const std::size_t axis : {3U, 4U, 5U})
-    seen = seen ||
-           has(find_lines(welch(npy_column(path, axis, 6), 100, line_segments(32768))), 0.5, 0.62);
+    seen = seen || has(find_lines(welch(npy_column(path, axis, 6), 100, line_segments(32768))), 0.5, 0.62);
   CHECK(seen);
 }
 
@@ -172,8 +164,7 @@ TEST_CASE("rounding a slow drift makes no lines, and hides none that are larger 
   }
   // With noise of 0.6 LSB a line of a tenth of the step is no work of the rounding.
   std::vector<double> y = coloured(n, 0, 5);
-  for (std::size_t t = 0; t < n; ++t)
-    y[t] = 0.6 * y[t] + 400 * at(t) + 0.1 * std::sin(1.3 * static_cast<double>(t));
+  for (std::size_t t = 0; t < n; ++t) y[t] = 0.6 * y[t] + 400 * at(t) + 0.1 * std::sin(1.3 * static_cast<double>(t));
   CHECK(rounded_lines(y).size() == 1);
 }
 
@@ -183,9 +174,9 @@ TEST_CASE("a line next to the end of the spectrum is as wide as one in its middl
     std::normal_distribution<double> normal;
     std::vector<double> x(65536);
     for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = 0.05 * normal(generator) + std::sin(2 * std::numbers::pi * static_cast<double>(bin) *
-                                                     static_cast<double>(i) / 1024 +
-                                                 std::numbers::pi / 4);
+      x[i] = 0.05 * normal(generator) +
+             std::sin(2 * std::numbers::pi * static_cast<double>(bin) * static_cast<double>(i) / 1024 +
+                      std::numbers::pi / 4);
     const auto lines = find_lines(welch(x, 1024, line_segments(1024)));
     REQUIRE(lines.size() == 1);
     CHECK(lines[0].frequency_hz == Approx(static_cast<double>(bin)).margin(0.2));

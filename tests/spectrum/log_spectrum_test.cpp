@@ -56,8 +56,7 @@ TEST_CASE("the scatter of an average over bins is its stated degrees of freedom"
     double sum = 0, squares = 0, dof = 0;
     const int records = 3000;
     for (int i = 0; i < records; ++i) {
-      const Spectrum b =
-          log_binned(welch(gaussian_record(640, static_cast<unsigned>(i)), 1, options), 8);
+      const Spectrum b = log_binned(welch(gaussian_record(640, static_cast<unsigned>(i)), 1, options), 8);
       const double v = b.value[b.value.size() - 2];  // about sixteen bins
       sum += v;
       squares += v * v;

@@ -38,9 +38,7 @@ WelchOptions segments_of_128() {
   return options;
 }
 
-Json scipy_values() {
-  return Json::parse(test::slurp(test::known("spectrum/pair_spectra.json")));
-}
+Json scipy_values() { return Json::parse(test::slurp(test::known("spectrum/pair_spectra.json"))); }
 
 void check_list(const std::vector<double>& found, const Json& known, double limit, bool edges) {
   REQUIRE(found.size() == known.size());
@@ -104,8 +102,7 @@ TEST_CASE("pair spectra: a channel with itself is coherent, scaled and delayed t
 
 TEST_CASE("pair spectra: the other order conjugates, and a mean does not count") {
   const auto x = normals(3000, 2), y = normals(3000, 3);
-  const CrossSpectrum a = cross_spectrum(x, y, 10, segments_of_128()),
-                      b = cross_spectrum(y, x, 10, segments_of_128());
+  const CrossSpectrum a = cross_spectrum(x, y, 10, segments_of_128()), b = cross_spectrum(y, x, 10, segments_of_128());
   auto shifted = x;
   for (double& v : shifted) v += 1e6;
   const CrossSpectrum c = cross_spectrum(shifted, y, 10, segments_of_128());
@@ -116,19 +113,16 @@ TEST_CASE("pair spectra: the other order conjugates, and a mean does not count")
   }
 }
 
-TEST_CASE(
-    "pair spectra: of independent channels 5 % of the bins are called significant, mean unbiased") {
+TEST_CASE("pair spectra: of independent channels 5 % of the bins are called significant, mean unbiased") {
   double above = 0, bins = 0, mean = 0, unbiased = 0;
   CrossSpectrum cross;
   for (unsigned seed = 0; seed < 40; ++seed) {
-    cross = cross_spectrum(
-        normals(4096, 100 + 2 * seed), normals(4096, 101 + 2 * seed), 1, segments_of_128());
+    cross = cross_spectrum(normals(4096, 100 + 2 * seed), normals(4096, 101 + 2 * seed), 1, segments_of_128());
     for (std::size_t k = 2; k + 2 < cross.coherence.size(); ++k) {
       above += cross.coherence[k] > cross.significant_coherence ? 1 : 0;
       mean += cross.coherence[k];
       // Without the bound at zero, which would be a bias of its own.
-      unbiased +=
-          (cross.effective_segments * cross.coherence[k] - 1) / (cross.effective_segments - 1);
+      unbiased += (cross.effective_segments * cross.coherence[k] - 1) / (cross.effective_segments - 1);
       ++bins;
     }
   }
@@ -153,8 +147,7 @@ TEST_CASE("pair spectra: segments that touch a missing sample of either are drop
   CHECK(median_welch(x, 1, segments_of_128()).dropped == 2);
 }
 
-TEST_CASE(
-    "median average: its expected value is taken out, bursts do not count, degrees of freedom") {
+TEST_CASE("median average: its expected value is taken out, bursts do not count, degrees of freedom") {
   CHECK(expected_median(1) == 1);
   CHECK(expected_median(2) == 1);
   CHECK(expected_median(3) == Approx(5.0 / 6).epsilon(1e-15));
@@ -195,8 +188,7 @@ TEST_CASE("spectrogram: its mean is Welch's spectrum, in every scaling") {
         double sum = 0;
         for (const auto& row : gram.value) sum += row[k];
         const std::size_t at = mean.value.size() - gram.frequency_hz.size() + k;
-        CHECK(sum / double(gram.value.size()) ==
-              Approx(mean.value[at]).epsilon(1e-10).margin(1e-13));
+        CHECK(sum / double(gram.value.size()) == Approx(mean.value[at]).epsilon(1e-10).margin(1e-13));
       }
     }
 }

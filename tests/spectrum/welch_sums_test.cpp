@@ -23,9 +23,7 @@ std::vector<double> spectral_record(std::size_t n, double offset, bool holes) {
   return y;
 }
 
-void check_spectrum(const WelchOptions& options,
-                    const std::vector<double>& y,
-                    std::size_t leaf,
+void check_spectrum(const WelchOptions& options, const std::vector<double>& y, std::size_t leaf,
                     double digits = 1e-11) {
   CAPTURE(options.segment, options.overlap, y.size(), leaf);
   REQUIRE(WelchParts::why_not(options, leaf) == "");
@@ -34,9 +32,7 @@ void check_spectrum(const WelchOptions& options,
   const Spectrum whole = stream.finish(100);
   WelchParts parts(options);
   const WelchSums sums = test::joined_parts<WelchSums>(
-      y,
-      leaf,
-      [&](std::span<const double> part, bool) { return parts.take(part); },
+      y, leaf, [&](std::span<const double> part, bool) { return parts.take(part); },
       [&](WelchSums& before, const WelchSums& later) { parts.join(before, later); });
   const Spectrum joined = WelchStream(options, sums).finish(100);
   REQUIRE(joined.segments == whole.segments);
@@ -55,10 +51,8 @@ TEST_CASE("Welch sums: parts are the stream, by segments and by halves") {
   for (const bool holes : {false, true})
     for (const std::size_t n : {32768u, 50000u, 65535u, 3 * 16384u + 1}) {
       const std::vector<double> y = spectral_record(n, 3, holes);
-      for (const double overlap : {0.0, 0.5, 0.75})
-        check_spectrum({.segment = 512, .overlap = overlap}, y, 1024);
-      check_spectrum(
-          {.window = Window::blackman_harris, .segment = 1024, .overlap = 0.875}, y, 1024);
+      for (const double overlap : {0.0, 0.5, 0.75}) check_spectrum({.segment = 512, .overlap = overlap}, y, 1024);
+      check_spectrum({.window = Window::blackman_harris, .segment = 1024, .overlap = 0.875}, y, 1024);
       check_spectrum({.segment = 4096}, y, 16384);
       check_spectrum({.segment = 4096, .detrend = Detrend::linear}, y, 4096);
     }
@@ -73,8 +67,7 @@ TEST_CASE("Welch sums: an offset of 1e9 standard deviations costs what it costs 
 TEST_CASE("Welch sums: segments that do not divide a part are refused in a sentence") {
   REQUIRE(WelchParts::why_not({.segment = 1000}, 4096) ==
           "segments begin every 500 samples, which do not divide a leaf of 4096");
-  REQUIRE(WelchParts::why_not({.segment = 8192}, 4096) ==
-          "segments of 8192 samples are longer than a leaf of 4096");
+  REQUIRE(WelchParts::why_not({.segment = 8192}, 4096) == "segments of 8192 samples are longer than a leaf of 4096");
 }
 
 TEST_CASE("Welch sums: a state that no part of a record has is refused") {

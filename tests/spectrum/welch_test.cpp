@@ -51,11 +51,7 @@ std::vector<std::vector<double>> columns(const std::filesystem::path& path) {
 }
 
 // The definition, term by term.
-std::vector<double> slow_welch(const std::vector<double>& x,
-                               double rate,
-                               std::size_t n,
-                               std::size_t hop,
-                               Window kind,
+std::vector<double> slow_welch(const std::vector<double>& x, double rate, std::size_t n, std::size_t hop, Window kind,
                                bool centred) {
   const auto w = window_values(kind, n);
   double energy = 0;
@@ -70,9 +66,7 @@ std::vector<double> slow_welch(const std::vector<double>& x,
       std::complex<double> sum = 0;
       for (std::size_t t = 0; t < n; ++t)
         sum += w[t] * (x[begin + t] - mean) *
-               std::polar(
-                   1.0,
-                   -2 * std::numbers::pi * static_cast<double>(k * t % n) / static_cast<double>(n));
+               std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k * t % n) / static_cast<double>(n));
       power[k] += std::norm(sum) / (rate * energy) * (k == 0 || 2 * k == n ? 1 : 2);
     }
   }
@@ -105,8 +99,8 @@ TEST_CASE("Welch's spectrum is its definition, for odd, prime and even segments 
       CAPTURE(n, overlap);
       WelchOptions options = welch_segments(n);
       options.overlap = overlap;
-      const auto hop = std::max<std::size_t>(
-          1, static_cast<std::size_t>(std::round(static_cast<double>(n) * (1 - overlap))));
+      const auto hop =
+          std::max<std::size_t>(1, static_cast<std::size_t>(std::round(static_cast<double>(n) * (1 - overlap))));
       const Spectrum got = welch(x, 7, options);
       const auto wanted = slow_welch(x, 7, n, hop, Window::hann, true);
       REQUIRE(got.value.size() == wanted.size());
@@ -165,10 +159,8 @@ TEST_CASE("a sine on a bin reads its amplitude in every scaling, window and side
   const double rate = 200, amplitude = 3;
   std::vector<double> x(8 * n);
   for (std::size_t t = 0; t < x.size(); ++t)
-    x[t] = amplitude * std::sin(2 * std::numbers::pi * 100 * static_cast<double>(t % n) /
-                                static_cast<double>(n));
-  for (const Window window :
-       {Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top}) {
+    x[t] = amplitude * std::sin(2 * std::numbers::pi * 100 * static_cast<double>(t % n) / static_cast<double>(n));
+  for (const Window window : {Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top}) {
     CAPTURE(name_of(window));
     WelchOptions options = welch_segments(n);
     options.window = window;
@@ -192,17 +184,13 @@ TEST_CASE("equivalent noise bandwidths are those of the literature") {
   };
   CHECK(bins(Window::rectangular) == Approx(1).epsilon(1e-14));
   CHECK(bins(Window::hann) == Approx(1.5).epsilon(1e-14));
-  CHECK(bins(Window::blackman_harris) ==
-        Approx(2.0044).epsilon(1e-4));  // Heinzel, Ruediger and Schilling 2002
+  CHECK(bins(Window::blackman_harris) == Approx(2.0044).epsilon(1e-4));  // Heinzel, Ruediger and Schilling 2002
   CHECK(bins(Window::flat_top) == Approx(3.7702).epsilon(1e-4));
 }
 
 TEST_CASE("windows are named, symmetric and read back") {
-  for (const Window window : {Window::hann,
-                              Window::rectangular,
-                              Window::blackman_harris,
-                              Window::flat_top,
-                              Window::hann_nonzero}) {
+  for (const Window window :
+       {Window::hann, Window::rectangular, Window::blackman_harris, Window::flat_top, Window::hann_nonzero}) {
     CHECK(find_enum<Window>(name_of(window)) == window);
     for (const std::size_t n : {9U, 16U}) {
       const auto w = window_values(window, n);
@@ -223,31 +211,27 @@ TEST_CASE("invariants: scale by powers of two, offset, reversal, shift, zero") {
   auto scaled = x;
   for (double& v : scaled) v *= 1024;
   const Spectrum big = welch(scaled, 100, options);
-  for (std::size_t k = 0; k < base.value.size(); ++k)
-    REQUIRE(big.value[k] == base.value[k] * 1024 * 1024);
+  for (std::size_t k = 0; k < base.value.size(); ++k) REQUIRE(big.value[k] == base.value[k] * 1024 * 1024);
 
   auto offset = x;
   for (double& v : offset) v += 1e9;
   auto rounded = offset;
   for (double& v : rounded) v -= 1e9;
   const Spectrum low = welch(rounded, 100, options), high = welch(offset, 100, options);
-  for (std::size_t k = 1; k < base.value.size(); ++k)
-    REQUIRE(std::abs(high.value[k] / low.value[k] - 1) < 1e-10);
+  for (std::size_t k = 1; k < base.value.size(); ++k) REQUIRE(std::abs(high.value[k] / low.value[k] - 1) < 1e-10);
 
   auto reversed = x;
   std::reverse(reversed.begin(), reversed.end());
   WelchOptions boxcar = options;
   boxcar.window = Window::rectangular;
   const Spectrum forth = welch(x, 100, boxcar), back = welch(reversed, 100, boxcar);
-  for (std::size_t k = 1; k < forth.value.size(); ++k)
-    REQUIRE(std::abs(back.value[k] / forth.value[k] - 1) < 1e-12);
+  for (std::size_t k = 1; k < forth.value.size(); ++k) REQUIRE(std::abs(back.value[k] / forth.value[k] - 1) < 1e-12);
 
   const std::vector<double> one(x.begin(), x.begin() + 500);
   auto turned = one;
   std::rotate(turned.begin(), turned.begin() + 123, turned.end());
   const Spectrum still = welch(one, 100, boxcar), shifted = welch(turned, 100, boxcar);
-  for (std::size_t k = 1; k < still.value.size(); ++k)
-    REQUIRE(std::abs(shifted.value[k] / still.value[k] - 1) < 1e-11);
+  for (std::size_t k = 1; k < still.value.size(); ++k) REQUIRE(std::abs(shifted.value[k] / still.value[k] - 1) < 1e-11);
 
   for (const double v : welch(std::vector<double>(1000, 0.0), 1, options).value) REQUIRE(v == 0);
   for (const double v : welch(std::vector<double>(1000, 0.1), 1, options).value) REQUIRE(v < 1e-30);
@@ -260,8 +244,7 @@ TEST_CASE("linear detrending removes a line, and leaves the noise") {
   WelchOptions options = welch_segments(1024);
   options.detrend = Detrend::linear;
   const Spectrum without = welch(x, 1, options), with = welch(drifting, 1, options);
-  for (std::size_t k = 1; k < with.value.size(); ++k)
-    REQUIRE(std::abs(with.value[k] / without.value[k] - 1) < 1e-7);
+  for (std::size_t k = 1; k < with.value.size(); ++k) REQUIRE(std::abs(with.value[k] / without.value[k] - 1) < 1e-7);
   options.detrend = Detrend::constant;
   CHECK(welch(drifting, 1, options).value[1] > 1e3 * without.value[1]);
 }
@@ -288,8 +271,7 @@ TEST_CASE(
         edge_dof = s.dof[32];
       }
       const double mean = sum / records, variance = squares / records - mean * mean;
-      const double edge_mean = edge_sum / records,
-                   edge_variance = edge_squares / records - edge_mean * edge_mean;
+      const double edge_mean = edge_sum / records, edge_variance = edge_squares / records - edge_mean * edge_mean;
       CHECK(mean == Approx(0.2).epsilon(0.04));
       CHECK(edge_mean == Approx(0.1).epsilon(0.05));  // no doubling at Nyquist
       CHECK(2 * mean * mean / variance == Approx(dof).epsilon(0.12));
@@ -306,8 +288,7 @@ TEST_CASE("degrees of freedom: 2 a segment without overlap, Hann at half overlap
   options.overlap = 0.5;
   const Spectrum s = welch(white_samples(25600, 1), 1, options);
   CHECK(s.segments == 199);
-  CHECK(s.dof[5] ==
-        Approx(2 * 199 / (1 + 2 * (1.0 - 1.0 / 199) / 36)).epsilon(1e-12));  // r_1 = 1/6 for Hann
+  CHECK(s.dof[5] == Approx(2 * 199 / (1 + 2 * (1.0 - 1.0 / 199) / 36)).epsilon(1e-12));  // r_1 = 1/6 for Hann
   REQUIRE(s.neighbour_correlation.size() >= 2);
   CHECK(s.neighbour_correlation[0] == Approx(0.44).margin(0.02));  // (2/3)^2 for one segment
   options.overlap = 0.99;  // many lags: by transform; the limit of dense overlap for Hann is 1/0.52
@@ -334,8 +315,7 @@ TEST_CASE("intervals cover at the stated rate and match chi-square tables") {
   Spectrum root = s;
   root.scaling = Scaling::lsd;
   root.value[7] = std::sqrt(s.value[7]);
-  CHECK(IntervalFactors(0.95).interval(root, 7).first ==
-        Approx(std::sqrt(IntervalFactors(0.95).interval(s, 7).first)));
+  CHECK(IntervalFactors(0.95).interval(root, 7).first == Approx(std::sqrt(IntervalFactors(0.95).interval(s, 7).first)));
 }
 
 TEST_CASE("threads change no bit") {
@@ -363,8 +343,7 @@ TEST_CASE("a stream gives the bits of the whole, however it is pushed, with miss
         const Spectrum whole = welch(x, 50, options);
         for (const std::size_t block : {1U, 7U, 64U, 999U, 4096U, 20011U}) {
           WelchStream stream(options);
-          for (std::size_t i = 0; i < x.size(); i += block)
-            stream.push({x.data() + i, std::min(block, x.size() - i)});
+          for (std::size_t i = 0; i < x.size(); i += block) stream.push({x.data() + i, std::min(block, x.size() - i)});
           const Spectrum s = stream.finish(50);
           CAPTURE(n, overlap, block, dirty);
           REQUIRE(s.value == whole.value);
@@ -402,8 +381,7 @@ TEST_CASE("a stream of one segment, or of one more than a group of 32, counts th
   }
 }
 
-TEST_CASE(
-    "segments that touch a missing sample are dropped and counted, and the rest is untouched") {
+TEST_CASE("segments that touch a missing sample are dropped and counted, and the rest is untouched") {
   auto x = white_samples(1000, 9);
   x[250] = kAbsent;
   WelchOptions options = welch_segments(100);
@@ -417,8 +395,7 @@ TEST_CASE(
   std::vector<double> kept(x.begin(), x.begin() + 200);
   kept.insert(kept.end(), x.begin() + 300, x.end());
   const Spectrum wanted = welch(kept, 1, options);
-  for (std::size_t k = 0; k < wanted.value.size(); ++k)
-    CHECK(apart.value[k] == Approx(wanted.value[k]).epsilon(1e-14));
+  for (std::size_t k = 0; k < wanted.value.size(); ++k) CHECK(apart.value[k] == Approx(wanted.value[k]).epsilon(1e-14));
   CHECK(apart.dof == wanted.dof);
 }
 
@@ -450,8 +427,7 @@ TEST_CASE("what cannot be done is refused with what is needed") {
   };
   CHECK(message([] { welch({}, 1); }).find("at least 8 consecutive samples") != std::string::npos);
   CHECK(message([] { welch(std::vector<double>(7, 1.0), 1); }).find("has 7") != std::string::npos);
-  CHECK(message([] { welch(std::vector<double>(100, kAbsent), 1); }).find("has 0") !=
-        std::string::npos);
+  CHECK(message([] { welch(std::vector<double>(100, kAbsent), 1); }).find("has 0") != std::string::npos);
   CHECK_THROWS_AS(welch(white_samples(100, 1), 0), Error);
   CHECK_THROWS_AS(welch(white_samples(100, 1), kAbsent), Error);
   WelchOptions options = welch_segments(4);
@@ -477,8 +453,7 @@ TEST_CASE("infinite samples are missing samples") {
 
 TEST_CASE("welch: squares that a double does not hold are refused, in memory and streamed") {
   std::vector<double> plain(4096);
-  for (std::size_t i = 0; i < plain.size(); ++i)
-    plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
+  for (std::size_t i = 0; i < plain.size(); ++i) plain[i] = std::sin(static_cast<double>(i) * static_cast<double>(i));
   WelchOptions options;
   options.segment = 256;
   const auto streamed = [&](const std::vector<double>& y) {

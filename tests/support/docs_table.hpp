@@ -12,12 +12,9 @@
 namespace test {
 
 /// The page with what stands between `<!-- KIND: NAME -->` and `<!-- end of KIND -->` replaced.
-inline std::string with_table(const std::string& page,
-                              const std::string& kind,
-                              const std::string& name,
+inline std::string with_table(const std::string& page, const std::string& kind, const std::string& name,
                               const std::string& table) {
-  const std::string begin = "<!-- " + kind + ": " + name + " -->\n",
-                    end = "<!-- end of " + kind + " -->";
+  const std::string begin = "<!-- " + kind + ": " + name + " -->\n", end = "<!-- end of " + kind + " -->";
   const std::size_t from = page.find(begin);
   if (from == std::string::npos) return "no mark of " + name;
   const std::size_t to = page.find(end, from);
@@ -25,9 +22,7 @@ inline std::string with_table(const std::string& page,
   return page.substr(0, from + begin.size()) + table + page.substr(to);
 }
 
-inline void check_docs_table(const std::string& file,
-                             const std::string& kind,
-                             const std::string& name,
+inline void check_docs_table(const std::string& file, const std::string& kind, const std::string& name,
                              const std::string& table) {
   INFO(file << ": " << name);
   const auto path = source_folder() / "docs" / file;

@@ -27,8 +27,7 @@ inline double flicker_power(const FlickerFilter& filter, double nu) {
   const double w = 2 * std::numbers::pi * nu, half = std::sin(w / 2);
   const std::complex<double> chord(2 * half * half, std::sin(w)), turn(std::cos(w), -std::sin(w));
   std::complex<double> sum = 0;
-  for (std::size_t j = 0; j < filter.loss.size(); ++j)
-    sum += filter.weight[j] / (chord + filter.loss[j] * turn);
+  for (std::size_t j = 0; j < filter.loss.size(); ++j) sum += filter.weight[j] / (chord + filter.loss[j] * turn);
   return std::norm(sum);
 }
 
@@ -38,8 +37,7 @@ inline double flicker_variogram(const FlickerFilter& filter, double n) {
     const double fall = -std::expm1(n * std::log1p(-filter.loss[i]));  // 1 - p^n
     double shared = 0;  // over 1 - p_i p_j, from the losses q = 1 - p: nothing cancels
     for (std::size_t j = 0; j < filter.loss.size(); ++j)
-      shared +=
-          filter.weight[j] / (filter.loss[i] + filter.loss[j] - filter.loss[i] * filter.loss[j]);
+      shared += filter.weight[j] / (filter.loss[i] + filter.loss[j] - filter.loss[i] * filter.loss[j]);
     sum += 2 * filter.weight[i] * fall * shared;
   }
   return sum;

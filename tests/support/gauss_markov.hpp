@@ -9,8 +9,8 @@
 namespace test {
 
 // White noise and y_t = phi y_{t-1} + e_t by their own recursion, apart from the library's generator.
-inline std::vector<double> white_and_process(
-    std::uint64_t seed, std::size_t n, double rate, double q, double sigma, double tau) {
+inline std::vector<double> white_and_process(std::uint64_t seed, std::size_t n, double rate, double q, double sigma,
+                                             double tau) {
   Gaussian normal(seed);
   const double phi = std::exp(-1 / (rate * tau));
   std::vector<double> y(n);

@@ -47,14 +47,9 @@ Kernel of_samples(std::string name, std::function<double()> run) {
 Kernel csv_rows(std::string name, int used) {
   auto text = std::make_shared<std::string>("t,a,b,c,d,e,f\n");
   for (std::size_t i = 0; i + 6 <= kSamples / 4; i += 6)
-    *text += fmt::format("{:.3f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
-                         static_cast<double>(i) * .005,
-                         samples()[i],
-                         samples()[i + 1],
-                         samples()[i + 2],
-                         samples()[i + 3],
-                         samples()[i + 4],
-                         samples()[i + 5]);
+    *text +=
+        fmt::format("{:.3f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", static_cast<double>(i) * .005, samples()[i],
+                    samples()[i + 1], samples()[i + 2], samples()[i + 3], samples()[i + 4], samples()[i + 5]);
   LogInfo info;
   const std::string_view head = std::string_view(*text).substr(0, std::size_t{1} << 16U);
   auto dialect = std::make_shared<csv::Dialect>(csv::understand(head, false, ReadOptions{}, info));
@@ -68,17 +63,14 @@ Kernel csv_rows(std::string name, int used) {
   text->append(csv::kPadding, '\0');
   auto chunk = std::make_shared<csv::ParsedChunk>();
   return {std::move(name), size, [=] {
-            csv::parse_rows(
-                std::string_view(*text).substr(dialect->data_offset, size - dialect->data_offset),
-                plan,
-                *chunk);
+            csv::parse_rows(std::string_view(*text).substr(dialect->data_offset, size - dialect->data_offset), plan,
+                            *chunk);
             return chunk->rows.columns[0].back() + static_cast<double>(chunk->rows.rows);
           }};
 }
 
 std::vector<Kernel> csv_kernels() {
-  return {csv_rows("rows of seven columns", 6),
-          csv_rows("rows of which two columns are read", 1),
+  return {csv_rows("rows of seven columns", 6), csv_rows("rows of which two columns are read", 1),
           of_samples("quality", [] {
             QualityMeter meter;
             meter.push(samples());
@@ -134,8 +126,7 @@ std::vector<Kernel> spectrum_kernels() {
   WelchOptions whole = halves, line = halves;
   whole.overlap = 0.25;
   line.detrend = Detrend::linear;
-  return {welch_kernel("half segments", halves),
-          welch_kernel("segments, mean removed", whole),
+  return {welch_kernel("half segments", halves), welch_kernel("segments, mean removed", whole),
           welch_kernel("segments, line removed", line)};
 }
 
@@ -155,12 +146,9 @@ std::vector<Kernel> noise_kernels() {
 
 std::vector<Kernel> fusion_kernels() {
   constexpr std::size_t kDimension = 5, kStarts = 2000;
-  return {{"nearest stretches",
-           kStarts * kDimension * sizeof(double),
+  return {{"nearest stretches", kStarts * kDimension * sizeof(double),
            [search = std::make_shared<fusion::DelaySearch>(kDimension, 8, kStarts)] {
-             return search->nearest(samples().data(), kStarts, samples().data() + kStarts + 100)
-                 .front()
-                 .distance;
+             return search->nearest(samples().data(), kStarts, samples().data() + kStarts + 100).front().distance;
            }}};
 }
 
@@ -199,20 +187,12 @@ KernelTime time_of(Kernel kernel, int rounds) {
 
 void print_kernels(std::string_view group) {
   constexpr const char* kNames[] = {"any", "AVX2"};
-  fmt::print("\n{:<36} {:>12} {:>10} {:>12} {:>10}\n",
-             "kernel",
-             "instructions",
-             "MB/s",
-             "of memcpy",
-             "x any");
+  fmt::print("\n{:<36} {:>12} {:>10} {:>12} {:>10}\n", "kernel", "instructions", "MB/s", "of memcpy", "x any");
   for (const Kernel& kernel : kernels_of(group)) {
     const KernelTime time = time_of(kernel);
     for (std::size_t i = 0; i < time.seconds.size(); ++i)
-      fmt::print("{:<36} {:>12} {:>10.0f} {:>12.3f} {:>10.2f}\n",
-                 i == 0 ? kernel.name : "",
-                 kNames[i],
-                 static_cast<double>(kernel.bytes) / time.seconds[i] * 1e-6,
-                 time.copy_s / time.seconds[i],
+      fmt::print("{:<36} {:>12} {:>10.0f} {:>12.3f} {:>10.2f}\n", i == 0 ? kernel.name : "", kNames[i],
+                 static_cast<double>(kernel.bytes) / time.seconds[i] * 1e-6, time.copy_s / time.seconds[i],
                  time.seconds[0] / time.seconds[i]);
   }
 }

@@ -57,8 +57,7 @@ class Gaussian {
 /// and the eigenvalues are kept.
 class FlickerSource {
  public:
-  explicit FlickerSource(std::size_t n)
-      : n_(n), size_(embedding(n)), fft_(size_), amplitude_(size_ / 2 + 1) {
+  explicit FlickerSource(std::size_t n) : n_(n), size_(embedding(n)), fft_(size_), amplitude_(size_ / 2 + 1) {
     const auto input = fft_.input();
     for (std::size_t j = 0; j < size_; ++j) {
       const double lag = static_cast<double>(std::min(j, size_ - j));

@@ -26,11 +26,10 @@ struct Array {
 inline Array npy(const std::filesystem::path& path) {
   const std::string bytes = slurp(path);
   if (bytes.substr(0, 6) != "\x93NUMPY" || bytes[6] != 1) throw std::runtime_error("not npy 1.0");
-  const std::size_t length = static_cast<unsigned char>(bytes[8]) +
-                             256U * static_cast<std::size_t>(static_cast<unsigned char>(bytes[9]));
+  const std::size_t length =
+      static_cast<unsigned char>(bytes[8]) + 256U * static_cast<std::size_t>(static_cast<unsigned char>(bytes[9]));
   const std::string header = bytes.substr(10, length);
-  if (header.find("'<f8'") == std::string::npos)
-    throw std::runtime_error("not little-endian doubles: " + header);
+  if (header.find("'<f8'") == std::string::npos) throw std::runtime_error("not little-endian doubles: " + header);
   Array array;
   const std::string shape = header.substr(header.find('(') + 1);
   std::size_t used = 0;
@@ -38,8 +37,7 @@ inline Array npy(const std::filesystem::path& path) {
   const std::string rest = shape.substr(used + 1, shape.find(')') - used - 1);
   if (rest.find_first_of("0123456789") != std::string::npos) array.columns = std::stoul(rest);
   array.values.resize(array.rows * array.columns);
-  std::memcpy(
-      array.values.data(), bytes.data() + 10 + length, array.values.size() * sizeof(double));
+  std::memcpy(array.values.data(), bytes.data() + 10 + length, array.values.size() * sizeof(double));
   if (header.find("'fortran_order': True") != std::string::npos) {
     const std::vector<double> by_column = array.values;
     for (std::size_t r = 0; r < array.rows; ++r)

@@ -19,8 +19,7 @@ Part joined_parts(std::span<const double> record, std::size_t leaf, Take take, J
   for (std::size_t i = 0; i * leaf < record.size(); ++i) {
     const std::size_t count = std::min(leaf, record.size() - i * leaf);
     nodes.push_back({0, i, take(record.subspan(i * leaf, count), (i + 1) * leaf >= record.size())});
-    while (nodes.size() > 1 && nodes[nodes.size() - 2].height == nodes.back().height &&
-           nodes.back().place % 2 == 1) {
+    while (nodes.size() > 1 && nodes[nodes.size() - 2].height == nodes.back().height && nodes.back().place % 2 == 1) {
       Node right = std::move(nodes.back());
       nodes.pop_back();
       join(nodes.back().part, std::move(right.part));

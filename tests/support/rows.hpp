@@ -19,8 +19,7 @@ struct Rows {
   std::size_t blocks = 0;
 };
 
-inline Rows read_rows(const std::string& format,
-                      const std::filesystem::path& path,
+inline Rows read_rows(const std::string& format, const std::filesystem::path& path,
                       const libchar::ReadOptions& options = {},
                       bool to_end = false) {  // warnings that need totals too
   const libchar::Format* const row = libchar::find_format(format);

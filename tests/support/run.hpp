@@ -30,8 +30,7 @@ struct RunOptions {
 /// Runs `words` (program first) without a shell and waits for its end.
 inline Ran run_words(const std::vector<std::string>& words, const RunOptions& options = {}) {
   const TemporaryFolder folder;
-  const std::string out =
-      options.stdout_path.empty() ? (folder / "out").string() : options.stdout_path;
+  const std::string out = options.stdout_path.empty() ? (folder / "out").string() : options.stdout_path;
   const std::string err = (folder / "err").string();
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
@@ -47,8 +46,7 @@ inline Ran run_words(const std::vector<std::string>& words, const RunOptions& op
     ::dup2(out_file, 1);
     ::dup2(err_file, 2);
     if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(125);
-    for (const std::string& variable : options.environment)
-      ::putenv(const_cast<char*>(variable.c_str()));
+    for (const std::string& variable : options.environment) ::putenv(const_cast<char*>(variable.c_str()));
     ::execvp(argv[0], argv.data());
     ::_exit(125);
   }

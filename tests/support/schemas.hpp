@@ -14,8 +14,6 @@ std::string schema_fault(const std::string& document);
 
 /// The same of what a run of the program printed with --json, and of the documents in the folder of
 /// its -o (relative to `folder`).
-std::string faults_of_run(const std::vector<std::string>& arguments,
-                          const std::string& out,
-                          const std::string& folder);
+std::string faults_of_run(const std::vector<std::string>& arguments, const std::string& out, const std::string& folder);
 
 }  // namespace test

@@ -15,16 +15,10 @@
 namespace test {
 
 /// A recording or a table beside the checkout: say NEEDS_SHARED(name) first.
-inline std::filesystem::path shared(const std::string& name) {
-  return test::shared_folder() / name;
-}
-inline std::filesystem::path fixture(const std::string& name) {
-  return test::fixtures_folder() / name;
-}
+inline std::filesystem::path shared(const std::string& name) { return test::shared_folder() / name; }
+inline std::filesystem::path fixture(const std::string& name) { return test::fixtures_folder() / name; }
 /// A known answer of this repository: fixtures/README.md has their sources and licences.
-inline std::filesystem::path known(const std::string& name) {
-  return test::fixtures_folder() / "known" / name;
-}
+inline std::filesystem::path known(const std::string& name) { return test::fixtures_folder() / "known" / name; }
 
 inline std::string slurp(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -36,8 +30,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "libchar-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot make a temporary folder");
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary folder");
     path_ = name;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;

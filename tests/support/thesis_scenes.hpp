@@ -51,8 +51,7 @@ inline Recorded simulate(const std::string& file, std::uint64_t seed, bool flick
     for (Index i = 0; i < n; ++i)
       r.y.row(i).segment(done, rows) =
           Eigen::Map<const Eigen::RowVectorXd>(block[static_cast<std::size_t>(i)].data(), rows);
-    r.x.segment(done, rows) =
-        Eigen::Map<const Eigen::RowVectorXd>(block[static_cast<std::size_t>(n)].data(), rows);
+    r.x.segment(done, rows) = Eigen::Map<const Eigen::RowVectorXd>(block[static_cast<std::size_t>(n)].data(), rows);
     done += rows;
   }
   r.array.channels = n;
@@ -61,8 +60,8 @@ inline Recorded simulate(const std::string& file, std::uint64_t seed, bool flick
   r.array.learning_samples = samples;
   r.array.noise_levels.resize(n);
   for (Index i = 0; i < n; ++i)
-    r.array.noise_levels[i] = libchar::sample_noise_variance(
-        s.sensors[static_cast<std::size_t>(i)].model, s.rate_hz, s.oversampling);
+    r.array.noise_levels[i] =
+        libchar::sample_noise_variance(s.sensors[static_cast<std::size_t>(i)].model, s.rate_hz, s.oversampling);
   if (r.scene.fault_free_s) r.array.fault_free_samples = r.instant(*r.scene.fault_free_s);
   return r;
 }
@@ -76,11 +75,7 @@ struct Ran {
 };
 
 /// Runs on the whole recording; what learns, learns on [from, to) before.
-inline Ran run(const std::string& name,
-               const Options& options,
-               const Recorded& r,
-               Index from = 0,
-               Index to = 0) {
+inline Ran run(const std::string& name, const Options& options, const Recorded& r, Index from = 0, Index to = 0) {
   const libchar::fusion::Entry& entry = libchar::fusion::algorithm(name);
   libchar::fusion::Settings settings(entry.options);
   for (const auto& [option, value] : options) settings.set(option, value);
@@ -94,29 +89,21 @@ inline Ran run(const std::string& name,
   runner->run(r.y, x, variance);
   Ran ran{x, {}, {}};
   if (const auto weights = runner->weights()) ran.weights = *weights;
-  if (const auto* faults = runner->faults())
-    ran.faults.assign(faults->events().begin(), faults->events().end());
+  if (const auto* faults = runner->faults()) ran.faults.assign(faults->events().begin(), faults->events().end());
   return ran;
 }
 
-inline double rms(const Eigen::RowVectorXd& estimate,
-                  const Recorded& r,
-                  Index from = 0,
-                  Index to = -1) {
+inline double rms(const Eigen::RowVectorXd& estimate, const Recorded& r, Index from = 0, Index to = -1) {
   const Index end = to < 0 ? r.x.size() : to;
-  return std::sqrt(
-      (estimate.segment(from, end - from) - r.x.segment(from, end - from)).squaredNorm() /
-      static_cast<double>(end - from));
+  return std::sqrt((estimate.segment(from, end - from) - r.x.segment(from, end - from)).squaredNorm() /
+                   static_cast<double>(end - from));
 }
 
 /// What least squares learns on [from, to).
-inline libchar::fusion::LearntWeights learnt(const Recorded& r,
-                                             const libchar::fusion::LeastSquaresForm& form,
-                                             Index from,
-                                             Index to) {
+inline libchar::fusion::LearntWeights learnt(const Recorded& r, const libchar::fusion::LeastSquaresForm& form,
+                                             Index from, Index to) {
   libchar::fusion::WeightLearner learner(r.array.channels);
-  for (Index k = from; k < to; ++k)
-    learner.add(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()), r.x[k]);
+  for (Index k = from; k < to; ++k) learner.add(libchar::fusion::Sample(r.y.col(k).data(), r.y.rows()), r.x[k]);
   return learner.weights(form);
 }
 

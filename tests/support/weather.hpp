@@ -31,18 +31,13 @@ inline libchar::TemperatureRecord weather(Weather kind, std::size_t n, Gaussian&
 }
 
 /// What a sensor with these coefficients makes of a temperature.
-inline void add_effect(std::vector<double>& y,
-                       const libchar::TemperatureRecord& temperature,
-                       double rate_hz,
-                       double lag_s,
-                       double one,
-                       double two = 0) {
+inline void add_effect(std::vector<double>& y, const libchar::TemperatureRecord& temperature, double rate_hz,
+                       double lag_s, double one, double two = 0) {
   double mean = 0;
   for (const double x : temperature.samples) mean += x / static_cast<double>(y.size());
   double state = temperature.samples[0];
   for (std::size_t t = 0; t < y.size(); ++t) {
-    state = lag_s > 0 ? state + (temperature.samples[t] - state) / (lag_s * rate_hz)
-                      : temperature.samples[t];
+    state = lag_s > 0 ? state + (temperature.samples[t] - state) / (lag_s * rate_hz) : temperature.samples[t];
     y[t] += one * (state - mean) + two * (state - mean) * (state - mean);
   }
 }

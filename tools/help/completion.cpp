@@ -15,8 +15,7 @@ std::string quoted_word(std::string_view text) {
 /// The same for fish, which escapes by a backslash inside single quotes.
 std::string fish_quoted(std::string_view text) {
   std::string out = "'";
-  for (const char c : text)
-    out += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  for (const char c : text) out += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return out + "'";
 }
 
@@ -46,8 +45,7 @@ std::string all_verbs(const ProgramUsage& program) {
 std::string bash_answer(const OptionUsage& option) {
   switch (option.kind) {
     case ValueKind::words:
-      return fmt::format(
-          "{} {}", option.comma_list ? "list" : "words", fmt::join(option.words, " "));
+      return fmt::format("{} {}", option.comma_list ? "list" : "words", fmt::join(option.words, " "));
     case ValueKind::file:
       return "files";
     case ValueKind::folder:
@@ -114,11 +112,9 @@ complete -F _@PROGRAM@ @PROGRAM@
 )bash";
 
 /// The frame with each mark replaced by its text.
-std::string filled(std::string text,
-                   const std::vector<std::pair<std::string, std::string>>& marks) {
+std::string filled(std::string text, const std::vector<std::pair<std::string, std::string>>& marks) {
   for (const auto& [mark, value] : marks)
-    for (std::size_t at = text.find(mark); at != std::string::npos;
-         at = text.find(mark, at + value.size()))
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size()))
       text.replace(at, mark.size(), value);
   return text;
 }
@@ -139,8 +135,7 @@ std::string zsh_value(const OptionUsage& option) {
     case ValueKind::none:
       return "";
     case ValueKind::words:
-      if (option.comma_list)
-        return fmt::format(":{}:_values -s , word {}", name, fmt::join(option.words, " "));
+      if (option.comma_list) return fmt::format(":{}:_values -s , word {}", name, fmt::join(option.words, " "));
       return fmt::format(":{}:({})", name, fmt::join(option.words, " "));
     case ValueKind::file:
       return fmt::format(":{}:_files", name);
@@ -167,22 +162,18 @@ std::string zsh_option(const OptionUsage& option) {
   return line + quoted_word(rest) + " \\\n";
 }
 
-std::string fish_option(const ProgramUsage& program,
-                        const VerbUsage& verb,
-                        const OptionUsage& option) {
-  std::string line =
-      fmt::format("complete -c {} -n '__{}_verb {}'", program.name, program.name, verb.name);
+std::string fish_option(const ProgramUsage& program, const VerbUsage& verb, const OptionUsage& option) {
+  std::string line = fmt::format("complete -c {} -n '__{}_verb {}'", program.name, program.name, verb.name);
   for (const std::string& flag : option.flags)
     line += flag.starts_with("--") ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
   switch (option.kind) {
     case ValueKind::none:
       break;
     case ValueKind::words:
-      line += " -x -a " +
-              fish_quoted(option.comma_list
-                              ? fmt::format("(__fish_complete_list , \"string split ' ' '{}'\")",
-                                            fmt::join(option.words, " "))
-                              : fmt::format("{}", fmt::join(option.words, " ")));
+      line +=
+          " -x -a " + fish_quoted(option.comma_list ? fmt::format("(__fish_complete_list , \"string split ' ' '{}'\")",
+                                                                  fmt::join(option.words, " "))
+                                                    : fmt::format("{}", fmt::join(option.words, " ")));
       break;
     case ValueKind::file:
       line += " -r -F";
@@ -201,8 +192,7 @@ std::string fish_option(const ProgramUsage& program,
 
 std::string bash_completion(const ProgramUsage& program) {
   std::string text = fmt::format(
-      "# bash completion of {0}: made by {0} --generate bash\n\n_{0}_flags() {{\n  case $1 in\n",
-      program.name);
+      "# bash completion of {0}: made by {0} --generate bash\n\n_{0}_flags() {{\n  case $1 in\n", program.name);
   for (const VerbUsage& verb : program.verbs)
     text += fmt::format("    {}) echo {} ;;\n", verb.name, quoted_word(all_flags(verb)));
   text += fmt::format(
@@ -221,23 +211,20 @@ std::string bash_completion(const ProgramUsage& program) {
   for (const OptionUsage& option : program.options)
     for (const std::string& flag : option.flags) own += (own.empty() ? "" : " ") + flag;
   return text + "  esac\n}\n" +
-         filled(kBashFrame,
-                {{"@PROGRAM@", program.name},
-                 {"@FLAGS@", quoted_word(own)},
-                 {"@VERBS@", quoted_word(all_verbs(program))}});
+         filled(kBashFrame, {{"@PROGRAM@", program.name},
+                             {"@FLAGS@", quoted_word(own)},
+                             {"@VERBS@", quoted_word(all_verbs(program))}});
 }
 
 std::string zsh_completion(const ProgramUsage& program) {
-  std::string text = fmt::format(
-      "#compdef {0}\n# zsh completion of {0}: made by {0} --generate zsh\n\n", program.name);
+  std::string text = fmt::format("#compdef {0}\n# zsh completion of {0}: made by {0} --generate zsh\n\n", program.name);
   for (const VerbUsage& verb : program.verbs) {
     text += fmt::format("_{}_{}() {{\n  _arguments -S \\\n", program.name, verb.name);
     for (const OptionUsage& option : verb.options) text += zsh_option(option);
     text += "    '*:file:_files'\n}\n\n";
   }
   text += fmt::format("_{}_verbs() {{\n  local -a verbs\n  verbs=(\n", program.name);
-  for (const VerbUsage& verb : program.verbs)
-    text += "    " + quoted_word(verb.name + ":" + brief(verb.what)) + "\n";
+  for (const VerbUsage& verb : program.verbs) text += "    " + quoted_word(verb.name + ":" + brief(verb.what)) + "\n";
   text += "    'help:what a verb does'\n  )\n  _describe verb verbs\n}\n\n";
   text += fmt::format(
       "_{0}() {{\n  if (( CURRENT == 2 )); then\n    _{0}_verbs\n    return\n  fi\n  local "
@@ -258,22 +245,16 @@ std::string fish_completion(const ProgramUsage& program) {
       "  test (count (commandline -opc)) -eq 1\nend\n\n",
       program.name);
   for (const VerbUsage& verb : program.verbs)
-    text += fmt::format("complete -c {} -n '__{}_no_verb' -f -a {} -d {}\n",
-                        program.name,
-                        program.name,
-                        verb.name,
+    text += fmt::format("complete -c {} -n '__{}_no_verb' -f -a {} -d {}\n", program.name, program.name, verb.name,
                         fish_quoted(brief(verb.what)));
   text += fmt::format(
       "complete -c {0} -n '__{0}_no_verb' -f -a help -d 'what a verb does'\ncomplete -c {0} -n "
       "'__{0}_verb help' -f -a {1}\n",
-      program.name,
-      fish_quoted(all_verbs(program)));
+      program.name, fish_quoted(all_verbs(program)));
   for (const OptionUsage& option : program.options)
     for (const std::string& flag : option.flags)
       if (flag.starts_with("--"))
-        text += fmt::format("complete -c {0} -n '__{0}_no_verb' -f -l {1} -d {2}\n",
-                            program.name,
-                            flag.substr(2),
+        text += fmt::format("complete -c {0} -n '__{0}_no_verb' -f -l {1} -d {2}\n", program.name, flag.substr(2),
                             fish_quoted(brief(option.help)));
   for (const VerbUsage& verb : program.verbs)
     for (const OptionUsage& option : verb.options) text += fish_option(program, verb, option);

@@ -104,8 +104,8 @@ constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"y_range", "--y-range"}};
 
 /// What mends a record before its noise is fitted: other verbs name the one that does it.
-constexpr std::string_view kOfAnalysis[] = {
-    "--data", "--frozen", "--interpolated", "--still", "--temperature", "--unwrap"};
+constexpr std::string_view kOfAnalysis[] = {"--data",  "--frozen",      "--interpolated",
+                                            "--still", "--temperature", "--unwrap"};
 
 const std::set<std::string>* g_of_verb = nullptr;  // of the verb that runs
 
@@ -117,16 +117,15 @@ std::string replaced(const std::string& message, std::vector<std::string_view>& 
     const std::size_t close = message.find('`', open + 1);
     if (close == std::string::npos) break;
     const std::string_view name(message.data() + open + 1, close - open - 1);
-    const auto* row = std::find_if(
-        std::begin(kFlags), std::end(kFlags), [&](const FlagName& f) { return f.option == name; });
+    const auto* row =
+        std::find_if(std::begin(kFlags), std::end(kFlags), [&](const FlagName& f) { return f.option == name; });
     if (row == std::end(kFlags)) {
       open = close;
       continue;
     }
     text += message.substr(done, open - done);
     if (g_of_verb != nullptr && !g_of_verb->contains(std::string(row->flag)) &&
-        std::find(std::begin(kOfAnalysis), std::end(kOfAnalysis), row->flag) !=
-            std::end(kOfAnalysis) &&
+        std::find(std::begin(kOfAnalysis), std::end(kOfAnalysis), row->flag) != std::end(kOfAnalysis) &&
         text.rfind("characterize ") == std::string::npos)
       text += "characterize ";
     text += row->flag;
@@ -139,9 +138,7 @@ std::string replaced(const std::string& message, std::vector<std::string_view>& 
 
 }  // namespace
 
-void set_flags_of_verb(const std::set<std::string>& flags) {
-  g_of_verb = &flags;
-}
+void set_flags_of_verb(const std::set<std::string>& flags) { g_of_verb = &flags; }
 
 std::vector<std::pair<std::string, std::string>> flags_of_options() {
   std::vector<std::pair<std::string, std::string>> out;
@@ -161,8 +158,7 @@ libchar::Problem with_flags(libchar::Problem problem, const std::set<std::string
   std::vector<std::string_view> used;
   problem.hint = replaced(problem.hint, used);
   for (const std::string_view flag : used)
-    if (!of_verb.empty() && flag.starts_with("--") &&
-        !of_verb.contains(std::string(flag.substr(0, flag.find(' ')))))
+    if (!of_verb.empty() && flag.starts_with("--") && !of_verb.contains(std::string(flag.substr(0, flag.find(' ')))))
       problem.hint.clear();
   return problem;
 }

@@ -115,8 +115,7 @@ std::string artefact(const ProgramUsage& program, const std::vector<std::string>
         .got(words.back())
         .hint("--generate man VERB or schema NAME, or --generate bash, zsh, fish or json alone");
   if (kind == "man")
-    return words.size() == 1 ? program_man_page(program)
-                             : verb_man_page(program, named_verb(program, words[1]));
+    return words.size() == 1 ? program_man_page(program) : verb_man_page(program, named_verb(program, words[1]));
   if (kind == "bash") return bash_completion(program);
   if (kind == "zsh") return zsh_completion(program);
   if (kind == "fish") return fish_completion(program);
@@ -130,27 +129,23 @@ std::string artefact(const ProgramUsage& program, const std::vector<std::string>
 
 }  // namespace
 
-std::optional<std::string> generated(const ProgramUsage& program,
-                                     const std::vector<std::string>& command,
+std::optional<std::string> generated(const ProgramUsage& program, const std::vector<std::string>& command,
                                      std::size_t width) {
   if (command.size() < 2) return std::nullopt;
   const std::string& first = command[1];
   if (first == "--generate") return artefact(program, {command.begin() + 2, command.end()});
-  const bool asked = std::any_of(command.begin() + 1, command.end(), [](const std::string& word) {
-    return word == "--help" || word == "-h";
-  });
+  const bool asked = std::any_of(command.begin() + 1, command.end(),
+                                 [](const std::string& word) { return word == "--help" || word == "-h"; });
   if (first == "help") {
     if (command.size() == 2 || asked) return program_help(program, width);
-    if (command.size() > 3)
-      throw libchar::usage_error("E0204", "help").says("one argument too many").got(command[3]);
+    if (command.size() > 3) throw libchar::usage_error("E0204", "help").says("one argument too many").got(command[3]);
     std::string group = group_help(program, command[2], width);
     return group.empty() ? verb_help(program, named_verb(program, command[2]), width) : group;
   }
   if (first == "--help" || first == "-h") return program_help(program, width);
   if (!asked) return std::nullopt;
-  const auto verb = std::find_if(program.verbs.begin(),
-                                 program.verbs.end(),
-                                 [&](const VerbUsage& v) { return v.name == first; });
+  const auto verb =
+      std::find_if(program.verbs.begin(), program.verbs.end(), [&](const VerbUsage& v) { return v.name == first; });
   if (verb == program.verbs.end()) return std::nullopt;
   return verb_help(program, *verb, width);
 }

@@ -11,8 +11,7 @@ namespace sensorchar {
 
 /// What was asked for, when `command` (argv) is one of these; else nothing. `width` is what help is
 /// wrapped to. Throws Error(usage).
-std::optional<std::string> generated(const ProgramUsage& program,
-                                     const std::vector<std::string>& command,
+std::optional<std::string> generated(const ProgramUsage& program, const std::vector<std::string>& command,
                                      std::size_t width);
 
 }  // namespace sensorchar

@@ -62,8 +62,7 @@ std::string option_text(const OptionUsage& option) {
   std::string text = option.help;
   if (option.required && !option.flags.empty()) text += " (required)";
   if (!option.only.empty()) text += fmt::format(" (only {})", option.only);
-  if (!option.excludes.empty())
-    text += fmt::format(" (not with {})", fmt::join(option.excludes, ", "));
+  if (!option.excludes.empty()) text += fmt::format(" (not with {})", fmt::join(option.excludes, ", "));
   return text;
 }
 
@@ -85,8 +84,7 @@ std::string program_help(const ProgramUsage& program, std::size_t width) {
   rows.push_back({"help VERB", "what a verb does, its options with units and defaults, examples"});
   text += help_rows(rows, width) + "\nOptions:\n";
   rows.clear();
-  for (const OptionUsage& option : program.options)
-    rows.push_back({flags_and_value(option), option_text(option)});
+  for (const OptionUsage& option : program.options) rows.push_back({flags_and_value(option), option_text(option)});
   return text + help_rows(rows, width) + "\n" + program.footer + "\n";
 }
 
@@ -106,15 +104,13 @@ std::string verb_help(const ProgramUsage& program, const VerbUsage& verb, std::s
   text += "Usage: " + synopsis(program, verb) + "\n";
   if (!verb.examples.empty()) text += "\nExamples:\n" + examples_text(verb.examples, width);
   std::vector<HelpRow> rows;
-  for (const OptionUsage& argument : verb.arguments)
-    rows.push_back({flags_and_value(argument), argument.help});
+  for (const OptionUsage& argument : verb.arguments) rows.push_back({flags_and_value(argument), argument.help});
   if (!rows.empty()) text += "\nArguments:\n" + help_rows(rows, width);
   for (const std::string& group : groups_of(verb)) {
     rows.clear();
     for (const OptionUsage& option : verb.options)
       if (option.group == group) rows.push_back({flags_and_value(option), option_text(option)});
-    if (!rows.empty())
-      text += "\n" + (group.empty() ? "Options" : group) + ":\n" + help_rows(rows, width);
+    if (!rows.empty()) text += "\n" + (group.empty() ? "Options" : group) + ":\n" + help_rows(rows, width);
   }
   return text;
 }

@@ -27,13 +27,9 @@ std::string roff(std::string_view text) {
   return out.starts_with('.') ? "\\&" + out : out;
 }
 
-std::string bold(std::string_view text) {
-  return "\\fB" + roff(text) + "\\fP";
-}
+std::string bold(std::string_view text) { return "\\fB" + roff(text) + "\\fP"; }
 
-std::string italic(std::string_view text) {
-  return "\\fI" + roff(text) + "\\fP";
-}
+std::string italic(std::string_view text) { return "\\fI" + roff(text) + "\\fP"; }
 
 // A list of words, "adev|oadev|…", may be broken behind its bars.
 std::string breakable(std::string text) {
@@ -45,18 +41,11 @@ std::string breakable(std::string text) {
 std::string head(const ProgramUsage& program, const std::string& page, const std::string& what) {
   std::string title;
   for (const char c : page) title += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  return fmt::format(".TH {} 1 {} \"{} {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
-                     roff(title),
-                     program.released,
-                     roff(program.name),
-                     roff(program.version),
-                     roff(page),
-                     roff(what));
+  return fmt::format(".TH {} 1 {} \"{} {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n", roff(title),
+                     program.released, roff(program.name), roff(program.version), roff(page), roff(what));
 }
 
-std::string tagged(const std::string& tag, const std::string& text) {
-  return ".TP\n" + tag + "\n" + text + "\n";
-}
+std::string tagged(const std::string& tag, const std::string& text) { return ".TP\n" + tag + "\n" + text + "\n"; }
 
 std::string option_entry(const OptionUsage& option) {
   std::string tag;
@@ -65,10 +54,8 @@ std::string option_entry(const OptionUsage& option) {
   std::string text = roff(option.help);
   if (option.required && !option.flags.empty()) text += " (required)";
   if (!option.only.empty()) text += roff(fmt::format(" (only {})", option.only));
-  if (!option.excludes.empty())
-    text += roff(fmt::format(" (not with {})", fmt::join(option.excludes, ", ")));
-  if (option.kind == ValueKind::words && option.name.find('|') == std::string::npos &&
-      !option.words.empty())
+  if (!option.excludes.empty()) text += roff(fmt::format(" (not with {})", fmt::join(option.excludes, ", ")));
+  if (option.kind == ValueKind::words && option.name.find('|') == std::string::npos && !option.words.empty())
     text += roff(fmt::format(". Known: {}", fmt::join(option.words, ", ")));
   return tagged(tag, text);
 }
@@ -88,24 +75,18 @@ std::string exit_status() {
 }
 
 std::string environment() {
-  return ".SH ENVIRONMENT\n" +
-         tagged(bold("NO_COLOR"), "where it is set and not empty, nothing is coloured") +
-         tagged(bold("COLUMNS"),
-                "width that tables and help are fitted to, in place of the terminal\\(aqs") +
+  return ".SH ENVIRONMENT\n" + tagged(bold("NO_COLOR"), "where it is set and not empty, nothing is coloured") +
+         tagged(bold("COLUMNS"), "width that tables and help are fitted to, in place of the terminal\\(aqs") +
          tagged(bold("TERM"), roff("\"dumb\": no progress and no colour"));
 }
 
-std::string paragraph(const std::string& text) {
-  return ".PP\n" + text + "\n";
-}
+std::string paragraph(const std::string& text) { return ".PP\n" + text + "\n"; }
 
 }  // namespace
 
 std::string program_man_page(const ProgramUsage& program) {
-  std::string page =
-      head(program, program.name, "noise, models and fusion of sensors from recordings");
-  page += ".SH SYNOPSIS\n" + bold(program.name) + " " + italic("VERB") + " [" + italic("OPTION") +
-          "]...\n";
+  std::string page = head(program, program.name, "noise, models and fusion of sensors from recordings");
+  page += ".SH SYNOPSIS\n" + bold(program.name) + " " + italic("VERB") + " [" + italic("OPTION") + "]...\n";
   page += ".br\n" + bold(program.name + " help") + " [" + italic("VERB") + "]\n";
   page += ".SH DESCRIPTION\n" + roff(program.what) + "\n";
   page += paragraph(
@@ -119,24 +100,19 @@ std::string program_man_page(const ProgramUsage& program) {
   page += ".SH OPTIONS\n";
   for (const OptionUsage& option : program.options) page += option_entry(option);
   page += exit_status() + environment();
-  page +=
-      ".SH FILES\n" +
-      tagged(italic("/usr/share/doc/sensorchar"),
-             "pages on formats, models, scenes, JSON, errors and the theory behind the numbers");
+  page += ".SH FILES\n" + tagged(italic("/usr/share/doc/sensorchar"),
+                                 "pages on formats, models, scenes, JSON, errors and the theory behind the numbers");
   page += ".SH SEE ALSO\n";
   std::string list;
   for (std::size_t k = 0; k < program.verbs.size(); ++k)
-    list += fmt::format(".BR {}\\-{} (1){}\n",
-                        roff(program.name),
-                        roff(program.verbs[k].name),
+    list += fmt::format(".BR {}\\-{} (1){}\n", roff(program.name), roff(program.verbs[k].name),
                         k + 1 < program.verbs.size() ? "," : "");
   return page + list;
 }
 
 std::string verb_man_page(const ProgramUsage& program, const VerbUsage& verb) {
   std::string page = head(program, program.name + "-" + verb.name, verb.what);
-  page += ".SH SYNOPSIS\n" + bold(program.name + " " + typed(verb.name)) + " [" + italic("OPTION") +
-          "]...";
+  page += ".SH SYNOPSIS\n" + bold(program.name + " " + typed(verb.name)) + " [" + italic("OPTION") + "]...";
   for (const OptionUsage& argument : verb.arguments) {
     std::string word = italic(argument.name);
     if (argument.repeatable && !argument.name.ends_with("…")) word += "...";
@@ -153,8 +129,7 @@ std::string verb_man_page(const ProgramUsage& program, const VerbUsage& verb) {
   }
   if (!verb.examples.empty()) page += ".SH EXAMPLES\n";
   for (const Example& example : verb.examples)
-    page += paragraph(roff(example.what) + ":") + ".PP\n.RS\n.nf\n" + roff(example.command) +
-            "\n.fi\n.RE\n";
+    page += paragraph(roff(example.what) + ":") + ".PP\n.RS\n.nf\n" + roff(example.command) + "\n.fi\n.RE\n";
   page += exit_status();
   return page + ".SH SEE ALSO\n.BR " + roff(program.name) + " (1)\n";
 }

@@ -12,8 +12,7 @@ namespace sensorchar {
 namespace {
 
 constexpr std::size_t kMostShown = 100, kMostRead = std::size_t{1} << 16U;
-constexpr std::uintmax_t kMostScanned = std::uintmax_t{1}
-                                        << 24U;  ///< of a document, whose places have no bytes
+constexpr std::uintmax_t kMostScanned = std::uintmax_t{1} << 24U;  ///< of a document, whose places have no bytes
 
 struct Spot {
   std::string file;
@@ -41,8 +40,7 @@ void go_to_line(std::ifstream& in, const Spot& spot) {
 }
 
 bool shows(const std::string& text) {
-  return libchar::first_invalid_utf8(text) == std::string::npos &&
-         std::none_of(text.begin(), text.end(), [](char c) {
+  return libchar::first_invalid_utf8(text) == std::string::npos && std::none_of(text.begin(), text.end(), [](char c) {
            return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
          });
 }

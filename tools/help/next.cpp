@@ -29,8 +29,7 @@ Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
   for (const Finding& one : findings)
     if (one.severity == severity)
       for (const Finding::Help& help : one.help)
-        for (const Finding::Setting& setting : help.options)
-          out[setting.option].insert(setting.value);
+        for (const Finding::Setting& setting : help.options) out[setting.option].insert(setting.value);
   return out;
 }
 
@@ -43,8 +42,7 @@ std::string mending_flags(const std::set<std::string>* free, const std::vector<F
   std::string flags;
   for (const auto& [option, values] : settings) {
     const std::string words = with_flags("`" + option + "`");
-    const std::string flag =
-        words.substr(words.rfind(' ') + 1);  // "characterize --frozen" elsewhere
+    const std::string flag = words.substr(words.rfind(' ') + 1);  // "characterize --frozen" elsewhere
     if (free != nullptr && !free->contains(flag)) continue;
     if (option == "missing") {
       flags += fmt::format(" {}={}", flag, fmt::join(values, ","));
@@ -64,15 +62,12 @@ std::vector<Finding> findings_of(const Characterization& result) {
 
 /// An option that was given already cannot be given twice.
 bool was_given(const Session& session, const std::string& flag) {
-  return std::any_of(session.command.begin(), session.command.end(), [&](const std::string& word) {
-    return word == flag || word.starts_with(flag + "=");
-  });
+  return std::any_of(session.command.begin(), session.command.end(),
+                     [&](const std::string& word) { return word == flag || word.starts_with(flag + "="); });
 }
 
 /// The command as it was given, its results replaced.
-std::string command_again(const Session& session,
-                          const std::string& flags,
-                          const std::string& folder) {
+std::string command_again(const Session& session, const std::string& flags, const std::string& folder) {
   std::string out = "sensorchar";
   bool forced = false, placed = false;
   for (std::size_t i = 1; i < session.command.size(); ++i) {
@@ -118,13 +113,9 @@ std::string default_folder(const std::string& input, const std::string& kind) {
   return (stem.empty() || stem == "-" || stem == "." || stem == ".." ? "log" : stem) + "-" + kind;
 }
 
-std::string mending_flags(const std::vector<Finding>& findings) {
-  return mending_flags(nullptr, findings);
-}
+std::string mending_flags(const std::vector<Finding>& findings) { return mending_flags(nullptr, findings); }
 
-std::string mended_command(const Session& session,
-                           const std::vector<Finding>& findings,
-                           const std::string& folder) {
+std::string mended_command(const Session& session, const std::vector<Finding>& findings, const std::string& folder) {
   std::set<std::string> free;
   for (const std::string& flag : session.flags)
     if (!was_given(session, flag)) free.insert(flag);
@@ -132,25 +123,19 @@ std::string mended_command(const Session& session,
   return flags.empty() ? "" : command_again(session, flags, folder);
 }
 
-std::vector<std::string> next_steps(const Session& session,
-                                    const Characterization& result,
-                                    const std::string& folder) {
+std::vector<std::string> next_steps(const Session& session, const Characterization& result, const std::string& folder) {
   const TimeBase& time = result.log.time;
   if (!(time.rate_hz > 0))
     return {
-        command_again(session,
-                      time.candidate.empty() ? " --rate RATE" : " --time-column " + time.candidate,
-                      folder)};
+        command_again(session, time.candidate.empty() ? " --rate RATE" : " --time-column " + time.candidate, folder)};
   const std::vector<Finding> findings = findings_of(result);
   std::vector<std::string> out;
   // What is said of samples that were read in the wrong way mends nothing.
   if (result.log.warnings.find("implausible_magnitude") == nullptr)
     if (std::string mended = mended_command(session, findings, folder); !mended.empty())
       out.push_back(std::move(mended));
-  const auto usable =
-      std::find_if(result.channels.begin(), result.channels.end(), [](const auto& c) {
-        return c.fit && worst_of(judge(c).findings) != Severity::bad;
-      });
+  const auto usable = std::find_if(result.channels.begin(), result.channels.end(),
+                                   [](const auto& c) { return c.fit && worst_of(judge(c).findings) != Severity::bad; });
   if (usable != result.channels.end()) {
     const std::string words = shell_word(folder);
     if (exports_to(result, "kalibr")) out.push_back("sensorchar model " + words + " --to kalibr");

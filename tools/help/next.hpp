@@ -16,14 +16,12 @@ std::string default_folder(const std::string& input, const std::string& kind = "
 std::string mending_flags(const std::vector<libchar::Finding>& findings);
 
 /// The same command again, with options that mend the worst of these findings; "" where none does.
-std::string mended_command(const Session& session,
-                           const std::vector<libchar::Finding>& findings,
+std::string mended_command(const Session& session, const std::vector<libchar::Finding>& findings,
                            const std::string& folder);
 
 /// Of a characterization in a folder, the most useful first: the same command with what mends the worst that was
 /// found, the file of an IMU for Kalibr, a figure, what the worst finding means.
-std::vector<std::string> next_steps(const Session& session,
-                                    const libchar::Characterization& result,
+std::vector<std::string> next_steps(const Session& session, const libchar::Characterization& result,
                                     const std::string& folder);
 
 /// The line that says so; nothing when quiet, or for "".

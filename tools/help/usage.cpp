@@ -31,8 +31,7 @@ std::string flags_and_value(const OptionUsage& option) {
 std::vector<std::string> groups_of(const VerbUsage& verb) {
   std::vector<std::string> groups = {""};
   for (const OptionUsage& option : verb.options)
-    if (std::find(groups.begin(), groups.end(), option.group) == groups.end())
-      groups.push_back(option.group);
+    if (std::find(groups.begin(), groups.end(), option.group) == groups.end()) groups.push_back(option.group);
   return groups;
 }
 

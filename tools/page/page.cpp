@@ -40,17 +40,14 @@ void run_page(Session& session, const PageVerb& verb) {
   libchar::check_output(verb.output, verb.force);
   libchar::write_whole_file(verb.output, libchar::file_text(installed_page(), kMost), verb.force);
   session.wrote = true;
-  print_summary(
-      session,
-      verb.output,
-      "wrote " + libchar::printable(verb.output) +
-          "\nnext: open it in a browser and drop logs on it; nothing leaves the machine\n");
+  print_summary(session, verb.output,
+                "wrote " + libchar::printable(verb.output) +
+                    "\nnext: open it in a browser and drop logs on it; nothing leaves the machine\n");
 }
 
 std::function<void()> page_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<PageVerb>();
-  options.add_text("-o,--output", verb->output, "file to write (default: sensorchar.html)")
-      .value_name("FILE");
+  options.add_text("-o,--output", verb->output, "file to write (default: sensorchar.html)").value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
   return [&session, verb] { run_page(session, *verb); };
 }

@@ -60,8 +60,7 @@ class LibraryCall {
   LibraryCall(const LibraryCall&) = delete;
   LibraryCall& operator=(const LibraryCall&) = delete;
   ~LibraryCall() {
-    g_library_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    g_library_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
  private:
@@ -93,9 +92,7 @@ class Given {
     if (!found) refuse(name, text, words_of<Enum>());
     value = *found;
   }
-  [[noreturn]] static void refuse(const char* name,
-                                  const std::string& got,
-                                  const std::vector<std::string>& words) {
+  [[noreturn]] static void refuse(const char* name, const std::string& got, const std::vector<std::string>& words) {
     throw usage_error("E0202", name).says("expected one of {}", fmt::join(words, ", ")).got(got);
   }
 
@@ -203,10 +200,8 @@ CharacterizeOptions characterize_options(const py::dict& reading, const py::dict
   o.allan.threads = o.spectrum.threads = o.reading.threads;
   if (given.has("only")) {
     const auto only = given.get<std::string>("only");
-    o.wanted = {.quality = false,
-                .allan = only == "allan" || o.fit.second_opinion,
-                .spectrum = false,
-                .fit = only == "fit"};
+    o.wanted = {
+        .quality = false, .allan = only == "allan" || o.fit.second_opinion, .spectrum = false, .fit = only == "fit"};
     if (only == "allan") o.fit.second_opinion = false;
   }
   return o;
@@ -217,10 +212,8 @@ RecordingView recording_of(const py::dict& columns) {
   RecordingView view;
   const auto names = columns["names"].cast<std::vector<std::string>>();
   const auto units = columns["units"].cast<std::vector<std::string>>();
-  for (std::size_t c = 0; c < names.size(); ++c)
-    view.info.channels.push_back({names[c], units[c], false});
-  for (const py::handle column : columns["samples"])
-    view.samples.push_back(samples_of(column.cast<Column>()));
+  for (std::size_t c = 0; c < names.size(); ++c) view.info.channels.push_back({names[c], units[c], false});
+  for (const py::handle column : columns["samples"]) view.samples.push_back(samples_of(column.cast<Column>()));
   view.info.file = columns["file"].cast<std::string>();
   view.info.time.rate_hz = columns["rate_hz"].cast<double>();
   view.info.samples = view.info.rows = view.samples.empty() ? 0 : view.samples[0].size();
@@ -244,8 +237,7 @@ py::dict recording_dict(Recording&& recording) {
   out["start_ns"] = recording.info.time.start_ns;
   out["info"] = to_python(with_valid_text(recording_json(recording.info, {})));
   py::list warnings;
-  for (const Finding& warning : recording.info.warnings.list())
-    warnings.append(one_line(warning, recording.info.file));
+  for (const Finding& warning : recording.info.warnings.list()) warnings.append(one_line(warning, recording.info.file));
   out["warnings"] = warnings;
   return out;
 }
@@ -286,8 +278,7 @@ class Characterized {
     std::vector<std::pair<std::string, py::object>> out;
     for (const ChannelResult& c : result_.channels) {
       Json list = Json::array();
-      for (const Finding& one : judge(c).findings)
-        list.push_back(document_of(finding_fields(), one));
+      for (const Finding& one : judge(c).findings) list.push_back(document_of(finding_fields(), one));
       out.emplace_back(c.channel.name, to_python(with_valid_text(list)));
     }
     return out;
@@ -313,18 +304,14 @@ class Characterized {
   Characterization result_;
 };
 
-Characterized characterize_file(const std::string& path,
-                                const py::dict& reading,
-                                const py::dict& options) {
+Characterized characterize_file(const std::string& path, const py::dict& reading, const py::dict& options) {
   const CharacterizeOptions o = characterize_options(reading, options);
   const py::gil_scoped_release released;
   Interruptible progress;
   return Characterized(libchar::characterize(path, o, progress));
 }
 
-Characterized characterize_columns(const py::dict& columns,
-                                   const py::dict& reading,
-                                   const py::dict& options) {
+Characterized characterize_columns(const py::dict& columns, const py::dict& reading, const py::dict& options) {
   const CharacterizeOptions o = characterize_options(reading, options);
   const RecordingView view = recording_of(columns);
   const py::gil_scoped_release released;
@@ -350,8 +337,7 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
     const LibraryCall call;
     spectra = file ? log_spectra(path, o, progress) : log_spectra(view, o);
     IntervalFactors factors(0.95);
-    for (const ChannelResult& c : spectra.channels)
-      intervals.push_back(spectrum_intervals(c.spectrum, factors));
+    for (const ChannelResult& c : spectra.channels) intervals.push_back(spectrum_intervals(c.spectrum, factors));
   }
   py::list out;
   for (std::size_t k = 0; k < spectra.channels.size(); ++k) {
@@ -392,8 +378,7 @@ py::dict simulate(const std::string& model, bool text, const py::dict& options) 
   if (given.has("truth")) o.truth = parse_signal(given.get<std::string>("truth"), "truth");
   std::vector<std::string> names;
   const std::string name = sensor.channel.empty() ? "sensor" : sensor.channel;
-  for (std::uint64_t k = 1; k <= o.devices; ++k)
-    names.push_back(o.devices == 1 ? name : name + std::to_string(k));
+  for (std::uint64_t k = 1; k <= o.devices; ++k) names.push_back(o.devices == 1 ? name : name + std::to_string(k));
   if (given.has("faults"))
     for (const std::string& fault : given.get<std::vector<std::string>>("faults"))
       o.faults.push_back(parse_fault(fault, names));
@@ -437,9 +422,7 @@ Scene scene_of(const std::string& path, const py::dict& reading, const Given& gi
 class Replayed {
  public:
   explicit Replayed(ReplayResult result) : result_(std::move(result)) {}
-  py::object document() const {
-    return to_python(with_valid_text(replay_json(replay_view(result_))));
-  }
+  py::object document() const { return to_python(with_valid_text(replay_json(replay_view(result_)))); }
   std::string html() const { return replay_html(replay_view(result_)); }
   std::string markdown() const { return replay_markdown(replay_view(result_)); }
 
@@ -477,11 +460,9 @@ void set_errors(const py::object& usage, const py::object& input, const py::obje
 
 void raise_error(const Error& error) {
   const Problem& problem = error.problem();
-  const std::size_t which = problem.kind == ErrorKind::usage     ? 0
-                            : problem.kind == ErrorKind::numeric ? 2
-                                                                 : 1;
-  const py::object made = py::reinterpret_borrow<py::object>(g_errors[which])(
-      one_line(problem), problem.code, problem.where, problem.hint);
+  const std::size_t which = problem.kind == ErrorKind::usage ? 0 : problem.kind == ErrorKind::numeric ? 2 : 1;
+  const py::object made =
+      py::reinterpret_borrow<py::object>(g_errors[which])(one_line(problem), problem.code, problem.where, problem.hint);
   PyErr_SetObject(g_errors[which], made.ptr());
 }
 
@@ -520,16 +501,15 @@ PYBIND11_MODULE(_libchar, module) {
   module.def("simulate", &simulate);
   module.def("replay", &replay);
   module.def("library_seconds", [] { return g_library_seconds; });
-  module.def("write_recording",
-             [](const std::string& path, const py::dict& columns, bool overwrite) {
-               const RecordingView view = recording_of(columns);
-               const py::gil_scoped_release released;
-               WriteOptions options;
-               options.overwrite = overwrite;
-               const auto writer = open_log_writer(path, view.info, options);
-               writer->write(view.samples);
-               writer->finish();
-             });
+  module.def("write_recording", [](const std::string& path, const py::dict& columns, bool overwrite) {
+    const RecordingView view = recording_of(columns);
+    const py::gil_scoped_release released;
+    WriteOptions options;
+    options.overwrite = overwrite;
+    const auto writer = open_log_writer(path, view.info, options);
+    writer->write(view.samples);
+    writer->finish();
+  });
 }
 
 }  // namespace libchar_python

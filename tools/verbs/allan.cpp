@@ -51,30 +51,19 @@ LogAllanOptions devices_options(const AllanVerb& verb) {
 }
 
 void run_hat(Session& session, const AllanVerb& verb) {
-  const LogHat hat =
-      log_cornered_hat(verb.log, devices_options(verb), verb.hat_of_differences, session.terminal);
+  const LogHat hat = log_cornered_hat(verb.log, devices_options(verb), verb.hat_of_differences, session.terminal);
   session.terminal.clear();
   for (const std::string& note : hat.hat.notes) session.terminal.note(note);
-  write_document(session,
-                 hat.log,
-                 "cornered-hat",
-                 hat_json(hat),
-                 hat_csv(hat),
-                 {verb.output, verb.json, verb.force});
+  write_document(session, hat.log, "cornered-hat", hat_json(hat), hat_csv(hat), {verb.output, verb.json, verb.force});
 }
 
 void run_dynamic(Session& session, const AllanVerb& verb) {
-  const LogDynamic dynamic =
-      log_dynamic_deviation(verb.log, devices_options(verb), *verb.dynamic, session.terminal);
+  const LogDynamic dynamic = log_dynamic_deviation(verb.log, devices_options(verb), *verb.dynamic, session.terminal);
   session.terminal.clear();
   for (std::size_t c = 0; c < dynamic.channels.size(); ++c)
     for (const std::string& note : dynamic.deviations[c].notes)
       session.terminal.note(printable(dynamic.channels[c].name) + ": " + note);
-  write_document(session,
-                 dynamic.log,
-                 "dynamic-allan",
-                 dynamic_json(dynamic),
-                 dynamic_csv(dynamic),
+  write_document(session, dynamic.log, "dynamic-allan", dynamic_json(dynamic), dynamic_csv(dynamic),
                  {verb.output, verb.json, verb.force});
 }
 
@@ -125,9 +114,8 @@ void run_allan(Session& session, const AllanVerb& verb) {
   if (!any)
     throw numeric_error("E0710", verb.log)
         .says("no channel gives an Allan deviation")
-        .hint(result.log.time.rate_hz > 0
-                  ? ""
-                  : "the sampling rate is not known: a log without time stamps needs --rate");
+        .hint(result.log.time.rate_hz > 0 ? ""
+                                          : "the sampling rate is not known: a log without time stamps needs --rate");
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;
@@ -148,26 +136,21 @@ void run_allan(Session& session, const AllanVerb& verb) {
 
 std::function<void()> allan_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<AllanVerb>();
-  options
-      .add_text(
-          "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
+  options.add_text("LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
   const Option json = options.add_flag("--json", verb->json, "one JSON document instead of CSV");
-  const Option hat = options.add_flag("--hat",
-                                      verb->hat,
+  const Option hat = options.add_flag("--hat", verb->hat,
                                       "single devices from the differences of three or more "
                                       "channels that measure the same at once: "
                                       "the three-cornered hat, or any number of corners");
-  Option pairs = options.add_flag(
-      "--hat-pairs",
-      verb->hat_of_differences,
-      "the same where three channels are differences a - b, b - c, c - a, each measured by itself");
+  Option pairs =
+      options.add_flag("--hat-pairs", verb->hat_of_differences,
+                       "the same where three channels are differences a - b, b - c, c - a, each measured by itself");
   pairs.excludes(hat);
   Option dynamic = options.add_parsed(
-      "--dynamic",
-      "WINDOW[,STEP]",
+      "--dynamic", "WINDOW[,STEP]",
       [verb = verb.get()](const std::string& text) { verb->dynamic = read_dynamic(text); },
       "a curve for every window of this length, as it moves on by STEP (default: half of it)");
   options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV")
@@ -181,15 +164,11 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   add_data_options(options, verb->analysis);
   verb->analysis.several_types = true;
   add_allan_options(options, verb->analysis);
-  const auto plain = [verb = verb.get()] {
-    return !verb->hat && !verb->hat_of_differences && !verb->dynamic;
-  };
-  options.only("without --hat, --hat-pairs and --dynamic",
-               plain,
+  const auto plain = [verb = verb.get()] { return !verb->hat && !verb->hat_of_differences && !verb->dynamic; };
+  options.only("without --hat, --hat-pairs and --dynamic", plain,
                {"--still", "--unwrap", "--frozen", "--interpolated", "--memory"});
   options.only("with --type mtotdev, ttotdev or htotdev, without --hat, --hat-pairs and --dynamic",
-               [plain, verb = verb.get()] { return plain() && has_bias(verb->analysis); },
-               {"--bias"});
+               [plain, verb = verb.get()] { return plain() && has_bias(verb->analysis); }, {"--bias"});
   return [&session, verb] {
     verb->analysis.options.reading.hash = verb->json;  // only the document states it
     run_allan(session, *verb);
@@ -203,8 +182,7 @@ VerbEntry verb_allan() {
           "allan",
           "Compute Allan deviations and their relatives, with intervals, as CSV or JSON",
           allan_options,
-          {{"a few averaging times of one channel",
-            "sensorchar allan imu.csv -c gyro_z --taus 0.1s,1s,10s"},
+          {{"a few averaging times of one channel", "sensorchar allan imu.csv -c gyro_z --taus 0.1s,1s,10s"},
            {"the modified deviation of all gyroscopes, into a table",
             "sensorchar allan imu.csv -c 'gyro*' --type mdev -o mdev.csv"}}};
 }

@@ -43,8 +43,7 @@ struct BenchVerb {
   }
 };
 
-const std::vector<std::string> kBenchParts = {
-    "characterization", "fusion", "scaling", "design", "stress"};
+const std::vector<std::string> kBenchParts = {"characterization", "fusion", "scaling", "design", "stress"};
 
 void check_parts(const BenchVerb& verb) {
   for (const std::string& part : verb.parts)
@@ -64,8 +63,7 @@ void check_algorithms(const BenchVerb& verb) {
 /// Is this part done? A part that nothing was given for is left out; how cost grows and what is
 /// endured is asked of the program, and not of a file.
 bool is_done(const std::string& part, const BenchVerb& verb, const BenchInputs& inputs) {
-  if (part == "scaling" || part == "stress")
-    return verb.parts.empty() ? verb.files.empty() : verb.wants(part);
+  if (part == "scaling" || part == "stress") return verb.parts.empty() ? verb.files.empty() : verb.wants(part);
   if (!verb.wants(part)) return false;
   return part == "fusion" ? !inputs.scenes.empty() : !inputs.signals.empty();
 }
@@ -115,26 +113,20 @@ void check_options_are_used(const BenchVerb& verb, const BenchInputs& inputs) {
 BenchInputs inputs_of(Session& session, BenchVerb& verb) {
   BenchInputs out;
   verb.inputs.most_samples = verb.samples != 0 ? verb.samples : verb.quick ? 1U << 15U : 200000U;
-  for (const std::string& file : verb.files)
-    add_bench_input(file, verb.inputs, out, session.terminal);
+  for (const std::string& file : verb.files) add_bench_input(file, verb.inputs, out, session.terminal);
   if (!verb.files.empty()) return out;
-  if (verb.wants("characterization") || verb.wants("design"))
-    out.signals = bench_signals(verb.inputs.most_samples);
+  if (verb.wants("characterization") || verb.wants("design")) out.signals = bench_signals(verb.inputs.most_samples);
   if (verb.wants("fusion")) out.scenes = bench_scenes();
   return out;
 }
 
-void bench_noise(Session& session,
-                 const BenchVerb& verb,
-                 const BenchInputs& inputs,
-                 BenchReport& report) {
+void bench_noise(Session& session, const BenchVerb& verb, const BenchInputs& inputs, BenchReport& report) {
   CharacterizationBenchOptions options;
   options.records = verb.records != 0 ? detail::in_memory(verb.records) : verb.quick ? 12 : 60;
   options.seed = verb.seed;
   options.methods = verb.methods;
   for (const BenchSignal& signal : inputs.signals)
-    report.characterization.push_back(
-        bench_characterization(signal, options, session.terminal, heap_meter()));
+    report.characterization.push_back(bench_characterization(signal, options, session.terminal, heap_meter()));
 }
 
 FusionBench bench_scenes_of(Session& session, const BenchVerb& verb, const BenchInputs& inputs) {
@@ -142,8 +134,7 @@ FusionBench bench_scenes_of(Session& session, const BenchVerb& verb, const Bench
   options.seeds = verb.runs != 0 ? detail::in_memory(verb.runs) : verb.quick ? 3 : 12;
   options.seed = verb.seed;
   options.algorithms = verb.algorithms;
-  for (const std::string& text : verb.sweeps)
-    options.sweeps.push_back(parse_sweep(text, "--sweep"));
+  for (const std::string& text : verb.sweeps) options.sweeps.push_back(parse_sweep(text, "--sweep"));
   return bench_fusion(inputs.scenes, options, session.terminal, heap_meter());
 }
 
@@ -188,9 +179,7 @@ void refuse_worse(const BenchChanges& changes, double tolerance, const std::stri
   const std::vector<BenchChange> worse = changes.worse(tolerance);
   if (worse.empty()) return;
   throw Refusal(ErrorKind::check, "E0969", older)
-      .says("{} figures are worse than there by more than {} %, the first {}",
-            worse.size(),
-            100 * tolerance,
+      .says("{} figures are worse than there by more than {} %, the first {}", worse.size(), 100 * tolerance,
             worse[0].what)
       .hint("other work on the machine? run again; --tolerance accepts more");
 }
@@ -200,12 +189,8 @@ void refuse_wrong(const StressBench& stress) {
   if (wrong == 0) return;
   const StressCell& first = stress.cells.front();
   throw Refusal(ErrorKind::check, "E0971")
-      .says("{} of {} results under stress are wrong, the first: {}, {}: {}",
-            wrong,
-            stress.cells.size(),
-            first.subject,
-            first.input,
-            first.what);
+      .says("{} of {} results under stress are wrong, the first: {}, {}: {}", wrong, stress.cells.size(), first.subject,
+            first.input, first.what);
 }
 
 void run_bench(Session& session, BenchVerb& verb) {
@@ -222,21 +207,18 @@ void run_bench(Session& session, BenchVerb& verb) {
   if (!verb.against.empty()) inputs_named.push_back(verb.against);
   if (!verb.folder.empty()) foresee_outputs(foreseen(), verb.folder, inputs_named, verb.force);
   const BenchReport older =
-      verb.against.empty() ? BenchReport{}
-                           : parse_bench_report(read_document_text(verb.against), verb.against);
+      verb.against.empty() ? BenchReport{} : parse_bench_report(read_document_text(verb.against), verb.against);
   check_algorithms(verb);
   const BenchInputs inputs = inputs_of(session, verb);
   check_options_are_used(verb, inputs);
   const BenchReport report = measured(session, verb, inputs);
-  if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design &&
-      !report.stress)
+  if (report.characterization.empty() && !report.fusion && !report.scaling && !report.design && !report.stress)
     throw usage_error("E0205", "--parts")
         .says("nothing to do: models and logs are for characterization, scenes for fusion")
         .hint("other files, or other parts");
   std::vector<std::string> removed;
   if (!verb.folder.empty())
-    removed =
-        write_outputs(bench_files(report, verb.folder), verb.folder, inputs_named, verb.force);
+    removed = write_outputs(bench_files(report, verb.folder), verb.folder, inputs_named, verb.force);
   Json document = document_of(bench_fields(), report);
   const double tolerance = verb.tolerance.value_or(5) / 100;
   std::optional<BenchChanges> changes;
@@ -260,55 +242,35 @@ void run_bench(Session& session, BenchVerb& verb) {
 
 void add_design_options(VerbOptions& options, BenchVerb& verb) {
   options
-      .add_number(
-          "--target",
-          verb.target,
-          "design: Allan deviation that the fused sensors are to reach, in the models' unit",
-          1e-100,
-          1e100)
+      .add_number("--target", verb.target,
+                  "design: Allan deviation that the fused sensors are to reach, in the models' unit", 1e-100, 1e100)
       .value_name("DEVIATION");
   options.add_duration("--at", verb.tau_s, "design: averaging time of that target (default: 1 s)");
   options
-      .add_number("--within",
-                  verb.share,
-                  "design: percent of itself that a coefficient is to be known to (default: 10)",
-                  0.01,
-                  99)
+      .add_number("--within", verb.share,
+                  "design: percent of itself that a coefficient is to be known to (default: 10)", 0.01, 99)
       .value_name("PERCENT");
-  options.add_rate("--instants-rate",
-                   verb.rate_hz,
-                   "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
+  options.add_rate("--instants-rate", verb.rate_hz, "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
 }
 
 void add_comparison_options(VerbOptions& options, BenchVerb& verb) {
   options
-      .add_text(
-          "--against",
-          verb.against,
-          "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
-          "beyond both intervals")
+      .add_text("--against", verb.against,
+                "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
+                "beyond both intervals")
       .value_name("FILE");
-  options
-      .add_number("--tolerance",
-                  verb.tolerance,
-                  "percent that a figure may be worse by (default: 5)",
-                  0,
-                  1000)
+  options.add_number("--tolerance", verb.tolerance, "percent that a figure may be worse by (default: 5)", 0, 1000)
       .value_name("PERCENT");
 }
 
 std::function<void()> bench_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<BenchVerb>();
   options
-      .add_texts("FILE",
-                 verb->files,
+      .add_texts("FILE", verb->files,
                  "models, logs (their fitted models) and scenes; none: built-in signals and scenes")
       .value_name("FILE…");
-  options.add_text("-o,--output", verb->folder, "folder for bench.html, bench.json, bench.md")
-      .value_name("DIR");
-  options
-      .add_texts(
-          "--parts", verb->parts, "these only: " + fmt::format("{}", fmt::join(kBenchParts, ", ")))
+  options.add_text("-o,--output", verb->folder, "folder for bench.html, bench.json, bench.md").value_name("DIR");
+  options.add_texts("--parts", verb->parts, "these only: " + fmt::format("{}", fmt::join(kBenchParts, ", ")))
       .separated_by_commas()
       .one_value_each()
       .value_name("PART,…")
@@ -316,39 +278,28 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
   options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
   options.add_flag("--stress", verb->stress, "the same as --parts stress");
   options.add_count("--seed", verb->seed, "of the first simulation (default: 1)");
-  options.add_count("--records",
-                    verb->records,
-                    "simulated records of each signal (default: 60; quick: 12)",
-                    2,
-                    100000);
-  options.add_count(
-      "--samples",
-      verb->samples,
-      "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)",
-      64,
-      std::uint64_t{1} << 32U);
+  options.add_count("--records", verb->records, "simulated records of each signal (default: 60; quick: 12)", 2, 100000);
+  options.add_count("--samples", verb->samples,
+                    "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)", 64,
+                    std::uint64_t{1} << 32U);
   options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
   options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME,…");
-  options
-      .add_texts(
-          "--algorithms", verb->algorithms, "fusion algorithms (default: the scene's, else all)")
+  options.add_texts("--algorithms", verb->algorithms, "fusion algorithms (default: the scene's, else all)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME,…");
   options
-      .add_texts("--sweep",
-                 verb->sweeps,
+      .add_texts("--sweep", verb->sweeps,
                  "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
                  "FROM..TO; several make a grid")
       .one_value_each()
       .value_name("SWEEP");
   add_design_options(options, *verb);
   add_comparison_options(options, *verb);
-  options.only(
-      "with --against", [verb = verb.get()] { return !verb->against.empty(); }, {"--tolerance"});
+  options.only("with --against", [verb = verb.get()] { return !verb->against.empty(); }, {"--tolerance"});
   options.add_flag("--force", verb->force, "overwrite results of an earlier run");
   options.add_flag("--json", verb->json, "print bench.json to stdout instead of the tables");
   add_reading_options(options, session, verb->inputs.reading);

@@ -48,9 +48,7 @@ struct Outcome {
   std::vector<std::string> exceeded;  ///< limits, a sentence a recording
 };
 
-fs::path folder_for(const CharacterizeVerb& verb,
-                    const std::string& log,
-                    std::set<std::string>& taken) {
+fs::path folder_for(const CharacterizeVerb& verb, const std::string& log, std::set<std::string>& taken) {
   if (verb.folder.empty()) return unused_file_name_for(default_folder(log), taken);
   if (verb.logs.size() == 1) return verb.folder;
   return fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken);
@@ -65,17 +63,12 @@ std::vector<std::string> inputs_of(const CharacterizeVerb& verb) {
 void hold_against(const NoiseLimits& limits, Characterization& result, Outcome& outcome) {
   result.settings.push_back({"limits", limits.file});
   const auto report = std::make_shared<LimitReport>(judge_limits(result, limits));
-  if (report->count(LimitStatus::fail) > 0)
-    outcome.exceeded.push_back(result.log.file + ": " + report->verdict);
+  if (report->count(LimitStatus::fail) > 0) outcome.exceeded.push_back(result.log.file + ": " + report->verdict);
   result.limits = report;
 }
 
-Characterization characterized(Session& session,
-                               const CharacterizeVerb& verb,
-                               const CharacterizeOptions& options,
-                               const std::optional<NoiseLimits>& limits,
-                               const std::string& log,
-                               Outcome& outcome) {
+Characterization characterized(Session& session, const CharacterizeVerb& verb, const CharacterizeOptions& options,
+                               const std::optional<NoiseLimits>& limits, const std::string& log, Outcome& outcome) {
   Characterization result = characterize(log, options, session.terminal);
   result.command = session.command;
   result.settings = settings_of(options);
@@ -107,8 +100,7 @@ std::vector<std::string> paths_of(const std::vector<OutputFile>& files) {
 /// A set of more files is named by its first ones.
 constexpr std::size_t kMostNamed = 24;
 
-void say_written(const Session& session,
-                 const std::vector<std::string>& outputs,
+void say_written(const Session& session, const std::vector<std::string>& outputs,
                  const std::vector<std::string>& removed) {
   std::string written = "\nwrote";
   const std::size_t named = outputs.size() > kMostNamed ? kMostNamed - 1 : outputs.size();
@@ -125,11 +117,8 @@ std::string shell_words(const std::vector<std::string>& logs) {
   return words;
 }
 
-void run_one_by_one(Session& session,
-                    const CharacterizeVerb& verb,
-                    const CharacterizeOptions& options,
-                    const std::optional<NoiseLimits>& limits,
-                    Outcome& outcome) {
+void run_one_by_one(Session& session, const CharacterizeVerb& verb, const CharacterizeOptions& options,
+                    const std::optional<NoiseLimits>& limits, Outcome& outcome) {
   std::set<std::string> taken;
   Json documents = Json::array();
   for (const std::string& log : verb.logs) {
@@ -161,12 +150,10 @@ struct FolderOutputs {
 };
 
 /// Nothing is written before all of it can be. What was removed from the last of them.
-std::vector<std::string> write_folders(Session& session,
-                                       const CharacterizeVerb& verb,
+std::vector<std::string> write_folders(Session& session, const CharacterizeVerb& verb,
                                        const std::vector<FolderOutputs>& all) {
   const std::vector<std::string> inputs = inputs_of(verb);
-  for (const FolderOutputs& one : all)
-    check_outputs(paths_of(one.files), one.folder, inputs, verb.force);
+  for (const FolderOutputs& one : all) check_outputs(paths_of(one.files), one.folder, inputs, verb.force);
   std::vector<std::string> removed;
   for (const FolderOutputs& one : all) {
     removed = write_outputs(one.files, one.folder, inputs, verb.force);
@@ -176,8 +163,7 @@ std::vector<std::string> write_folders(Session& session,
 }
 
 /// The reports of single recordings, in folders of their own below that of the page.
-std::vector<FolderOutputs> single_reports(const CharacterizeVerb& verb,
-                                          const std::vector<Characterization>& results,
+std::vector<FolderOutputs> single_reports(const CharacterizeVerb& verb, const std::vector<Characterization>& results,
                                           std::vector<std::string>& folders) {
   std::set<std::string> taken;
   std::vector<FolderOutputs> all;
@@ -189,11 +175,9 @@ std::vector<FolderOutputs> single_reports(const CharacterizeVerb& verb,
   return all;
 }
 
-std::vector<Characterization> all_characterized(Session& session,
-                                                const CharacterizeVerb& verb,
+std::vector<Characterization> all_characterized(Session& session, const CharacterizeVerb& verb,
                                                 const CharacterizeOptions& options,
-                                                const std::optional<NoiseLimits>& limits,
-                                                Outcome& outcome) {
+                                                const std::optional<NoiseLimits>& limits, Outcome& outcome) {
   std::vector<Characterization> results;
   for (const std::string& log : verb.logs)
     results.push_back(characterized(session, verb, options, limits, log, outcome));
@@ -216,11 +200,8 @@ void report_of_runs(Session& session, const std::vector<Characterization>& resul
 }
 
 /// The limits of the data sheet hold for what the runs together say.
-void run_pooled(Session& session,
-                const CharacterizeVerb& verb,
-                const CharacterizeOptions& options,
-                const std::optional<NoiseLimits>& limits,
-                Outcome& outcome) {
+void run_pooled(Session& session, const CharacterizeVerb& verb, const CharacterizeOptions& options,
+                const std::optional<NoiseLimits>& limits, Outcome& outcome) {
   const auto results = all_characterized(session, verb, options, std::nullopt, outcome);
   PoolOptions how;
   how.fit = options.fit;
@@ -244,11 +225,8 @@ void run_pooled(Session& session,
   say_written(session, paths_of(all.back().files), removed);
 }
 
-void run_lot(Session& session,
-             const CharacterizeVerb& verb,
-             const CharacterizeOptions& options,
-             const std::optional<NoiseLimits>& limits,
-             Outcome& outcome) {
+void run_lot(Session& session, const CharacterizeVerb& verb, const CharacterizeOptions& options,
+             const std::optional<NoiseLimits>& limits, Outcome& outcome) {
   const auto results = all_characterized(session, verb, options, limits, outcome);
   std::vector<DeviceRecord> records = records_of(results, options.data);
   std::vector<std::string> folders;
@@ -265,8 +243,7 @@ void run_lot(Session& session,
   print_beside(session, fleet_text(report, table_width()));
   for (const Characterization& result : results)
     if (result.limits)
-      print_beside(session,
-                   "\n" + printable(result.log.file) + limits_text(*result.limits, text_look()));
+      print_beside(session, "\n" + printable(result.log.file) + limits_text(*result.limits, text_look()));
   say_written(session, files, {});
 }
 
@@ -279,25 +256,21 @@ void foresee_reports(const CharacterizeVerb& verb) {
     foresee_outputs(paths, folder, inputs_of(verb), verb.force);
   };
   for (const std::string& log : verb.logs)
-    foresee(verb.pool || verb.lot
-                ? fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken)
-                : folder_for(verb, log, taken),
+    foresee(verb.pool || verb.lot ? fs::path(verb.folder) / unused_file_name_for(libchar::stem_of_log(log), taken)
+                                  : folder_for(verb, log, taken),
             {"report.html", "report.json", "curves.csv"});
   if (verb.pool) foresee(verb.folder, {"runs.html", "runs.json"});
-  if (verb.lot)
-    foresee_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
+  if (verb.lot) foresee_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
 }
 
 void refuse_outcome(const CharacterizeVerb& verb, const Outcome& outcome) {
   if (!outcome.any_fit)
-    throw numeric_error("E0711", verb.logs[0])
-        .says("no channel could be fitted; the report says why");
+    throw numeric_error("E0711", verb.logs[0]).says("no channel could be fitted; the report says why");
   if (!outcome.agrees)
     throw Refusal(ErrorKind::check, "E0713", verb.logs[0])
         .says("a simulation of the model does not agree with the recording; the report says where");
   if (!outcome.exceeded.empty())
-    throw Refusal(ErrorKind::check, "E0714", verb.limits)
-        .says("{}", fmt::join(outcome.exceeded, " "));
+    throw Refusal(ErrorKind::check, "E0714", verb.limits).says("{}", fmt::join(outcome.exceeded, " "));
 }
 
 void run_characterize(Session& session, CharacterizeVerb verb) {
@@ -319,52 +292,37 @@ void run_characterize(Session& session, CharacterizeVerb verb) {
 std::function<void()> characterize_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CharacterizeVerb>();
   verb->analysis.options.ten_a_decade = true;
-  options
-      .add_texts("LOG",
-                 verb->logs,
-                 "recordings (" + readable_files() + "; - reads CSV from standard input)")
+  options.add_texts("LOG", verb->logs, "recordings (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options
-      .add_text("-o,--output",
-                verb->folder,
+      .add_text("-o,--output", verb->folder,
                 "folder for the results (made when absent; with several logs one folder each "
                 "inside; default: LOG-report)")
       .value_name("DIR")
       .writes();
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
-  options.add_flag("--no-timing",
-                   verb->no_timing,
+  options.add_flag("--no-timing", verb->no_timing,
                    "without the time it took: the same input and options give the same bytes");
-  options.add_flag(
-      "--verify",
-      verb->verify,
-      "simulate every channel from its model, characterize that, and compare (exit code "
-      "6 when they disagree)");
+  options.add_flag("--verify", verb->verify,
+                   "simulate every channel from its model, characterize that, and compare (exit code "
+                   "6 when they disagree)");
   options
-      .add_text(
-          "--limits",
-          verb->limits,
-          "check each noise term against data-sheet limits (docs/recordings.md): pass, fail or "
-          "undecided; exit code 6 when one fails")
+      .add_text("--limits", verb->limits,
+                "check each noise term against data-sheet limits (docs/recordings.md): pass, fail or "
+                "undecided; exit code 6 when one fails")
       .value_name("FILE");
-  options.add_count(
-      "--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
-  const Option pool =
-      options.add_flag("--pool",
-                       verb->pool,
-                       "the LOGs are runs of one sensor: one set of coefficients by one "
-                       "likelihood, whether they have "
-                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
+  options.add_count("--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
+  const Option pool = options.add_flag("--pool", verb->pool,
+                                       "the LOGs are runs of one sensor: one set of coefficients by one "
+                                       "likelihood, whether they have "
+                                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
   options
-      .add_flag("--lot",
-                verb->lot,
+      .add_flag("--lot", verb->lot,
                 "compare the LOGs as devices side by side, as fleet merge does: mean and spread of "
                 "each term, outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
       .excludes(pool);
-  options.only("with --verify or --pool",
-               [verb = verb.get()] { return verb->verify || verb->pool; },
-               {"--seed"});
+  options.only("with --verify or --pool", [verb = verb.get()] { return verb->verify || verb->pool; }, {"--seed"});
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_characterize(session, *verb); };
 }

@@ -38,17 +38,14 @@ Json texts(const std::vector<std::string>& sentences) {
   return out;
 }
 
-Json comparison_head(const Session& session,
-                     const std::string& format,
-                     const std::vector<LogInfo>& files) {
+Json comparison_head(const Session& session, const std::string& format, const std::vector<LogInfo>& files) {
   std::vector<const LogInfo*> each;
   for (const LogInfo& one : files) each.push_back(&one);
   return document_head(session, format, each);
 }
 
 Json document(const Session& session, const Comparison& c, const std::vector<std::string>& failed) {
-  Json out = comparison_head(
-      session, "replay-comparison", {document_info(c.a.file), document_info(c.b.file)});
+  Json out = comparison_head(session, "replay-comparison", {document_info(c.a.file), document_info(c.b.file)});
   out.update(comparison_json(c));
   out["failed"] = texts(failed);
   return out;
@@ -71,8 +68,7 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
         .hint("--markdown and --json serve both");
   std::vector<ComparisonCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_comparison_check(text));
-  const Comparison comparison =
-      compare_replays(read_replay_report(verb.inputs[0]), read_replay_report(verb.inputs[1]));
+  const Comparison comparison = compare_replays(read_replay_report(verb.inputs[0]), read_replay_report(verb.inputs[1]));
   if (!verb.unlike) refuse_unlike(comparison);
   std::vector<std::string> failed;
   for (const ComparisonCheck& check : checks)
@@ -86,9 +82,7 @@ void compare_two_replays(Session& session, const CompareVerb& verb) {
   if (!failed.empty()) refuse_failed(failed);
 }
 
-ReportedCharacterization candidate_of(Session& session,
-                                      const CompareVerb& verb,
-                                      const std::string& path,
+ReportedCharacterization candidate_of(Session& session, const CompareVerb& verb, const std::string& path,
                                       std::vector<LogInfo>& files) {
   if (!detail::is_recording(path)) {
     ReportedCharacterization out = read_characterization_report(path);
@@ -102,22 +96,17 @@ ReportedCharacterization candidate_of(Session& session,
   return out;
 }
 
-std::string text_of(const CompareVerb& verb,
-                    const CharacterizationComparison& comparison,
-                    const Json& document) {
+std::string text_of(const CompareVerb& verb, const CharacterizationComparison& comparison, const Json& document) {
   if (verb.json) return dump_json(document);
   if (verb.markdown) return comparison_markdown(comparison);
   if (verb.latex) return table_text(detail::comparison_table(comparison), TableFormat::latex);
-  if (verb.csv)
-    return table_text(detail::comparison_table(comparison, detail::TableGroups::all),
-                      TableFormat::csv);
+  if (verb.csv) return table_text(detail::comparison_table(comparison, detail::TableGroups::all), TableFormat::csv);
   return comparison_text(comparison, table_width());
 }
 
 void compare_sensors(Session& session, const CompareVerb& verb) {
   if (verb.unlike)
-    throw usage_error("E0205", "--unlike")
-        .says("goes with reports of replay, and these are characterizations");
+    throw usage_error("E0205", "--unlike").says("goes with reports of replay, and these are characterizations");
   if (!verb.output.empty()) foresee_output(verb.output, verb.inputs, verb.force);
   std::vector<GrowthCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
@@ -127,10 +116,8 @@ void compare_sensors(Session& session, const CompareVerb& verb) {
   if (!verb.limits.empty()) options.limits = read_limits_file(verb.limits);
   std::vector<ReportedCharacterization> sides;
   std::vector<LogInfo> files;
-  for (const std::string& path : verb.inputs)
-    sides.push_back(candidate_of(session, verb, path, files));
-  const CharacterizationComparison comparison =
-      compare_characterizations(std::move(sides), options);
+  for (const std::string& path : verb.inputs) sides.push_back(candidate_of(session, verb, path, files));
+  const CharacterizationComparison comparison = compare_characterizations(std::move(sides), options);
   std::vector<std::string> failed;
   for (const GrowthCheck& check : checks)
     for (const std::string& sentence : failures(comparison, check)) failed.push_back(sentence);
@@ -141,21 +128,17 @@ void compare_sensors(Session& session, const CompareVerb& verb) {
   const std::string text = text_of(verb, comparison, document);
   plain ? print_text(text) : print(text);
   if (!verb.output.empty())
-    write_whole_file(
-        verb.output, detail::comparison_html(comparison, document, session.command), verb.force);
+    write_whole_file(verb.output, detail::comparison_html(comparison, document, session.command), verb.force);
   if (!failed.empty()) refuse_failed(failed);
 }
 
 /// The kind of document decides what is compared.
 void run_compare(Session& session, const CompareVerb& verb) {
   for (const std::string& report : verb.inputs)
-    refuse_lot_report(
-        report,
-        "lots are compared as fleets (sensorchar fleet plan LOG… -o A): sensorchar fleet "
-        "compare A B, or sensorchar fleet merge A B -o REPORT for one report of both");
-  const auto is_replay = [](const std::string& path) {
-    return detail::document_format(path) == "replay-report";
-  };
+    refuse_lot_report(report,
+                      "lots are compared as fleets (sensorchar fleet plan LOG… -o A): sensorchar fleet "
+                      "compare A B, or sensorchar fleet merge A B -o REPORT for one report of both");
+  const auto is_replay = [](const std::string& path) { return detail::document_format(path) == "replay-report"; };
   if (std::all_of(verb.inputs.begin(), verb.inputs.end(), is_replay))
     compare_two_replays(session, verb);
   else
@@ -165,14 +148,12 @@ void run_compare(Session& session, const CompareVerb& verb) {
 std::function<void()> compare_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<CompareVerb>();
   options
-      .add_texts("INPUT",
-                 verb->inputs,
+      .add_texts("INPUT", verb->inputs,
                  "recordings, reports of characterize (or their folders; runs.json, fit --json, "
                  "allan --json), curves and sensor models in any mixture; or two reports of replay")
       .required();
   options
-      .add_texts("--fail-if",
-                 verb->checks,
+      .add_texts("--fail-if", verb->checks,
                  "exit code 6 when a later input is worse than the first by more: rmse+5%, "
                  "ns_per_sample+20%, "
                  "peak_bytes+10%, regret+0.5% (points), white_noise+10% (beyond its interval); "
@@ -183,37 +164,29 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
       .one_value_each();
   options.add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
   options
-      .add_texts("-c,--channel",
-                 verb->channels,
+      .add_texts("-c,--channel", verb->channels,
                  "channels by name or pattern; gyro_x and accel_x fit any channel that measures "
                  "them (all)")
       .separated_by_commas()
       .once_each();
-  options.add_texts("--label", verb->labels, "a name for each input (default: of its file)")
-      .separated_by_commas();
+  options.add_texts("--label", verb->labels, "a name for each input (default: of its file)").separated_by_commas();
   options
-      .add_text("--limits",
-                verb->limits,
+      .add_text("--limits", verb->limits,
                 "data-sheet limits (docs/recordings.md) as a row of the table and a line in the "
                 "figures")
       .value_name("FILE");
-  const Option json =
-      options.add_flag("--json", verb->json, "one JSON document instead of the table");
+  const Option json = options.add_flag("--json", verb->json, "one JSON document instead of the table");
   const Option markdown =
-      options.add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table")
-          .excludes(json);
-  const Option latex =
-      options.add_flag("--latex", verb->latex, "the table alone as a tabular of LaTeX")
-          .excludes(json)
-          .excludes(markdown);
+      options.add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table").excludes(json);
+  const Option latex = options.add_flag("--latex", verb->latex, "the table alone as a tabular of LaTeX")
+                           .excludes(json)
+                           .excludes(markdown);
   options.add_flag("--csv", verb->csv, "the table alone, one number per column")
       .excludes(json)
       .excludes(markdown)
       .excludes(latex);
   options
-      .add_text("-o,--output",
-                verb->output,
-                "a page with verdict, table and overlaid Allan curves, such as which.html")
+      .add_text("-o,--output", verb->output, "a page with verdict, table and overlaid Allan curves, such as which.html")
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
   add_recording_options(options, session, verb->analysis, verb->inputs);
@@ -227,8 +200,7 @@ VerbEntry verb_compare() {
           "compare",
           "Compare sensors: which has the lowest noise, and where; or two replays",
           compare_options,
-          {{"which of three sensors, from their recordings",
-            "sensorchar compare A.csv B.csv C.csv -o which.html"},
+          {{"which of three sensors, from their recordings", "sensorchar compare A.csv B.csv C.csv -o which.html"},
            {"two recordings of one sensor", "sensorchar compare monday friday"},
            {"for a build server: exit code 6 when an error grew by more than 5 %",
             "sensorchar compare array-replay new-replay --fail-if rmse+5%"}}};

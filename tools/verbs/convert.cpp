@@ -38,17 +38,13 @@ std::uint64_t bytes_of(const std::string& file) {
 void run_convert(Session& session, const ConvertVerb& given) {
   ConvertVerb verb = given;
   take_standard_output(verb.output, verb.writing, verb.json);
-  const libchar::Conversion result =
-      libchar::convert_log(verb.log,
-                           verb.output,
-                           {verb.reading, write_options(verb.writing), session.strict},
-                           session.terminal);
+  const libchar::Conversion result = libchar::convert_log(
+      verb.log, verb.output, {verb.reading, write_options(verb.writing), session.strict}, session.terminal);
   const libchar::LogInfo& info = result.log;
   session.terminal.clear();
   report_warnings(session, info);
   if (result.files.empty()) return;  // --strict
-  for (const std::string& loss : result.losses)
-    session.terminal.note("not kept: " + libchar::printable(loss));
+  for (const std::string& loss : result.losses) session.terminal.note("not kept: " + libchar::printable(loss));
   libchar::Json files = libchar::Json::array();
   std::string text;
   for (const std::string& file : result.files) {
@@ -56,11 +52,8 @@ void run_convert(Session& session, const ConvertVerb& given) {
     const auto bytes = passed_on ? 0 : bytes_of(file);
     files.push_back({{"path", libchar::printable(file)}, {"bytes", bytes}});
     const std::string size = passed_on ? "" : fmt::format(", {} bytes", bytes);
-    text += text.empty() ? fmt::format("{}: {} rows, {}{}\n",
-                                       libchar::printable(file),
-                                       info.samples,
-                                       libchar::plural(info.channels.size(), "channel"),
-                                       size)
+    text += text.empty() ? fmt::format("{}: {} rows, {}{}\n", libchar::printable(file), info.samples,
+                                       libchar::plural(info.channels.size(), "channel"), size)
                          : fmt::format("{}: its sidecar{}\n", libchar::printable(file), size);
   }
   if (!verb.json) return print_summary(session, verb.output, text);
@@ -76,10 +69,8 @@ std::function<void()> convert_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ConvertVerb>();
   options.add_text("LOG", verb->log, "log to read; - reads CSV from standard input").required();
   options
-      .add_text("-o,--output",
-                verb->output,
-                "file to write; its suffix says the format (" + libchar::written_suffixes() +
-                    "; - is standard output)")
+      .add_text("-o,--output", verb->output,
+                "file to write; its suffix says the format (" + libchar::written_suffixes() + "; - is standard output)")
       .required()
       .value_name("FILE");
   add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
@@ -97,8 +88,7 @@ VerbEntry verb_convert() {
           "Convert a log to another format, bit by bit",
           convert_options,
           {{"a table as NumPy file, bit by bit", "sensorchar convert imu.csv -o imu.npy"},
-           {"one channel of the first minute",
-            "sensorchar convert imu.csv -c gyro_z --to 1min -o minute.csv"}}};
+           {"one channel of the first minute", "sensorchar convert imu.csv -c gyro_z --to 1min -o minute.csv"}}};
 }
 
 }  // namespace sensorchar

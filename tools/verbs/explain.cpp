@@ -65,8 +65,8 @@ Explained chosen(const std::vector<std::string>& codes) {
   const std::vector<KindOfError> errors = kinds_of_errors();
   Explained out;
   for (const std::string& code : codes) {
-    const auto error = std::find_if(
-        errors.begin(), errors.end(), [&](const KindOfError& one) { return one.code == code; });
+    const auto error =
+        std::find_if(errors.begin(), errors.end(), [&](const KindOfError& one) { return one.code == code; });
     if (const FindingKind* kind = find_finding_kind(code))
       out.findings.push_back(*kind);
     else if (error != errors.end())
@@ -88,23 +88,18 @@ std::string effects_text(const FindingKind& kind) {
 }
 
 std::string as_text(const FindingKind& kind) {
-  std::string out = fmt::format(
-      "{} ({}): {}\n  {}\n", kind.code, name_of(kind.severity), kind.title, kind.meaning);
+  std::string out = fmt::format("{} ({}): {}\n  {}\n", kind.code, name_of(kind.severity), kind.title, kind.meaning);
   if (!kind.effects.empty()) out += "  it changes: " + effects_text(kind) + "\n";
   if (!kind.remedy.empty()) out += fmt::format("  what to do: {}\n", kind.remedy);
   return out;
 }
 
 Json as_json(const FindingKind& kind) {
-  Json out = {{"code", kind.code},
-              {"severity", name_of(kind.severity)},
-              {"title", kind.title},
-              {"meaning", kind.meaning},
-              {"remedy", kind.remedy},
-              {"effects", Json::array()}};
+  Json out = {{"code", kind.code},     {"severity", name_of(kind.severity)},
+              {"title", kind.title},   {"meaning", kind.meaning},
+              {"remedy", kind.remedy}, {"effects", Json::array()}};
   for (const Finding::Effect& effect : kind.effects)
-    out["effects"].push_back(
-        {{"quantity", name_of(effect.quantity)}, {"direction", name_of(effect.direction)}});
+    out["effects"].push_back({{"quantity", name_of(effect.quantity)}, {"direction", name_of(effect.direction)}});
   return out;
 }
 
@@ -119,8 +114,7 @@ void run_explain(const Session& session, const ExplainVerb& verb) {
     document["kinds"] = Json::array();
     for (const FindingKind& kind : kinds.findings) document["kinds"].push_back(as_json(kind));
     for (const KindOfError& kind : kinds.errors)
-      document["errors"].push_back(
-          {{"code", kind.code}, {"exit_code", kind.exit_code}, {"meaning", kind.meaning}});
+      document["errors"].push_back({{"code", kind.code}, {"exit_code", kind.exit_code}, {"meaning", kind.meaning}});
     return print(dump_json(document));
   }
   std::string text;
@@ -131,8 +125,7 @@ void run_explain(const Session& session, const ExplainVerb& verb) {
 
 std::function<void()> explain_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ExplainVerb>();
-  options.add_texts(
-      "CODE", verb->codes, "codes of findings, as JSON and pages give them (all), or of errors");
+  options.add_texts("CODE", verb->codes, "codes of findings, as JSON and pages give them (all), or of errors");
   options.add_flag("--json", verb->json, "as JSON");
   return [&session, verb] { run_explain(session, *verb); };
 }

@@ -42,13 +42,9 @@ struct Unfitted {
   std::vector<Finding> findings;
 };
 
-std::vector<ChannelFit> fit_log(Session& session,
-                                const FitVerb& verb,
-                                LogInfo& log,
-                                std::vector<Unfitted>& unfitted) {
+std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log, std::vector<Unfitted>& unfitted) {
   CharacterizeOptions options = finish(verb.analysis);
-  options.wanted = {
-      .quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
+  options.wanted = {.quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
   Characterization result = characterize(verb.input, options, session.terminal);
   log = result.log;
   if (result.still) session.terminal.note(printable(result.still->sentence));
@@ -97,9 +93,8 @@ void write_models(const FitVerb& verb, const std::vector<ChannelFit>& fits, cons
   models.reserve(fits.size());
   std::set<std::string> taken;
   for (const ChannelFit& c : fits) {
-    models.push_back(
-        {model_path(verb, c.channel, taken),
-         model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log))});
+    models.push_back({model_path(verb, c.channel, taken),
+                      model_yaml(sensor_model_from_curve(c.channel, c.fit, obtained_from(verb), log))});
   }
   write_outputs(models, verb.models, {verb.input}, verb.force);
 }
@@ -134,18 +129,14 @@ void run_fit(Session& session, const FitVerb& verb) {
   if (fits.empty())
     throw numeric_error("E0711", verb.input)
         .says("no channel could be fitted")
-        .hint(log.time.rate_hz > 0
-                  ? ""
-                  : "the sampling rate is not known: a log without time stamps needs --rate");
+        .hint(log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate");
   if (!verb.output.empty() || !verb.models.empty()) refuse_strict(session);
   std::string text;
   if (verb.json) {
     Json document = document_head(session, "noise-fit", {&log});
     Json channels = Json::array();
-    for (const ChannelFit& c : fits)
-      channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
-    for (const Unfitted& c : unfitted)
-      channels.push_back(no_fit_json(c.channel.name, c.channel.unit, c.findings));
+    for (const ChannelFit& c : fits) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, c.fit));
+    for (const Unfitted& c : unfitted) channels.push_back(no_fit_json(c.channel.name, c.channel.unit, c.findings));
     document.update(noise_fit_document(std::move(channels)));
     if (log.stretch_s) document["stretch_s"] = {log.stretch_s->low, log.stretch_s->high};
     text = dump_json(document);
@@ -177,47 +168,30 @@ void add_only(VerbOptions& options, const FitVerb& verb) {
   options.only("with --curve psd", [&verb] { return verb.curve == "psd"; }, {"--sides"});
   options.only("with --curve allan", [&verb] { return verb.curve == "allan"; }, {"--duration"});
   options.only(
-      "with a recording, not with --curve",
-      [&verb] { return verb.curve == "none"; },
-      recording_flags({"--temperature",
-                       "--data",
-                       "--nominal-frequency",
-                       "--unwrap",
-                       "--frozen",
-                       "--interpolated",
-                       "--memory",
-                       "--no-second-opinion",
-                       "--no-remedies"}));
+      "with a recording, not with --curve", [&verb] { return verb.curve == "none"; },
+      recording_flags({"--temperature", "--data", "--nominal-frequency", "--unwrap", "--frozen", "--interpolated",
+                       "--memory", "--no-second-opinion", "--no-remedies"}));
 }
 
 std::function<void()> fit_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<FitVerb>();
   options
-      .add_text("LOG|CURVE",
-                verb->input,
+      .add_text("LOG|CURVE", verb->input,
                 "recording (" + readable_files() +
                     "), or with --curve a table: averaging "
                     "time or frequency, then values")
       .required();
-  options.add_choice(
-      "--curve",
-      verb->curve,
-      {"none", "allan", "psd"},
-      "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
+  options.add_choice("--curve", verb->curve, {"none", "allan", "psd"},
+                     "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
   options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
-  options.add_choice(
-      "--quantity",
-      verb->quantity,
-      {"auto", "root", "power"},
-      "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
-      "root, psd power)");
-  options.add_duration("--duration",
-                       verb->duration_s,
+  options.add_choice("--quantity", verb->quantity, {"auto", "root", "power"},
+                     "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
+                     "root, psd power)");
+  options.add_duration("--duration", verb->duration_s,
                        "length of the record behind a --curve allan: gives honest intervals");
   options.add_document_output(verb->output);
   options
-      .add_text("--models",
-                verb->models,
+      .add_text("--models", verb->models,
                 "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and "
                 "model --to")
       .value_name("FOLDER");
@@ -229,8 +203,7 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
   add_fit_options(options, verb->analysis);
   add_only(options, *verb);
   return [&session, verb] {
-    verb->analysis.options.reading.hash =
-        verb->json || !verb->models.empty();  // only these state it
+    verb->analysis.options.reading.hash = verb->json || !verb->models.empty();  // only these state it
     run_fit(session, *verb);
   };
 }

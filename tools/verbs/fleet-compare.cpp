@@ -69,10 +69,8 @@ Sides sides_of_fleets(Session& session, const std::vector<std::string>& folders)
   return out;
 }
 
-std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records,
-                                   const DeviceBatches& batches,
-                                   const std::string& batch,
-                                   const std::string& fleet) {
+std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records, const DeviceBatches& batches,
+                                   const std::string& batch, const std::string& fleet) {
   std::vector<DeviceRecord> out;
   for (std::size_t r = 0; r < records.size(); ++r)
     if (batches.batch[batches.device_of[r]] == batch) out.push_back(records[r]);
@@ -86,9 +84,7 @@ std::vector<DeviceRecord> of_batch(const std::vector<DeviceRecord>& records,
   return out;
 }
 
-Sides sides_of_batches(Session& session,
-                       const std::string& folder,
-                       const std::vector<std::string>& names) {
+Sides sides_of_batches(Session& session, const std::string& folder, const std::vector<std::string>& names) {
   if (names[0] == names[1])
     throw usage_error("E0205", "--batches")
         .says("a batch is compared with another one")
@@ -110,8 +106,7 @@ void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
   const bool two = verb.fleets.size() == 2;
   if (verb.fleets.size() > 2 || (two ? !batches.empty() : batches.size() != 2)) refuse_sides();
   foresee_output(verb.output, verb.fleets, verb.force);
-  Sides sides = two ? sides_of_fleets(session, verb.fleets)
-                    : sides_of_batches(session, verb.fleets[0], batches);
+  Sides sides = two ? sides_of_fleets(session, verb.fleets) : sides_of_batches(session, verb.fleets[0], batches);
   if (verb.false_alarm) sides.options.false_alarm = *verb.false_alarm;
   FleetComparison comparison = compare_lots(sides.a, sides.b, sides.options);
   comparison.notes.insert(comparison.notes.end(), sides.notes.begin(), sides.notes.end());
@@ -124,19 +119,12 @@ void run_compare_fleets(Session& session, const CompareFleetsVerb& verb) {
 
 std::function<void()> fleet_compare_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<CompareFleetsVerb>();
-  options.add_texts("DIR", verb->fleets, "folders of two fleets, or of one with --batches")
-      .required();
+  options.add_texts("DIR", verb->fleets, "folders of two fleets, or of one with --batches").required();
   options
-      .add_texts("--batches",
-                 verb->batches,
-                 "two batches of one fleet (OLD,NEW; given twice where a name has a comma)")
+      .add_texts("--batches", verb->batches, "two batches of one fleet (OLD,NEW; given twice where a name has a comma)")
       .one_value_each();
-  options.add_number(
-      "--false-alarm",
-      verb->false_alarm,
-      "probability of finding any difference between lots that are alike (default: 0.05)",
-      1e-9,
-      0.5);
+  options.add_number("--false-alarm", verb->false_alarm,
+                     "probability of finding any difference between lots that are alike (default: 0.05)", 1e-9, 0.5);
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite an existing file");
   options.add_flag("--json", verb->json, "JSON instead of a table");

@@ -37,16 +37,14 @@ void run_export(Session& session, ExportVerb verb) {
   const FleetPlan plan = read_plan(verb.folder);
   const FleetStatus status = fleet_status(plan, verb.folder, session.terminal);
   const std::vector<FleetJob> jobs = jobs_of(plan, status, verb.jobs);
-  const Engine& engine = *std::find_if(
-      engines().begin(), engines().end(), [&](const Engine& e) { return e.name == verb.engine; });
+  const Engine& engine =
+      *std::find_if(engines().begin(), engines().end(), [&](const Engine& e) { return e.name == verb.engine; });
   export_jobs(jobs, engine, verb.folder, verb.jobs);
   session.wrote = true;
   session.terminal.clear();
-  const std::string start = jobs.empty()
-                                ? ""
-                                : fmt::format("cd {} && {}",
-                                              shell_word(verb.folder),
-                                              fmt::format(fmt::runtime(engine.start), engine.file));
+  const std::string start = jobs.empty() ? ""
+                                         : fmt::format("cd {} && {}", shell_word(verb.folder),
+                                                       fmt::format(fmt::runtime(engine.start), engine.file));
   if (verb.json) {
     Json document = document_head(session, "fleet-export", {});
     document["engine"] = engine.name;
@@ -57,48 +55,31 @@ void run_export(Session& session, ExportVerb verb) {
     return print(dump_json(document));
   }
   if (jobs.empty())
-    return print_beside(
-        session,
-        "nothing is left, every unit has a result\nnext: " + merge_command({verb.folder}) + "\n");
+    return print_beside(session,
+                        "nothing is left, every unit has a result\nnext: " + merge_command({verb.folder}) + "\n");
   print_beside(session,
-               fmt::format("{} left in {}, about {} on one core\nnext: {}\n",
-                           plural(status.missing.size(), "unit"),
-                           plural(jobs.size(), "job"),
-                           duration_text(status.seconds_left),
-                           start));
+               fmt::format("{} left in {}, about {} on one core\nnext: {}\n", plural(status.missing.size(), "unit"),
+                           plural(jobs.size(), "job"), duration_text(status.seconds_left), start));
 }
 
 std::function<void()> export_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<ExportVerb>();
   options.add_text("DIR", verb->folder, "folder of a fleet").required();
   options
-      .add_choice("--to",
-                  verb->engine,
-                  engine_names(),
+      .add_choice("--to", verb->engine, engine_names(),
                   "job arrays of Slurm, a Snakefile, or commands for GNU parallel")
       .required();
   options.add_flag("--json", verb->json, "print what was written as JSON");
-  options.add_duration(
-      "--job", verb->job_s, "length of a job: as many units as that takes (default: 60s)");
-  options.add_count(
-      "--at-once", verb->jobs.at_once, "jobs at a time (default: as the engine likes)");
-  options.add_count(
-      "--retries", verb->retries, "times that a failed job is run again (default: 3)", 0, 100);
-  options.add_number(
-      "--slower",
-      verb->jobs.slower,
-      "a worker may be this many times slower than the machine that planned (default: 3)",
-      1,
-      1000);
-  options.only("where jobs have limits: slurm, snakemake",
-               [verb] { return verb->engine != "parallel"; },
-               {"--slower"});
+  options.add_duration("--job", verb->job_s, "length of a job: as many units as that takes (default: 60s)");
+  options.add_count("--at-once", verb->jobs.at_once, "jobs at a time (default: as the engine likes)");
+  options.add_count("--retries", verb->retries, "times that a failed job is run again (default: 3)", 0, 100);
+  options.add_number("--slower", verb->jobs.slower,
+                     "a worker may be this many times slower than the machine that planned (default: 3)", 1, 1000);
+  options.only("where jobs have limits: slurm, snakemake", [verb] { return verb->engine != "parallel"; }, {"--slower"});
   options
-      .add_text(
-          "--program",
-          verb->jobs.program,
-          "the program on the workers: the path of one that is there, or a command line for a "
-          "shell (default: sensorchar)")
+      .add_text("--program", verb->jobs.program,
+                "the program on the workers: the path of one that is there, or a command line for a "
+                "shell (default: sensorchar)")
       .value_name("COMMAND");
   return [&session, verb] { run_export(session, *verb); };
 }

@@ -35,10 +35,8 @@ Manifest manifest_of(const PlanVerb& verb, const CharacterizeOptions& options, T
   if (verb.sums.empty()) return manifest;
   const std::size_t without = state_digests(read_sums(verb.sums), manifest);
   if (without > 0)
-    terminal.note(fmt::format("{} of {} logs have no digest in {}: theirs are taken now",
-                              without,
-                              manifest.devices.size(),
-                              printable(fmt::format("{}", fmt::join(verb.sums, ", ")))));
+    terminal.note(fmt::format("{} of {} logs have no digest in {}: theirs are taken now", without,
+                              manifest.devices.size(), printable(fmt::format("{}", fmt::join(verb.sums, ", ")))));
   return manifest;
 }
 
@@ -50,8 +48,7 @@ std::string unreadable_text(const Manifest& manifest, const FleetPlan& plan) {
   for (std::size_t d = 0; d < plan.devices.size(); ++d) {
     const std::string& problem = plan.devices[d].problem;
     if (problem.empty() || count++ >= kNamed) continue;
-    lines += fmt::format("  {}{}\n",
-                         manifest.file.empty() ? "" : printable(manifest.devices[d].where) + ": ",
+    lines += fmt::format("  {}{}\n", manifest.file.empty() ? "" : printable(manifest.devices[d].where) + ": ",
                          printable(problem));
   }
   if (count == 0) return "";
@@ -63,9 +60,8 @@ Json unreadable_json(const Manifest& manifest, const FleetPlan& plan) {
   Json out = Json::array();
   for (std::size_t d = 0; d < plan.devices.size(); ++d)
     if (!plan.devices[d].problem.empty())
-      out.push_back({{"where", manifest.devices[d].where},
-                     {"log", plan.devices[d].log},
-                     {"problem", plan.devices[d].problem}});
+      out.push_back(
+          {{"where", manifest.devices[d].where}, {"log", plan.devices[d].log}, {"problem", plan.devices[d].problem}});
   return out;
 }
 
@@ -74,9 +70,7 @@ std::string replaced_text(const ReplacedPlan& replaced, std::size_t others) {
   std::string text = replaced.damaged ? std::string("replaces a plan that is damaged")
                                       : "replaces a plan of " + plural(replaced.devices, "device");
   if (others > 0)
-    text += fmt::format("; {} there {} of no unit of this one",
-                        plural(others, "result"),
-                        others == 1 ? "is" : "are");
+    text += fmt::format("; {} there {} of no unit of this one", plural(others, "result"), others == 1 ? "is" : "are");
   return text + "\n";
 }
 
@@ -108,28 +102,21 @@ void run_plan(Session& session, PlanVerb verb) {
       document["undivided"].push_back({{"why", why}, {"devices", devices.size()}});
     document["done"] = status.done;
     document["seconds"] = status.seconds_left;
-    if (replaced)
-      document["replaces"] = {{"devices", replaced->devices}, {"other_results", others}};
+    if (replaced) document["replaces"] = {{"devices", replaced->devices}, {"other_results", others}};
     return print(dump_json(document));
   }
   std::string text = fmt::format(
       "{} in {} of work; {} have a result already, the others take about {} on "
       "one core\n",
-      plural(plan.devices.size(), "device"),
-      plural(plan.units.size(), "unit"),
-      status.done,
+      plural(plan.devices.size(), "device"), plural(plan.units.size(), "unit"), status.done,
       duration_text(status.seconds_left));
-  if (stated > 0)
-    text +=
-        fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
+  if (stated > 0) text += fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
   text += unreadable_text(manifest, plan);
   if (replaced) text += replaced_text(*replaced, others);
   for (const auto& [why, devices] : plan.undivided)
-    text +=
-        fmt::format("{} larger than {} stays one unit: {}\n",
-                    devices.size() == 1 ? "1 log" : fmt::format("each of {} logs", devices.size()),
-                    bytes_text(verb.plan.split_bytes),
-                    why);
+    text += fmt::format("{} larger than {} stays one unit: {}\n",
+                        devices.size() == 1 ? "1 log" : fmt::format("each of {} logs", devices.size()),
+                        bytes_text(verb.plan.split_bytes), why);
   text += fmt::format("next: sensorchar fleet run {}\n", shell_word(verb.folder));
   print_beside(session, text);
 }
@@ -138,8 +125,7 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<PlanVerb>();
   verb->analysis.options.ten_a_decade = true;
   options
-      .add_texts("MANIFEST|LOG",
-                 verb->inputs,
+      .add_texts("MANIFEST|LOG", verb->inputs,
                  "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or "
                  "logs, each a "
                  "device called as its file is; a quoted pattern stands for its files")
@@ -148,28 +134,21 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
       .value_name("DIR")
       .required();
   options
-      .add_texts(
-          "--sums",
-          verb->sums,
-          "file with digests of logs, as sha256sum prints them: the plan takes none of these, "
-          "workers check them")
+      .add_texts("--sums", verb->sums,
+                 "file with digests of logs, as sha256sum prints them: the plan takes none of these, "
+                 "workers check them")
       .value_name("FILE")
       .one_value_each();
   options.add_flag("--json", verb->json, "print what was planned as JSON");
   options.add_flag("--by-channel", verb->plan.by_channel, "a unit for each channel of a log");
-  options.add_flag("--no-reports",
-                   verb->no_reports,
+  options.add_flag("--no-reports", verb->no_reports,
                    "coefficients only: no page, no tables and no models of each device");
-  options.add_flag("--skip-unreadable",
-                   verb->plan.skip_unreadable,
+  options.add_flag("--skip-unreadable", verb->plan.skip_unreadable,
                    "plan the others where logs cannot be read; the report names those");
-  options.add_bytes(
-      "--split-above",
-      verb->plan.split_bytes,
-      "logs larger than this are divided in stretches where their format allows (default: "
-      "4GiB)");
-  options.add_bytes(
-      "--stretch", verb->plan.stretch_bytes, "size of a stretch, about (default: 1GiB)");
+  options.add_bytes("--split-above", verb->plan.split_bytes,
+                    "logs larger than this are divided in stretches where their format allows (default: "
+                    "4GiB)");
+  options.add_bytes("--stretch", verb->plan.stretch_bytes, "size of a stretch, about (default: 1GiB)");
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_plan(session, *verb); };
 }
@@ -177,15 +156,14 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_fleet_plan() {
-  return {
-      20,
-      "fleet-plan",
-      "Split many logs into jobs",
-      plan_options,
-      {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
-       {"with digests that sha256sum has taken",
-        "sensorchar fleet plan logs/*.npy --rate 200 --sums logs/SHA256SUMS -o fleet"},
-       {"devices, batches and limits by a manifest", "sensorchar fleet plan line7.yaml -o fleet"}}};
+  return {20,
+          "fleet-plan",
+          "Split many logs into jobs",
+          plan_options,
+          {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
+           {"with digests that sha256sum has taken",
+            "sensorchar fleet plan logs/*.npy --rate 200 --sums logs/SHA256SUMS -o fleet"},
+           {"devices, batches and limits by a manifest", "sensorchar fleet plan line7.yaml -o fleet"}}};
 }
 
 }  // namespace sensorchar

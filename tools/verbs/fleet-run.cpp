@@ -87,12 +87,10 @@ void say(Session& session, const RunVerb& verb, const Counts& counts) {
     document["failed"] = problems_json(counts.failed);
     return print(dump_json(document));
   }
-  std::string text = fmt::format("{} done, {} had a result already",
-                                 plural(counts.done + counts.no_result, "unit"),
-                                 counts.there);
+  std::string text =
+      fmt::format("{} done, {} had a result already", plural(counts.done + counts.no_result, "unit"), counts.there);
   if (counts.no_result > 0)
-    text +=
-        fmt::format("; of {} a log could not be characterized", plural(counts.no_result, "unit"));
+    text += fmt::format("; of {} a log could not be characterized", plural(counts.no_result, "unit"));
   const std::size_t failed = counts.failed.size() + counts.again.size();
   if (failed > 0) text += fmt::format("; {} failed", plural(failed, "unit"));
   print_beside(session, text + "\n");
@@ -102,8 +100,7 @@ void say(Session& session, const RunVerb& verb, const Counts& counts) {
 void refuse(const std::vector<Problem>& problems) {
   if (problems.empty()) return;
   Problem first = problems[0];
-  if (problems.size() > 1)
-    first.what += fmt::format(" (and {} more of the units)", problems.size() - 1);
+  if (problems.size() > 1) first.what += fmt::format(" (and {} more of the units)", problems.size() - 1);
   throw Error(first);
 }
 
@@ -126,18 +123,12 @@ void run_run(Session& session, const RunVerb& verb) {
 std::function<void()> run_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<RunVerb>();
   options
-      .add_texts(
-          "DIR|TASK",
-          verb->inputs,
-          "folder of a fleet: all of its units; or single tasks of it (DIR/tasks/000001.json)")
+      .add_texts("DIR|TASK", verb->inputs,
+                 "folder of a fleet: all of its units; or single tasks of it (DIR/tasks/000001.json)")
       .required();
-  options.add_count("--threads",
-                    verb->threads,
-                    "threads at most (default: one per core); results never depend on it",
-                    1,
-                    1024);
-  options.add_flag("--strict",
-                   session.strict,
+  options.add_count("--threads", verb->threads, "threads at most (default: one per core); results never depend on it",
+                    1, 1024);
+  options.add_flag("--strict", session.strict,
                    "end with exit code 3 after a warning about a log, once all units are done");
   options.add_flag("--json", verb->json, "print what was done as JSON");
   return [&session, verb] { run_run(session, *verb); };
@@ -151,8 +142,7 @@ VerbEntry verb_fleet_run() {
           "Run the units of a fleet that have no result yet (exit code 75: try again later)",
           run_options,
           {{"all of a fleet, one unit after the other", "sensorchar fleet run fleet"},
-           {"two of its units",
-            "sensorchar fleet run fleet/tasks/000001.json fleet/tasks/000002.json"}}};
+           {"two of its units", "sensorchar fleet run fleet/tasks/000001.json fleet/tasks/000002.json"}}};
 }
 
 }  // namespace sensorchar

@@ -53,9 +53,8 @@ FleetStatus together(const std::vector<OneStatus>& fleets) {
 }
 
 Json unit_json(const OneStatus& one, std::size_t k) {
-  return {{"folder", one.folder},
-          {"task", task_file(k)},
-          {"device", one.plan.devices[one.plan.units[k].device].device}};
+  return {
+      {"folder", one.folder}, {"task", task_file(k)}, {"device", one.plan.devices[one.plan.units[k].device].device}};
 }
 
 Json status_json(const Session& session, const std::vector<OneStatus>& fleets) {
@@ -101,20 +100,15 @@ std::string status_text(const std::vector<OneStatus>& fleets) {
   for (const OneStatus& one : fleets) {
     missing += one.status.missing.size();
     if (fleets.size() > 1)
-      text += fmt::format("{}: {} of {} done\n",
-                          printable(one.folder),
-                          one.status.done,
-                          plural(one.status.units, "unit"));
+      text +=
+          fmt::format("{}: {} of {} done\n", printable(one.folder), one.status.done, plural(one.status.units, "unit"));
   }
   text += fmt::format("{} of {} done", status.done, plural(status.units, "unit"));
   if (status.no_result > 0)
-    text += fmt::format(", {} of them without a result: their logs could not be characterized",
-                        status.no_result);
-  text +=
-      fmt::format("\n{} left, about {} on one core\n", missing, duration_text(status.seconds_left));
+    text += fmt::format(", {} of them without a result: their logs could not be characterized", status.no_result);
+  text += fmt::format("\n{} left, about {} on one core\n", missing, duration_text(status.seconds_left));
   if (!status.unpublished.empty())
-    text += fmt::format("{} begun and not ended: workers at work, or killed\n",
-                        status.unpublished.size());
+    text += fmt::format("{} begun and not ended: workers at work, or killed\n", status.unpublished.size());
   for (const std::string& sentence : status.damaged) text += "damaged: " + sentence + "\n";
   return text + "next: " + next_command(fleets) + "\n";
 }
@@ -132,8 +126,7 @@ std::function<void()> status_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<StatusVerb>();
   options.add_texts("DIR", verb->folders, "folder of a fleet, or of several").required();
   const Option json = options.add_flag("--json", verb->json, "print it as JSON");
-  options.add_flag("--list", verb->list, "print the tasks that are left, a line each")
-      .excludes(json);
+  options.add_flag("--list", verb->list, "print the tasks that are left, a line each").excludes(json);
   return [&session, verb] { run_status(session, *verb); };
 }
 

@@ -29,10 +29,7 @@ void add_map(const FuseVerb& verb, libchar::FuseOptions& options) {
   for (const std::string& text : verb.map) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw libchar::usage_error("E0935", "--map")
-          .says("expected SENSOR=CHANNEL")
-          .got(text)
-          .hint("--map gyro1=wx");
+      throw libchar::usage_error("E0935", "--map").says("expected SENSOR=CHANNEL").got(text).hint("--map gyro1=wx");
     options.map.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
 }
@@ -45,8 +42,7 @@ void run_fuse(Session& session, FuseVerb& verb) {
     for (const char* suffix : {"", ".json"}) libchar::refuse_same_file(input, verb.output + suffix);
   libchar::check_log_output(verb.output, write_options(verb.writing));
   libchar::ColumnWriter writer(verb.output, write_options(verb.writing));
-  const libchar::FuseResult result =
-      libchar::fuse(verb.log, learnt, writer, verb.options, session.terminal);
+  const libchar::FuseResult result = libchar::fuse(verb.log, learnt, writer, verb.options, session.terminal);
   session.terminal.clear();
   report_warnings(session, result.log);
   session.terminal.warn(result.warnings, verb.log);
@@ -62,32 +58,24 @@ void run_fuse(Session& session, FuseVerb& verb) {
 std::function<void()> fuse_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<FuseVerb>();
   options.add_text("LOG", verb->log, "log to fuse").required();
-  options
-      .add_text("--with", verb->with, "folder of a replay, or the fusion.yaml in it (docs/fuse.md)")
+  options.add_text("--with", verb->with, "folder of a replay, or the fusion.yaml in it (docs/fuse.md)")
       .required()
       .value_name("RUN");
   options
-      .add_text("-o,--output",
-                verb->output,
-                "file to write; its suffix says the format (" + libchar::written_suffixes() +
-                    "; - is standard output)")
+      .add_text("-o,--output", verb->output,
+                "file to write; its suffix says the format (" + libchar::written_suffixes() + "; - is standard output)")
       .required()
       .value_name("FILE");
   options
-      .add_text("--algorithm",
-                verb->options.algorithm,
+      .add_text("--algorithm", verb->options.algorithm,
                 "what to fuse by, as the replay's report names it (default: what it recommends)")
       .value_name("NAME");
-  options
-      .add_texts("--map",
-                 verb->map,
-                 "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
+  options.add_texts("--map", verb->map, "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
       .separated_by_commas()
       .one_value_each()
       .value_name("SENSOR=CHANNEL,…")
       .once_each();
-  options.add_instant("--fault-free",
-                      verb->options.fault_free_s,
+  options.add_instant("--fault-free", verb->options.fault_free_s,
                       "so long no sensor fails at the start of this log (default: not known, but "
                       "of the log of the replay)");
   add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
@@ -104,8 +92,7 @@ VerbEntry verb_fuse() {
           "fuse",
           "Fuse a log with the result of a replay: estimates, deviations, one flag per sensor",
           fuse_options,
-          {{"a log by what the replay recommends",
-            "sensorchar fuse array.csv --with array-replay -o fused.csv"},
+          {{"a log by what the replay recommends", "sensorchar fuse array.csv --with array-replay -o fused.csv"},
            {"by another algorithm of that replay, as NumPy file",
             "sensorchar fuse array.csv --with array-replay --algorithm mean -o fused.npy"}}};
 }

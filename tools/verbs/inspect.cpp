@@ -42,9 +42,8 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
               reading.missing.marks.push_back(libchar::parse_number(mark));
     }
   std::sort(reading.missing.marks.begin(), reading.missing.marks.end());
-  reading.missing.marks.erase(
-      std::unique(reading.missing.marks.begin(), reading.missing.marks.end()),
-      reading.missing.marks.end());
+  reading.missing.marks.erase(std::unique(reading.missing.marks.begin(), reading.missing.marks.end()),
+                              reading.missing.marks.end());
   if (!reading.missing.marks.empty())  // seen with them, the rest may be none
     std::erase_if(found, [](const libchar::Finding& one) { return !one.help.empty(); });
   const std::string flags = reading_flags(reading, info);
@@ -53,9 +52,7 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
     for (const bool sensor : {true, false})
       for (const libchar::LogTopic& topic : info.topics)
         if (topic.why_not.empty() && topic.sensor == sensor && !topic.fields.empty())
-          return fmt::format("  next: sensorchar inspect {}{} --topic {}\n",
-                             log,
-                             flags,
+          return fmt::format("  next: sensorchar inspect {}{} --topic {}\n", log, flags,
                              libchar::shell_word(topic.name));
   }
   if (info.time.rate_hz <= 0 && !info.time.column.empty())
@@ -64,23 +61,14 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
                        info.rows == 1 ? "gives" : "give");
   if (info.time.rate_hz <= 0)
     return info.time.candidate.empty()
-               ? fmt::format(
-                     "  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n",
-                     log,
-                     flags)
-               : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n",
-                             log,
-                             flags,
-                             info.time.candidate);
-  const bool hopeless = std::all_of(
-      inspection.quality.begin(), inspection.quality.end(), [](const libchar::ChannelQuality& q) {
+               ? fmt::format("  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags)
+               : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n", log, flags, info.time.candidate);
+  const bool hopeless =
+      std::all_of(inspection.quality.begin(), inspection.quality.end(), [](const libchar::ChannelQuality& q) {
         return libchar::has(q.findings, "constant") || libchar::has(q.findings, "no_value");
       });
   if (hopeless || info.warnings.find("implausible_magnitude") != nullptr) return "";
-  return fmt::format("  next: sensorchar characterize {}{}{} -o {}\n",
-                     log,
-                     flags,
-                     mending_flags(found),
+  return fmt::format("  next: sensorchar characterize {}{}{} -o {}\n", log, flags, mending_flags(found),
                      libchar::shell_word(default_folder(info.file)));
 }
 
@@ -112,8 +100,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
       continue;
     }
     if (!info.warnings.empty()) session.warned_files.push_back(info.file);
-    print_text((inspections.size() > 1 ? "\n" : "") +
-               libchar::inspection_text(inspections.back(), table_width()));
+    print_text((inspections.size() > 1 ? "\n" : "") + libchar::inspection_text(inspections.back(), table_width()));
     print(next_command(verb, inspections.back()));
   }
   if (verb.json && !inspections.empty()) print_json(session, inspections);
@@ -122,8 +109,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
 
 std::function<void()> inspect_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<InspectVerb>();
-  options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input")
-      .required();
+  options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input").required();
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   add_reading_options(options, session, verb->reading);
   return [&session, verb] {

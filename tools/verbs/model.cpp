@@ -52,10 +52,7 @@ AxisOverrides overrides(const std::vector<std::string>& places) {
   for (const std::string& text : places) {
     const std::size_t sign = text.rfind('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
-      throw usage_error("E0581", "--axis")
-          .says("expected CHANNEL=PLACE")
-          .got(text)
-          .hint("such as --axis imu_3=gx");
+      throw usage_error("E0581", "--axis").says("expected CHANNEL=PLACE").got(text).hint("such as --axis imu_3=gx");
     out.emplace_back(text.substr(0, sign), text.substr(sign + 1));
   }
   return out;
@@ -73,9 +70,7 @@ constexpr const char* kDevice = "c";
 constexpr const char* kDeviceTitle = "C99: the method of a replay";
 constexpr const char* kDeviceConvention = "one file without heap; float or double (--dtype)";
 
-bool to_device(const ModelVerb& verb) {
-  return verb.target == kDevice;
-}
+bool to_device(const ModelVerb& verb) { return verb.target == kDevice; }
 
 void print_targets(const Session& session, bool json) {
   if (json) {
@@ -96,18 +91,10 @@ void print_targets(const Session& session, bool json) {
   }
   std::string text;
   for (const ExportTarget& t : export_targets())
-    text += fmt::format("{:<13} {} ({}; needs {})\n{:<13} {}\n",
-                        t.name,
-                        t.title,
-                        t.file,
-                        needs_text(t.needs),
-                        "",
+    text += fmt::format("{:<13} {} ({}; needs {})\n{:<13} {}\n", t.name, t.title, t.file, needs_text(t.needs), "",
                         t.convention);
-  text += fmt::format("{:<13} {} (fusion.c; needs fusion.yaml)\n{:<13} {}\n",
-                      kDevice,
-                      kDeviceTitle,
-                      "",
-                      kDeviceConvention);
+  text +=
+      fmt::format("{:<13} {} (fusion.c; needs fusion.yaml)\n{:<13} {}\n", kDevice, kDeviceTitle, "", kDeviceConvention);
   print(text);
 }
 
@@ -141,8 +128,7 @@ void run_device(Session& session, const ModelVerb& verb) {
         .says("--to c takes one FILE")
         .hint("the folder of a replay, or the fusion.yaml in it");
   const LearntFusion learnt = read_fusion_file(verb.files[0]);
-  const detail::DeviceSource made =
-      detail::device_source(learnt, {verb.algorithm, verb.dtype == "f32"});
+  const detail::DeviceSource made = detail::device_source(learnt, {verb.algorithm, verb.dtype == "f32"});
   if (!verb.output.empty() || !verb.json) deliver(verb, made.text);
   if (!verb.json) {
     for (const std::string& note : made.notes) session.terminal.note("note: " + printable(note));
@@ -171,8 +157,7 @@ void run_summary(const Session& session, const ModelVerb& verb) {
     text = dump_json(document);
   } else {
     for (const SensorModel& m : read.models)
-      text += (text.empty() ? "" : "\n") +
-              model_text(m, verb.output.empty() ? text_look() : libchar::TextLook{});
+      text += (text.empty() ? "" : "\n") + model_text(m, verb.output.empty() ? text_look() : libchar::TextLook{});
     if (verb.output.empty()) return print_text(text);
   }
   deliver(verb, text);
@@ -181,9 +166,7 @@ void run_summary(const Session& session, const ModelVerb& verb) {
 void run_model(Session& session, ModelVerb& verb) {
   if (verb.list) return print_targets(session, verb.json);
   if (verb.files.empty())
-    throw usage_error("E0205", "model")
-        .says("FILE is required")
-        .hint("sensorchar model --list names the targets");
+    throw usage_error("E0205", "model").says("FILE is required").hint("sensorchar model --list names the targets");
   foresee_output(verb.output, verb.files, verb.force);
   verb.options.axis = overrides(verb.places);
   if (verb.target.empty()) return run_summary(session, verb);
@@ -194,55 +177,35 @@ void run_model(Session& session, ModelVerb& verb) {
 void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
-  sub.add_enum(
-      "--axes",
-      options.axes,
-      "one number for three axes: the largest, their root mean square, or one axis (auto: each "
-      "its own where the consumer takes three, else max)");
-  sub.add_texts(
-         "--axis",
-         verb.places,
-         "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
-         "a, m alone for all three axes")
+  sub.add_enum("--axes", options.axes,
+               "one number for three axes: the largest, their root mean square, or one axis (auto: each "
+               "its own where the consumer takes three, else max)");
+  sub.add_texts("--axis", verb.places,
+                "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
+                "a, m alone for all three axes")
       .value_name("CHANNEL=PLACE")
       .one_value_each()
       .once_each();
   sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
+  sub.add_number("--floor-tau", options.floor_tau_s,
+                 "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from "
+                 "the model)",
+                 kSmall);
+  sub.add_number("--correlation-time", options.correlation_s,
+                 "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)", kSmall);
   sub.add_number(
-      "--floor-tau",
-      options.floor_tau_s,
-      "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from "
-      "the model)",
-      kSmall);
-  sub.add_number("--correlation-time",
-                 options.correlation_s,
-                 "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)",
+      "--airsim-tau", options.bias_tau_s,
+      targets_that_take(&ExportTakes::bias_tau) + ": BiasStabilityTau in s (500 gyroscope, 800 accelerometer)", kSmall);
+  sub.add_number("--filter-step", options.filter_step_s,
+                 targets_that_take(&ExportTakes::filter_step) + ": step of the filter's prediction in s (0.01)",
                  kSmall);
-  sub.add_number("--airsim-tau",
-                 options.bias_tau_s,
-                 targets_that_take(&ExportTakes::bias_tau) +
-                     ": BiasStabilityTau in s (500 gyroscope, 800 accelerometer)",
-                 kSmall);
-  sub.add_number("--filter-step",
-                 options.filter_step_s,
-                 targets_that_take(&ExportTakes::filter_step) +
-                     ": step of the filter's prediction in s (0.01)",
-                 kSmall);
-  sub.add_number("--gravity",
-                 options.gravity,
-                 targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (not written)",
-                 kSmall);
-  sub.add_text(
-         "--topic",
-         options.topic,
-         targets_that_take(&ExportTakes::topic) + ": ROS topic (default: of the bag, else /imu0)")
+  sub.add_number("--gravity", options.gravity,
+                 targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (not written)", kSmall);
+  sub.add_text("--topic", options.topic,
+               targets_that_take(&ExportTakes::topic) + ": ROS topic (default: of the bag, else /imu0)")
       .value_name("NAME");
-  sub.add_flag("--anyway",
-               options.anyway,
-               "also numbers whose status is misfit, with a sentence that says so");
-  sub.add_flag("--older",
-               options.older,
-               "basalt: one number in place of three; orbslam3: whole rate, no File.version");
+  sub.add_flag("--anyway", options.anyway, "also numbers whose status is misfit, with a sentence that says so");
+  sub.add_flag("--older", options.older, "basalt: one number in place of three; orbslam3: whole rate, no File.version");
 }
 
 std::vector<std::string> target_words() {
@@ -254,14 +217,12 @@ std::vector<std::string> target_words() {
 
 /// What a target cannot write has no effect on it.
 void add_only(VerbOptions& options, const ModelVerb& verb) {
-  options.only("with --to",
-               [&verb] { return !verb.target.empty() && !to_device(verb); },
+  options.only("with --to", [&verb] { return !verb.target.empty() && !to_device(verb); },
                {"--axes", "--axis", "--anyway"});
   options.only("with --to c", [&verb] { return to_device(verb); }, {"--algorithm", "--dtype"});
   const auto takes = [&](bool ExportTakes::*what, const std::vector<std::string>& flags) {
     const auto taken = [&verb, what] {
-      return !verb.target.empty() && !to_device(verb) &&
-             find_export_target(verb.target).takes.*what;
+      return !verb.target.empty() && !to_device(verb) && find_export_target(verb.target).takes.*what;
     };
     options.only("with --to " + targets_that_take(what), taken, flags);
   };
@@ -276,20 +237,14 @@ void add_only(VerbOptions& options, const ModelVerb& verb) {
 
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
-  options.add_texts(
-      "FILE",
-      verb->files,
-      "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
-      "report.json); the axes of one device together. With --to c the folder of a replay or "
-      "its fusion.yaml");
-  options
-      .add_text(
-          "--algorithm", verb->algorithm, "c: method of the replay (default: what it recommends)")
+  options.add_texts("FILE", verb->files,
+                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
+                    "report.json); the axes of one device together. With --to c the folder of a replay or "
+                    "its fusion.yaml");
+  options.add_text("--algorithm", verb->algorithm, "c: method of the replay (default: what it recommends)")
       .value_name("NAME");
   options.add_choice("--dtype", verb->dtype, {"f64", "f32"}, "c: double or float (default: f64)");
-  options.add_text("--to", verb->target, "target; --list names them")
-      .value_name("NAME")
-      .known_words(target_words());
+  options.add_text("--to", verb->target, "target; --list names them").value_name("NAME").known_words(target_words());
   options.add_flag("--list", verb->list, "the targets, each with its convention").alone();
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");

@@ -36,8 +36,7 @@ struct PlotVerb {
 double length_mm(const std::string& flag, const std::string& text) {
   if (text == "one-column") return kOneColumnMm;
   if (text == "two-columns") return kTwoColumnsMm;
-  constexpr std::pair<std::string_view, double> kUnits[] = {
-      {"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
   for (const auto& [unit, factor] : kUnits) {
     if (!text.ends_with(unit)) continue;
     const auto value = parse_double(text.substr(0, text.size() - unit.size()));
@@ -60,8 +59,7 @@ FigureFormat format_of(const PlotVerb& verb) {
   if (!verb.format.empty()) return *find_enum<FigureFormat>(verb.format);
   if (verb.output == "-") return FigureFormat::svg;
   const std::size_t dot = verb.output.rfind('.');
-  const std::string ending =
-      dot == std::string::npos ? "" : ascii_lower(verb.output.substr(dot + 1));
+  const std::string ending = dot == std::string::npos ? "" : ascii_lower(verb.output.substr(dot + 1));
   if (const auto known = find_enum<FigureFormat>(ending)) return *known;
   throw usage_error("E0979", "--output")
       .says("the name ends neither in .svg nor in .pdf or .png")
@@ -78,17 +76,13 @@ void print_kinds() {
 
 void refuse_nothing_asked(const PlotVerb& verb) {
   if (verb.files.empty())
-    throw usage_error("E0205", "plot")
-        .says("FILE is required")
-        .hint("sensorchar plot --list names the figures");
+    throw usage_error("E0205", "plot").says("FILE is required").hint("sensorchar plot --list names the figures");
   if (verb.output.empty() && verb.gnuplot.empty() && verb.csv.empty())
     throw usage_error("E0205", "plot")
         .says("-o, --gnuplot or --csv is required: where the figure goes")
         .hint("such as -o figure.pdf; - is standard output");
-  const auto dashes =
-      (verb.output == "-" ? 1 : 0) + (verb.gnuplot == "-" ? 1 : 0) + (verb.csv == "-" ? 1 : 0);
-  if (dashes > 1)
-    throw usage_error("E0205", "plot").says("only one output can go to standard output");
+  const auto dashes = (verb.output == "-" ? 1 : 0) + (verb.gnuplot == "-" ? 1 : 0) + (verb.csv == "-" ? 1 : 0);
+  if (dashes > 1) throw usage_error("E0205", "plot").says("only one output can go to standard output");
 }
 
 /// Those of a folder get their names together.
@@ -116,20 +110,17 @@ std::vector<std::string> named(std::vector<std::string> paths) {
 /// A recording is characterized on the way.
 FigureSource source_of(Session& session, const PlotVerb& verb, const std::string& file) {
   if (!detail::is_recording(file)) return read_figure_source(file);
-  FigureSource out =
-      parse_figure_source(report_of_recording(session, file, finish(verb.analysis)).text, file);
+  FigureSource out = parse_figure_source(report_of_recording(session, file, finish(verb.analysis)).text, file);
   out.name = detail::document_name(file);
   return out;
 }
 
 /// The names of channels that are meant, also those by which `channels` means what they measure.
-std::vector<std::string> meant_channels(const FigureSource& source,
-                                        const std::vector<std::string>& channels) {
+std::vector<std::string> meant_channels(const FigureSource& source, const std::vector<std::string>& channels) {
   std::vector<std::string> out = channels;
   for (const SourceCurve& curve : source.curves)
     for (const std::string& one : channels)
-      if (matches(one, detail::usual_channel_name(curve.channel, curve.unit)))
-        out.push_back(curve.channel);
+      if (matches(one, detail::usual_channel_name(curve.channel, curve.unit))) out.push_back(curve.channel);
   return out;
 }
 
@@ -149,35 +140,27 @@ void run_plot(Session& session, PlotVerb& verb) {
   const Chart figure = make_figure(sources, verb.figure);
   std::vector<OutputFile> made;
   Findings warnings;
-  if (!verb.output.empty())
-    made.push_back({verb.output, draw_figure(figure, format, verb.drawing, warnings)});
+  if (!verb.output.empty()) made.push_back({verb.output, draw_figure(figure, format, verb.drawing, warnings)});
   if (!verb.gnuplot.empty()) made.push_back({verb.gnuplot, figure_gnuplot(figure, verb.drawing)});
   if (!verb.csv.empty()) made.push_back({verb.csv, figure_csv(figure)});
   deliver(made, verb.force);
   for (const FigureSource& source : sources)
-    report_findings(
-        session, source.name, source.findings, meant_channels(source, verb.figure.channels));
+    report_findings(session, source.name, source.findings, meant_channels(source, verb.figure.channels));
   session.terminal.warn(warnings, verb.output);
 }
 
 void add_looks(VerbOptions& options, PlotVerb& verb) {
   options
-      .add_text(
-          "--width",
-          verb.width,
-          "one-column (85 mm, the default), two-columns (178 mm), or a length such as 88mm, 7in")
+      .add_text("--width", verb.width,
+                "one-column (85 mm, the default), two-columns (178 mm), or a length such as 88mm, 7in")
       .value_name("LENGTH");
-  options.add_text("--height", verb.height, "a length (default: what suits width and legend)")
-      .value_name("LENGTH");
-  options.add_enum("--legend",
-                   verb.drawing.legend,
+  options.add_text("--height", verb.height, "a length (default: what suits width and legend)").value_name("LENGTH");
+  options.add_enum("--legend", verb.drawing.legend,
                    "place of the names (auto: in a corner without curves, else below)");
-  options.add_text(
-      "--title", verb.figure.title, "above the plot (default: none, for a caption says it)");
+  options.add_text("--title", verb.figure.title, "above the plot (default: none, for a caption says it)");
   options.add_flag("--grey", verb.drawing.grey, "greys in place of colours");
   options.add_number("--dpi", verb.drawing.dpi, "resolution of a PNG (300)", 10, 4800);
-  options.add_text("--x-range", verb.x_range, "ends of the horizontal axis")
-      .value_name("LOW..HIGH");
+  options.add_text("--x-range", verb.x_range, "ends of the horizontal axis").value_name("LOW..HIGH");
   options.add_text("--y-range", verb.y_range, "ends of the vertical axis").value_name("LOW..HIGH");
 }
 
@@ -187,48 +170,35 @@ void add_only(VerbOptions& options, const PlotVerb& verb) {
   const auto shown = [&verb] { return !verb.output.empty() || !verb.gnuplot.empty(); };
   options.only("with -o", drawn, {"--format", "--legend", "--grey"});
   options.only("with -o or --gnuplot", shown, {"--width", "--height", "--title"});
-  options.only("for a PNG",
-               [&verb] { return !verb.output.empty() && format_of(verb) == FigureFormat::png; },
+  options.only("for a PNG", [&verb] { return !verb.output.empty() && format_of(verb) == FigureFormat::png; },
                {"--dpi"});
 }
 
 std::function<void()> plot_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<PlotVerb>();
-  options.add_texts(
-      "FILE",
-      verb->files,
-      "recordings, report.json of characterize or replay (or its folder), what allan or psd print, "
-      "curves.csv, sensor models; several are drawn over each other");
-  options
-      .add_text(
-          "-o,--output", verb->output, "the figure: .svg, .pdf or .png (- is standard output)")
+  options.add_texts("FILE", verb->files,
+                    "recordings, report.json of characterize or replay (or its folder), what allan or psd print, "
+                    "curves.csv, sensor models; several are drawn over each other");
+  options.add_text("-o,--output", verb->output, "the figure: .svg, .pdf or .png (- is standard output)")
       .value_name("FILE");
-  options.add_choice("--kind",
-                     verb->figure.kind,
-                     figure_words(),
+  options.add_choice("--kind", verb->figure.kind, figure_words(),
                      "which figure (default: allan of a characterization, front of a replay)");
   options.add_flag("--list", verb->list, "list the figures").alone();
   options
-      .add_texts("-c,--channel",
-                 verb->figure.channels,
+      .add_texts("-c,--channel", verb->figure.channels,
                  "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*'; "
                  "gyro_x fits "
                  "any channel that measures it (all)")
       .separated_by_commas()
       .once_each();
-  options.add_text("--algorithm",
-                   verb->figure.algorithm,
+  options.add_text("--algorithm", verb->figure.algorithm,
                    "of a replay: whose weights, variances and findings (the best that has them)");
-  options.add_text(
-      "--input", verb->figure.input, "of a replay with several true inputs: which (the first)");
-  options.add_texts("--label", verb->figure.labels, "a name for each FILE in the legend")
-      .separated_by_commas();
+  options.add_text("--input", verb->figure.input, "of a replay with several true inputs: which (the first)");
+  options.add_texts("--label", verb->figure.labels, "a name for each FILE in the legend").separated_by_commas();
   add_looks(options, *verb);
-  options.add_text("--gnuplot", verb->gnuplot, "the numbers in a script for gnuplot")
-      .value_name("FILE");
+  options.add_text("--gnuplot", verb->gnuplot, "the numbers in a script for gnuplot").value_name("FILE");
   options.add_text("--csv", verb->csv, "the numbers that are drawn, as a table").value_name("FILE");
-  options.add_choice(
-      "--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
+  options.add_choice("--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
   options.add_flag("--force", verb->force, "overwrite the output files");
   add_recording_options(options, session, verb->analysis, verb->files, false);
   add_only(options, *verb);
@@ -242,10 +212,8 @@ VerbEntry verb_plot() {
           "plot",
           "Draw a figure of reports, curves and models: SVG, PDF, PNG, gnuplot, CSV",
           plot_options,
-          {{"the Allan deviation of one channel for a paper",
-            "sensorchar plot report -c gyro_z -o gyro_z.pdf"},
-           {"which method of a replay to use",
-            "sensorchar plot array-replay --kind ranking -o ranking.svg"}}};
+          {{"the Allan deviation of one channel for a paper", "sensorchar plot report -c gyro_z -o gyro_z.pdf"},
+           {"which method of a replay to use", "sensorchar plot array-replay --kind ranking -o ranking.svg"}}};
 }
 
 }  // namespace sensorchar

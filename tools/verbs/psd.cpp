@@ -38,32 +38,22 @@ void run_cross(Session& session, const PsdVerb& verb, const CharacterizeOptions&
         .says("two channels were expected")
         .got(std::to_string(pair.size()))
         .hint("for example --coherence gyro_x,gyro_y");
-  const LogCrossSpectrum cross =
-      log_cross_spectrum(verb.log, pair[0], pair[1], options, session.terminal);
+  const LogCrossSpectrum cross = log_cross_spectrum(verb.log, pair[0], pair[1], options, session.terminal);
   session.terminal.clear();
   for (const std::string& note : cross.cross.notes) session.terminal.note(note);
-  session.terminal.note(fmt::format(
-      "coherence of independent channels stays below {} with 95 % ({} segments, as {} independent)",
-      brief_text(cross.cross.significant_coherence, 3),
-      cross.cross.segments,
-      brief_text(cross.cross.effective_segments, 3)));
-  write_document(session,
-                 cross.log,
-                 "cross-spectrum",
-                 cross_json(cross),
-                 density ? cross_csv(cross) : coherence_csv(cross),
-                 {verb.output, verb.json, verb.force});
+  session.terminal.note(
+      fmt::format("coherence of independent channels stays below {} with 95 % ({} segments, as {} independent)",
+                  brief_text(cross.cross.significant_coherence, 3), cross.cross.segments,
+                  brief_text(cross.cross.effective_segments, 3)));
+  write_document(session, cross.log, "cross-spectrum", cross_json(cross),
+                 density ? cross_csv(cross) : coherence_csv(cross), {verb.output, verb.json, verb.force});
 }
 
 void run_spectrogram(Session& session, const PsdVerb& verb, const CharacterizeOptions& options) {
   const LogSpectrograms spectrograms = log_spectrograms(verb.log, options, session.terminal);
   session.terminal.clear();
-  write_document(session,
-                 spectrograms.log,
-                 "spectrogram",
-                 spectrograms_json(spectrograms),
-                 spectrograms_csv(spectrograms),
-                 {verb.output, verb.json, verb.force});
+  write_document(session, spectrograms.log, "spectrogram", spectrograms_json(spectrograms),
+                 spectrograms_csv(spectrograms), {verb.output, verb.json, verb.force});
 }
 
 void run_psd(Session& session, const PsdVerb& verb) {
@@ -75,8 +65,7 @@ void run_psd(Session& session, const PsdVerb& verb) {
   session.terminal.clear();
   for (const std::string& note : spectra.notes) session.terminal.note(note);
   report_warnings(session, spectra.log);
-  for (const ChannelResult& c : spectra.channels)
-    report_findings(session, c.channel.name, findings_of(c));
+  for (const ChannelResult& c : spectra.channels) report_findings(session, c.channel.name, findings_of(c));
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;
@@ -97,35 +86,20 @@ void run_psd(Session& session, const PsdVerb& verb) {
 
 /// What each option is for: spectra, lines, a pair, a spectrogram.
 void add_only(VerbOptions& options, const PsdVerb& verb) {
-  const auto single = [&verb] {
-    return verb.cross.empty() && verb.coherence.empty() && verb.spectrogram.empty();
-  };
+  const auto single = [&verb] { return verb.cross.empty() && verb.coherence.empty() && verb.spectrogram.empty(); };
   const auto of_table = [&verb] { return !verb.analysis.options.wanted.lines || verb.json; };
-  options.only("for spectra of single channels",
-               single,
-               {"--average",
-                "--data",
-                "--nominal-frequency",
-                "--still",
-                "--unwrap",
-                "--frozen",
-                "--interpolated",
-                "--memory"});
-  options.only("for spectra of single channels, and not with --plot",
-               [&verb, single] { return single() && !verb.plot; },
-               {"--lines"});
-  options.only("for spectra of single channels, and not for a table of --lines",
-               [single, of_table] { return single() && of_table(); },
-               {"--log-bins"});
   options.only(
-      "for spectra of single channels and spectrograms, and not for a table of --lines",
-      [&verb, of_table] { return verb.cross.empty() && verb.coherence.empty() && of_table(); },
-      {"--scaling"});
+      "for spectra of single channels", single,
+      {"--average", "--data", "--nominal-frequency", "--still", "--unwrap", "--frozen", "--interpolated", "--memory"});
+  options.only("for spectra of single channels, and not with --plot",
+               [&verb, single] { return single() && !verb.plot; }, {"--lines"});
+  options.only("for spectra of single channels, and not for a table of --lines",
+               [single, of_table] { return single() && of_table(); }, {"--log-bins"});
+  options.only("for spectra of single channels and spectrograms, and not for a table of --lines",
+               [&verb, of_table] { return verb.cross.empty() && verb.coherence.empty() && of_table(); }, {"--scaling"});
   options.only("without --coherence, and not for a table of --lines",
-               [&verb, of_table] { return verb.coherence.empty() && of_table(); },
-               {"--sides"});
-  options.only("without --spectrogram, which says it itself",
-               [&verb] { return verb.spectrogram.empty(); },
+               [&verb, of_table] { return verb.coherence.empty() && of_table(); }, {"--sides"});
+  options.only("without --spectrogram, which says it itself", [&verb] { return verb.spectrogram.empty(); },
                {"--segment"});
 }
 
@@ -134,45 +108,37 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
   CharacterizeOptions& analysis = verb->analysis.options;
   analysis.spectrum_bins = 0;
   analysis.wanted.lines = false;
-  options
-      .add_text(
-          "LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
+  options.add_text("LOG", verb->log, "recording (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
-  const Option json = options.add_flag(
-      "--json", verb->json, "one JSON document, with degrees of freedom and intervals");
+  const Option json =
+      options.add_flag("--json", verb->json, "one JSON document, with degrees of freedom and intervals");
   Option plot = options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV");
   plot.excludes(json);
-  options.add_flag("--lines",
-                   analysis.wanted.lines,
+  options.add_flag("--lines", analysis.wanted.lines,
                    "list the spectral lines (with --json: in addition to the spectra)");
   add_spectrum_options(options, analysis.spectrum, analysis.segment_s, analysis.quarter_segments);
-  options.add_enum("--average",
-                   analysis.average,
+  options.add_enum("--average", analysis.average,
                    "mean of the segments, or their median without its bias: bursts do not count "
                    "(default: mean)");
   const Option cross = options
-                           .add_texts("--cross",
-                                      verb->cross,
+                           .add_texts("--cross", verb->cross,
                                       "cross spectrum of two channels A,B: density, phase of B "
                                       "less that of A, coherence")
                            .value_name("A,B")
                            .separated_by_commas()
                            .one_value_each();
-  Option coherence = options
-                         .add_texts("--coherence",
-                                    verb->coherence,
-                                    "coherence of two channels A,B, and where it is significant")
-                         .value_name("A,B")
-                         .separated_by_commas()
-                         .one_value_each();
+  Option coherence =
+      options.add_texts("--coherence", verb->coherence, "coherence of two channels A,B, and where it is significant")
+          .value_name("A,B")
+          .separated_by_commas()
+          .one_value_each();
   coherence.excludes(cross);
   plot.excludes(cross).excludes(coherence);
   options
       .add_parsed(
-          "--spectrogram",
-          "N|TIME",
+          "--spectrogram", "N|TIME",
           [verb = verb.get()](const std::string& text) {
             verb->spectrogram = text;
             CharacterizeOptions& of_verb = verb->analysis.options;
@@ -182,12 +148,8 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
       .excludes(cross)
       .excludes(coherence)
       .excludes(plot);
-  options.add_count(
-      "--log-bins",
-      analysis.spectrum_bins,
-      "average into at most N bins of a logarithmic frequency axis (default: 0, do not)",
-      0,
-      1000000);
+  options.add_count("--log-bins", analysis.spectrum_bins,
+                    "average into at most N bins of a logarithmic frequency axis (default: 0, do not)", 0, 1000000);
   add_reading_options(options, session, analysis.reading);
   add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);
@@ -201,13 +163,13 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_psd() {
-  return {4,
-          "psd",
-          "Compute power spectra (Welch), cross spectra, coherence, spectrograms, as CSV or JSON",
-          psd_options,
-          {{"a spectrum of segments of 20 s, into a table",
-            "sensorchar psd imu.csv -c gyro_z --segment 20s -o psd.csv"},
-           {"the spectral lines", "sensorchar psd imu.csv --lines"}}};
+  return {
+      4,
+      "psd",
+      "Compute power spectra (Welch), cross spectra, coherence, spectrograms, as CSV or JSON",
+      psd_options,
+      {{"a spectrum of segments of 20 s, into a table", "sensorchar psd imu.csv -c gyro_z --segment 20s -o psd.csv"},
+       {"the spectral lines", "sensorchar psd imu.csv --lines"}}};
 }
 
 }  // namespace sensorchar

@@ -38,17 +38,16 @@ struct ReplayVerb {
   ReplaySource source;
   std::string folder, estimates, scene_file;
   std::vector<std::string> algorithms, settings, sweeps;
-  bool explain = false, list = false, force = false, json = false, no_allan = false,
-       no_skip = false, no_timing = false, published = false;
+  bool explain = false, list = false, force = false, json = false, no_allan = false, no_skip = false, no_timing = false,
+       published = false;
   std::optional<double> window_s, budget_s;
 };
 
 // "minque.gamma=0.99": an option of an algorithm that runs.
 void set_option(const std::string& text, std::vector<SceneAlgorithm>& algorithms) {
   const Sweep setting = parse_sweep(text, "--set", 1);
-  const bool found = std::any_of(algorithms.begin(), algorithms.end(), [&](const auto& algorithm) {
-    return algorithm.name == setting.algorithm;
-  });
+  const bool found = std::any_of(algorithms.begin(), algorithms.end(),
+                                 [&](const auto& algorithm) { return algorithm.name == setting.algorithm; });
   if (!found)
     throw usage_error("E0910", "--set")
         .says("this algorithm is not among those that run")
@@ -76,8 +75,7 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
   if (out.empty()) out = scene.algorithms;
   if (out.empty())
     for (const fusion::Entry& entry : fusion::algorithms())
-      if (!entry.description->as_published || verb.published ||
-          named(verb, entry.description->name))
+      if (!entry.description->as_published || verb.published || named(verb, entry.description->name))
         out.push_back({std::string(entry.description->name), {}, 0, 0});
   for (const std::string& setting : verb.settings) set_option(setting, out);
   std::vector<Sweep> sweeps;
@@ -88,8 +86,7 @@ std::vector<SceneAlgorithm> chosen(const ReplayVerb& verb, const Scene& scene) {
 // With what the command line says on top: the scene that --write-scene writes.
 Scene read_scene(const ReplayVerb& verb) {
   Scene scene = read_replay_source(verb.source, verb.scene_file);
-  if (auto algorithms = chosen(verb, scene); !algorithms.empty())
-    scene.algorithms = std::move(algorithms);
+  if (auto algorithms = chosen(verb, scene); !algorithms.empty()) scene.algorithms = std::move(algorithms);
   if (!verb.scene_file.empty()) scene.file = verb.scene_file;
   return scene;
 }
@@ -134,10 +131,7 @@ ReplayOptions options_of(const ReplayVerb& verb) {
   return options;
 }
 
-void print_plan(Session& session,
-                const ReplayVerb& verb,
-                const Scene& scene,
-                const ReplayOptions& options) {
+void print_plan(Session& session, const ReplayVerb& verb, const Scene& scene, const ReplayOptions& options) {
   const auto plan = explain_replay(scene, options, session.terminal);
   session.terminal.clear();
   session.terminal.warn(scene.warnings, verb.source.path);
@@ -151,10 +145,8 @@ void print_plan(Session& session,
 }
 
 // What is refused is refused before anything runs: an output that is an input, or that stands already.
-void check_replay_outputs(const ReplayVerb& verb,
-                          const std::vector<std::string>& inputs,
-                          const std::vector<std::string>& reports,
-                          const std::string& estimates) {
+void check_replay_outputs(const ReplayVerb& verb, const std::vector<std::string>& inputs,
+                          const std::vector<std::string>& reports, const std::string& estimates) {
   if (!estimates.empty()) {
     format_to_write(estimates, {});
     check_outputs({estimates}, verb.folder, inputs, verb.force);
@@ -163,14 +155,11 @@ void check_replay_outputs(const ReplayVerb& verb,
 }
 
 // The scene as a file that replays to the same results.
-void write_scene(const Session& session,
-                 const ReplayVerb& verb,
-                 const Scene& scene,
+void write_scene(const Session& session, const ReplayVerb& verb, const Scene& scene,
                  const std::vector<std::string>& inputs) {
   const fs::path folder = fs::path(verb.scene_file).parent_path();
   write_outputs({{verb.scene_file, scene_yaml(scene)}}, folder, inputs, verb.force);
-  if (!verb.json)
-    return print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
+  if (!verb.json) return print_beside(session, fmt::format("wrote {}\n", printable(verb.scene_file)));
   if (!verb.folder.empty()) return;  // its report is the one document
   Json document = document_head(session, "scene-written", {});
   document["scene"] = printable(verb.scene_file);
@@ -178,43 +167,32 @@ void write_scene(const Session& session,
 }
 
 // The replay of mended samples; else the log fused by what is recommended, "" where nothing is or there is no log.
-std::string next_after(const Session& session,
-                       const ReplayVerb& verb,
-                       const Scene& scene,
-                       const ReplayResult& result) {
+std::string next_after(const Session& session, const ReplayVerb& verb, const Scene& scene, const ReplayResult& result) {
   std::vector<Finding> found = result.warnings.list();
   for (const LogInfo& log : result.logs)
     for (const Finding& one : log.warnings.list()) found.push_back(one);
-  if (const std::string mended = mended_command(session, found, verb.folder); !mended.empty())
-    return mended;
-  if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty())
-    return "";
-  return fmt::format("sensorchar fuse {}{} --with {} -o {}",
-                     shell_word(scene.recording),
-                     reading_flags(scene.reading, result.logs[0]),
-                     shell_word(verb.folder),
+  if (const std::string mended = mended_command(session, found, verb.folder); !mended.empty()) return mended;
+  if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty()) return "";
+  return fmt::format("sensorchar fuse {}{} --with {} -o {}", shell_word(scene.recording),
+                     reading_flags(scene.reading, result.logs[0]), shell_word(verb.folder),
                      shell_word(default_folder(scene.recording, "fused") + ".csv"));
 }
 
 // Runs everything and writes the reports; says which files.
-void run_and_report(Session& session,
-                    const ReplayVerb& verb,
-                    const Scene& scene,
+void run_and_report(Session& session, const ReplayVerb& verb, const Scene& scene,
                     const std::vector<std::string>& inputs) {
   const fs::path folder = verb.folder;
   const MadeFolder made(folder);
   std::vector<std::string> files;
   for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
     files.push_back((folder / name).string());
-  const std::string tracks =
-      verb.estimates.empty() ? "" : (folder / ("estimates." + verb.estimates)).string();
+  const std::string tracks = verb.estimates.empty() ? "" : (folder / ("estimates." + verb.estimates)).string();
   check_replay_outputs(verb, inputs, files, tracks);
   ReplayWorkspace workspace;
   workspace.heap = heap_meter();
   std::optional<ColumnWriter> estimates;
   if (!tracks.empty())
-    workspace.estimates =
-        &estimates.emplace(tracks, WriteOptions{.time_column = false, .overwrite = verb.force});
+    workspace.estimates = &estimates.emplace(tracks, WriteOptions{.time_column = false, .overwrite = verb.force});
   ReplayResult result = replay(scene, options_of(verb), session.terminal, workspace);
   session.terminal.clear();
   result.command = session.command;
@@ -230,8 +208,7 @@ void run_and_report(Session& session,
                                      {files[3], fusion_yaml(result.learnt)}};
   name_files(document, outputs);
   if (estimates)
-    for (const std::string& file : estimates->files())
-      document["files"].push_back(fs::path(file).filename().string());
+    for (const std::string& file : estimates->files()) document["files"].push_back(fs::path(file).filename().string());
   outputs[1].text = dump_json(document);
   std::vector<WholeFile*> streamed;
   if (estimates) streamed = estimates->complete();
@@ -241,8 +218,7 @@ void run_and_report(Session& session,
   print_beside(session, replay_text(view, table_width()));
   std::string written = "\nwrote";
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
-  if (!removed.empty())
-    written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
+  if (!removed.empty()) written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
   if (!session.terminal.quiet()) print(written + "\n");
   say_next(session, next_after(session, verb, scene, result));
 }
@@ -258,25 +234,19 @@ std::vector<std::string> outputs_of(const ReplayVerb& verb) {
   std::vector<std::string> out = {verb.scene_file};
   for (const char* name : {"report.html", "report.json", "report.md", "fusion.yaml"})
     out.push_back((fs::path(verb.folder) / name).string());
-  if (!verb.estimates.empty())
-    out.push_back((fs::path(verb.folder) / ("estimates." + verb.estimates)).string());
+  if (!verb.estimates.empty()) out.push_back((fs::path(verb.folder) / ("estimates." + verb.estimates)).string());
   return out;
 }
 
 void run_replay(Session& session, ReplayVerb verb) {
   if (verb.list) return print_algorithms(session, verb.json);
   if (verb.source.path.empty())
-    throw usage_error("E0910", "SCENE")
-        .says("a scene or a recording is missing")
-        .hint("--list names the algorithms");
+    throw usage_error("E0910", "SCENE").says("a scene or a recording is missing").hint("--list names the algorithms");
   const Scene scene = read_scene(verb);
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
-  if (verb.folder.empty() && verb.scene_file.empty())
-    verb.folder = default_folder(verb.source.path, "replay");
+  if (verb.folder.empty() && verb.scene_file.empty()) verb.folder = default_folder(verb.source.path, "replay");
   refuse_standard_output("--output", verb.folder);
-  refuse_standard_output("--write-scene",
-                         verb.scene_file,
-                         "a scene names its recording by where it lies beside it",
+  refuse_standard_output("--write-scene", verb.scene_file, "a scene names its recording by where it lies beside it",
                          "name a file");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.source.path);
@@ -289,43 +259,34 @@ void run_replay(Session& session, ReplayVerb verb) {
 
 std::vector<std::string> algorithm_names() {
   std::vector<std::string> names;
-  for (const fusion::Entry& entry : fusion::algorithms())
-    names.emplace_back(entry.description->name);
+  for (const fusion::Entry& entry : fusion::algorithms()) names.emplace_back(entry.description->name);
   return names;
 }
 
 /// A plan writes nothing, and a scene says nothing of how it is replayed.
 void add_only(VerbOptions& options, const ReplayVerb& verb) {
   const auto runs = [&verb] { return !verb.folder.empty() && !verb.explain; };
-  options.only(
-      "without --explain", [&verb] { return !verb.explain; }, {"--output", "--write-scene"});
+  options.only("without --explain", [&verb] { return !verb.explain; }, {"--output", "--write-scene"});
   options.only("with -o", runs, {"--estimates", "--no-timing", "--window", "--no-allan"});
-  options.only("with -o or --explain",
-               [&verb] { return !verb.folder.empty() || verb.explain; },
+  options.only("with -o or --explain", [&verb] { return !verb.folder.empty() || verb.explain; },
                {"--budget", "--no-skip"});
 }
 
 std::function<void()> replay_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReplayVerb>();
   add_replay_source(options, session, verb->source);
-  options
-      .add_text("-o,--output",
-                verb->folder,
-                "folder for the results, made when absent (default: LOG-replay)")
+  options.add_text("-o,--output", verb->folder, "folder for the results, made when absent (default: LOG-replay)")
       .value_name("DIR")
       .writes();
-  const Option algorithms =
-      options
-          .add_texts("--algorithms",
-                     verb->algorithms,
-                     "run these only (default: the scene's, else all that it has the data for)")
-          .separated_by_commas()
-          .once_each()
-          .value_name("NAME,…")
-          .known_words(algorithm_names());
+  const Option algorithms = options
+                                .add_texts("--algorithms", verb->algorithms,
+                                           "run these only (default: the scene's, else all that it has the data for)")
+                                .separated_by_commas()
+                                .once_each()
+                                .value_name("NAME,…")
+                                .known_words(algorithm_names());
   options
-      .add_flag("--published",
-                verb->published,
+      .add_flag("--published", verb->published,
                 "also run the algorithms exactly as published (…-published), next to the robust "
                 "ones")
       .excludes(algorithms);
@@ -333,43 +294,30 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .value_name("SETTING")
       .once_each();
   options
-      .add_texts("--sweep",
-                 verb->sweeps,
+      .add_texts("--sweep", verb->sweeps,
                  "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
                  "FROM..TO; several make a grid")
       .one_value_each()
       .value_name("SWEEP");
-  options.add_duration("--window",
-                       verb->window_s,
-                       "length of the window RMS (default: a fiftieth of the evaluation)");
-  options.add_instant("--budget",
-                      verb->budget_s,
+  options.add_duration("--window", verb->window_s, "length of the window RMS (default: a fiftieth of the evaluation)");
+  options.add_instant("--budget", verb->budget_s,
                       "processor time that leave-one-out of one algorithm may take, counted by "
                       "its declared cost; beyond, "
                       "it runs on stretches or not at all (default: 10 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
-      .add_text("--estimates",
-                verb->estimates,
+      .add_text("--estimates", verb->estimates,
                 "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       .value_name("FORMAT");
-  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options")
-      .alone();
-  options.add_flag("--explain",
-                   verb->explain,
-                   "print the plan: what would be read, learnt, run, skipped and why");
-  options.add_flag("--no-timing",
-                   verb->no_timing,
-                   "without run times and memory: the same scene gives the same bytes");
-  options.add_flag("--no-skip",
-                   verb->no_skip,
+  options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options").alone();
+  options.add_flag("--explain", verb->explain, "print the plan: what would be read, learnt, run, skipped and why");
+  options.add_flag("--no-timing", verb->no_timing, "without run times and memory: the same scene gives the same bytes");
+  options.add_flag("--no-skip", verb->no_skip,
                    "do all work whether an output needs it or not; the numbers are the same");
   options
-      .add_text(
-          "--write-scene",
-          verb->scene_file,
-          "write all that was said as a scene file, which replays to the same results; without "
-          "-o nothing else is done")
+      .add_text("--write-scene", verb->scene_file,
+                "write all that was said as a scene file, which replays to the same results; without "
+                "-o nothing else is done")
       .writes()
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();

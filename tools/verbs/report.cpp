@@ -23,12 +23,10 @@ struct ReportVerb {
 };
 
 /// A recording is characterized on the way.
-ReportedCharacterization reported(Session& session,
-                                  const ReportVerb& verb,
-                                  const std::string& file) {
+ReportedCharacterization reported(Session& session, const ReportVerb& verb, const std::string& file) {
   if (!detail::is_recording(file)) return read_characterization_report(file);
-  ReportedCharacterization out = parse_characterization_report(
-      report_of_recording(session, file, finish(verb.analysis)).text, file);
+  ReportedCharacterization out =
+      parse_characterization_report(report_of_recording(session, file, finish(verb.analysis)).text, file);
   out.name = detail::document_name(file);
   return out;
 }
@@ -44,24 +42,19 @@ std::string table_of(Session& session, const ReportVerb& verb, TableFormat forma
   CharacterizationCompareOptions options;
   options.channels = verb.channels;
   return table_text(
-      detail::comparison_table(
-          compare_characterizations(std::move(reports), options),
-          format == TableFormat::csv ? detail::TableGroups::all : detail::TableGroups::summary),
+      detail::comparison_table(compare_characterizations(std::move(reports), options),
+                               format == TableFormat::csv ? detail::TableGroups::all : detail::TableGroups::summary),
       format);
 }
 
 void run_report(Session& session, const ReportVerb& verb) {
   if (!verb.output.empty() && verb.output != "-")
-    for (const std::string& file : verb.files)
-      foresee_output(verb.output, {file, report_file(file)}, verb.force);
-  const TableFormat format = verb.latex ? TableFormat::latex
-                             : verb.csv ? TableFormat::csv
-                                        : TableFormat::markdown;
+    for (const std::string& file : verb.files) foresee_output(verb.output, {file, report_file(file)}, verb.force);
+  const TableFormat format = verb.latex ? TableFormat::latex : verb.csv ? TableFormat::csv : TableFormat::markdown;
   for (const std::string& file : verb.files)
-    refuse_lot_report(
-        file,
-        "its tables are coefficients.csv and index.html next to it; index.html links to "
-        "the folder with the report of each device");
+    refuse_lot_report(file,
+                      "its tables are coefficients.csv and index.html next to it; index.html links to "
+                      "the folder with the report of each device");
   std::string text;
   if (detail::document_format(verb.files[0]) != "replay-report") {
     text = table_of(session, verb, format);
@@ -83,27 +76,19 @@ void run_report(Session& session, const ReportVerb& verb) {
 std::function<void()> report_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReportVerb>();
   options
-      .add_texts("FILE",
-                 verb->files,
+      .add_texts("FILE", verb->files,
                  "report.json of characterize or replay (runs.json of pooled runs, what fit --json "
                  "prints) or its folder, a recording, or sensor models; several make the table of "
                  "compare")
       .required();
-  const Option markdown =
-      options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
+  const Option markdown = options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
   const Option latex =
-      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package")
-          .excludes(markdown);
-  options.add_flag("--csv", verb->csv, "one number per column, all digits")
-      .excludes(latex)
-      .excludes(markdown);
-  options
-      .add_texts(
-          "-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (all)")
+      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package").excludes(markdown);
+  options.add_flag("--csv", verb->csv, "one number per column, all digits").excludes(latex).excludes(markdown);
+  options.add_texts("-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (all)")
       .separated_by_commas()
       .once_each();
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout")
-      .value_name("FILE");
+  options.add_text("-o,--output", verb->output, "write there instead of to stdout").value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
   add_recording_options(options, session, verb->analysis, verb->files);
   return [verb, &session] { run_report(session, *verb); };

@@ -61,17 +61,13 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
         .got(brief_text(simulation.rate_hz, 6))
         .hint("give --rate");
   if (verb.samples > 0 && verb.duration_s)
-    throw usage_error("E0721", "--samples")
-        .says("does not go with --duration")
-        .hint("give one of them");
+    throw usage_error("E0721", "--samples").says("does not go with --duration").hint("give one of them");
   if (verb.samples > 0) simulation.samples = std::min(verb.samples, kMostSamples);
   if (verb.duration_s)
-    simulation.samples = clamped_whole<std::uint64_t>(
-        std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
+    simulation.samples =
+        clamped_whole<std::uint64_t>(std::round(*verb.duration_s * simulation.rate_hz), 0, kMostSamples);
   if (simulation.samples == 0)
-    throw usage_error("E0721", "simulate")
-        .says("the length is missing")
-        .hint("give --duration or --samples");
+    throw usage_error("E0721", "simulate").says("the length is missing").hint("give --duration or --samples");
   if (simulation.samples == kMostSamples)
     throw usage_error("E0721", verb.duration_s ? "--duration" : "--samples")
         .says("more samples than a recording can have are asked for")
@@ -84,25 +80,19 @@ void refuse_beyond_disk(const SimulateVerb& verb, const ArraySimulation& simulat
   std::error_code unknown;
   const fs::path folder = fs::absolute(verb.output).parent_path();
   const fs::space_info space = fs::space(folder, unknown);
-  const double bytes = 2.0 * static_cast<double>(simulation.samples) *
-                       static_cast<double>(simulation.sensors.size());
+  const double bytes = 2.0 * static_cast<double>(simulation.samples) * static_cast<double>(simulation.sensors.size());
   if (!unknown && bytes > static_cast<double>(space.available))
     throw output_error("E0524", verb.output)
         .says("would take {} at least, and {} are free there",
-              bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)),
-              bytes_text(space.available))
+              bytes_text(clamped_whole<std::uint64_t>(bytes, 0, kMostSamples)), bytes_text(space.available))
         .hint("fewer samples, another disk, or -o - into a program");
 }
 
 // A recorded signal is read after the faults have been understood: that may take a while.
-void read_recorded(const SimulateVerb& verb,
-                   SignalSpec& signal,
-                   const std::string& option,
-                   const ArraySimulation& simulation,
-                   Findings& warnings) {
+void read_recorded(const SimulateVerb& verb, SignalSpec& signal, const std::string& option,
+                   const ArraySimulation& simulation, Findings& warnings) {
   if (signal.kind == "recording")
-    for (const std::string& output : {verb.output, verb.scene_path})
-      refuse_same_file(signal.file, output);
+    for (const std::string& output : {verb.output, verb.scene_path}) refuse_same_file(signal.file, output);
   read_recorded_signal(signal, option, simulation, warnings);
 }
 
@@ -112,11 +102,8 @@ void refuse_mixed_units(const ArraySimulation& simulation) {
   for (const SimulatedSensor& other : simulation.sensors)
     if (unit_factor(first.model.unit, other.model.unit) != 1)
       throw usage_error("E0721", "--truth")
-          .says("is one signal, and {} is in {}, {} in {}",
-                printable(first.name, 40),
-                printable(first.model.unit, 40),
-                printable(other.name, 40),
-                printable(other.model.unit, 40))
+          .says("is one signal, and {} is in {}, {} in {}", printable(first.name, 40), printable(first.model.unit, 40),
+                printable(other.name, 40), printable(other.model.unit, 40))
           .hint("simulate sensors of one unit together");
 }
 
@@ -129,15 +116,13 @@ void set_signals(const SimulateVerb& verb, ArraySimulation& simulation) {
     refuse_mixed_units(simulation);
     simulation.truth = {parse_signal(verb.truth, "--truth")};
   }
-  if (!verb.temperature.empty())
-    simulation.temperature = parse_signal(verb.temperature, "--temperature");
+  if (!verb.temperature.empty()) simulation.temperature = parse_signal(verb.temperature, "--temperature");
 }
 
 void add_faults(const SimulateVerb& verb, ArraySimulation& simulation) {
   std::vector<std::string> names;
   for (const SimulatedSensor& sensor : simulation.sensors) names.push_back(sensor.name);
-  for (const std::string& fault : verb.faults)
-    simulation.faults.push_back(parse_fault(fault, names));
+  for (const std::string& fault : verb.faults) simulation.faults.push_back(parse_fault(fault, names));
 }
 
 // What the command line says on top of models or scene, and what was found about it.
@@ -150,10 +135,8 @@ Findings apply_options(Session& session, const SimulateVerb& verb, ArraySimulati
   set_signals(verb, simulation);
   add_faults(verb, simulation);
   Findings warnings;
-  if (!verb.truth.empty())
-    read_recorded(verb, simulation.truth[0], "--truth", simulation, warnings);
-  if (!verb.temperature.empty())
-    read_recorded(verb, *simulation.temperature, "--temperature", simulation, warnings);
+  if (!verb.truth.empty()) read_recorded(verb, simulation.truth[0], "--truth", simulation, warnings);
+  if (!verb.temperature.empty()) read_recorded(verb, *simulation.temperature, "--temperature", simulation, warnings);
   warnings.merge(late_faults(simulation));
   session.terminal.warn(warnings, "simulate");
   return warnings;
@@ -161,11 +144,9 @@ Findings apply_options(Session& session, const SimulateVerb& verb, ArraySimulati
 
 // Where log and scene go; neither is an input.
 void place_outputs(SimulateVerb& verb, const Scene& scene) {
-  if (verb.output.empty())
-    throw usage_error("E0721", "--output").says("is required").hint("-o LOG");
+  if (verb.output.empty()) throw usage_error("E0721", "--output").says("is required").hint("-o LOG");
   const bool scene_given = !verb.scene_path.empty();
-  if (verb.scene_path.empty())
-    verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
+  if (verb.scene_path.empty()) verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   if (!verb.no_scene && !scene_given && writes_through(verb.output))
     throw usage_error("E0721", "--output")
         .says("there is no place for a scene next to a pipe or device")
@@ -184,8 +165,7 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
 // The scene that `simulate` wrote beside a log makes the log again; the scene stands already.
 void simulate_again(SimulateVerb& verb, Scene& scene) {
   if (!scene.simulated)
-    throw usage_error("E0721", verb.sources[0])
-        .says("is a scene of a recording, there is nothing to simulate");
+    throw usage_error("E0721", verb.sources[0]).says("is a scene of a recording, there is nothing to simulate");
   if (!scene.simulated->simulation)
     throw usage_error("E0721", verb.sources[0])
         .says("holds no simulation: an older version wrote it")
@@ -223,8 +203,7 @@ Scene read_source(Session& session, SimulateVerb& verb) {
     if (!scene.simulate) simulate_again(verb, scene);
     place_outputs(verb, scene);
     if (verb.devices > 1)
-      throw usage_error("E0721", "--devices")
-          .says("the scene says how many devices there are (count)");
+      throw usage_error("E0721", "--devices").says("the scene says how many devices there are (count)");
   } else {
     scene.simulate = simulation_of_models(verb.sources, {verb.rate_hz, verb.devices});
     report_models(session, *scene.simulate);
@@ -247,9 +226,7 @@ void take_standard_output(SimulateVerb& verb) {
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
-  refuse_standard_output("--scene",
-                         verb.scene_path,
-                         "a scene names its recording by where it lies beside it",
+  refuse_standard_output("--scene", verb.scene_path, "a scene names its recording by where it lies beside it",
                          "name a file");
   take_standard_output(verb);
   const Scene scene = read_source(session, verb);
@@ -263,11 +240,8 @@ void run_simulate(Session& session, SimulateVerb& verb) {
   for (const std::string& source : verb.sources) read.push_back(document_info(source));
   read.front().warnings.merge(found);
   for (const LogInfo& one : read) inputs.push_back(&one);
-  const SimulatedRecording recording{verb.output,
-                                     verb.no_scene ? "" : verb.scene_path,
-                                     write_options(verb.writing),
-                                     !verb.no_truth,
-                                     words_of(session)};
+  const SimulatedRecording recording{verb.output, verb.no_scene ? "" : verb.scene_path, write_options(verb.writing),
+                                     !verb.no_truth, words_of(session)};
   const SimulatedLog written = simulate_log(simulation, recording, scene, session.terminal);
   session.terminal.clear();
   if (!verb.json) return print_summary(session, verb.output, simulation_text(simulation, written));
@@ -281,65 +255,50 @@ void add_length_options(VerbOptions& options, SimulateVerb& verb) {
   options.add_count("--samples", verb.samples, "length in samples", 1);
   options.add_rate("--rate", verb.rate_hz, "sampling rate (default: the model's)");
   options.add_parsed(
-      "--seed",
-      "N",
+      "--seed", "N",
       [&verb](const std::string& text) {
         try {
           verb.seed = parse_count(text);
         } catch (const Error&) {
-          throw usage_error("E0721", "--seed")
-              .says("expected a whole number from 0 to 18446744073709551615")
-              .got(text);
+          throw usage_error("E0721", "--seed").says("expected a whole number from 0 to 18446744073709551615").got(text);
         }
         verb.seed_given = true;
       },
       "seed of all random numbers (default: 1); the same seed gives the same samples");
-  options.add_count(
-      "--devices",
-      verb.devices,
-      "devices made from each model, each with its own scale factor, bias and noise (default: 1)",
-      1,
-      kMostDevices);
+  options.add_count("--devices", verb.devices,
+                    "devices made from each model, each with its own scale factor, bias and noise (default: 1)", 1,
+                    kMostDevices);
 }
 
 void add_input_options(VerbOptions& options, SimulateVerb& verb) {
   options
-      .add_text("--truth",
-                verb.truth,
+      .add_text("--truth", verb.truth,
                 "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, "
                 "noise, uniform, random_walk, ramp, or recording,file=LOG,channel=NAME; its keys "
                 "are those of scenes (default: zero)")
       .value_name("SIGNAL");
   options
-      .add_text("--temperature",
-                verb.temperature,
+      .add_text("--temperature", verb.temperature,
                 "temperature in degC, a signal as well (default: the models' reference)")
       .value_name("SIGNAL");
   options.add_texts("--fault", verb.faults, kFaultHelp).value_name("FAULT");
-  options.add_flag("--deterministic",
-                   verb.deterministic,
+  options.add_flag("--deterministic", verb.deterministic,
                    "put in the steps, warm-ups and ramps that the models' recordings had, at their "
                    "times (default: they are of that recording, not of the sensor)");
-  options.add_count("--oversampling",
-                    verb.oversampling,
-                    "oversampling factor of the simulation (default: 1)",
-                    1,
-                    1024);
+  options.add_count("--oversampling", verb.oversampling, "oversampling factor of the simulation (default: 1)", 1, 1024);
 }
 
 std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<SimulateVerb>();
   options
-      .add_texts("SOURCE",
-                 verb->sources,
+      .add_texts("SOURCE", verb->sources,
                  "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml); one "
                  "that simulate "
                  "wrote makes its log again")
       .required()
       .value_name("MODEL…|SCENE");
   options
-      .add_text("-o,--output",
-                verb->output,
+      .add_text("-o,--output", verb->output,
                 "log to write; its suffix says the format (" + libchar::written_suffixes() +
                     "; - is standard output, without a scene); of a scene that simulate wrote its "
                     "own log")
@@ -347,17 +306,13 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   add_length_options(options, *verb);
   add_input_options(options, *verb);
   options.add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
-  const Option scene =
-      options
-          .add_text(
-              "--scene",
-              verb->scene_path,
-              "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
-          .value_name("FILE");
+  const Option scene = options
+                           .add_text("--scene", verb->scene_path,
+                                     "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+                           .value_name("FILE");
   options.add_flag("--no-scene", verb->no_scene, "write no scene").excludes(scene);
   add_writing_options(options, verb->writing, "t[s]", verb->output);
-  options.add_flag(
-      "--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
+  options.add_flag("--allow-outside", verb->allow_outside, "the scene may name files outside its folder");
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite existing files");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   return [&session, verb] { run_simulate(session, *verb); };

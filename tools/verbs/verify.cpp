@@ -27,15 +27,10 @@ struct VerifyVerb {
 };
 
 std::string check_text(const ResultCheck& check) {
-  std::string out = fmt::format("{}: written by sensorchar {}{}\n",
-                                printable(check.document),
-                                printable(check.version),
+  std::string out = fmt::format("{}: written by sensorchar {}{}\n", printable(check.document), printable(check.version),
                                 check.build.empty() ? "" : " (" + printable(check.build) + ")");
   for (const CheckedFile& file : check.files)
-    out += fmt::format("  {:9} {}{}\n",
-                       state_word(file.state),
-                       printable(file.path),
-                       file.input ? " (input)" : "");
+    out += fmt::format("  {:9} {}{}\n", state_word(file.state), printable(file.path), file.input ? " (input)" : "");
   return out;
 }
 
@@ -47,9 +42,8 @@ Json check_json(const ResultCheck& check) {
               {"holds", check.holds()},
               {"files", Json::array()}};
   for (const CheckedFile& file : check.files)
-    out["files"].push_back({{"path", json_text(file.path)},
-                            {"input", file.input},
-                            {"state", std::string(state_word(file.state))}});
+    out["files"].push_back(
+        {{"path", json_text(file.path)}, {"input", file.input}, {"state", std::string(state_word(file.state))}});
   return out;
 }
 
@@ -58,22 +52,17 @@ std::string digits_text(double relative) {
 }
 
 std::string rerun_text(const Rerun& run) {
-  std::string out = fmt::format("{}: run again into {}\n",
-                                printable(run.document),
+  std::string out = fmt::format("{}: run again into {}\n", printable(run.document),
                                 printable(std::filesystem::path(run.again).parent_path().string()));
   for (const auto& [file, same] : run.files)
     out += fmt::format("  {:9} {}\n", same ? "same" : "other", printable(file));
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < std::min(kShown, run.differences.size()); ++i) {
     const JsonDifference& d = run.differences[i];
-    out += fmt::format("  other     {}: {}, was {}{}\n",
-                       printable(d.at),
-                       printable(d.now),
-                       printable(d.was),
+    out += fmt::format("  other     {}: {}, was {}{}\n", printable(d.at), printable(d.now), printable(d.was),
                        digits_text(d.relative));
   }
-  if (run.differences.size() > kShown)
-    out += fmt::format("  and {} more\n", run.differences.size() - kShown);
+  if (run.differences.size() > kShown) out += fmt::format("  and {} more\n", run.differences.size() - kShown);
   if (run.differences.empty())
     out += "  same      every number of the document\n";
   else if (run.holds())
@@ -88,8 +77,7 @@ Json rerun_json(const Rerun& run) {
               {"holds", run.holds()},
               {"files", Json::array()},
               {"differences", Json::array()}};
-  for (const auto& [file, same] : run.files)
-    out["files"].push_back({{"path", json_text(file)}, {"same", same}});
+  for (const auto& [file, same] : run.files) out["files"].push_back({{"path", json_text(file)}, {"same", same}});
   for (const JsonDifference& d : run.differences)
     out["differences"].push_back({{"at", json_text(d.at)},
                                   {"was", json_text(d.was)},
@@ -133,8 +121,8 @@ void run_verify(Session& session, const VerifyVerb& verb) {
   } else {
     for (const ResultCheck& check : checks) print_text(check_text(check));
   }
-  const auto broken = std::find_if(
-      checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
+  const auto broken =
+      std::find_if(checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
   if (broken != checks.end())
     throw Refusal(ErrorKind::check, "E0520", broken->document)
         .says("what it was written with is changed or missing")
@@ -143,27 +131,20 @@ void run_verify(Session& session, const VerifyVerb& verb) {
 
 std::function<void()> verify_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<VerifyVerb>();
-  options
-      .add_text("RESULTS", verb->results, "folder that characterize or replay wrote, or its report")
+  options.add_text("RESULTS", verb->results, "folder that characterize or replay wrote, or its report")
       .required()
       .value_name("DIR|REPORT");
   options
-      .add_text("--in",
-                verb->inputs_in,
-                "folder that the paths of inputs are meant from (default: the one you are in)")
+      .add_text("--in", verb->inputs_in, "folder that the paths of inputs are meant from (default: the one you are in)")
       .value_name("FOLDER");
   options
-      .add_text("--rerun",
-                verb->again,
+      .add_text("--rerun", verb->again,
                 "run it again into this new folder, as the report's command says, and compare "
                 "every number")
       .value_name("FOLDER");
-  options.add_flag(
-      "--allow-read",
-      verb->allow_read,
-      "allow the report's command to read files outside this folder (or --in) and the report's");
-  options.only(
-      "with --rerun", [verb = verb.get()] { return !verb->again.empty(); }, {"--allow-read"});
+  options.add_flag("--allow-read", verb->allow_read,
+                   "allow the report's command to read files outside this folder (or --in) and the report's");
+  options.only("with --rerun", [verb = verb.get()] { return !verb->again.empty(); }, {"--allow-read"});
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
   return [&session, verb] { run_verify(session, *verb); };
 }
@@ -171,13 +152,12 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_verify() {
-  return {
-      12,
-      "verify",
-      "Check that results and input files have not changed since the report was written",
-      verify_options,
-      {{"check the files of a folder", "sensorchar verify report"},
-       {"repeat the analysis and compare the numbers", "sensorchar verify report --rerun again"}}};
+  return {12,
+          "verify",
+          "Check that results and input files have not changed since the report was written",
+          verify_options,
+          {{"check the files of a folder", "sensorchar verify report"},
+           {"repeat the analysis and compare the numbers", "sensorchar verify report --rerun again"}}};
 }
 
 }  // namespace sensorchar

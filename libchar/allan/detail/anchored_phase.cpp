@@ -65,19 +65,14 @@ template <int kOrder>
 [[gnu::always_inline]] inline double any_stride(const DifferenceRun& run) {
   if (run.stride == 1) return contiguous<kOrder>(run);
   double lane[kLanes] = {};
-  for (std::size_t s = 0; s < run.count; ++s)
-    lane[s % kLanes] += squared<kOrder>(run, s * run.stride);
+  for (std::size_t s = 0; s < run.count; ++s) lane[s % kLanes] += squared<kOrder>(run, s * run.stride);
   return sum_of_lanes(lane);
 }
 
-LIBCHAR_LANES double squared_second_differences_lanes(const DifferenceRun& run) {
-  return any_stride<2>(run);
-}
+LIBCHAR_LANES double squared_second_differences_lanes(const DifferenceRun& run) { return any_stride<2>(run); }
 constexpr InLanes<squared_second_differences_lanes> squared_second_differences;
 
-LIBCHAR_LANES double squared_third_differences_lanes(const DifferenceRun& run) {
-  return any_stride<3>(run);
-}
+LIBCHAR_LANES double squared_third_differences_lanes(const DifferenceRun& run) { return any_stride<3>(run); }
 constexpr InLanes<squared_third_differences_lanes> squared_third_differences;
 
 constexpr std::size_t kBlock = AnchoredPhase::kBlock;
@@ -87,9 +82,7 @@ DoubleDouble two_sum(double a, double b) {
   return {s, (a - (s - t)) + (b - t)};
 }
 
-double finite_or(double value, double instead) {
-  return std::isfinite(value) ? value : instead;
-}
+double finite_or(double value, double instead) { return std::isfinite(value) ? value : instead; }
 
 AnchoredPhase empty_phase(std::size_t points, double scale, bool summed) {
   AnchoredPhase phase;
@@ -133,8 +126,7 @@ void sum_again(AnchoredPhase& phase) {
       phase.local2[p] = sum;
       sum += phase.local[p];
     }
-    base = base + phase.base[b] * length + phase.anchor[b] * (length * (length - 1) / 2) +
-           DoubleDouble{sum, 0};
+    base = base + phase.base[b] * length + phase.anchor[b] * (length * (length - 1) / 2) + DoubleDouble{sum, 0};
   }
 }
 
@@ -146,8 +138,7 @@ struct Polynomial {
   }
   /// By a power of two nothing is rounded.
   static DoubleDouble times(DoubleDouble value, double weight) {
-    return std::fabs(weight) == 3 ? value * weight
-                                  : DoubleDouble{value.high * weight, value.low * weight};
+    return std::fabs(weight) == 3 ? value * weight : DoubleDouble{value.high * weight, value.low * weight};
   }
 };
 
@@ -156,9 +147,7 @@ Polynomial polynomial(const AnchoredPhase& phase, std::size_t position, bool of_
   const double j = static_cast<double>(position % kBlock);
   const DoubleDouble a = phase.anchor[b];
   if (!of_sum) return {{phase.base[b] + a * j, a, DoubleDouble{}}};
-  return {{phase.base2[b] + phase.base[b] * j + a * (j * (j - 1) / 2),
-           phase.base[b] + a * (j - 0.5),
-           a * 0.5}};
+  return {{phase.base2[b] + phase.base[b] * j + a * (j * (j - 1) / 2), phase.base[b] + a * (j - 0.5), a * 0.5}};
 }
 
 /// Largest |x/2 - first| of what is finite; n is a multiple of four.
@@ -246,20 +235,15 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> points, bool summe
     phase.base[b] = two_sum(anchor, -origin);
     phase.anchor[b] = {static_cast<double>(slope), 0};
     for (std::size_t j = 0; j < block.size(); ++j)
-      phase.local[b * kBlock + j] = (finite_or(block[j] * scale, anchor) - anchor) -
-                                    static_cast<double>(j) * static_cast<double>(slope);
+      phase.local[b * kBlock + j] =
+          (finite_or(block[j] * scale, anchor) - anchor) - static_cast<double>(j) * static_cast<double>(slope);
   }
   if (summed) sum_again(phase);
   return phase;
 }
 
-double sum_of_squares(const AnchoredPhase& phase,
-                      int order,
-                      bool of_sum,
-                      std::size_t m,
-                      std::size_t first,
-                      std::size_t last,
-                      std::size_t stride) {
+double sum_of_squares(const AnchoredPhase& phase, int order, bool of_sum, std::size_t m, std::size_t first,
+                      std::size_t last, std::size_t stride) {
   const std::vector<double>& local = of_sum ? phase.local2 : phase.local;
   double sum = 0;
   for (std::size_t i = first; i < last;) {

@@ -49,12 +49,7 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> phase, bool summed
 /// Sum over the term starts i = first, first + stride, … < last of the squared `order`-th
 /// difference at step m of x, or of W when `of_sum` (order 2 or 3). Every position first … last - 1
 /// + order m must exist.
-double sum_of_squares(const AnchoredPhase& phase,
-                      int order,
-                      bool of_sum,
-                      std::size_t m,
-                      std::size_t first,
-                      std::size_t last,
-                      std::size_t stride);
+double sum_of_squares(const AnchoredPhase& phase, int order, bool of_sum, std::size_t m, std::size_t first,
+                      std::size_t last, std::size_t stride);
 
 }  // namespace libchar

@@ -30,29 +30,22 @@ namespace libchar {
 
 namespace {
 
-constexpr double kFar =
-    24;  // steps; the neglected terms of the developments are below 1e-9 of the value there
+constexpr double kFar = 24;  // steps; the neglected terms of the developments are below 1e-9 of the value there
 constexpr double kFourPi = 4 * std::numbers::pi;
 
 constexpr std::size_t kWhite = 0, kFlicker = 1, kWalk = 2, kQuantization = 3;
 
 /// delta2_m s of unit driving variance, from |n| = n >= 0.
-double white_difference(double n, double m) {
-  return n < m ? -(m - n) : 0.0;
-}
+double white_difference(double n, double m) { return n < m ? -(m - n) : 0.0; }
 
 double walk_difference(double n, double m) {
   if (n >= m) return m * m * n / 2;
   return (m * (m * m - 1) + 3 * m * n * n - n * (n * n - 1)) / 6;
 }
 
-double quantization_difference(double n, double m) {
-  return n == 0 ? -2.0 : n == m ? 1.0 : 0.0;
-}
+double quantization_difference(double n, double m) { return n == 0 ? -2.0 : n == m ? 1.0 : 0.0; }
 
-double flicker(double n) {
-  return phase_covariance(Term::flicker, n, 1);
-}
+double flicker(double n) { return phase_covariance(Term::flicker, n, 1); }
 
 double flicker_difference(double n, double m) {
   if (n < kFar * m) return flicker(n + m) - 2 * flicker(n) + flicker(n - m);
@@ -65,8 +58,7 @@ double flicker_difference(double n, double m) {
   const double eighth = 480 - w * 2520;
   return m * m *
          (second -
-          v * (fourth / 12 +
-               v * (sixth / 360 + v * (eighth / 20160 + v * (20160.0 / 1814400 + v * 0.00606))))) /
+          v * (fourth / 12 + v * (sixth / 360 + v * (eighth / 20160 + v * (20160.0 / 1814400 + v * 0.00606))))) /
          kFourPi;
 }
 
@@ -101,12 +93,9 @@ PerTerm sixth_differences(Function f, Tail tail, double m, double lag, double fa
   const double n = std::fabs(lag);
   for (const Term t : {Term::white, Term::walk, Term::quantization})
     if (n < 3 * m || (t == Term::quantization && n == 3 * m))
-      value[static_cast<std::size_t>(t)] =
-          factor * sixth_difference([&](double p) { return f(t, p, dt); }, n, m);
+      value[static_cast<std::size_t>(t)] = factor * sixth_difference([&](double p) { return f(t, p, dt); }, n, m);
   value[kFlicker] =
-      n < kFar * m
-          ? factor * sixth_difference([&](double p) { return f(Term::flicker, p, 1.0); }, n, m)
-          : tail(n);
+      n < kFar * m ? factor * sixth_difference([&](double p) { return f(Term::flicker, p, 1.0); }, n, m) : tail(n);
   return value;
 }
 
@@ -139,21 +128,15 @@ PerTerm allan_term_covariance(double m1, double m2, double lag, double dt_s, boo
   const double scale = 1 / (m1 * m2);
   PerTerm value{};
   if (n <= m1 + m2) {
-    value[kWhite] =
-        difference_again([&](double p) { return white_difference(p, small); }, n, large) * scale /
-        dt_s;
-    value[kWalk] = difference_again([&](double p) { return walk_difference(p, small); }, n, large) *
-                   scale * dt_s;
+    value[kWhite] = difference_again([&](double p) { return white_difference(p, small); }, n, large) * scale / dt_s;
+    value[kWalk] = difference_again([&](double p) { return walk_difference(p, small); }, n, large) * scale * dt_s;
     value[kQuantization] =
-        difference_again([&](double p) { return quantization_difference(p, small); }, n, large) *
-        scale / (dt_s * dt_s);
+        difference_again([&](double p) { return quantization_difference(p, small); }, n, large) * scale / (dt_s * dt_s);
   }
   if (!with_flicker) return value;
-  value[kFlicker] =
-      n > kFar * large
-          ? flicker_tail(n, m1, m2) / scale
-          : difference_again([&](double p) { return flicker_difference(p, small); }, n, large) *
-                scale;
+  value[kFlicker] = n > kFar * large
+                        ? flicker_tail(n, m1, m2) / scale
+                        : difference_again([&](double p) { return flicker_difference(p, small); }, n, large) * scale;
   return value;
 }
 
@@ -187,8 +170,7 @@ struct Sums {
   Sums operator*(double w) const { return {square * w, single * w}; }
 };
 
-double discrete_dof(
-    Family family, const Mixture& theta, double m, double terms, double stride, double dt) {
+double discrete_dof(Family family, const Mixture& theta, double m, double terms, double stride, double dt) {
   const bool flicker = theta[static_cast<std::size_t>(Term::flicker)] > 0;
   const auto at = [&](double lag) {
     const PerTerm unit = covariance(family, m, lag, dt, flicker);
@@ -197,9 +179,7 @@ double discrete_dof(
     return sum;
   };
   // Ramp: y = R t has second difference R tau m, here divided by m; third difference 0.
-  const double tau = m * dt,
-               mean_square =
-                   family.third ? 0 : theta[static_cast<std::size_t>(Term::ramp)] * tau * tau;
+  const double tau = m * dt, mean_square = family.third ? 0 : theta[static_cast<std::size_t>(Term::ramp)] * tau * tau;
   const double variance = at(0);
   if (!(variance > 0)) return mean_square > 0 ? kCertain : terms;
   const auto weighted = [&](double k) {
@@ -219,16 +199,14 @@ double total_dof(const Mixture& theta, double m, double terms, double dt) {
   constexpr PerTerm kGain = {2.185, 1.542, 1.162, 0};  // over the overlapping deviation, m >> 1
   const double samples = terms + 1, pieces = samples / m;
   const double overlapping_terms = samples - 2 * m + 1;
-  const double overlapping =
-      overlapping_terms >= 1 ? discrete_dof({}, theta, m, overlapping_terms, 1, dt) : 0;
+  const double overlapping = overlapping_terms >= 1 ? discrete_dof({}, theta, m, overlapping_terms, 1, dt) : 0;
   const PerTerm share = allan_shares(theta, m, dt);
   double gain = 0, limit = 0;
   for (std::size_t t = 0; t < kRandomTerms; ++t) {
     gain += share[t] * kGain[t];
     limit += share[t] * (kSlope[t] * pieces - kOffset[t]);
   }
-  return std::max(
-      1.0, overlapping < 1 ? limit : std::min(overlapping + gain, std::max(limit, overlapping)));
+  return std::max(1.0, overlapping < 1 ? limit : std::min(overlapping + gain, std::max(limit, overlapping)));
 }
 
 }  // namespace
@@ -243,12 +221,8 @@ PerTerm allan_shares(const Mixture& theta, double m, double dt) {
   return share;
 }
 
-double equivalent_dof(DeviationType type,
-                      const Mixture& theta,
-                      std::uint64_t m,
-                      std::uint64_t terms,
-                      std::uint64_t stride,
-                      double dt_s) {
+double equivalent_dof(DeviationType type, const Mixture& theta, std::uint64_t m, std::uint64_t terms,
+                      std::uint64_t stride, double dt_s) {
   assert(m >= 1 && terms >= 1 && stride >= 1 && dt_s > 0);
   const double factor = static_cast<double>(m), count = static_cast<double>(terms);
   if (deviation_row(type).reflected) return total_dof(theta, factor, count, dt_s);

@@ -34,19 +34,15 @@ struct WindowSums {
 };
 
 /// sum_{j<count} (a_j + b_j - 3 c_j + weight d_j)^2, in eight lanes.
-LIBCHAR_LANES double reflected_squares_lanes(const double* a,
-                                             const double* b,
-                                             const double* c,
-                                             const double* d,
-                                             double weight,
-                                             std::size_t count) {
+LIBCHAR_LANES double reflected_squares_lanes(const double* a, const double* b, const double* c, const double* d,
+                                             double weight, std::size_t count) {
   Four sum[2] = {};
   const std::size_t whole = count / 8 * 8;
   for (std::size_t j = 0; j < whole; j += 8)
     for (std::size_t h = 0; h < 2; ++h) {
       const std::size_t at = j + 4 * h;
-      const Four z = (LIBCHAR_FOUR(a + at) + LIBCHAR_FOUR(b + at)) -
-                     (3.0 * LIBCHAR_FOUR(c + at) - weight * LIBCHAR_FOUR(d + at));
+      const Four z =
+          (LIBCHAR_FOUR(a + at) + LIBCHAR_FOUR(b + at)) - (3.0 * LIBCHAR_FOUR(c + at) - weight * LIBCHAR_FOUR(d + at));
       sum[h] += z * z;
     }
   double lane[kLanes];
@@ -65,8 +61,7 @@ void window_sums(const std::vector<double>& sum, std::size_t i, std::size_t m, W
   const auto n = static_cast<double>(points), h = static_cast<double>(half);
   const double* const s = sum.data() + i;
   const double mean = (s[points] - s[0]) / n;
-  const double slope =
-      ((s[points] - s[points - half]) - (s[half] - s[0])) / h / static_cast<double>(points - half);
+  const double slope = ((s[points] - s[points - half]) - (s[half] - s[0])) / h / static_cast<double>(points - half);
   for (std::size_t k = 0; k <= points; ++k) {
     const auto at = static_cast<double>(k);
     out.to[k] = (s[k] - s[0]) - at * mean - slope * at * (at - n) / 2;
@@ -75,19 +70,13 @@ void window_sums(const std::vector<double>& sum, std::size_t i, std::size_t m, W
 }
 
 /// Squares of half of the 6m positions, those of windows that begin in e before w (forwards) or in w.
-double squares_of_half(const std::vector<double>& forwards,
-                       const std::vector<double>& backwards,
-                       std::size_t m) {
+double squares_of_half(const std::vector<double>& forwards, const std::vector<double>& backwards, std::size_t m) {
   const double* const to = forwards.data();
   const double* const back = backwards.data();
   const auto over = [&](std::size_t first, std::size_t last) {  // j = first … last - 1
     if (last <= first) return 0.0;
-    return reflected_squares(to + first,
-                             back + first,
-                             back + m + first,
-                             first > m ? to + first - m : back + 2 * m + first,
-                             first > m ? -3 : 3,
-                             last - first);
+    return reflected_squares(to + first, back + first, back + m + first,
+                             first > m ? to + first - m : back + 2 * m + first, first > m ? -3 : 3, last - first);
   };
   const std::size_t last = (3 * m - 1) / 2;  // the last j that stands for two
   const double inner = over(1, std::min(m, last) + 1) + over(m + 1, last + 1);
@@ -96,30 +85,24 @@ double squares_of_half(const std::vector<double>& forwards,
 
 /// Mean over j of the m^2-fold squares of one window.
 double mean_square(const WindowSums& p, std::size_t m) {
-  return (squares_of_half(p.to, p.back, m) + squares_of_half(p.back, p.to, m)) /
-         (6 * static_cast<double>(m));
+  return (squares_of_half(p.to, p.back, m) + squares_of_half(p.back, p.to, m)) / (6 * static_cast<double>(m));
 }
 
-FamilySum window_squares(const FamilyInput& input,
-                         const IndexRange& stretch,
-                         bool of_phase,
-                         std::size_t m,
-                         std::size_t starts,
-                         std::size_t stride) {
+FamilySum window_squares(const FamilyInput& input, const IndexRange& stretch, bool of_phase, std::size_t m,
+                         std::size_t starts, std::size_t stride) {
   const std::size_t block = std::clamp<std::size_t>(3 * m, 16, 48);
-  return over_blocks(
-      stretch.begin, starts, stride, block, [&](std::size_t first, std::size_t count) {
-        std::vector<double> series((count - 1) * stride + 3 * m), sum(series.size() + 1);
-        of_phase ? local_phase(input, first, series) : local_rate(input, first, series);
-        for (std::size_t j = 0; j < series.size(); ++j) sum[j + 1] = sum[j] + series[j];
-        WindowSums window{std::vector<double>(3 * m + 1), std::vector<double>(3 * m + 1)};
-        double squares = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-          window_sums(sum, k * stride, m, window);
-          squares += mean_square(window, m);
-        }
-        return squares;
-      });
+  return over_blocks(stretch.begin, starts, stride, block, [&](std::size_t first, std::size_t count) {
+    std::vector<double> series((count - 1) * stride + 3 * m), sum(series.size() + 1);
+    of_phase ? local_phase(input, first, series) : local_rate(input, first, series);
+    for (std::size_t j = 0; j < series.size(); ++j) sum[j + 1] = sum[j] + series[j];
+    WindowSums window{std::vector<double>(3 * m + 1), std::vector<double>(3 * m + 1)};
+    double squares = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      window_sums(sum, k * stride, m, window);
+      squares += mean_square(window, m);
+    }
+    return squares;
+  });
 }
 
 /// Third differences at m = 1, where reflection would add nothing but a factor.
@@ -134,10 +117,7 @@ double hadamard_squares(const FamilyInput& input, std::size_t first, std::size_t
   return squares;
 }
 
-AllanPoint extended_point(const FamilyInput& input,
-                          const DeviationRow& row,
-                          std::size_t m,
-                          bool& spaced) {
+AllanPoint extended_point(const FamilyInput& input, const DeviationRow& row, std::size_t m, bool& spaced) {
   const IndexRange& stretch = input.stretches.front();
   const double tau_s = static_cast<double>(m) * input.dt_s;
   const std::size_t length = row.of_sum ? input.points(stretch) : input.rates(stretch);
@@ -146,13 +126,8 @@ AllanPoint extended_point(const FamilyInput& input,
   const std::size_t stride = family_stride(input, m, starts, 6 * m);
   spaced = stride > 1;
   FamilySum sum = !row.of_sum && m == 1
-                      ? over_blocks(stretch.begin,
-                                    starts,
-                                    1,
-                                    512,
-                                    [&](std::size_t first, std::size_t n) {
-                                      return hadamard_squares(input, first, n);
-                                    })
+                      ? over_blocks(stretch.begin, starts, 1, 512,
+                                    [&](std::size_t first, std::size_t n) { return hadamard_squares(input, first, n); })
                       : window_squares(input, stretch, row.of_sum, m, starts, stride);
   const auto factor = static_cast<double>(m);
   sum.sum /= row.of_sum ? factor * factor : 1;  // HTOT is of rates: no division by tau
@@ -163,10 +138,8 @@ AllanPoint extended_point(const FamilyInput& input,
 
 }  // namespace
 
-std::vector<AllanPoint> extended_points(const FamilyInput& input,
-                                        const DeviationRow& row,
-                                        const std::vector<std::uint64_t>& factors,
-                                        std::vector<std::string>& notes) {
+std::vector<AllanPoint> extended_points(const FamilyInput& input, const DeviationRow& row,
+                                        const std::vector<std::uint64_t>& factors, std::vector<std::string>& notes) {
   std::vector<AllanPoint> points(factors.size());
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {

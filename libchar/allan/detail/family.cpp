@@ -4,13 +4,9 @@
 
 namespace libchar {
 
-std::uint64_t theo_factor(double tau) {
-  return 2 * static_cast<std::uint64_t>(std::llround(tau / 1.5));
-}
+std::uint64_t theo_factor(double tau) { return 2 * static_cast<std::uint64_t>(std::llround(tau / 1.5)); }
 
-std::uint64_t last_allan_factor(std::uint64_t samples) {
-  return samples / 5;
-}
+std::uint64_t last_allan_factor(std::uint64_t samples) { return samples / 5; }
 
 void local_phase(const FamilyInput& input, std::size_t first, std::span<double> out) {
   const double* v = input.record.data() + first;
@@ -45,36 +41,28 @@ void local_phase_with_offset(const FamilyInput& input, std::size_t first, std::s
 void local_rate(const FamilyInput& input, std::size_t first, std::span<double> out) {
   const double* v = input.record.data() + first;
   const auto at = [&](std::size_t j) {
-    return input.data == DataKind::rate ? v[j] * input.scale
-                                        : v[j + 1] * input.scale - v[j] * input.scale;
+    return input.data == DataKind::rate ? v[j] * input.scale : v[j + 1] * input.scale - v[j] * input.scale;
   };
   const double origin = at(0);
   for (std::size_t j = 0; j < out.size(); ++j) out[j] = at(j) - origin;
 }
 
-AllanPoint family_point(
-    const FamilyInput& input, std::uint64_t m, double tau_s, double divisor, const FamilySum& sum) {
+AllanPoint family_point(const FamilyInput& input, std::uint64_t m, double tau_s, double divisor, const FamilySum& sum) {
   AllanPoint point;
   point.m = m;
   point.tau_s = tau_s;
   point.terms = sum.terms;
   if (sum.terms == 0) return point;
   const double step = static_cast<double>(m) * (input.data == DataKind::rate ? 1 : input.dt_s);
-  point.deviation =
-      std::sqrt(sum.sum / (divisor * static_cast<double>(sum.terms))) / step / input.scale;
+  point.deviation = std::sqrt(sum.sum / (divisor * static_cast<double>(sum.terms))) / step / input.scale;
   return point;
 }
 
-std::size_t family_stride(const FamilyInput& input,
-                          std::uint64_t m,
-                          std::uint64_t starts,
-                          std::uint64_t work) {
+std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64_t starts, std::uint64_t work) {
   const double all = static_cast<double>(starts) * static_cast<double>(work);
   if (input.work_a_point == 0 || all <= static_cast<double>(input.work_a_point)) return 1;
-  const auto wanted =
-      static_cast<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
-  return detail::in_memory(
-      std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
+  return detail::in_memory(std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
 }
 
 void note_stride(std::uint64_t points, std::vector<std::string>& notes) {

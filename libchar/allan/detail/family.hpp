@@ -19,9 +19,9 @@ struct FamilyInput {
   std::span<const double> record;
   DataKind data = DataKind::rate;
   double dt_s = 1;
-  double scale = 1;                   ///< power of two by which all is multiplied
-  std::vector<IndexRange> stretches;  ///< of samples of the record, none missing
-  std::uint64_t work_a_point = 0;     ///< operations; beyond them starts are spaced, 0: never
+  double scale = 1;                                ///< power of two by which all is multiplied
+  std::vector<IndexRange> stretches;               ///< of samples of the record, none missing
+  std::uint64_t work_a_point = 0;                  ///< operations; beyond them starts are spaced, 0: never
   std::size_t points(const IndexRange& s) const {  ///< of phase, in a stretch
     return s.end - s.begin + (data == DataKind::rate ? 1 : 0);
   }
@@ -29,25 +29,16 @@ struct FamilyInput {
 };
 
 /// Points at the ascending `factors`; no terms where none fits.
-using FamilyPoints = std::vector<AllanPoint> (*)(const FamilyInput& input,
-                                                 const DeviationRow& row,
+using FamilyPoints = std::vector<AllanPoint> (*)(const FamilyInput& input, const DeviationRow& row,
                                                  const std::vector<std::uint64_t>& factors,
                                                  std::vector<std::string>& notes);
-std::vector<AllanPoint> parabolic_points(const FamilyInput&,
-                                         const DeviationRow&,
-                                         const std::vector<std::uint64_t>&,
+std::vector<AllanPoint> parabolic_points(const FamilyInput&, const DeviationRow&, const std::vector<std::uint64_t>&,
                                          std::vector<std::string>&);
-std::vector<AllanPoint> extended_points(const FamilyInput&,
-                                        const DeviationRow&,
-                                        const std::vector<std::uint64_t>&,
+std::vector<AllanPoint> extended_points(const FamilyInput&, const DeviationRow&, const std::vector<std::uint64_t>&,
                                         std::vector<std::string>&);
-std::vector<AllanPoint> theo_points(const FamilyInput&,
-                                    const DeviationRow&,
-                                    const std::vector<std::uint64_t>&,
+std::vector<AllanPoint> theo_points(const FamilyInput&, const DeviationRow&, const std::vector<std::uint64_t>&,
                                     std::vector<std::string>&);
-std::vector<AllanPoint> interval_points(const FamilyInput&,
-                                        const DeviationRow&,
-                                        const std::vector<std::uint64_t>&,
+std::vector<AllanPoint> interval_points(const FamilyInput&, const DeviationRow&, const std::vector<std::uint64_t>&,
                                         std::vector<std::string>&);
 
 /// Averaging factor of Theo1 whose averaging time, 3/4 m, is nearest to `tau`, in samples.
@@ -70,24 +61,17 @@ struct FamilySum {
 };
 
 /// sqrt(sum / (divisor terms)) / (m dt): by m alone where the record is a rate, whose phase is in units of dt.
-AllanPoint family_point(
-    const FamilyInput& input, std::uint64_t m, double tau_s, double divisor, const FamilySum& sum);
+AllanPoint family_point(const FamilyInput& input, std::uint64_t m, double tau_s, double divisor, const FamilySum& sum);
 
 /// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is
 /// allowed: at most m/16, which leaves the degrees of freedom as they are to a hundredth.
-std::size_t family_stride(const FamilyInput& input,
-                          std::uint64_t m,
-                          std::uint64_t starts,
-                          std::uint64_t work);
+std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64_t starts, std::uint64_t work);
 void note_stride(std::uint64_t points, std::vector<std::string>& notes);
 
 /// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts
 /// first, first + stride …
 template <typename OfBlock>
-FamilySum over_blocks(std::size_t begin,
-                      std::size_t starts,
-                      std::size_t stride,
-                      std::size_t block,
+FamilySum over_blocks(std::size_t begin, std::size_t starts, std::size_t stride, std::size_t block,
                       const OfBlock& of_block) {
   const std::size_t used = (starts + stride - 1) / stride;
   std::vector<double> part((used + block - 1) / block);

@@ -38,8 +38,7 @@ class Slopes {
   double at(std::size_t i) const {
     const double middle = static_cast<double>(m_ - 1) / 2;
     if (!sum_.empty())
-      return (static_cast<double>(i) + middle) * (sum_[i + m_] - sum_[i]) -
-             (moment_[i + m_] - moment_[i]);
+      return (static_cast<double>(i) + middle) * (sum_[i + m_] - sum_[i]) - (moment_[i + m_] - moment_[i]);
     double slope = 0;
     for (std::size_t k = 0; k < m_; ++k) slope += (middle - static_cast<double>(k)) * x_[i + k];
     return slope;
@@ -51,10 +50,7 @@ class Slopes {
   std::vector<double> sum_, moment_;
 };
 
-double squared_slopes(const FamilyInput& input,
-                      std::size_t m,
-                      std::size_t first,
-                      std::size_t count) {
+double squared_slopes(const FamilyInput& input, std::size_t m, std::size_t first, std::size_t count) {
   std::vector<double> x(count + 2 * m);
   local_phase(input, first, x);
   double sum = 0;
@@ -75,22 +71,17 @@ double squared_slopes(const FamilyInput& input,
 
 }  // namespace
 
-std::vector<AllanPoint> parabolic_points(const FamilyInput& input,
-                                         const DeviationRow&,
-                                         const std::vector<std::uint64_t>& factors,
-                                         std::vector<std::string>&) {
+std::vector<AllanPoint> parabolic_points(const FamilyInput& input, const DeviationRow&,
+                                         const std::vector<std::uint64_t>& factors, std::vector<std::string>&) {
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::size_t m = detail::in_memory(factors[k]);
     FamilySum total;
     for (const IndexRange& s : input.stretches) {
       if (input.points(s) <= 2 * m) continue;
-      const FamilySum sum = over_blocks(
-          s.begin,
-          input.points(s) - 2 * m,
-          1,
-          std::max<std::size_t>(512, 2 * m),
-          [&](std::size_t first, std::size_t n) { return squared_slopes(input, m, first, n); });
+      const FamilySum sum =
+          over_blocks(s.begin, input.points(s) - 2 * m, 1, std::max<std::size_t>(512, 2 * m),
+                      [&](std::size_t first, std::size_t n) { return squared_slopes(input, m, first, n); });
       total.sum += sum.sum;
       total.terms += sum.terms;
     }

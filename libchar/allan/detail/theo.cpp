@@ -30,8 +30,8 @@ constexpr std::size_t kSmallest = 10, kBlockOfTheo = 256, kFewRatios = 64;
 constexpr double kRatioWork = 1 << 30;
 
 /// sum_d w_d (ends - (left_d + right_d))^2, d = 0 … count - 1, in eight lanes.
-LIBCHAR_LANES double weighted_squares_lanes(
-    const double* left, const double* right, const double* w, std::size_t count, double ends) {
+LIBCHAR_LANES double weighted_squares_lanes(const double* left, const double* right, const double* w, std::size_t count,
+                                            double ends) {
   Four sum[2] = {};
   const std::size_t whole = count / 8 * 8;
   for (std::size_t d = 0; d < whole; d += 8)
@@ -50,19 +50,12 @@ LIBCHAR_LANES double weighted_squares_lanes(
 }
 constexpr InLanes<weighted_squares_lanes> weighted_squares;
 
-FamilySum theo_sum(const FamilyInput& input,
-                   const IndexRange& stretch,
-                   std::size_t m,
-                   std::size_t stride) {
+FamilySum theo_sum(const FamilyInput& input, const IndexRange& stretch, std::size_t m, std::size_t stride) {
   const std::size_t half = m / 2;
   std::vector<double> w(half);
   for (std::size_t d = 0; d < half; ++d) w[d] = 1 / static_cast<double>(half - d);
   return over_blocks(
-      stretch.begin,
-      input.points(stretch) - m,
-      stride,
-      kBlockOfTheo,
-      [&](std::size_t first, std::size_t count) {
+      stretch.begin, input.points(stretch) - m, stride, kBlockOfTheo, [&](std::size_t first, std::size_t count) {
         const std::size_t length = (count - 1) * stride + m + 1;
         std::vector<double> x(length), turned(length);
         local_phase(input, first, x);
@@ -70,17 +63,13 @@ FamilySum theo_sum(const FamilyInput& input,
         double sum = 0;
         for (std::size_t k = 0; k < count; ++k) {
           const std::size_t i = k * stride, c = i + half;
-          sum += weighted_squares(
-              turned.data() + (length - 1 - c), x.data() + c, w.data(), half, x[i] + x[i + m]);
+          sum += weighted_squares(turned.data() + (length - 1 - c), x.data() + c, w.data(), half, x[i] + x[i + m]);
         }
         return sum;
       });
 }
 
-AllanPoint theo1_point(const FamilyInput& input,
-                       const IndexRange& stretch,
-                       std::size_t m,
-                       bool& spaced) {
+AllanPoint theo1_point(const FamilyInput& input, const IndexRange& stretch, std::size_t m, bool& spaced) {
   const double tau_s = 0.75 * static_cast<double>(m) * input.dt_s;
   if (input.points(stretch) <= m) return family_point(input, m, tau_s, 1, {});
   const std::size_t stride = family_stride(input, m, input.points(stretch) - m, m / 2);
@@ -94,17 +83,13 @@ AllanPoint theo1_point(const FamilyInput& input,
 AllanPoint allan_point(const FamilyInput& input, const IndexRange& stretch, std::size_t m) {
   const double tau_s = static_cast<double>(m) * input.dt_s;
   if (input.points(stretch) <= 2 * m) return family_point(input, m, tau_s, 1, {});
-  const FamilySum sum = over_blocks(stretch.begin,
-                                    input.points(stretch) - 2 * m,
-                                    1,
-                                    std::max<std::size_t>(512, 2 * m),
+  const FamilySum sum = over_blocks(stretch.begin, input.points(stretch) - 2 * m, 1, std::max<std::size_t>(512, 2 * m),
                                     [&](std::size_t first, std::size_t count) {
                                       std::vector<double> x(count + 2 * m);
                                       local_phase(input, first, x);
                                       double squares = 0;
                                       for (std::size_t i = 0; i < count; ++i) {
-                                        const double d =
-                                            (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
+                                        const double d = (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
                                         squares += d * d;
                                       }
                                       return squares;
@@ -137,16 +122,12 @@ double bias_removal(FamilyInput input, const IndexRange& stretch, std::vector<st
 
 }  // namespace
 
-std::vector<AllanPoint> theo_points(const FamilyInput& input,
-                                    const DeviationRow& row,
-                                    const std::vector<std::uint64_t>& factors,
-                                    std::vector<std::string>& notes) {
+std::vector<AllanPoint> theo_points(const FamilyInput& input, const DeviationRow& row,
+                                    const std::vector<std::uint64_t>& factors, std::vector<std::string>& notes) {
   const IndexRange& stretch = input.stretches.front();
-  const std::uint64_t allan_up_to =
-      row.type == DeviationType::theoh ? last_allan_factor(input.rates(stretch)) : 0;
+  const std::uint64_t allan_up_to = row.type == DeviationType::theoh ? last_allan_factor(input.rates(stretch)) : 0;
   const bool any_theo = !factors.empty() && factors.back() > allan_up_to;
-  const double removal =
-      row.type == DeviationType::theo1 || !any_theo ? 1 : bias_removal(input, stretch, notes);
+  const double removal = row.type == DeviationType::theo1 || !any_theo ? 1 : bias_removal(input, stretch, notes);
   std::vector<AllanPoint> points(factors.size());
   std::vector<char> spaced(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {

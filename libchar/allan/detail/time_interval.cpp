@@ -28,8 +28,7 @@ std::vector<double> phase_of_stretches(const FamilyInput& input) {
         x[p] = input.record[p] * input.scale - input.record[s.begin] * input.scale;
       else
         x[p] = sum.high + sum.low;
-      if (input.data == DataKind::rate && p < s.end)
-        sum = sum + DoubleDouble{input.record[p] * input.scale, 0};
+      if (input.data == DataKind::rate && p < s.end) sum = sum + DoubleDouble{input.record[p] * input.scale, 0};
     }
   }
   return x;
@@ -44,8 +43,7 @@ class Extremes {
     const std::size_t shift = points - width_;
     double most = 0;
     for (std::size_t i = begin; i < end; ++i)
-      most =
-          std::max(most, std::max(high_[i], high_[i + shift]) - std::min(low_[i], low_[i + shift]));
+      most = std::max(most, std::max(high_[i], high_[i + shift]) - std::min(low_[i], low_[i + shift]));
     return most;
   }
   void widen(std::size_t points) {
@@ -61,8 +59,7 @@ class Extremes {
   std::size_t width_ = 1;
 };
 
-std::vector<AllanPoint> largest_intervals(const FamilyInput& input,
-                                          const std::vector<std::uint64_t>& factors) {
+std::vector<AllanPoint> largest_intervals(const FamilyInput& input, const std::vector<std::uint64_t>& factors) {
   std::vector<AllanPoint> points(factors.size());
   Extremes extremes(phase_of_stretches(input));
   for (std::size_t k = 0; k < factors.size(); ++k) {
@@ -87,10 +84,7 @@ AllanPoint mean_square_interval(const FamilyInput& input, std::size_t m) {
   FamilySum total;
   for (const IndexRange& s : input.stretches) {
     if (input.points(s) <= m) continue;
-    const FamilySum sum = over_blocks(s.begin,
-                                      input.points(s) - m,
-                                      1,
-                                      std::max<std::size_t>(512, m),
+    const FamilySum sum = over_blocks(s.begin, input.points(s) - m, 1, std::max<std::size_t>(512, m),
                                       [&](std::size_t first, std::size_t count) {
                                         std::vector<double> x(count + m);
                                         local_phase_with_offset(input, first, x);
@@ -109,17 +103,14 @@ AllanPoint mean_square_interval(const FamilyInput& input, std::size_t m) {
 
 }  // namespace
 
-std::vector<AllanPoint> interval_points(const FamilyInput& input,
-                                        const DeviationRow& row,
-                                        const std::vector<std::uint64_t>& factors,
-                                        std::vector<std::string>&) {
+std::vector<AllanPoint> interval_points(const FamilyInput& input, const DeviationRow& row,
+                                        const std::vector<std::uint64_t>& factors, std::vector<std::string>&) {
   std::vector<AllanPoint> points(factors.size());
   if (row.type == DeviationType::mtie) {
     points = largest_intervals(input, factors);
   } else {
-    parallel::for_each(0, factors.size(), [&](std::size_t k) {
-      points[k] = mean_square_interval(input, detail::in_memory(factors[k]));
-    });
+    parallel::for_each(0, factors.size(),
+                       [&](std::size_t k) { points[k] = mean_square_interval(input, detail::in_memory(factors[k])); });
   }
   for (AllanPoint& point : points) {
     point.tau_s = static_cast<double>(point.m) * input.dt_s;

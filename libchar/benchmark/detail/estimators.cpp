@@ -28,8 +28,7 @@ NoiseEstimate estimate_of(const NoiseFit& fit) {
 
 FitOptions plain(const TermSet& terms) {
   FitOptions options;
-  options.white_top =
-      true;  // nothing shapes these records, as the bound and the recipes take for granted
+  options.white_top = true;  // nothing shapes these records, as the bound and the recipes take for granted
   options.terms = terms;
   options.threshold = 0;
   options.remedies = options.second_opinion = options.events = options.stationarity = false;
@@ -44,12 +43,9 @@ NoiseEstimate whole_fit(std::span<const double> y, double rate_hz, const TermSet
   return estimate_of(fit_record(y, rate_hz, &curve, options));
 }
 
-NoiseEstimate whittle_of(std::span<const PooledPower> powers,
-                         std::size_t samples,
-                         double rate_hz,
+NoiseEstimate whittle_of(std::span<const PooledPower> powers, std::size_t samples, double rate_hz,
                          const TermSet& terms) {
-  return estimate_of(
-      fit_power_bins(power_bins(powers, rate_hz), rate_hz, samples, nullptr, plain(terms)));
+  return estimate_of(fit_power_bins(power_bins(powers, rate_hz), rate_hz, samples, nullptr, plain(terms)));
 }
 
 NoiseEstimate whittle(std::span<const double> y, double rate_hz, const TermSet& terms) {
@@ -90,15 +86,11 @@ NoiseEstimate allan_edf(std::span<const double> y, double rate_hz, const TermSet
   return estimate_of(edf_fit(pyramid_deviation(y, 1 / rate_hz), rate_hz, terms));
 }
 
-NoiseEstimate allan_covariance_stride(std::span<const double> y,
-                                      double rate_hz,
-                                      const TermSet& terms) {
+NoiseEstimate allan_covariance_stride(std::span<const double> y, double rate_hz, const TermSet& terms) {
   return covariance_fit(pyramid_deviation(y, 1 / rate_hz), rate_hz, terms);
 }
 
-NoiseEstimate allan_covariance_overlap(std::span<const double> y,
-                                       double rate_hz,
-                                       const TermSet& terms) {
+NoiseEstimate allan_covariance_overlap(std::span<const double> y, double rate_hz, const TermSet& terms) {
   AllanOptions options;
   options.threads = 1;
   return covariance_fit(allan_deviation(y, 1 / rate_hz, options), rate_hz, terms);
@@ -120,57 +112,32 @@ const std::vector<Estimator>& estimators() {
        "remedies "
        "on alarm, a second opinion from the Allan curve",
        whole_fit},
-      {"whittle",
-       "Whittle likelihood of the whole record's cosine transform, terms told",
-       whittle,
-       true,
-       true},
-      {"whittle-blocks",
-       "the same of blocks of 16384 samples and their means: constant memory",
-       whittle_blocks,
-       true,
+      {"whittle", "Whittle likelihood of the whole record's cosine transform, terms told", whittle, true, true},
+      {"whittle-blocks", "the same of blocks of 16384 samples and their means: constant memory", whittle_blocks, true,
        true},
       {"allan-covariance",
        "least squares on the overlapping Allan variances at octaves (stride m/4) with their whole "
        "covariance",
-       allan_covariance_stride,
-       true,
-       true},
-      {"allan-covariance-overlap",
-       "the same with full overlap",
-       allan_covariance_overlap,
-       true,
-       true},
+       allan_covariance_stride, true, true},
+      {"allan-covariance-overlap", "the same with full overlap", allan_covariance_overlap, true, true},
       {"allan-edf",
        "least squares on the logarithms of the Allan variances, each weighted by its degrees of "
        "freedom",
-       allan_edf,
-       true,
-       true},
-      {"allan-edf-plain",
-       "the same on non-overlapping Allan variances",
-       allan_edf_plain,
-       true,
-       true},
+       allan_edf, true, true},
+      {"allan-edf-plain", "the same on non-overlapping Allan variances", allan_edf_plain, true, true},
       {"read-off",
        "as in textbooks (IEEE 952 annex C): N at 1 s on the line of slope -1/2, B at the lowest "
        "point over 0.664, K at 3 s on the line of slope +1/2",
-       read_off,
-       false},
+       read_off, false},
       {"log-log", "unweighted least squares on the logarithms of the variances", log_log, false},
-      {"relative-nnls",
-       "least squares of model over measured variance, coefficients not negative",
-       relative_least_squares,
-       false},
+      {"relative-nnls", "least squares of model over measured variance, coefficients not negative",
+       relative_least_squares, false},
       {"imu_utils",
        "recipe of imu_utils: 100 logarithmic strides, unweighted log10 least squares of five "
        "squared coefficients",
-       imu_utils,
-       false},
-      {"allan_variance_ros",
-       "recipe of allan_variance_ros: averages side by side, means of logarithms",
-       allan_variance_ros,
-       false},
+       imu_utils, false},
+      {"allan_variance_ros", "recipe of allan_variance_ros: averages side by side, means of logarithms",
+       allan_variance_ros, false},
   };
   return rows;
 }

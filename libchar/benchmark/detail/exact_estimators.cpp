@@ -57,8 +57,7 @@ Exact exact_extended(const std::vector<Exact>& x, const DeviationRow& row, std::
     series.pop_back();
     if (m == 1) {
       Exact sum = 0;
-      for (std::size_t i = 0; i + 3 < x.size(); ++i)
-        sum += difference(x, i, 1, 3) * difference(x, i, 1, 3);
+      for (std::size_t i = 0; i + 3 < x.size(); ++i) sum += difference(x, i, 1, 3) * difference(x, i, 1, 3);
       return std::sqrt(sum / static_cast<Exact>(x.size() - 3) / 6);
     }
   }
@@ -74,8 +73,7 @@ Exact exact_parabolic(const std::vector<Exact>& x, std::size_t m) {
   const std::size_t terms = x.size() - 2 * m;
   for (std::size_t i = 0; i < terms; ++i) {
     Exact term = 0;
-    for (std::size_t k = 0; k < m; ++k)
-      term += (Exact(m - 1) / 2 - static_cast<Exact>(k)) * (x[i + k] - x[i + m + k]);
+    for (std::size_t k = 0; k < m; ++k) term += (Exact(m - 1) / 2 - static_cast<Exact>(k)) * (x[i + k] - x[i + m + k]);
     if (m == 1) term = difference(x, i, 1, 2) / 12;  // the Allan deviation, by convention
     sum += term * term;
   }
@@ -98,8 +96,7 @@ Exact exact_theo(const std::vector<Exact>& x, DeviationType type, std::size_t m)
   const auto allan = [&](std::size_t factor) {
     Exact sum = 0;
     const std::size_t terms = x.size() - 2 * factor;
-    for (std::size_t i = 0; i < terms; ++i)
-      sum += difference(x, i, factor, 2) * difference(x, i, factor, 2);
+    for (std::size_t i = 0; i < terms; ++i) sum += difference(x, i, factor, 2) * difference(x, i, factor, 2);
     return std::sqrt(sum / static_cast<Exact>(terms) / 2) / static_cast<Exact>(factor);
   };
   if (type == DeviationType::theoh && m <= (x.size() - 1) / 5) return allan(m);
@@ -131,15 +128,11 @@ std::vector<Exact> without_mean(std::span<const double> y) {
   Exact sum = 0;
   for (const double v : y) sum += Exact(v) - Exact(y[0]);
   std::vector<Exact> out;
-  for (const double v : y)
-    out.push_back((Exact(v) - Exact(y[0])) - sum / static_cast<Exact>(y.size()));
+  for (const double v : y) out.push_back((Exact(v) - Exact(y[0])) - sum / static_cast<Exact>(y.size()));
   return out;
 }
 
-Exact exact_of_family(std::span<const double> y,
-                      double dt_s,
-                      const DeviationRow& row,
-                      std::size_t m) {
+Exact exact_of_family(std::span<const double> y, double dt_s, const DeviationRow& row, std::size_t m) {
   const std::vector<Exact> x = phase_of(y, 0);
   const Exact dt(dt_s);
   switch (row.family) {
@@ -156,10 +149,7 @@ Exact exact_of_family(std::span<const double> y,
 
 }  // namespace
 
-Exact exact_deviation(std::span<const double> y,
-                      double dt_s,
-                      DeviationType type,
-                      std::uint64_t factor,
+Exact exact_deviation(std::span<const double> y, double dt_s, DeviationType type, std::uint64_t factor,
                       std::uint64_t stride) {
   const std::size_t m = detail::in_memory(factor);
   const DeviationRow& row = deviation_row(type);
@@ -172,14 +162,12 @@ Exact exact_deviation(std::span<const double> y,
   for (std::size_t i = 0; i + reach < x.size(); i += row.overlapping ? stride : m, ++terms) {
     Exact term = 0;
     if (row.of_sum)
-      for (std::size_t j = 0; j < m; ++j)
-        term += difference(x, i + j, m, 2) / static_cast<Exact>(m);
+      for (std::size_t j = 0; j < m; ++j) term += difference(x, i + j, m, 2) / static_cast<Exact>(m);
     else
       term = difference(x, i, m, row.order);
     sum += term * term;
   }
-  const Exact deviation =
-      std::sqrt(sum / static_cast<Exact>(terms) / Exact(row.divisor)) / Exact(m);
+  const Exact deviation = std::sqrt(sum / static_cast<Exact>(terms) / Exact(row.divisor)) / Exact(m);
   return row.as_time ? deviation * Exact(m) * Exact(dt_s) / std::sqrt(Exact(3)) : deviation;
 }
 
@@ -224,8 +212,7 @@ std::vector<Exact> exact_cosine_transform(std::span<const double> y) {
   const std::size_t n = x.size();
   if (n == 0) return {};
   std::vector<Exact> cosine(4 * n), out(n, 0);
-  for (std::size_t j = 0; j < 4 * n; ++j)
-    cosine[j] = std::cos(kPi * static_cast<Exact>(j) / static_cast<Exact>(2 * n));
+  for (std::size_t j = 0; j < 4 * n; ++j) cosine[j] = std::cos(kPi * static_cast<Exact>(j) / static_cast<Exact>(2 * n));
   const Exact scale = std::sqrt(2 / static_cast<Exact>(n));
   for (std::size_t k = 1; k < n; ++k) {
     for (std::size_t t = 0; t < n; ++t) out[k] += x[t] * cosine[k * (2 * t + 1) % cosine.size()];

@@ -22,9 +22,7 @@ constexpr int kAsymptotes = 5;
 using Asymptotes = Eigen::Matrix<double, 1, kAsymptotes>;
 using Chosen = std::array<bool, kAsymptotes>;
 
-Asymptotes asymptotes(double tau) {
-  return {3 / (tau * tau), 1 / tau, kFlicker, tau / 3, tau * tau / 2};
-}
+Asymptotes asymptotes(double tau) { return {3 / (tau * tau), 1 / tau, kFlicker, tau / 3, tau * tau / 2}; }
 
 std::vector<double> centred_sums(std::span<const double> y) {
   double mean = 0;
@@ -85,8 +83,7 @@ Eigen::VectorXd relative_nnls(const Variances& curve) {
   const auto n = static_cast<Eigen::Index>(curve.size());
   Eigen::MatrixXd a(n, kAsymptotes);
   for (Eigen::Index i = 0; i < n; ++i)
-    a.row(i) = asymptotes(curve.tau[static_cast<std::size_t>(i)]) /
-               curve.variance[static_cast<std::size_t>(i)];
+    a.row(i) = asymptotes(curve.tau[static_cast<std::size_t>(i)]) / curve.variance[static_cast<std::size_t>(i)];
   Eigen::VectorXd best = Eigen::VectorXd::Zero(kAsymptotes);
   double lowest = static_cast<double>(n);
   for (unsigned subset = 1; subset < 1U << unsigned{kAsymptotes}; ++subset) {
@@ -113,8 +110,7 @@ class LogResiduals {
   LogResiduals(const Variances& curve, const Chosen& chosen) : curve_(curve), chosen_(chosen) {
     const auto n = static_cast<Eigen::Index>(curve.size());
     unit_.resize(n, kAsymptotes);
-    for (Eigen::Index i = 0; i < n; ++i)
-      unit_.row(i) = asymptotes(curve.tau[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < n; ++i) unit_.row(i) = asymptotes(curve.tau[static_cast<std::size_t>(i)]);
     // Scaled so that each at 1 makes the whole variance somewhere.
     for (Eigen::Index c = 0; c < kAsymptotes; ++c) {
       double least = std::numeric_limits<double>::infinity();
@@ -132,17 +128,14 @@ class LogResiduals {
       if (!chosen_[static_cast<std::size_t>(i)]) c[i] = 0;
     return c;
   }
-  Eigen::VectorXd theta(const Eigen::VectorXd& at) const {
-    return at.cwiseAbs2().cwiseProduct(scale_);
-  }
+  Eigen::VectorXd theta(const Eigen::VectorXd& at) const { return at.cwiseAbs2().cwiseProduct(scale_); }
   Eigen::VectorXd at(const Eigen::VectorXd& c, Eigen::MatrixXd* jacobian) const {
     Eigen::VectorXd r(unit_.rows());
     for (Eigen::Index i = 0; i < r.size(); ++i) {
       const double model = unit_.row(i) * c.cwiseAbs2();
       r[i] = std::log10(model / curve_.variance[static_cast<std::size_t>(i)]);
       if (jacobian != nullptr)
-        jacobian->row(i) =
-            (2 / (model * std::numbers::ln10)) * unit_.row(i).cwiseProduct(c.transpose());
+        jacobian->row(i) = (2 / (model * std::numbers::ln10)) * unit_.row(i).cwiseProduct(c.transpose());
     }
     return r;
   }
@@ -212,8 +205,7 @@ NoiseEstimate estimate_from(const Eigen::VectorXd& theta) {
 
 /// Slope of ln sigma over ln tau between a point and the next.
 double slope_at(const Variances& curve, std::size_t i) {
-  return 0.5 * std::log(curve.variance[i + 1] / curve.variance[i]) /
-         std::log(curve.tau[i + 1] / curve.tau[i]);
+  return 0.5 * std::log(curve.variance[i + 1] / curve.variance[i]) / std::log(curve.tau[i + 1] / curve.tau[i]);
 }
 
 /// The point whose slope to the next is nearest to `slope`.
@@ -231,8 +223,7 @@ NoiseEstimate read_off(std::span<const double> record, double rate_hz, const Ter
   if (curve.size() < 3) return {};
   const std::size_t falling = nearest_slope(curve, -0.5), rising = nearest_slope(curve, 0.5);
   const double lowest = *std::min_element(curve.variance.begin(), curve.variance.end());
-  return three_terms(std::sqrt(curve.variance[falling] * curve.tau[falling]),
-                     std::sqrt(lowest / kFlicker),
+  return three_terms(std::sqrt(curve.variance[falling] * curve.tau[falling]), std::sqrt(lowest / kFlicker),
                      std::sqrt(3 * curve.variance[rising] / curve.tau[rising]));
 }
 
@@ -242,9 +233,7 @@ NoiseEstimate log_log(std::span<const double> record, double rate_hz, const Term
   return estimate_from(best_log_fit(curve, {false, true, true, true, false}).theta);
 }
 
-NoiseEstimate relative_least_squares(std::span<const double> record,
-                                     double rate_hz,
-                                     const TermSet&) {
+NoiseEstimate relative_least_squares(std::span<const double> record, double rate_hz, const TermSet&) {
   const Variances curve = tenth_of(record, rate_hz);
   if (curve.size() < std::size_t{kAsymptotes}) return {};
   return estimate_from(relative_nnls(curve));
@@ -252,8 +241,7 @@ NoiseEstimate relative_least_squares(std::span<const double> record,
 
 NoiseEstimate imu_utils(std::span<const double> record, double rate_hz, const TermSet&) {
   const double half = static_cast<double>(record.size()) / 2;
-  const Variances curve =
-      logarithmic_points(record, rate_hz, std::exp2(std::floor(std::log2(half))));
+  const Variances curve = logarithmic_points(record, rate_hz, std::exp2(std::floor(std::log2(half))));
   if (curve.size() < std::size_t{kAsymptotes}) return {};
   return estimate_from(best_log_fit(curve, {true, true, true, true, true}).theta);
 }
@@ -269,8 +257,7 @@ NoiseEstimate allan_variance_ros(std::span<const double> record, double rate_hz,
     walk += log_sd - half;
   }
   const double lowest = *std::min_element(curve.variance.begin(), curve.variance.end());
-  return three_terms(std::exp(white / short_ones),
-                     std::sqrt(lowest),
+  return three_terms(std::exp(white / short_ones), std::sqrt(lowest),
                      std::sqrt(3.0) * std::exp(walk / static_cast<double>(curve.size())));
 }
 

@@ -34,9 +34,7 @@ std::vector<double> record_of(const BenchSignal& signal, std::uint64_t seed) {
   return mean_of_records(signal, 1, seed);
 }
 
-std::vector<double> mean_of_records(const BenchSignal& signal,
-                                    std::uint64_t sensors,
-                                    std::uint64_t seed) {
+std::vector<double> mean_of_records(const BenchSignal& signal, std::uint64_t sensors, std::uint64_t seed) {
   ArraySimulation simulation;
   simulation.rate_hz = signal.rate_hz;
   simulation.samples = signal.samples;
@@ -48,8 +46,7 @@ std::vector<double> mean_of_records(const BenchSignal& signal,
   std::vector<double> out;
   out.reserve(detail::in_memory(signal.samples));
   const double share = 1 / static_cast<double>(sensors);
-  for (auto columns = simulator.next(kRows); !columns.empty() && !columns[0].empty();
-       columns = simulator.next(kRows))
+  for (auto columns = simulator.next(kRows); !columns.empty() && !columns[0].empty(); columns = simulator.next(kRows))
     for (std::size_t i = 0; i < columns[0].size(); ++i) {
       double sum = 0;
       for (std::size_t s = 0; s < sensors; ++s) sum += columns[s][i];
@@ -60,9 +57,7 @@ std::vector<double> mean_of_records(const BenchSignal& signal,
 
 std::vector<double> front_gaps(const std::vector<CostAndError>& points) {
   std::vector<double> gaps(points.size(), std::numeric_limits<double>::quiet_NaN());
-  const auto counts = [](const CostAndError& p) {
-    return !std::isnan(p.cost) && !std::isnan(p.error);
-  };
+  const auto counts = [](const CostAndError& p) { return !std::isnan(p.cost) && !std::isnan(p.error); };
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!counts(points[i])) continue;
     double least = points[i].error;

@@ -17,9 +17,7 @@ double digits_of(Exact relative) {
   return std::clamp(static_cast<double>(-std::log10(relative)), 0.0, kMostDigits);
 }
 
-bool sizes_differ(std::span<const double> a, std::span<const Exact> b) {
-  return a.size() != b.size();
-}
+bool sizes_differ(std::span<const double> a, std::span<const Exact> b) { return a.size() != b.size(); }
 
 }  // namespace
 
@@ -46,8 +44,7 @@ double right_digits_together(std::span<const double> values, std::span<const Exa
   return apart == 0 ? kMostDigits : digits_of(std::sqrt(apart / length));
 }
 
-StressCell stress_cell(const std::string& subject,
-                       const std::string& input,
+StressCell stress_cell(const std::string& subject, const std::string& input,
                        const std::function<void(StressCell&)>& run) {
   StressCell cell;
   cell.subject = subject;

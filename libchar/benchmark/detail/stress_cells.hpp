@@ -16,10 +16,7 @@ namespace libchar {
 using Exact = long double;
 
 /// A deviation of a record of rate without missing samples at m, tau = m dt; terms start at multiples of `stride`.
-Exact exact_deviation(std::span<const double> y,
-                      double dt_s,
-                      DeviationType type,
-                      std::uint64_t m,
+Exact exact_deviation(std::span<const double> y, double dt_s, DeviationType type, std::uint64_t m,
                       std::uint64_t stride);
 
 /// Mean and standard deviation (n - 1).
@@ -40,8 +37,7 @@ double right_digits(std::span<const double> values, std::span<const Exact> expec
 double right_digits_together(std::span<const double> values, std::span<const Exact> expected);
 
 /// Runs what fills in a cell; its Error is a refusal.
-StressCell stress_cell(const std::string& subject,
-                       const std::string& input,
+StressCell stress_cell(const std::string& subject, const std::string& input,
                        const std::function<void(StressCell&)>& run);
 
 /// Compared: wrong below `stated`.

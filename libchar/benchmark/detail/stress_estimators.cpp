@@ -68,12 +68,7 @@ class StressRecords {
     out_.push_back(std::move(record));
   }
   void add_short(const char* name, std::size_t samples) {
-    out_.push_back({name,
-                    {plain_.begin(), plain_.begin() + static_cast<std::ptrdiff_t>(samples)},
-                    0,
-                    0,
-                    false,
-                    {}});
+    out_.push_back({name, {plain_.begin(), plain_.begin() + static_cast<std::ptrdiff_t>(samples)}, 0, 0, false, {}});
   }
   std::vector<StressRecord> take() { return std::move(out_); }
 
@@ -109,13 +104,10 @@ std::vector<StressRecord> stress_records(std::uint64_t seed) {
   all.add("constant", [](double, double) { return 9.81; });
   all.add("all zero", [](double, double) { return 0.0; });
   all.add("plus and minus zero", [](double y, double) { return std::copysign(0.0, y); });
-  all.add("alternating +1, -1",
-          [even = true](double, double) mutable { return (even = !even) ? 1.0 : -1.0; });
+  all.add("alternating +1, -1", [even = true](double, double) mutable { return (even = !even) ? 1.0 : -1.0; });
   all.add("one bit", [](double y, double) { return y > 0 ? 1.0 : -1.0; });
   all.add("saturated", [](double y, double) { return std::clamp(y, -1.0, 0.5); });
-  all.add("float32", [](double y, double) {
-    return static_cast<double>(static_cast<float>(9.81 + 1e-3 * y));
-  });
+  all.add("float32", [](double y, double) { return static_cast<double>(static_cast<float>(9.81 + 1e-3 * y)); });
   all.add("one spike of 1e300", [first = true](double y, double t) mutable {
     const bool here = first && t >= 0.4;
     first = first && !here;
@@ -164,9 +156,8 @@ Values deviations(const AllanCurve& curve) {
 ExactValues exact_deviations(const AllanCurve& curve, std::span<const double> y) {
   ExactValues out;
   for (const AllanPoint& p : curve.points) {
-    const std::uint64_t stride = curve.stride_divisor > 0 && p.m >= 2 * curve.stride_divisor
-                                     ? p.m / curve.stride_divisor
-                                     : 1;
+    const std::uint64_t stride =
+        curve.stride_divisor > 0 && p.m >= 2 * curve.stride_divisor ? p.m / curve.stride_divisor : 1;
     out.push_back(exact_deviation(y, curve.dt_s, curve.type, p.m, stride));
   }
   return out;
@@ -193,9 +184,7 @@ double stated(double digits, const StressRecord& record) {
   return digits;
 }
 
-bool lacks(const StressRecord& record) {
-  return !record.whole.empty();
-}
+bool lacks(const StressRecord& record) { return !record.whole.empty(); }
 
 void stress_moments(const StressRecord& record, StressCell& cell) {
   const auto found = [](const Values& y) {
@@ -206,10 +195,8 @@ void stress_moments(const StressRecord& record, StressCell& cell) {
   Values present;
   for (const double y : record.y)
     if (!std::isnan(y)) present.push_back(y);
-  if (present.size() < 2)
-    return judge_held(found(present)[1] == 0, "one sample has no deviation", cell);
-  judge_digits(
-      right_digits(found(record.y), exact_moments(present)), stated(kMomentDigits, record), cell);
+  if (present.size() < 2) return judge_held(found(present)[1] == 0, "one sample has no deviation", cell);
+  judge_digits(right_digits(found(record.y), exact_moments(present)), stated(kMomentDigits, record), cell);
 }
 
 /// Exact sums of these take operations by the square of the length and more: of their beginning.
@@ -231,39 +218,29 @@ void stress_deviation(DeviationType type, const StressRecord& record, StressCell
   }
   const Values y = beginning(type, record.y);
   const AllanCurve curve = curve_of(type, y);
-  judge_digits(right_digits(deviations(curve), exact_deviations(curve, y)),
-               stated(kAllanDigits, record),
-               cell);
+  judge_digits(right_digits(deviations(curve), exact_deviations(curve, y)), stated(kAllanDigits, record), cell);
 }
 
 void stress_pyramid(const StressRecord& record, StressCell& cell) {
-  const auto curve_of_pyramid = [](const Values& y) {
-    return pyramid_deviation(y, 1 / kStressRate);
-  };
+  const auto curve_of_pyramid = [](const Values& y) { return pyramid_deviation(y, 1 / kStressRate); };
   const AllanCurve curve = curve_of_pyramid(record.y);
   if (lacks(record)) {
     // Its longest averages are of one or two terms.
     Values found = deviations(curve), whole = deviations(curve_of_pyramid(record.whole));
     return judge_near(found, whole, 3, cell);
   }
-  judge_digits(right_digits(deviations(curve), exact_deviations(curve, record.y)),
-               stated(kAllanDigits, record),
-               cell);
+  judge_digits(right_digits(deviations(curve), exact_deviations(curve, record.y)), stated(kAllanDigits, record), cell);
 }
 
 void stress_welch(const StressRecord& record, StressCell& cell) {
   const Spectrum spectrum = spectrum_of(record.y);
   if (lacks(record)) {
-    const auto level = [](const Spectrum& s) {
-      return Values{std::accumulate(s.value.begin(), s.value.end(), 0.0)};
-    };
+    const auto level = [](const Spectrum& s) { return Values{std::accumulate(s.value.begin(), s.value.end(), 0.0)}; };
     return judge_near(level(spectrum), level(spectrum_of(record.whole)), 1.5, cell);
   }
   judge_digits(
-      right_digits_together(
-          spectrum.value, exact_welch(record.y, kStressRate, detail::in_memory(spectrum.segment))),
-      stated(kSpectrumDigits, record),
-      cell);
+      right_digits_together(spectrum.value, exact_welch(record.y, kStressRate, detail::in_memory(spectrum.segment))),
+      stated(kSpectrumDigits, record), cell);
 }
 
 void stress_cosines(const StressRecord& record, StressCell& cell) {
@@ -272,8 +249,7 @@ void stress_cosines(const StressRecord& record, StressCell& cell) {
   const auto found = transform.transform(record.y);
   Values without_mean(found.begin(), found.end());
   without_mean[0] = 0;
-  judge_digits(right_digits_together(without_mean, exact_cosine_transform(record.y)),
-               stated(kSpectrumDigits, record),
+  judge_digits(right_digits_together(without_mean, exact_cosine_transform(record.y)), stated(kSpectrumDigits, record),
                cell);
 }
 
@@ -294,8 +270,7 @@ void stress_fit(const StressRecord& record, StressCell& cell) {
   StressRecord other = record;
   if (other.shift == 0 && other.power == 0) other.power = -10;
   ExactValues expected;
-  for (const double c : coefficients(comfortable(other)))
-    expected.push_back(std::ldexp(Exact(c), other.power));
+  for (const double c : coefficients(comfortable(other))) expected.push_back(std::ldexp(Exact(c), other.power));
   judge_digits(right_digits(found, expected), stated(kFitDigits, record), cell);
 }
 
@@ -307,10 +282,9 @@ struct Subject {
 std::vector<Subject> subjects() {
   std::vector<Subject> out = {{"moments", stress_moments}};
   for (const DeviationRow& row : deviation_rows())
-    out.push_back(
-        {std::string(row.word), [type = row.type](const StressRecord& record, StressCell& cell) {
-           stress_deviation(type, record, cell);
-         }});
+    out.push_back({std::string(row.word), [type = row.type](const StressRecord& record, StressCell& cell) {
+                     stress_deviation(type, record, cell);
+                   }});
   out.push_back({"oadev, streamed", stress_pyramid});
   out.push_back({"spectrum (Welch)", stress_welch});
   out.push_back({"cosine transform", stress_cosines});
@@ -321,8 +295,7 @@ std::vector<Subject> subjects() {
 /// Terms of the streamed Allan deviation from sums of a quarter of m, as they come.
 class ExactStream {
  public:
-  explicit ExactStream(std::uint64_t m)
-      : part_(std::max<std::uint64_t>(1, m / 4)), parts_(2 * m / part_), m_(m) {}
+  explicit ExactStream(std::uint64_t m) : part_(std::max<std::uint64_t>(1, m / 4)), parts_(2 * m / part_), m_(m) {}
   void push(Exact y) {
     sum_ += y;
     if (++in_part_ < part_) return;
@@ -336,9 +309,7 @@ class ExactStream {
     ++terms_;
     recent_.erase(recent_.begin());
   }
-  Exact deviation() const {
-    return std::sqrt(squares_ / static_cast<Exact>(terms_) / 2) / Exact(m_);
-  }
+  Exact deviation() const { return std::sqrt(squares_ / static_cast<Exact>(terms_) / 2) / Exact(m_); }
 
  private:
   std::uint64_t part_, parts_, m_, in_part_ = 0, terms_ = 0;
@@ -347,14 +318,12 @@ class ExactStream {
 };
 
 /// White noise of deviation one with an offset and a drift, a hundred million samples, none of them kept.
-void stress_long_stream(
-    double offset, double drift, std::uint64_t seed, Progress& progress, StressCell& cell) {
+void stress_long_stream(double offset, double drift, std::uint64_t seed, Progress& progress, StressCell& cell) {
   constexpr std::uint64_t kDriftSamples = 100'000'000;
   constexpr std::size_t kBlock = 1U << 16U;
   DeviateStream noise({seed, 0, Purpose::white});
   AllanPyramid pyramid;
-  std::vector<ExactStream> exact = {
-      ExactStream(1), ExactStream(4), ExactStream(1024), ExactStream(1U << 20U)};
+  std::vector<ExactStream> exact = {ExactStream(1), ExactStream(4), ExactStream(1024), ExactStream(1U << 20U)};
   Values block(kBlock);
   Exact first = 0;
   for (std::uint64_t done = 0; done < kDriftSamples; done += block.size()) {
@@ -387,18 +356,17 @@ std::vector<StressCell> stress_estimators(const StressBenchOptions& options, Pro
   const std::vector<Subject> all = subjects();
   for (std::size_t i = 0; i < records.size(); ++i)
     for (const Subject& subject : all) {
-      progress.update(static_cast<double>(i) / static_cast<double>(records.size()),
-                      "stress: " + subject.name);
-      out.push_back(stress_cell(
-          subject.name, records[i].name, [&](StressCell& cell) { subject.run(records[i], cell); }));
+      progress.update(static_cast<double>(i) / static_cast<double>(records.size()), "stress: " + subject.name);
+      out.push_back(
+          stress_cell(subject.name, records[i].name, [&](StressCell& cell) { subject.run(records[i], cell); }));
     }
   if (options.quick) return out;
   struct Long {
     const char* name;
     double offset, drift;
   };
-  for (const Long& one : {Long{"1e8 samples, offset of 1e9 deviations", 1e9, 0},
-                          Long{"1e8 samples, drift of 1e6 deviations", 0, 1e6}})
+  for (const Long& one :
+       {Long{"1e8 samples, offset of 1e9 deviations", 1e9, 0}, Long{"1e8 samples, drift of 1e6 deviations", 0, 1e6}})
     out.push_back(stress_cell("oadev, streamed", one.name, [&](StressCell& cell) {
       stress_long_stream(one.offset, one.drift, options.seed, progress, cell);
     }));

@@ -56,9 +56,7 @@ class Normal {
 };
 
 /// Multiples of 2^-20, which an offset of 2^27 leaves as they are.
-double on_grid(double value) {
-  return std::ldexp(std::round(std::ldexp(value, 20)), -20);
-}
+double on_grid(double value) { return std::ldexp(std::round(std::ldexp(value, 20)), -20); }
 
 void describe(const VectorXd& deviations, fusion::Array& array) {
   array.channels = deviations.size();
@@ -101,9 +99,7 @@ StressArray changed(StressArray array, const std::string& name, Change change) {
 }
 
 /// Only the run is hurt; what was learnt is sound.
-StressArray hurt(const StressArray& plain,
-                 const std::string& name,
-                 const std::function<void(MatrixXd&)>& how) {
+StressArray hurt(const StressArray& plain, const std::string& name, const std::function<void(MatrixXd&)>& how) {
   return changed(plain, name, [&](StressArray& a) { how(a.y); });
 }
 
@@ -147,8 +143,7 @@ StressArray correlated(const std::string& name, double common, std::uint64_t see
       for (Index k = 0; k < m->cols(); ++k) {
         const double shared = common * normal();
         // Unequally, so that the best weights are not told by differences alone.
-        for (Index i = 0; i < m->rows(); ++i)
-          (*m)(i, k) += shared * (1 + 0.1 * static_cast<double>(i));
+        for (Index i = 0; i < m->rows(); ++i) (*m)(i, k) += shared * (1 + 0.1 * static_cast<double>(i));
       }
   });
 }
@@ -209,25 +204,19 @@ void add_hurt(const StressArray& plain, std::vector<StressArray>& all) {
   add("two identical channels", [](MatrixXd& y) { y.row(3) = y.row(4).eval(); });
   add("one dead channel", [](MatrixXd& y) { y.row(4).setZero(); });
   add("one channel dies", [](MatrixXd& y) { y.row(4).rightCols(kRun / 2).setZero(); });
-  add("one bit",
-      [](MatrixXd& y) { y = (y.array() > 0).select(MatrixXd::Ones(y.rows(), y.cols()), -1); });
+  add("one bit", [](MatrixXd& y) { y = (y.array() > 0).select(MatrixXd::Ones(y.rows(), y.cols()), -1); });
   add("saturated", [](MatrixXd& y) { y = y.cwiseMax(-1).cwiseMin(1); });
   add("float32", [](MatrixXd& y) { y = y.cast<float>().cast<double>().eval(); });
   add("one spike of 1e300", [](MatrixXd& y) { y(2, 450) = 1e300; });
-  add("one infinite sample",
-      [](MatrixXd& y) { y(2, 450) = std::numeric_limits<double>::infinity(); });
-  add("first and last sample missing",
-      [](MatrixXd& y) { y(0, 0) = y(1, y.cols() - 1) = kMissing; });
-  add("burst of missing samples in one",
-      [](MatrixXd& y) { y.row(4).segment(300, 150).setConstant(kMissing); });
-  add("burst of missing samples in all",
-      [](MatrixXd& y) { y.middleCols(300, 150).setConstant(kMissing); });
+  add("one infinite sample", [](MatrixXd& y) { y(2, 450) = std::numeric_limits<double>::infinity(); });
+  add("first and last sample missing", [](MatrixXd& y) { y(0, 0) = y(1, y.cols() - 1) = kMissing; });
+  add("burst of missing samples in one", [](MatrixXd& y) { y.row(4).segment(300, 150).setConstant(kMissing); });
+  add("burst of missing samples in all", [](MatrixXd& y) { y.middleCols(300, 150).setConstant(kMissing); });
   add("one channel all missing", [](MatrixXd& y) { y.row(1).setConstant(kMissing); });
   add("1 instant", [](MatrixXd& y) { y = y.leftCols(1).eval(); });
   add("2 instants", [](MatrixXd& y) { y = y.leftCols(2).eval(); });
   add("3 instants", [](MatrixXd& y) { y = y.leftCols(3).eval(); });
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i].truth = all[i].truth.leftCols(all[i].y.cols()).eval();
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].truth = all[i].truth.leftCols(all[i].y.cols()).eval();
 }
 
 void add_tilts(std::uint64_t seed, std::vector<StressArray>& all) {
@@ -238,12 +227,9 @@ void add_tilts(std::uint64_t seed, std::vector<StressArray>& all) {
     y.row(0).segment(200, 50).setConstant(kMissing);
     y.middleCols(300, 50).setConstant(kMissing);
   }));
-  all.push_back(
-      hurt(plain, "tilt, accelerometers at zero", [](MatrixXd& y) { y.bottomRows(2).setZero(); }));
-  all.push_back(
-      hurt(plain, "tilt, accelerations of 1e-310", [](MatrixXd& y) { y.bottomRows(2) *= 1e-310; }));
-  all.push_back(
-      hurt(plain, "tilt, accelerations of 1e99", [](MatrixXd& y) { y.bottomRows(2) *= 1e98; }));
+  all.push_back(hurt(plain, "tilt, accelerometers at zero", [](MatrixXd& y) { y.bottomRows(2).setZero(); }));
+  all.push_back(hurt(plain, "tilt, accelerations of 1e-310", [](MatrixXd& y) { y.bottomRows(2) *= 1e-310; }));
+  all.push_back(hurt(plain, "tilt, accelerations of 1e99", [](MatrixXd& y) { y.bottomRows(2) *= 1e98; }));
   all.push_back(hurt(plain, "tilt, 1 instant", [](MatrixXd& y) { y = y.leftCols(1).eval(); }));
   all.back().truth = all.back().truth.leftCols(1).eval();
 }
@@ -264,17 +250,15 @@ std::vector<StressArray> stress_arrays(std::uint64_t seed) {
   all.push_back(noisy("deviations of 1 : 1e12", (VectorXd(4) << 1e-6, 1, 1e6, 2).finished(), seed));
   all.back().exact_weights = true;
   all.push_back(correlated("covariance of condition 1e12", 1e5, seed));
-  all.push_back(changed(
-      plain, "constant reference", [](StressArray& a) { a.learning_truth.setConstant(1); }));
+  all.push_back(changed(plain, "constant reference", [](StressArray& a) { a.learning_truth.setConstant(1); }));
   all.push_back(changed(plain, "3 instants to learn from", [](StressArray& a) {
     a.learning = a.learning.leftCols(3).eval();
     a.learning_truth = a.learning_truth.leftCols(3).eval();
     a.array.learning_samples = 3;
   }));
   all.push_back(lever("two inputs", VectorXd::LinSpaced(8, 0, -5), seed));
-  all.push_back(lever("two inputs told apart by 1e-15",
-                      VectorXd::Ones(8) + 1e-15 * VectorXd::LinSpaced(8, -1, 1),
-                      seed));
+  all.push_back(
+      lever("two inputs told apart by 1e-15", VectorXd::Ones(8) + 1e-15 * VectorXd::LinSpaced(8, -1, 1), seed));
   add_tilts(seed, all);
   return all;
 }
@@ -295,9 +279,7 @@ Fused fused(const fusion::Entry& entry, const StressArray& array) {
   if (entry.description->needs.reference_throughout) runner->learn(array.y, array.truth);
   if (entry.looks_ahead(settings)) runner->look(array.y);
   runner->finish_learning();
-  Fused out{MatrixXd(array.array.inputs(), array.y.cols()),
-            MatrixXd(array.array.inputs(), array.y.cols()),
-            {}};
+  Fused out{MatrixXd(array.array.inputs(), array.y.cols()), MatrixXd(array.array.inputs(), array.y.cols()), {}};
   runner->run(array.y, out.x, out.variance);
   out.weights = runner->weights();
   return out;
@@ -335,21 +317,14 @@ std::string what_is_wrong(const StressArray& array, const Fused& found, bool fre
       if (free) continue;
       if (v < 0 || std::isinf(v)) return fmt::format("variance {} at instant {}", v, k);
       if (array.array.one_common_input() && (x < range.low || x > range.high))
-        return fmt::format("{} at instant {}, samples are from {} to {}",
-                           x,
-                           k,
-                           array.y.minCoeff(),
-                           array.y.maxCoeff());
+        return fmt::format("{} at instant {}, samples are from {} to {}", x, k, array.y.minCoeff(), array.y.maxCoeff());
       if (!array.array.one_common_input() && std::abs(x - array.truth(i, k)) > 8 * std::sqrt(v))
-        return fmt::format(
-            "{} deviations off at instant {}", std::abs(x - array.truth(i, k)) / std::sqrt(v), k);
+        return fmt::format("{} deviations off at instant {}", std::abs(x - array.truth(i, k)) / std::sqrt(v), k);
     }
   return "";
 }
 
-std::vector<double> finite_values(const MatrixXd& x) {
-  return {x.data(), x.data() + x.size()};
-}
+std::vector<double> finite_values(const MatrixXd& x) { return {x.data(), x.data() + x.size()}; }
 
 /// What the plain array's estimates become.
 std::vector<Exact> expected_of(const StressArray& array, const MatrixXd& plain) {
@@ -359,11 +334,7 @@ std::vector<Exact> expected_of(const StressArray& array, const MatrixXd& plain) 
 }
 
 /// The offset is taken off the estimates again: digits are those of what moves.
-void judge_related(const StressArray& array,
-                   const Fused& found,
-                   const Fused& plain,
-                   double stated,
-                   StressCell& cell) {
+void judge_related(const StressArray& array, const Fused& found, const Fused& plain, double stated, StressCell& cell) {
   const MatrixXd x = found.x.array() - array.shift;
   judge_digits(right_digits_together(finite_values(x), expected_of(array, plain.x)), stated, cell);
 }
@@ -375,8 +346,7 @@ bool knows_places(const fusion::Entry& entry) {
 
 /// Sums of few rounded numbers at an offset of 1e8 hold 8 digits of a deviation of 3.
 double stated_digits(const fusion::Entry& entry, const StressArray& array) {
-  if (entry.description->as_published || (array.reversed && knows_places(entry)))
-    return std::nan("");
+  if (entry.description->as_published || (array.reversed && knows_places(entry))) return std::nan("");
   return array.shift != 0 ? 7 : 9;
 }
 
@@ -386,39 +356,30 @@ void stress_weights(const fusion::Entry& entry, const StressArray& array, Stress
   for (Index i = 0; i < array.y.rows(); ++i)
     for (Index k = 0; k < array.y.cols(); ++k)
       errors[static_cast<std::size_t>(i)].push_back(array.y(i, k) - array.truth(0, k));
-  judge_digits(right_digits_together(finite_values(found.weights.value()), exact_weights(errors)),
-               kWeightDigits,
-               cell);
+  judge_digits(right_digits_together(finite_values(found.weights.value()), exact_weights(errors)), kWeightDigits, cell);
 }
 
-void stress_estimates(const fusion::Entry& entry,
-                      const StressArray& array,
-                      const StressArray& plain,
+void stress_estimates(const fusion::Entry& entry, const StressArray& array, const StressArray& plain,
                       StressCell& cell) {
   if (const std::string why = fusion::why_not(*entry.description, array.array); !why.empty())
     return judge_refused(why, cell);
   const Fused found = fused(entry, array);
-  if (array.related())
-    return judge_related(array, found, fused(entry, plain), stated_digits(entry, array), cell);
+  if (array.related()) return judge_related(array, found, fused(entry, plain), stated_digits(entry, array), cell);
   const std::string wrong = what_is_wrong(array, found, entry.description->as_published);
   judge_held(wrong.empty(), wrong, cell);
 }
 
 /// Weights as learnt, of an input that leaves them as they are.
-void stress_weights_related(const fusion::Entry& entry,
-                            const StressArray& array,
-                            const StressArray& plain,
+void stress_weights_related(const fusion::Entry& entry, const StressArray& array, const StressArray& plain,
                             StressCell& cell) {
   const Fused found = fused(entry, array), before = fused(entry, plain);
   MatrixXd weights = before.weights.value();
   if (array.reversed) weights = weights.colwise().reverse().eval();
   std::vector<Exact> expected;
   for (const double w : weights.reshaped()) expected.push_back(w);
-  judge_digits(right_digits_together(finite_values(found.weights.value()), expected),
-               entry.description->as_published || (array.reversed && knows_places(entry))
-                   ? std::nan("")
-                   : kWeightDigits,
-               cell);
+  judge_digits(
+      right_digits_together(finite_values(found.weights.value()), expected),
+      entry.description->as_published || (array.reversed && knows_places(entry)) ? std::nan("") : kWeightDigits, cell);
 }
 
 }  // namespace
@@ -431,20 +392,16 @@ std::vector<StressCell> stress_fusion(const StressBenchOptions& options, Progres
       const StressArray& array = arrays[i];
       if (entry.description->needs.tilt != array.array.tilt.has_value()) continue;
       const std::string name(entry.description->name);
-      progress.update(static_cast<double>(i) / static_cast<double>(arrays.size()),
-                      "stress: " + array.name);
-      out.push_back(stress_cell(name, array.name, [&](StressCell& cell) {
-        stress_estimates(entry, array, arrays[0], cell);
-      }));
+      progress.update(static_cast<double>(i) / static_cast<double>(arrays.size()), "stress: " + array.name);
+      out.push_back(
+          stress_cell(name, array.name, [&](StressCell& cell) { stress_estimates(entry, array, arrays[0], cell); }));
       if (out.back().outcome == StressOutcome::refused) continue;
       if (array.related() && fused(entry, arrays[0]).weights)
-        out.push_back(stress_cell(name + ", weights", array.name, [&](StressCell& cell) {
-          stress_weights_related(entry, array, arrays[0], cell);
-        }));
+        out.push_back(stress_cell(name + ", weights", array.name,
+                                  [&](StressCell& cell) { stress_weights_related(entry, array, arrays[0], cell); }));
       if (array.exact_weights && name == "optimal-weights")
-        out.push_back(stress_cell(name + ", weights", array.name, [&](StressCell& cell) {
-          stress_weights(entry, array, cell);
-        }));
+        out.push_back(
+            stress_cell(name + ", weights", array.name, [&](StressCell& cell) { stress_weights(entry, array, cell); }));
     }
   return out;
 }

@@ -21,12 +21,10 @@ void set_term(Term term, double level, SensorModel& model) {
 }
 
 constexpr Kind kKinds[] = {
-    {"simulated white noise",
-     [](double level, SensorModel& m) { set_term(Term::white, level, m); }},
+    {"simulated white noise", [](double level, SensorModel& m) { set_term(Term::white, level, m); }},
     {"simulated flicker", [](double level, SensorModel& m) { set_term(Term::flicker, level, m); }},
     {"simulated random walk", [](double level, SensorModel& m) { set_term(Term::walk, level, m); }},
-    {"simulated quantization noise",
-     [](double level, SensorModel& m) { set_term(Term::quantization, level, m); }},
+    {"simulated quantization noise", [](double level, SensorModel& m) { set_term(Term::quantization, level, m); }},
     {"simulated Gauss-Markov process",
      [](double level, SensorModel& m) { m.gauss_markov.sigma = level, m.gauss_markov.tau_s = 2; }}};
 
@@ -46,19 +44,15 @@ std::vector<StressCell> stress_simulators(const StressBenchOptions& options) {
     int power;
   };
   std::vector<StressCell> out;
-  for (const Scale& scale : {Scale{"scale 1e90", 300},
-                             Scale{"scale 1e-90", -300},
-                             Scale{"scale 1e200", 664},
-                             Scale{"scale 1e-200", -664},
-                             Scale{"denormal (1e-310)", -1030}})
+  for (const Scale& scale : {Scale{"scale 1e90", 300}, Scale{"scale 1e-90", -300}, Scale{"scale 1e200", 664},
+                             Scale{"scale 1e-200", -664}, Scale{"denormal (1e-310)", -1030}})
     for (const Kind& kind : kKinds)
       out.push_back(stress_cell(kind.name, scale.name, [&](StressCell& cell) {
         std::vector<Exact> expected;
         for (const double y : simulated(kind, 0, options.seed))
           expected.push_back(static_cast<double>(std::ldexp(Exact(y), scale.power)));
         judge_digits(right_digits_together(simulated(kind, scale.power, options.seed), expected),
-                     scale.power < -1000 ? kSimulatedDenormalDigits : kSimulatedDigits,
-                     cell);
+                     scale.power < -1000 ? kSimulatedDenormalDigits : kSimulatedDigits, cell);
       }));
   return out;
 }

@@ -34,15 +34,12 @@ bool spoils(const Finding& finding) {
   return finding.severity == Severity::bad && finding.code != "misfit" && touches_noise(finding);
 }
 
-void add_findings(const ReportedCharacterization& side,
-                  const std::string& channel,
-                  ComparedGroup::Candidate& out) {
+void add_findings(const ReportedCharacterization& side, const std::string& channel, ComparedGroup::Candidate& out) {
   for (const Finding& one : side.findings) {
     if (one.subject != channel && one.subject != detail::kOfRecording) continue;
     if (!touches_noise(one)) continue;
-    const bool known = std::any_of(out.findings.begin(), out.findings.end(), [&](const auto& f) {
-      return f.code == one.code;
-    });
+    const bool known =
+        std::any_of(out.findings.begin(), out.findings.end(), [&](const auto& f) { return f.code == one.code; });
     if (!known) out.findings.push_back(one);
     if (spoils(one)) out.takes_part = false;
   }
@@ -84,10 +81,8 @@ std::vector<AllanPoint> curve_of_axes(const std::vector<std::vector<AllanPoint>>
 }
 
 /// The channels of one side as one candidate: one, or its axes.
-void add_candidate(const std::vector<ReportedCharacterization>& sides,
-                   const std::vector<PairedChannel>& axes,
-                   bool several,
-                   ComparedGroup& out) {
+void add_candidate(const std::vector<ReportedCharacterization>& sides, const std::vector<PairedChannel>& axes,
+                   bool several, ComparedGroup& out) {
   ComparedGroup::Candidate made;
   made.side = axes[0].side;
   const ReportedCharacterization& side = sides[made.side];
@@ -104,25 +99,21 @@ void add_candidate(const std::vector<ReportedCharacterization>& sides,
   made.curve = curves.size() == 1 ? curves[0] : curve_of_axes(curves);
   for (std::size_t t = 0; t < kTerms; ++t) {
     std::vector<Coefficient> all;
-    for (const PairedChannel& one : axes)
-      all.push_back(detail::scaled(one.channel->term[t], one.factor));
+    for (const PairedChannel& one : axes) all.push_back(detail::scaled(one.channel->term[t], one.factor));
     if (out.terms.size() <= t) out.terms.push_back({static_cast<Term>(t), {}, {}, {}, {}, {}});
     out.terms[t].values.push_back(all.size() == 1 ? all[0] : detail::root_mean_square(all));
   }
   out.candidates.push_back(std::move(made));
 }
 
-bool is_fitted_in(const Coefficient& c) {
-  return c.status != Status::not_fitted;
-}
+bool is_fitted_in(const Coefficient& c) { return c.status != Status::not_fitted; }
 
 /// An axis of another group that has all of its candidates.
 bool is_within(const ComparedGroup& group, const std::vector<ComparedGroup>& all) {
   const auto holds = [&](const ComparedGroup& other) {
     return other.of_axes && other.quantity == group.quantity &&
            std::all_of(group.candidates.begin(), group.candidates.end(), [&](const auto& one) {
-             return std::any_of(other.candidates.begin(),
-                                other.candidates.end(),
+             return std::any_of(other.candidates.begin(), other.candidates.end(),
                                 [&](const auto& c) { return c.side == one.side; });
            });
   };
@@ -141,17 +132,14 @@ std::vector<ComparedGroup> groups_of(const std::vector<ReportedCharacterization>
     out.push_back(one.group);
     for (const PairedChannel& channel : one.channels) {
       const auto same_side = [&](const PairedChannel& c) { return c.side == channel.side; };
-      add_candidate(sides,
-                    {channel},
-                    std::count_if(one.channels.begin(), one.channels.end(), same_side) > 1,
+      add_candidate(sides, {channel}, std::count_if(one.channels.begin(), one.channels.end(), same_side) > 1,
                     out.back());
     }
   }
   for (ComparedGroup& group : out) group.within = is_within(group, out);
   for (ComparedGroup& group : out)
-    std::erase_if(group.terms, [](const ComparedTerm& t) {
-      return std::none_of(t.values.begin(), t.values.end(), is_fitted_in);
-    });
+    std::erase_if(group.terms,
+                  [](const ComparedTerm& t) { return std::none_of(t.values.begin(), t.values.end(), is_fitted_in); });
   return out;
 }
 
@@ -170,11 +158,9 @@ std::string terms_words(const ComparedGroup& group) {
     std::vector<std::string> alike;
     for (const std::size_t i : term.lowest.not_apart) alike.push_back(group.candidates[i].name);
     const std::string& best = group.candidates[*term.lowest.best].name;
-    out.push_back(
-        alike.empty()
-            ? fmt::format("{}: {}", letter, best)
-            : fmt::format(
-                  "{}: {} or {}, not distinguished", letter, best, fmt::join(alike, " or ")));
+    out.push_back(alike.empty()
+                      ? fmt::format("{}: {}", letter, best)
+                      : fmt::format("{}: {} or {}, not distinguished", letter, best, fmt::join(alike, " or ")));
   }
   return out.empty() ? "" : fmt::format("Lowest {}.", fmt::join(out, "; "));
 }
@@ -224,16 +210,15 @@ std::string left_out_words(const ComparedGroup& group) {
   for (const ComparedGroup::Candidate& one : group.candidates) {
     if (one.takes_part) continue;
     const std::string reason = titles_of(one.findings);
-    auto at = std::find_if(
-        reasons.begin(), reasons.end(), [&](const auto& known) { return known.first == reason; });
+    auto at = std::find_if(reasons.begin(), reasons.end(), [&](const auto& known) { return known.first == reason; });
     if (at == reasons.end()) at = reasons.insert(at, {reason, {}});
     at->second.push_back(one.name);
   }
   std::string out;
   for (const auto& [reason, names] : reasons) {
     const std::size_t shown = std::min(names.size(), kMostNames);
-    std::string who = fmt::format(
-        "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    std::string who =
+        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shown < names.size()) who += fmt::format(" and {} more", names.size() - shown);
     out += fmt::format(" {} {} left out: {}.", who, names.size() == 1 ? "is" : "are", reason);
   }
@@ -246,8 +231,7 @@ std::string warning_words(const ComparedGroup& group) {
   for (const std::size_t i : winners_of(group)) {
     const ComparedGroup::Candidate& one = group.candidates[i];
     if (!one.measured) out += fmt::format(" {} is stated without intervals.", one.name);
-    if (!one.findings.empty())
-      out += fmt::format(" Check {} first: {}.", one.name, titles_of(one.findings));
+    if (!one.findings.empty()) out += fmt::format(" Check {} first: {}.", one.name, titles_of(one.findings));
   }
   return out;
 }
@@ -288,45 +272,34 @@ class Remarks {
 };
 
 std::string band_text(const ReportedChannel& c) {
-  return c.band.whole ? "the whole spectrum"
-                      : fmt::format("up to {} Hz", number_text(c.band.top_hz, 3));
+  return c.band.whole ? "the whole spectrum" : fmt::format("up to {} Hz", number_text(c.band.top_hz, 3));
 }
 
-std::string unit_or_none(const std::string& unit) {
-  return unit.empty() ? "no unit" : unit;
-}
+std::string unit_or_none(const std::string& unit) { return unit.empty() ? "no unit" : unit; }
 
 /// What differs between the first channel of a group and another.
-void add_remarks(const std::vector<ReportedCharacterization>& sides,
-                 const std::string& group,
-                 const PairedChannel& first,
-                 const PairedChannel& other,
-                 Remarks& out) {
+void add_remarks(const std::vector<ReportedCharacterization>& sides, const std::string& group,
+                 const PairedChannel& first, const PairedChannel& other, Remarks& out) {
   const ReportedChannel &a = *first.channel, &b = *other.channel;
   const bool one_side = first.side == other.side;
   const std::string &in_a = one_side ? a.name : sides[first.side].name,
                     &in_b = one_side ? b.name : sides[other.side].name;
-  const auto remark =
-      [&](bool differ, const char* what, const std::string& x, const std::string& y) {
-        if (differ) out.add(group, fmt::format("{} {} in {}, {} in {}.", what, x, in_a, y, in_b));
-      };
+  const auto remark = [&](bool differ, const char* what, const std::string& x, const std::string& y) {
+    if (differ) out.add(group, fmt::format("{} {} in {}, {} in {}.", what, x, in_a, y, in_b));
+  };
   remark(a.unit != b.unit, "unit", unit_or_none(a.unit), unit_or_none(b.unit));
   if (!a.fitted || !b.fitted) {
     for (const auto& [side, channel] : {std::pair{&in_a, &a}, std::pair{&in_b, &b}})
       if (!channel->fitted) out.add(group, "without a fit in " + *side + ".");
     return;
   }
-  remark(a.rate_hz > 0 && b.rate_hz > 0 && std::abs(a.rate_hz - b.rate_hz) > 0.01 * a.rate_hz,
-         "sampling rate in Hz",
-         brief_text(a.rate_hz, 6),
-         brief_text(b.rate_hz, 6));
-  const bool bands = a.band.whole != b.band.whole ||
-                     (!a.band.whole && std::abs(std::log(a.band.top_hz / b.band.top_hz)) > 0.4);
+  remark(a.rate_hz > 0 && b.rate_hz > 0 && std::abs(a.rate_hz - b.rate_hz) > 0.01 * a.rate_hz, "sampling rate in Hz",
+         brief_text(a.rate_hz, 6), brief_text(b.rate_hz, 6));
+  const bool bands =
+      a.band.whole != b.band.whole || (!a.band.whole && std::abs(std::log(a.band.top_hz / b.band.top_hz)) > 0.4);
   remark(bands, "band of the fit", band_text(a), band_text(b));
   remark(a.shape != b.shape, "shape", a.shape, b.shape);
-  remark(a.events != b.events,
-         "steps, warm-up and ramps taken out:",
-         fmt::format("{}", a.events),
+  remark(a.events != b.events, "steps, warm-up and ramps taken out:", fmt::format("{}", a.events),
          fmt::format("{}", b.events));
 }
 
@@ -337,10 +310,8 @@ std::vector<std::string> remarks_of(const std::vector<ReportedCharacterization>&
     const PairedChannel& first = one.channels[0];
     if (one.channels.size() == 1 && sides.size() > 1)
       out.add(first.channel->name,
-              fmt::format("only in {} ({}).",
-                          sides[first.side].name,
-                          one.group.quantity.empty() ? unit_or_none(first.channel->unit)
-                                                     : first.channel->unit));
+              fmt::format("only in {} ({}).", sides[first.side].name,
+                          one.group.quantity.empty() ? unit_or_none(first.channel->unit) : first.channel->unit));
     for (std::size_t i = 1; i < one.channels.size(); ++i)
       add_remarks(sides, one.group.name, first, one.channels[i], out);
   }
@@ -358,8 +329,8 @@ std::vector<std::string> known_of(const std::vector<ReportedCharacterization>& s
       const ReportedChannel* const channel = side.find(one.subject);
       if (channel != nullptr && !detail::is_chosen(*channel, wanted)) continue;
       const std::string sentence = fmt::format("{}: {}", name_of(one.severity), with_help(one));
-      const auto same = std::find_if(
-          said.begin(), said.end(), [&](const auto& other) { return other.second == sentence; });
+      const auto same =
+          std::find_if(said.begin(), said.end(), [&](const auto& other) { return other.second == sentence; });
       if (same == said.end())
         said.emplace_back(one.subject, sentence);
       else
@@ -367,14 +338,12 @@ std::vector<std::string> known_of(const std::vector<ReportedCharacterization>& s
     }
     for (std::size_t i = 0; i < std::min(kMost, said.size()); ++i)
       out.push_back(fmt::format("{}, {}: {}", side.name, said[i].first, said[i].second));
-    if (said.size() > kMost)
-      out.push_back(fmt::format("{}: and {} more", side.name, said.size() - kMost));
+    if (said.size() > kMost) out.push_back(fmt::format("{}: and {} more", side.name, said.size() - kMost));
   }
   return out;
 }
 
-void set_names(std::vector<ReportedCharacterization>& sides,
-               const std::vector<std::string>& wanted) {
+void set_names(std::vector<ReportedCharacterization>& sides, const std::vector<std::string>& wanted) {
   std::vector<std::string> names, files;
   for (const ReportedCharacterization& side : sides) {
     names.push_back(side.name);
@@ -383,19 +352,15 @@ void set_names(std::vector<ReportedCharacterization>& sides,
   detail::set_names_apart(names, files);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (i < wanted.size() && !wanted[i].empty()) names[i] = wanted[i];
-    const auto before =
-        std::count(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]);
+    const auto before = std::count(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]);
     sides[i].name = before > 0 ? fmt::format("{} ({})", names[i], before + 1) : names[i];
   }
 }
 
 /// What the sides measure, where they have nothing in common.
-void refuse_unlike(const std::vector<ReportedCharacterization>& sides,
-                   const std::vector<detail::ChannelPairs>& pairs) {
-  if (std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.channels.size() > 1; }))
-    return;
-  if (std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s.channels.empty(); }))
-    return;
+void refuse_unlike(const std::vector<ReportedCharacterization>& sides, const std::vector<detail::ChannelPairs>& pairs) {
+  if (std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.channels.size() > 1; })) return;
+  if (std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s.channels.empty(); })) return;
   std::vector<std::string> measured;
   for (const ReportedCharacterization& side : sides) {
     const ReportedChannel& c = side.channels[0];
@@ -410,8 +375,7 @@ void refuse_unlike(const std::vector<ReportedCharacterization>& sides,
 
 void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {
   std::vector<NamedChannel> named;
-  for (const ComparedGroup& group : out.groups)
-    named.push_back({group.candidates[0].channels[0], group.unit});
+  for (const ComparedGroup& group : out.groups) named.push_back({group.candidates[0].channels[0], group.unit});
   for (const ChannelLimit& limit : limits_for(limits, named)) {
     ComparedGroup& group = out.groups[limit.channel];
     for (ComparedTerm& term : group.terms)
@@ -432,14 +396,13 @@ void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {
 
 }  // namespace
 
-CharacterizationComparison compare_characterizations(
-    std::vector<ReportedCharacterization> sides, const CharacterizationCompareOptions& options) {
+CharacterizationComparison compare_characterizations(std::vector<ReportedCharacterization> sides,
+                                                     const CharacterizationCompareOptions& options) {
   CharacterizationComparison out;
   out.sides = std::move(sides);
   out.probability = options.probability;
   set_names(out.sides, options.names);
-  const std::vector<detail::ChannelPairs> pairs =
-      detail::paired_channels(out.sides, options.channels);
+  const std::vector<detail::ChannelPairs> pairs = detail::paired_channels(out.sides, options.channels);
   refuse_unlike(out.sides, pairs);
   out.groups = groups_of(out.sides, pairs);
   std::size_t judgements = 0;
@@ -456,50 +419,32 @@ CharacterizationComparison compare_characterizations(
 namespace {
 
 bool is_known(const Coefficient& c) {
-  return c.status == Status::detected || c.status == Status::given ||
-         c.status == Status::not_detected;
+  return c.status == Status::detected || c.status == Status::given || c.status == Status::not_detected;
 }
 
 /// Of candidate `i` of a term against the first; empty: it holds.
-std::string growth_failure(const ComparedGroup& group,
-                           const ComparedTerm& t,
-                           std::size_t i,
-                           const GrowthCheck& check) {
+std::string growth_failure(const ComparedGroup& group, const ComparedTerm& t, std::size_t i, const GrowthCheck& check) {
   const Coefficient &a = t.values[0], &b = t.values[i];
   const std::string &in_a = group.candidates[0].name, &in_b = group.candidates[i].name;
   const std::string name = group.candidates[i].channels[0] + ": " + check.metric;
   if (!is_known(b))
-    return fmt::format("{} is {} in {} ({}), and {} knows it",
-                       name,
-                       b.status == Status::not_fitted ? "not fitted" : "not to be relied on",
-                       in_b,
-                       name_of(b.status),
+    return fmt::format("{} is {} in {} ({}), and {} knows it", name,
+                       b.status == Status::not_fitted ? "not fitted" : "not to be relied on", in_b, name_of(b.status),
                        in_a);
   const double allowed = 1 + check.share;
   if (t.ratios[i].ratio && t.ratios[i].ci95.low > allowed)
-    return fmt::format("{} in {} is {} times that of {} [{}, {}], {} % more is allowed",
-                       name,
-                       in_b,
-                       number_text(*t.ratios[i].ratio),
-                       in_a,
-                       number_text(t.ratios[i].ci95.low),
-                       number_text(t.ratios[i].ci95.high),
-                       shortest(100 * check.share));
+    return fmt::format("{} in {} is {} times that of {} [{}, {}], {} % more is allowed", name, in_b,
+                       number_text(*t.ratios[i].ratio), in_a, number_text(t.ratios[i].ci95.low),
+                       number_text(t.ratios[i].ci95.high), shortest(100 * check.share));
   if (!a.value && a.upper95 && b.value && b.ci95.low > allowed * *a.upper95)
-    return fmt::format("{} is {} in {}, and was not detected in {} ({})",
-                       name,
-                       coefficient_text(b),
-                       in_b,
-                       in_a,
+    return fmt::format("{} is {} in {}, and was not detected in {} ({})", name, coefficient_text(b), in_b, in_a,
                        value_text(a));
   return "";
 }
 
 bool has_name(const ComparedGroup& group, const std::string& label) {
-  return label == group.name ||
-         std::any_of(group.candidates.begin(),
-                     group.candidates.end(),
-                     [&](const ComparedGroup::Candidate& c) { return c.channels[0] == label; });
+  return label == group.name || std::any_of(group.candidates.begin(), group.candidates.end(),
+                                            [&](const ComparedGroup::Candidate& c) { return c.channels[0] == label; });
 }
 
 const ReportedChannel* channel_of(const ReportedCharacterization& side, const std::string& label) {
@@ -516,8 +461,7 @@ GrowthCheck parse_characterization_check(std::string_view text) {
   return parse_growth_check(text, words);
 }
 
-std::vector<std::string> failures(const CharacterizationComparison& comparison,
-                                  const GrowthCheck& check) {
+std::vector<std::string> failures(const CharacterizationComparison& comparison, const GrowthCheck& check) {
   std::vector<std::string> out, labels;
   std::size_t checked = 0;
   for (const ReportedCharacterization& side : comparison.sides)
@@ -528,9 +472,7 @@ std::vector<std::string> failures(const CharacterizationComparison& comparison,
     found = found || channel_of(side, check.label) != nullptr;
   if (!found) {
     const auto near = nearest(check.label, labels);
-    refuse_check(check.text,
-                 "neither report has this channel",
-                 did_you_mean(near, "labels are names of channels"));
+    refuse_check(check.text, "neither report has this channel", did_you_mean(near, "labels are names of channels"));
   }
   // Not asked for elsewhere, unless by name: nothing was lost.
   if (!check.label.empty() && channel_of(first, check.label) != nullptr)
@@ -543,9 +485,7 @@ std::vector<std::string> failures(const CharacterizationComparison& comparison,
     if (group.of_axes || group.candidates[0].side != 0) continue;
     if (!check.label.empty() && !has_name(group, check.label)) continue;
     for (const ComparedTerm& t : group.terms) {
-      if (kTermNames[static_cast<std::size_t>(t.term)].key != check.metric ||
-          !is_known(t.values[0]))
-        continue;
+      if (kTermNames[static_cast<std::size_t>(t.term)].key != check.metric || !is_known(t.values[0])) continue;
       for (std::size_t i = 1; i < t.values.size(); ++i) {
         ++checked;
         if (std::string sentence = growth_failure(group, t, i, check); !sentence.empty())

@@ -58,9 +58,7 @@ struct Lowest {
 };
 
 /// Of the ones that take part. `share`: as difference_of.
-Lowest lowest_of(const std::vector<Coefficient>& all,
-                 const std::vector<bool>& takes_part,
-                 double share);
+Lowest lowest_of(const std::vector<Coefficient>& all, const std::vector<bool>& takes_part, double share);
 
 }  // namespace detail
 
@@ -80,7 +78,7 @@ struct ComparedGroup {
   struct Candidate {
     std::size_t side = 0;
     std::vector<std::string> channels;
-    std::string name;  ///< of the side, with that of the channel where the side has several here
+    std::string name;               ///< of the side, with that of the channel where the side has several here
     bool measured = true;           ///< else a model without intervals, such as a data sheet
     bool takes_part = true;         ///< no: a finding says that its numbers are not to be relied on
     std::vector<Finding> findings;  ///< what to know before it is chosen, the worst first
@@ -112,33 +110,29 @@ struct ComparedGroup {
   std::vector<Range> ranges;
   std::vector<double> limit_tau_s, limit_curve;  ///< of a data sheet
   std::string sentence;                          ///< for the averaging times
-  std::string terms_sentence;  ///< "Lowest N: a; lowest B: not distinguished (a, c)."
+  std::string terms_sentence;                    ///< "Lowest N: a; lowest B: not distinguished (a, c)."
 };
 
 struct CharacterizationComparison {
   std::vector<ReportedCharacterization> sides;
   std::vector<ComparedGroup> groups;  ///< of several axes first
-  std::vector<std::string>
-      remarks;  ///< bands, shapes, rates and units that differ; channels that are in one only
-  std::vector<std::string> known;  ///< findings of the sides, in sentences
-  double probability = 0.01;       ///< of calling any of equal sensors lower than another
-  std::string verdict;             ///< a paragraph
+  std::vector<std::string> remarks;   ///< bands, shapes, rates and units that differ; channels that are in one only
+  std::vector<std::string> known;     ///< findings of the sides, in sentences
+  double probability = 0.01;          ///< of calling any of equal sensors lower than another
+  std::string verdict;                ///< a paragraph
 };
 
 struct CharacterizationCompareOptions {
-  double probability =
-      0.01;  ///< of calling any term, at any averaging time, of equal sensors different
-  std::vector<std::string> names;  ///< of the sides, in their order; "" or none: by their files
-  std::vector<std::string>
-      channels;  ///< names or patterns, "gyro_x" for any channel that measures it; empty: all
+  double probability = 0.01;          ///< of calling any term, at any averaging time, of equal sensors different
+  std::vector<std::string> names;     ///< of the sides, in their order; "" or none: by their files
+  std::vector<std::string> channels;  ///< names or patterns, "gyro_x" for any channel that measures it; empty: all
   std::optional<NoiseLimits> limits;  ///< a data sheet
 };
 
 /// Throws Error(input) where no two channels measure the same, with what each of the sides measures;
 /// Error(usage) for a channel that none has.
-CharacterizationComparison compare_characterizations(
-    std::vector<ReportedCharacterization> sides,
-    const CharacterizationCompareOptions& options = {});
+CharacterizationComparison compare_characterizations(std::vector<ReportedCharacterization> sides,
+                                                     const CharacterizationCompareOptions& options = {});
 
 // Checks on characterizations, such as a build server asks for: "white_noise+5%", "gyro_x:bias_instability+20%".
 
@@ -149,8 +143,7 @@ GrowthCheck parse_characterization_check(std::string_view text);
 /// the whole 95 % interval of their ratio (or above the limit of the first by its whole interval), or the first
 /// knows it and the other does not. Throws Error(usage) when `label` is in no side, and Error(check) when the
 /// first has no such term: a check that cannot fail.
-std::vector<std::string> failures(const CharacterizationComparison& comparison,
-                                  const GrowthCheck& check);
+std::vector<std::string> failures(const CharacterizationComparison& comparison, const GrowthCheck& check);
 
 }  // namespace libchar
 

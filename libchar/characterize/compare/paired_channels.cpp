@@ -64,17 +64,14 @@ ChannelPairs& group_for(Pairs& pairs, const ReportedChannel& channel) {
     key.axis = axis_in(channel.name);
   }
   for (ChannelPairs& one : pairs)
-    if (one.group.name == key.name && one.group.quantity == key.quantity &&
-        (known || one.group.unit == key.unit))
+    if (one.group.name == key.name && one.group.quantity == key.quantity && (known || one.group.unit == key.unit))
       return one;
   return pairs.emplace_back(ChannelPairs{key, {}});
 }
 
 std::size_t count_of(const ChannelPairs& pairs, std::size_t side) {
-  return static_cast<std::size_t>(
-      std::count_if(pairs.channels.begin(), pairs.channels.end(), [&](const PairedChannel& one) {
-        return one.side == side;
-      }));
+  return static_cast<std::size_t>(std::count_if(pairs.channels.begin(), pairs.channels.end(),
+                                                [&](const PairedChannel& one) { return one.side == side; }));
 }
 
 std::size_t sides_of(const ChannelPairs& pairs) {
@@ -85,9 +82,8 @@ std::size_t sides_of(const ChannelPairs& pairs) {
 
 /// Where a side has several channels that measure the same, those of one name belong together first.
 void split_by_name(const ChannelPairs& all, Pairs& out) {
-  const bool several = std::any_of(all.channels.begin(), all.channels.end(), [&](const auto& c) {
-    return count_of(all, c.side) > 1;
-  });
+  const bool several =
+      std::any_of(all.channels.begin(), all.channels.end(), [&](const auto& c) { return count_of(all, c.side) > 1; });
   if (!several || sides_of(all) < 2) return out.push_back(all);
   ChannelPairs rest{all.group, {}};
   Pairs named;
@@ -97,9 +93,8 @@ void split_by_name(const ChannelPairs& all, Pairs& out) {
       rest.channels.push_back(one);
       continue;
     }
-    auto place = std::find_if(named.begin(), named.end(), [&](const ChannelPairs& p) {
-      return p.channels[0].channel->name == one.channel->name;
-    });
+    auto place = std::find_if(named.begin(), named.end(),
+                              [&](const ChannelPairs& p) { return p.channels[0].channel->name == one.channel->name; });
     if (place == named.end()) {
       place = named.insert(named.end(), ChannelPairs{all.group, {}});
       place->group.name = one.channel->name;
@@ -146,16 +141,14 @@ void refuse_unmatched_channels(const std::vector<ReportedCharacterization>& side
 
 void set_unit_factors(ChannelPairs& pairs) {
   pairs.group.unit = pairs.channels[0].channel->unit;
-  for (PairedChannel& one : pairs.channels)
-    one.factor = unit_factor(one.channel->unit, pairs.group.unit).value_or(1);
+  for (PairedChannel& one : pairs.channels) one.factor = unit_factor(one.channel->unit, pairs.group.unit).value_or(1);
 }
 
 }  // namespace
 
 bool is_chosen(const ReportedChannel& channel, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& one) {
-           return matches(one, channel.name) ||
-                  matches(one, usual_channel_name(channel.name, channel.unit));
+           return matches(one, channel.name) || matches(one, usual_channel_name(channel.name, channel.unit));
          });
 }
 
@@ -169,9 +162,8 @@ std::vector<ChannelPairs> paired_channels(const std::vector<ReportedCharacteriza
   spread_over_axes(all);
   for (const ChannelPairs& one : all) split_by_name(one, out);
   for (ChannelPairs& one : out) {
-    std::stable_sort(one.channels.begin(), one.channels.end(), [](const auto& a, const auto& b) {
-      return a.side < b.side;
-    });
+    std::stable_sort(one.channels.begin(), one.channels.end(),
+                     [](const auto& a, const auto& b) { return a.side < b.side; });
     set_unit_factors(one);
   }
   return out;
@@ -184,8 +176,7 @@ std::vector<AxesTogether> axes_together(const std::vector<ChannelPairs>& pairs) 
     if (first.group.axis.empty() || !done.insert(first.group.quantity).second) continue;
     std::vector<const ChannelPairs*> axes;
     for (const ChannelPairs& one : pairs)
-      if (one.group.quantity == first.group.quantity && !one.group.axis.empty() &&
-          sides_of(one) >= 2)
+      if (one.group.quantity == first.group.quantity && !one.group.axis.empty() && sides_of(one) >= 2)
         axes.push_back(&one);
     if (axes.size() < 2) continue;
     AxesTogether together{axes[0]->group, {}};
@@ -201,12 +192,10 @@ std::vector<AxesTogether> axes_together(const std::vector<ChannelPairs>& pairs) 
           }
       if (of_side.size() == axes.size()) together.sides.push_back(of_side);
     }
-    if (together.sides.size() < 2 || std::set(letters.begin(), letters.end()).size() != axes.size())
-      continue;
+    if (together.sides.size() < 2 || std::set(letters.begin(), letters.end()).size() != axes.size()) continue;
     together.group.of_axes = true;
     together.group.axis.clear();
-    together.group.name = usual_channel_name("", together.group.unit) +
-                          fmt::format(" ({})", fmt::join(letters, ", "));
+    together.group.name = usual_channel_name("", together.group.unit) + fmt::format(" ({})", fmt::join(letters, ", "));
     out.push_back(std::move(together));
   }
   return out;

@@ -23,8 +23,7 @@ namespace {
 constexpr std::string_view kFormats[] = {"characterization", "pooled-runs", "noise-fit"};
 
 std::string format_of(const Document& document) {
-  const DocumentEntry* const format =
-      document.kind == Document::Kind::map ? document.find("format") : nullptr;
+  const DocumentEntry* const format = document.kind == Document::Kind::map ? document.find("format") : nullptr;
   return format != nullptr && format->value.kind == Document::Kind::text ? format->value.text : "";
 }
 
@@ -68,13 +67,11 @@ std::string recording_of(const MapReader& map) {
 
 /// Intervals of the Allan family hold for its own statistics only: others are not compared with them.
 bool is_compared(const std::string& statistic) {
-  return statistic.empty() || statistic == "oadev" || statistic == "adev" ||
-         statistic == "totdev" || statistic == "oavar" || statistic == "avar";
+  return statistic.empty() || statistic == "oadev" || statistic == "adev" || statistic == "totdev" ||
+         statistic == "oavar" || statistic == "avar";
 }
 
-ReportedChannel& channel_of(ReportedCharacterization& out,
-                            const std::string& name,
-                            const std::string& unit) {
+ReportedChannel& channel_of(ReportedCharacterization& out, const std::string& name, const std::string& unit) {
   for (ReportedChannel& c : out.channels)
     if (c.name == name) return c;
   ReportedChannel& made = out.channels.emplace_back();
@@ -162,8 +159,7 @@ void set_names_apart(std::vector<std::string>& names, const std::vector<std::str
   const std::vector<std::string> all = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
     bool alike = false;
-    for (std::size_t j = 0; j < all.size(); ++j)
-      alike = alike || (all[j] == all[i] && files[j] != files[i]);
+    for (std::size_t j = 0; j < all.size(); ++j) alike = alike || (all[j] == all[i] && files[j] != files[i]);
     if (!alike) continue;
     const std::filesystem::path file(files[i]);
     const std::string folder = file.parent_path().filename().string();
@@ -171,8 +167,7 @@ void set_names_apart(std::vector<std::string>& names, const std::vector<std::str
   }
 }
 
-ReportedCharacterization reported_models(const std::vector<SensorModel>& models,
-                                         const std::string& path) {
+ReportedCharacterization reported_models(const std::vector<SensorModel>& models, const std::string& path) {
   ReportedCharacterization out;
   out.file = path;
   out.name = detail::document_name(path);
@@ -238,17 +233,12 @@ std::string report_file(const std::string& path) {
 void refuse_lot_report(const std::string& path, const std::string& instead) {
   std::error_code ignored;
   std::string file = report_file(path);
-  if (!std::filesystem::exists(file, ignored))
-    file = (std::filesystem::path(path) / "lot.json").string();
+  if (!std::filesystem::exists(file, ignored)) file = (std::filesystem::path(path) / "lot.json").string();
   if (detail::document_format(file) == "lot")
-    throw input_error("E0771", file)
-        .says("this is the report of a lot of devices")
-        .got("lot")
-        .hint(instead);
+    throw input_error("E0771", file).says("this is the report of a lot of devices").got("lot").hint(instead);
 }
 
-ReportedCharacterization parse_characterization_report(std::string_view text,
-                                                       const std::string& path) {
+ReportedCharacterization parse_characterization_report(std::string_view text, const std::string& path) {
   return read_summary(parse_json_document(text, path), path);
 }
 

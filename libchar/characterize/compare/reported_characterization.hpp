@@ -28,10 +28,9 @@ struct ReportedChannel {
 };
 
 struct ReportedCharacterization {
-  std::string file;  ///< of the report
-  std::string name;  ///< folder of a report, stem of a file
-  std::string
-      format;  ///< "characterization", "pooled-runs", "noise-fit", "allan", "sensor-model", "curve"
+  std::string file;       ///< of the report
+  std::string name;       ///< folder of a report, stem of a file
+  std::string format;     ///< "characterization", "pooled-runs", "noise-fit", "allan", "sensor-model", "curve"
   std::string program;    ///< version of the program that wrote it
   std::string recording;  ///< what was characterized, in words
   std::vector<ReportedChannel> channels;
@@ -49,8 +48,7 @@ void refuse_lot_report(const std::string& path, const std::string& instead);
 /// Reads report.json of characterize, runs.json of pooled runs, or what `fit` prints as JSON; of a folder, the
 /// one in it. Throws Error(input) with file and key.
 ReportedCharacterization read_characterization_report(const std::string& path);
-ReportedCharacterization parse_characterization_report(std::string_view text,
-                                                       const std::string& path);
+ReportedCharacterization parse_characterization_report(std::string_view text, const std::string& path);
 
 namespace detail {
 
@@ -60,8 +58,7 @@ std::string document_name(const std::string& path);
 void set_names_apart(std::vector<std::string>& names, const std::vector<std::string>& files);
 
 /// Models as a characterization: their coefficients and the curves that they imply.
-ReportedCharacterization reported_models(const std::vector<SensorModel>& models,
-                                         const std::string& path);
+ReportedCharacterization reported_models(const std::vector<SensorModel>& models, const std::string& path);
 
 /// Whether `path` is neither a document, nor a curve, nor a model: a recording, if it can be read.
 bool is_recording(const std::string& path);

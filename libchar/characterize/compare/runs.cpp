@@ -38,32 +38,27 @@ void check_channels(const Characterization& first, const Characterization& run) 
     const ChannelResult* const other = find_channel(run, c.channel.name);
     if (other == nullptr)
       throw input_error("E0761", run.log.file)
-          .says("has no channel {}, which {} has: runs of one sensor have the same channels",
-                c.channel.name,
+          .says("has no channel {}, which {} has: runs of one sensor have the same channels", c.channel.name,
                 first.log.file)
           .hint("`channels` takes those that all have");
     if (other->channel.unit != c.channel.unit)
       throw input_error("E0761", run.log.file)
-          .says("channel {} is in {}, and in {} in {}: runs of one sensor have one unit",
-                c.channel.name,
+          .says("channel {} is in {}, and in {} in {}: runs of one sensor have one unit", c.channel.name,
                 other->channel.unit.empty() ? "no unit" : other->channel.unit,
-                c.channel.unit.empty() ? "no unit" : c.channel.unit,
-                first.log.file)
+                c.channel.unit.empty() ? "no unit" : c.channel.unit, first.log.file)
           .hint("`units` says it where a log does not");
   }
   for (const ChannelResult& c : run.channels)
     if (find_channel(first, c.channel.name) == nullptr)
       throw input_error("E0761", run.log.file)
-          .says("has a channel {}, which {} has not: runs of one sensor have the same channels",
-                c.channel.name,
+          .says("has a channel {}, which {} has not: runs of one sensor have the same channels", c.channel.name,
                 first.log.file)
           .hint("`channels` takes those that all have");
 }
 
 /// Throws Error where the runs cannot be of one sensor (runs.hpp).
 void check_runs(std::span<const Characterization> runs) {
-  if (runs.size() < 2)
-    throw usage_error("E0205").says("one recording is not several runs").hint("name two at least");
+  if (runs.size() < 2) throw usage_error("E0205").says("one recording is not several runs").hint("name two at least");
   refuse_same_recording(runs);
   const Characterization& first = runs[0];
   for (const Characterization& run : runs) {
@@ -71,24 +66,19 @@ void check_runs(std::span<const Characterization> runs) {
     const double rate = run.log.time.rate_hz, other = first.log.time.rate_hz;
     if (std::abs(rate - other) > kOtherRate * other)
       throw input_error("E0761", run.log.file)
-          .says("is sampled at {} Hz, and {} at {} Hz: runs of one sensor have one rate",
-                brief_text(rate, 6),
-                first.log.file,
-                brief_text(other, 6));
-    if (std::none_of(run.channels.begin(), run.channels.end(), [](const ChannelResult& c) {
-          return c.fit.has_value();
-        }))
+          .says("is sampled at {} Hz, and {} at {} Hz: runs of one sensor have one rate", brief_text(rate, 6),
+                first.log.file, brief_text(other, 6));
+    if (std::none_of(run.channels.begin(), run.channels.end(),
+                     [](const ChannelResult& c) { return c.fit.has_value(); }))
       throw input_error("E0761", run.log.file)
           .says(run.channels.empty() || run.channels[0].findings.empty()
                     ? "no channel of this run could be fitted"
-                    : "no channel of this run could be fitted: " +
-                          run.channels[0].findings[0].sentence)
+                    : "no channel of this run could be fitted: " + run.channels[0].findings[0].sentence)
           .hint("leave this run out");
   }
 }
 
-constexpr int kEnough =
-    10;  ///< simulated sums as large as the observed one, after which p is known well enough
+constexpr int kEnough = 10;  ///< simulated sums as large as the observed one, after which p is known well enough
 
 /// chi-square / dof: of normal deviates, or by Wilson & Hilferty where there are many.
 double scaled_chi_square(double dof, DeviateStream& random) {
@@ -123,9 +113,7 @@ struct RunsTest {
   std::vector<double> run_p;
 };
 
-RunsTest tested(const RunBins& runs,
-                const std::array<bool, kTerms>& terms,
-                const PoolOptions& options,
+RunsTest tested(const RunBins& runs, const std::array<bool, kTerms>& terms, const PoolOptions& options,
                 DeviateStream& random) {
   RunsTest out;
   out.ratios = run_ratios(runs, terms);
@@ -136,8 +124,7 @@ RunsTest tested(const RunBins& runs,
     const double largest = *std::max_element(chance.run.begin(), chance.run.end());
     ++made;
     larger += chance.total >= out.ratios.total ? 1 : 0;
-    for (std::size_t r = 0; r < runs.size(); ++r)
-      exceeded[r] += largest >= out.ratios.run[r] ? 1 : 0;
+    for (std::size_t r = 0; r < runs.size(); ++r) exceeded[r] += largest >= out.ratios.run[r] ? 1 : 0;
   }
   out.simulations = made;
   // With ten as large the last one made is one of them: without the observed one in the count.
@@ -148,17 +135,14 @@ RunsTest tested(const RunBins& runs,
 
 /// Names runs one by one: an unlike one bends the common coefficients, and all others would look
 /// unlike beside it. Whether the rest is alike, and most of them.
-bool name_unlike(const PooledFit& pooled,
-                 const PoolOptions& options,
-                 RunsTest test,
-                 DeviateStream& random,
+bool name_unlike(const PooledFit& pooled, const PoolOptions& options, RunsTest test, DeviateStream& random,
                  PooledChannel& out) {
   RunBins rest = pooled.runs;
   std::vector<std::size_t> place(rest.size());
   std::iota(place.begin(), place.end(), std::size_t{0});
   while (test.p < options.probability && rest.size() > 2) {
-    const auto worst = static_cast<std::size_t>(
-        std::max_element(test.ratios.run.begin(), test.ratios.run.end()) - test.ratios.run.begin());
+    const auto worst = static_cast<std::size_t>(std::max_element(test.ratios.run.begin(), test.ratios.run.end()) -
+                                                test.ratios.run.begin());
     if (!(test.run_p[worst] < options.probability)) break;
     out.runs[place[worst]].differs = true;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(worst));
@@ -186,8 +170,7 @@ bool test_consistency(const PooledFit& pooled, const PoolOptions& options, Poole
 /// Coefficients of runs that do not share them: a mean of unlike things, known no better than they scatter.
 void admit_unlike(const PooledFit& pooled, PooledChannel& out) {
   const double dof = static_cast<double>(
-      (out.runs.size() - 1) *
-      static_cast<std::size_t>(std::count(pooled.terms.begin(), pooled.terms.end(), true)));
+      (out.runs.size() - 1) * static_cast<std::size_t>(std::count(pooled.terms.begin(), pooled.terms.end(), true)));
   const double wider = std::sqrt(std::max(1.0, out.ratio / std::max(1.0, dof)));
   widen_as_misfit(wider, out.fit);
 }
@@ -205,8 +188,7 @@ Mixture at_most(const NoiseFit& fit) {
 /// density B²/(2 pi f) holds between 1/year and 1/length.
 double slower_flicker(const Mixture& theta, double length_s) {
   constexpr double kYear = 3.15576e7;
-  return theta[static_cast<std::size_t>(Term::flicker)] / std::numbers::pi *
-         std::max(0.0, std::log(kYear / length_s));
+  return theta[static_cast<std::size_t>(Term::flicker)] / std::numbers::pi * std::max(0.0, std::log(kYear / length_s));
 }
 
 void find_bias(std::span<const Characterization> runs, PooledChannel& out) {
@@ -238,45 +220,32 @@ std::string files_of(const PooledChannel& channel, std::span<const Characterizat
 
 std::string consistency_sentence(const PooledChannel& c, std::span<const Characterization> runs) {
   const std::string figures = fmt::format("2 ln L rises by {} with coefficients of their own, {}",
-                                          number_text(c.ratio, 3),
-                                          probability_text(c.p, c.simulations));
+                                          number_text(c.ratio, 3), probability_text(c.p, c.simulations));
   if (c.consistent)
     return fmt::format("One set of coefficients describes {} ({}).",
-                       c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()),
-                       figures);
+                       c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()), figures);
   const std::string named = files_of(c, runs);
-  return fmt::format("The runs do not have one set of coefficients ({}); {}.",
-                     figures,
+  return fmt::format("The runs do not have one set of coefficients ({}); {}.", figures,
                      named.empty() ? "none stands out alone" : "not like the rest: " + named) +
-         (c.rest_alike ? " The coefficients are those of the rest."
-                       : " The common ones are a mean of unlike runs.");
+         (c.rest_alike ? " The coefficients are those of the rest." : " The common ones are a mean of unlike runs.");
 }
 
 std::string bias_sentence(const PooledChannel& c) {
   const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
   const RandomEffects& b = *c.bias;
   if (b.spread_ci95.low > 0)
-    return fmt::format(
-        "Turn-on bias: {} {} [{}, {}] standard deviation from run to run, about a mean of {} {}.",
-        number_text(b.spread, 3),
-        unit,
-        number_text(b.spread_ci95.low, 3),
-        number_text(b.spread_ci95.high, 3),
-        number_text(b.mean),
-        unit);
+    return fmt::format("Turn-on bias: {} {} [{}, {}] standard deviation from run to run, about a mean of {} {}.",
+                       number_text(b.spread, 3), unit, number_text(b.spread_ci95.low, 3),
+                       number_text(b.spread_ci95.high, 3), number_text(b.mean), unit);
   return fmt::format(
       "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be "
       "seen in a run included, lets expect ({}); its "
       "spread is at most {} {} (97.5 %).",
-      probability_text(b.p),
-      number_text(b.spread_ci95.high, 3),
-      unit);
+      probability_text(b.p), number_text(b.spread_ci95.high, 3), unit);
 }
 
-PooledChannel pooled_channel(std::span<const Characterization> runs,
-                             const Channel& channel,
-                             const std::vector<std::size_t>& fitted,
-                             const PoolOptions& options) {
+PooledChannel pooled_channel(std::span<const Characterization> runs, const Channel& channel,
+                             const std::vector<std::size_t>& fitted, const PoolOptions& options) {
   PooledChannel out;
   out.channel = channel;
   std::vector<RunRecord> records;
@@ -317,17 +286,14 @@ std::string pool_verdict(const PooledRuns& pooled) {
   const std::size_t n = pooled.channels.size();
   if (n == 0) return "No channel could be pooled.";
   if (unlike.empty())
-    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.",
-                      pooled.runs.size(),
+    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.", pooled.runs.size(),
                       n == 1 ? "the channel" : fmt::format("each of {} channels", n));
   else
-    out = fmt::format("{} runs that do not have one set of coefficients for {}.",
-                      pooled.runs.size(),
+    out = fmt::format("{} runs that do not have one set of coefficients for {}.", pooled.runs.size(),
                       fmt::join(unlike, ", "));
   std::size_t spread = 0;
   for (const PooledChannel& c : pooled.channels) spread += c.bias && c.bias->spread_ci95.low > 0;
-  if (spread > 0)
-    out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
+  if (spread > 0) out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
   return out;
 }
 
@@ -338,8 +304,7 @@ void refuse_same_recording(std::span<const Characterization> runs) {
     for (std::size_t j = 0; j < i; ++j)
       if (!runs[i].log.sha256.empty() && runs[i].log.sha256 == runs[j].log.sha256)
         throw input_error("E0762", runs[i].log.file)
-            .says("is the same recording as {}: taken twice it would count as two",
-                  runs[j].log.file)
+            .says("is the same recording as {}: taken twice it would count as two", runs[j].log.file)
             .hint("leave one of them out");
 }
 
@@ -348,28 +313,21 @@ PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& 
   PooledRuns out;
   for (const Characterization& run : runs) {
     const double rate = run.log.time.rate_hz;
-    out.runs.push_back({run.log.file,
-                        run.log.samples,
-                        rate > 0 ? static_cast<double>(run.log.samples) / rate : 0,
-                        rate});
+    out.runs.push_back(
+        {run.log.file, run.log.samples, rate > 0 ? static_cast<double>(run.log.samples) / rate : 0, rate});
   }
   for (const ChannelResult& first : runs[0].channels) {
     std::vector<std::size_t> fitted;
     for (std::size_t r = 0; r < runs.size(); ++r)
       if (find_channel(runs[r], first.channel.name)->fit) fitted.push_back(r);
     if (fitted.size() < 2) {
-      out.problems.push_back(fmt::format("{}: not pooled, it could be fitted in {} of {} runs",
-                                         first.channel.name,
-                                         fitted.size(),
-                                         runs.size()));
+      out.problems.push_back(fmt::format("{}: not pooled, it could be fitted in {} of {} runs", first.channel.name,
+                                         fitted.size(), runs.size()));
       continue;
     }
     if (fitted.size() < runs.size())
-      out.problems.push_back(
-          fmt::format("{}: pooled over the {} of {} runs in which it could be fitted",
-                      first.channel.name,
-                      fitted.size(),
-                      runs.size()));
+      out.problems.push_back(fmt::format("{}: pooled over the {} of {} runs in which it could be fitted",
+                                         first.channel.name, fitted.size(), runs.size()));
     out.channels.push_back(pooled_channel(runs, first.channel, fitted, options));
   }
   out.verdict = pool_verdict(out);

@@ -17,27 +17,18 @@ namespace libchar::detail {
 namespace {
 
 /// Distance in ln from the value to an end of its interval.
-double below(const Coefficient& c) {
-  return std::log(*c.value) - std::log(c.ci95.low);
-}
-double above(const Coefficient& c) {
-  return std::log(c.ci95.high) - std::log(*c.value);
-}
+double below(const Coefficient& c) { return std::log(*c.value) - std::log(c.ci95.low); }
+double above(const Coefficient& c) { return std::log(c.ci95.high) - std::log(*c.value); }
 
 /// What it may be at most as an estimate: its value, or its limit.
-std::optional<double> size_of(const Coefficient& c) {
-  return c.value ? c.value : c.upper95;
-}
+std::optional<double> size_of(const Coefficient& c) { return c.value ? c.value : c.upper95; }
 
-double square(double x) {
-  return x * x;
-}
+double square(double x) { return x * x; }
 
 }  // namespace
 
 bool relied_on(const Coefficient& c) {
-  return c.status == Status::detected || c.status == Status::given ||
-         c.status == Status::not_detected;
+  return c.status == Status::detected || c.status == Status::given || c.status == Status::not_detected;
 }
 
 Coefficient scaled(Coefficient c, double factor) {
@@ -63,17 +54,14 @@ TermRatio ratio_of(const Coefficient& b, const Coefficient& a) {
 }
 
 TermDifference difference_of(const Coefficient& b, const Coefficient& a, double share) {
-  if (a.status == Status::not_fitted || b.status == Status::not_fitted)
-    return TermDifference::only_one;
+  if (a.status == Status::not_fitted || b.status == Status::not_fitted) return TermDifference::only_one;
   if (!relied_on(a) || !relied_on(b)) return TermDifference::not_judged;
   if (const TermRatio r = ratio_of(b, a); r.p) {
     if (!(*r.p < share)) return TermDifference::not_resolved;
     return *r.ratio > 1 ? TermDifference::larger : TermDifference::smaller;
   }
-  if (a.value && b.upper95)
-    return a.ci95.low > *b.upper95 ? TermDifference::smaller : TermDifference::not_resolved;
-  if (b.value && a.upper95)
-    return b.ci95.low > *a.upper95 ? TermDifference::larger : TermDifference::not_resolved;
+  if (a.value && b.upper95) return a.ci95.low > *b.upper95 ? TermDifference::smaller : TermDifference::not_resolved;
+  if (b.value && a.upper95) return b.ci95.low > *a.upper95 ? TermDifference::larger : TermDifference::not_resolved;
   return TermDifference::not_judged;
 }
 
@@ -100,18 +88,13 @@ Coefficient root_mean_square(const std::vector<Coefficient>& all) {
   return out;
 }
 
-Lowest lowest_of(const std::vector<Coefficient>& all,
-                 const std::vector<bool>& takes_part,
-                 double share) {
+Lowest lowest_of(const std::vector<Coefficient>& all, const std::vector<bool>& takes_part, double share) {
   Lowest out;
-  const auto counts = [&](std::size_t i) {
-    return takes_part[i] && relied_on(all[i]) && size_of(all[i]);
-  };
+  const auto counts = [&](std::size_t i) { return takes_part[i] && relied_on(all[i]) && size_of(all[i]); };
   for (std::size_t i = 0; i < all.size(); ++i)
     if (counts(i) && (!out.best || *size_of(all[i]) < *size_of(all[*out.best]))) out.best = i;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (counts(i) && i != *out.best &&
-        difference_of(all[i], all[*out.best], share) != TermDifference::larger)
+    if (counts(i) && i != *out.best && difference_of(all[i], all[*out.best], share) != TermDifference::larger)
       out.not_apart.push_back(i);
   return out;
 }

@@ -55,12 +55,8 @@ class MeansAdded {
   std::size_t at_ = 0;
 };
 
-ChannelResult simulated_channel(const ChannelResult& recorded,
-                                const LogInfo& log,
-                                const CharacterizeOptions& options,
-                                CharacterizeWorkspace& workspace,
-                                const VerifyOptions& how,
-                                std::uint64_t index,
+ChannelResult simulated_channel(const ChannelResult& recorded, const LogInfo& log, const CharacterizeOptions& options,
+                                CharacterizeWorkspace& workspace, const VerifyOptions& how, std::uint64_t index,
                                 const std::shared_ptr<const TemperatureRecord>& temperature) {
   ArraySimulation simulation;
   simulation.rate_hz = log.rate_hz_of(recorded.channel);
@@ -82,10 +78,7 @@ ChannelResult simulated_channel(const ChannelResult& recorded,
 
 // The model is the truth of the simulation; but how much of a measured shape's beginning is the
 // term's own is as uncertain as the term.
-TermVerification compare_term(Term term,
-                              const Coefficient& model,
-                              const Coefficient& simulated,
-                              bool shape_measured,
+TermVerification compare_term(Term term, const Coefficient& model, const Coefficient& simulated, bool shape_measured,
                               const VerifyOptions& how) {
   TermVerification out{term, model, simulated, true};
   if (model.value && simulated.value && *model.value > 0) {
@@ -109,15 +102,12 @@ double two_sided_probability(double variance_ratio, double edf1, double edf2) {
   return std::min(1.0, 2 * std::min(low, high));
 }
 
-std::vector<PointVerification> compare_points(const AllanCurve& recorded,
-                                              const AllanCurve& simulated,
+std::vector<PointVerification> compare_points(const AllanCurve& recorded, const AllanCurve& simulated,
                                               const VerifyOptions& how) {
   std::vector<PointVerification> out;
   for (const AllanPoint& r : recorded.points) {
-    const auto same =
-        std::find_if(simulated.points.begin(), simulated.points.end(), [&](const AllanPoint& s) {
-          return std::abs(s.tau_s / r.tau_s - 1) < 1e-6;
-        });
+    const auto same = std::find_if(simulated.points.begin(), simulated.points.end(),
+                                   [&](const AllanPoint& s) { return std::abs(s.tau_s / r.tau_s - 1) < 1e-6; });
     if (same == simulated.points.end() || !(r.deviation > 0) || !(same->deviation > 0)) continue;
     if (!(r.edf > 0) || !(same->edf > 0)) continue;
     const double ratio = r.deviation / same->deviation;
@@ -131,10 +121,9 @@ std::vector<PointVerification> compare_points(const AllanCurve& recorded,
 }
 
 std::string term_sentence(const TermVerification& t, const std::string& name) {
-  const std::string found = t.simulated.value ? coefficient_text(t.simulated)
-                                              : "no " + name + ", " + value_text(t.simulated);
-  return fmt::format(
-      "{}: the model says {}, the simulated record gives {}", name, value_text(t.model), found);
+  const std::string found =
+      t.simulated.value ? coefficient_text(t.simulated) : "no " + name + ", " + value_text(t.simulated);
+  return fmt::format("{}: the model says {}, the simulated record gives {}", name, value_text(t.model), found);
 }
 
 // The worst of a stretch of neighbouring averaging times that disagree.
@@ -145,55 +134,42 @@ std::vector<std::string> point_sentences(const std::vector<PointVerification>& p
     std::size_t end = i;
     double worst = points[i].ratio;
     for (; end < points.size() && !points[end].agrees; ++end)
-      if (std::abs(std::log(points[end].ratio)) > std::abs(std::log(worst)))
-        worst = points[end].ratio;
+      if (std::abs(std::log(points[end].ratio)) > std::abs(std::log(worst))) worst = points[end].ratio;
     const std::string where = end == i + 1 ? "at τ = " + duration_text(points[i].tau_s)
-                                           : fmt::format("from τ = {} to {}",
-                                                         duration_text(points[i].tau_s),
+                                           : fmt::format("from τ = {} to {}", duration_text(points[i].tau_s),
                                                          duration_text(points[end - 1].tau_s));
     out.push_back(
         fmt::format("{} the recording's Allan deviation is {} % {} than the simulated one: the "
                     "model does not hold there",
-                    where,
-                    number_text(100 * std::abs(worst - 1), 2),
-                    worst > 1 ? "higher" : "lower"));
+                    where, number_text(100 * std::abs(worst - 1), 2), worst > 1 ? "higher" : "lower"));
     i = end;
   }
   return out;
 }
 
-bool has_process(const NoiseFit& fit) {
-  return fit.gauss_markov && fit.gauss_markov->in_model;
-}
+bool has_process(const NoiseFit& fit) { return fit.gauss_markov && fit.gauss_markov->in_model; }
 
 // Of a Gauss-Markov process: empty when model and simulation agree. Where the simulated record does
 // without it (or asks for one that the model has not), its flicker and walk stand for the same slow
 // noise, and the curves alone compare it.
-std::string process_disagreement(const NoiseFit& model,
-                                 const NoiseFit& simulated,
-                                 const VerifyOptions& how) {
+std::string process_disagreement(const NoiseFit& model, const NoiseFit& simulated, const VerifyOptions& how) {
   if (!has_process(model) || !has_process(simulated)) return "";
   const auto differs = [&how](const Coefficient& a, const Coefficient& b) {
     const bool inside = *a.value >= b.ci95.low && *a.value <= b.ci95.high;
-    return !inside &&
-           std::abs(std::log(*b.value / *a.value)) > how.term_sd * std::max(b.relative_sd, 1e-12);
+    return !inside && std::abs(std::log(*b.value / *a.value)) > how.term_sd * std::max(b.relative_sd, 1e-12);
   };
   const GaussMarkovFit &a = *model.gauss_markov, &b = *simulated.gauss_markov;
   if (!differs(a.sigma, b.sigma) && !differs(a.tau_s, b.tau_s)) return "";
   return fmt::format(
       "Gauss–Markov process: the model says σ = {}, τ = {}, the simulated record gives σ = {}, τ = "
       "{}",
-      value_text(a.sigma),
-      duration_text(*a.tau_s.value),
-      value_text(b.sigma),
-      duration_text(*b.tau_s.value));
+      value_text(a.sigma), duration_text(*a.tau_s.value), value_text(b.sigma), duration_text(*b.tau_s.value));
 }
 
 bool compares(Term term, const NoiseFit& model, const NoiseFit& simulated) {
   const auto known = [term](const NoiseFit& fit) { return fit[term].value || fit[term].upper95; };
   const bool slow = term == Term::flicker || term == Term::walk;
-  return known(model) && known(simulated) &&
-         (!slow || has_process(model) == has_process(simulated));
+  return known(model) && known(simulated) && (!slow || has_process(model) == has_process(simulated));
 }
 
 bool nearly(const ChannelVerification& v, const VerifyOptions& how) {
@@ -203,23 +179,17 @@ bool nearly(const ChannelVerification& v, const VerifyOptions& how) {
          });
 }
 
-ChannelVerification compared(const ChannelResult& recorded,
-                             ChannelResult simulated,
-                             const VerifyOptions& how) {
+ChannelVerification compared(const ChannelResult& recorded, ChannelResult simulated, const VerifyOptions& how) {
   ChannelVerification out;
   out.points = compare_points(recorded.allan, simulated.allan, how);
   std::vector<std::string> disagreements = point_sentences(out.points);
   for (std::size_t t = 0; simulated.fit && t < kTerms; ++t) {
     const Coefficient& model = recorded.fit->term[t];
     if (!compares(static_cast<Term>(t), *recorded.fit, *simulated.fit)) continue;
-    out.terms.push_back(compare_term(static_cast<Term>(t),
-                                     model,
-                                     simulated.fit->term[t],
-                                     recorded.fit->shape.kind == NoiseShape::Kind::measured,
-                                     how));
+    out.terms.push_back(compare_term(static_cast<Term>(t), model, simulated.fit->term[t],
+                                     recorded.fit->shape.kind == NoiseShape::Kind::measured, how));
     if (!out.terms.back().agrees)
-      disagreements.push_back(
-          term_sentence(out.terms.back(), std::string(term_title(static_cast<Term>(t)))));
+      disagreements.push_back(term_sentence(out.terms.back(), std::string(term_title(static_cast<Term>(t)))));
   }
   if (simulated.fit) {
     std::string sentence = process_disagreement(*recorded.fit, *simulated.fit, how);
@@ -228,31 +198,26 @@ ChannelVerification compared(const ChannelResult& recorded,
   out.agrees = disagreements.empty() && simulated.fit.has_value();
   out.nearly = out.agrees || (simulated.fit && nearly(out, how));
 
-  const auto good = std::count_if(
-      out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });
-  out.sentences.push_back(fmt::format(
-      "A sensor simulated from this model {} the recording: {} of {} averaging times and {} of {} "
-      "coefficients are alike.",
-      out.agrees ? "agrees with" : "does not agree with",
-      good,
-      out.points.size(),
-      std::count_if(
-          out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
-      out.terms.size()));
+  const auto good =
+      std::count_if(out.points.begin(), out.points.end(), [](const PointVerification& p) { return p.agrees; });
+  out.sentences.push_back(
+      fmt::format("A sensor simulated from this model {} the recording: {} of {} averaging times and {} of {} "
+                  "coefficients are alike.",
+                  out.agrees ? "agrees with" : "does not agree with", good, out.points.size(),
+                  std::count_if(out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
+                  out.terms.size()));
   if (recorded.fit->term[0].status == Status::misfit && out.agrees)
     out.sentences.front() += " That is no proof of its coefficients, which are a misfit.";
   if (!disagreements.empty() && !recorded.lines.empty())
-    disagreements.push_back(recorded.lines.size() == 1
-                                ? "The model does not hold the recording's spectral line."
-                                : fmt::format("The model holds none of the {} spectral lines of "
-                                              "the recording.",
-                                              recorded.lines.size()));
+    disagreements.push_back(recorded.lines.size() == 1 ? "The model does not hold the recording's spectral line."
+                                                       : fmt::format("The model holds none of the {} spectral lines of "
+                                                                     "the recording.",
+                                                                     recorded.lines.size()));
   if (!disagreements.empty())
     if (const Remedy* spikes = find_remedy(*recorded.fit, "spikes"))
-      disagreements.push_back(
-          fmt::format("The recording's curve holds {} that {} left out of the fit.",
-                      spikes->count == 1 ? "a spike" : fmt::format("{} spikes", spikes->count),
-                      spikes->count == 1 ? "was" : "were"));
+      disagreements.push_back(fmt::format("The recording's curve holds {} that {} left out of the fit.",
+                                          spikes->count == 1 ? "a spike" : fmt::format("{} spikes", spikes->count),
+                                          spikes->count == 1 ? "was" : "were"));
   for (std::string& sentence : disagreements) out.sentences.push_back(std::move(sentence));
   out.allan = std::move(simulated.allan);
   out.spectrum = std::move(simulated.spectrum);
@@ -262,26 +227,19 @@ ChannelVerification compared(const ChannelResult& recorded,
 
 }  // namespace
 
-bool verify(Characterization& recorded,
-            const CharacterizeOptions& options,
-            const VerifyOptions& how,
+bool verify(Characterization& recorded, const CharacterizeOptions& options, const VerifyOptions& how,
             Progress& progress) {
   CharacterizeWorkspace workspace;
   auto& channels = recorded.channels;
-  const std::size_t group =
-      2;  // as in characterize: memory stays bounded however many channels there are
+  const std::size_t group = 2;  // as in characterize: memory stays bounded however many channels there are
   for (std::size_t first = 0; first < channels.size(); first += group) {
-    progress.update(static_cast<double>(first) / static_cast<double>(channels.size()),
-                    "simulating");
+    progress.update(static_cast<double>(first) / static_cast<double>(channels.size()), "simulating");
     const std::size_t last = std::min(channels.size(), first + group);
     parallel::for_each(first, last, [&](std::size_t c) {
       ChannelResult& channel = channels[c];
       if (!channel.fit) return;
-      channel.verification = std::make_shared<ChannelVerification>(
-          compared(channel,
-                   simulated_channel(
-                       channel, recorded.log, options, workspace, how, c, recorded.temperature),
-                   how));
+      channel.verification = std::make_shared<ChannelVerification>(compared(
+          channel, simulated_channel(channel, recorded.log, options, workspace, how, c, recorded.temperature), how));
     });
   }
   return std::all_of(channels.begin(), channels.end(), [](const ChannelResult& channel) {

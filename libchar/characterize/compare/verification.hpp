@@ -41,20 +41,15 @@ struct ChannelVerification {
 
 struct VerifyOptions {
   std::uint64_t seed = 1;
-  double term_sd =
-      3;  ///< a term disagrees beyond this many standard deviations of its simulated fit
+  double term_sd = 3;               ///< a term disagrees beyond this many standard deviations of its simulated fit
   double point_probability = 0.01;  ///< over all points of a curve together (each gets its share)
-  double small_difference =
-      0.03;  ///< relative difference of deviations that is never called a disagreement
-  double tolerable =
-      0.1;  ///< relative difference of deviations up to which a model is nearly right
+  double small_difference = 0.03;   ///< relative difference of deviations that is never called a disagreement
+  double tolerable = 0.1;           ///< relative difference of deviations up to which a model is nearly right
 };
 
 /// Simulates every fitted channel for as long as its samples went, characterizes it with the same
 /// options and leaves the comparison in `verification`. Returns whether all of them agree.
-bool verify(Characterization& recorded,
-            const CharacterizeOptions& options,
-            const VerifyOptions& how = {},
+bool verify(Characterization& recorded, const CharacterizeOptions& options, const VerifyOptions& how = {},
             Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -8,9 +8,7 @@ namespace {
 
 // ---- what a model predicts: rows beside those of the curve ----
 
-bool is_predicted(const PredictedCurve& predicted) {
-  return predicted.known;
-}
+bool is_predicted(const PredictedCurve& predicted) { return predicted.known; }
 
 // Each a straight line on logarithmic axes: two points.
 void write_lines(const Field& row, const PredictedCurve& predicted, std::vector<Entry>& out) {
@@ -30,11 +28,9 @@ void read_lines(const MapReader& at, std::string_view key, PredictedCurve& predi
     Asymptote& line = predicted.asymptotes.emplace_back(Asymptote{static_cast<Term>(t), {}, {}});
     const std::vector<Document>& points = lines.list(kTermNames[t].key);
     for (std::size_t i = 0; i < 2; ++i) {
-      const std::vector<double> point = i < points.size()
-                                            ? lines.numbers_in(kTermNames[t].key, points[i])
-                                            : std::vector<double>{};
-      if (points.size() != 2 || point.size() != 2)
-        lines.refuse(kTermNames[t].key, "a line goes through two points");
+      const std::vector<double> point =
+          i < points.size() ? lines.numbers_in(kTermNames[t].key, points[i]) : std::vector<double>{};
+      if (points.size() != 2 || point.size() != 2) lines.refuse(kTermNames[t].key, "a line goes through two points");
       line.x[i] = point[0];
       line.y[i] = point[1];
     }
@@ -45,13 +41,9 @@ const Fields<PredictedCurve>& predicted_fields() {
   using T = PredictedCurve;
   static const Fields<T> rows = {
       field<&T::model>("model",
-                       {.meaning = "what the fit predicts",
-                        .written = Written::if_known,
-                        .known = when<is_predicted>}),
-      field<&T::model_ci95>("model_ci95",
-                            {.meaning = "where that of another recording is expected"}),
-      custom<T, read_lines, write_lines>("asymptotes",
-                                         "",
+                       {.meaning = "what the fit predicts", .written = Written::if_known, .known = when<is_predicted>}),
+      field<&T::model_ci95>("model_ci95", {.meaning = "where that of another recording is expected"}),
+      custom<T, read_lines, write_lines>("asymptotes", "",
                                          {.meaning = "of each term, between two points [x, y]",
                                           .written = Written::if_known,
                                           .known = when<is_predicted>}),
@@ -64,17 +56,14 @@ PredictedCurve predicted_of(const ModelCurve* model, bool any_point) {
   if (model == nullptr || !any_point) return out;
   out.known = true;
   for (const auto& value : model->values) out.model.push_back(value.value_or(kNone));
-  for (const auto& ends : model->intervals)
-    out.model_ci95.push_back(ends.value_or(Interval{kNone, kNone}));
+  for (const auto& ends : model->intervals) out.model_ci95.push_back(ends.value_or(Interval{kNone, kNone}));
   out.asymptotes = model->asymptotes;
   return out;
 }
 
 // ---- points ----
 
-bool has_edf(const AllanPoint& point) {
-  return point.edf > 0;
-}
+bool has_edf(const AllanPoint& point) { return point.edf > 0; }
 
 const Fields<AllanPoint>& point_fields() {
   using T = AllanPoint;
@@ -109,8 +98,7 @@ const Fields<AllanOfChannel>& allan_channel_fields() {
   static const Fields<T> rows = {
       field<&T::name>("name", {.written = Written::always}),
       field<&T::unit>("unit", {.written = Written::always}),
-      field<&T::value_unit>("value_unit",
-                            {.meaning = "of the deviation, where it is not that of the channel"}),
+      field<&T::value_unit>("value_unit", {.meaning = "of the deviation, where it is not that of the channel"}),
       columns_of<&T::curve, &AllanCurve::points>("", point_fields()),
       beside<&T::predicted>(predicted_fields()),
       field<&T::curve, &AllanCurve::dt_s>("dt_s", {.written = Written::always}),
@@ -121,8 +109,7 @@ const Fields<AllanOfChannel>& allan_channel_fields() {
       list_of<&T::noise_types>("noise_types", noise_type_fields(), {.meaning = "of a clock"}),
       field<&T::data_sheet>("data_sheet", {.meaning = "of a sensor at its limits"}),
       field<&T::type>("type", {.meaning = "where there are several"}),
-      list_of<&T::findings>(
-          "findings", finding_fields(), {.meaning = "what is known of the channel"}),
+      list_of<&T::findings>("findings", finding_fields(), {.meaning = "what is known of the channel"}),
   };
   return rows;
 }
@@ -170,12 +157,9 @@ const Fields<SpectrumOfChannel>& spectrum_channel_fields() {
       field<&T::spectrum, &Spectrum::dropped>("dropped"),
       field<&T::spectrum, &Spectrum::enbw_hz>("enbw_hz", {.meaning = "equivalent noise bandwidth"}),
       field<&T::spectrum, &Spectrum::notes>("notes"),
-      list_of<&T::lines>("lines",
-                         line_fields(),
-                         {.written = Written::if_known,
-                          .known = when<[](const T& one) { return one.with_lines; }>}),
-      list_of<&T::findings>("findings",
-                            finding_fields(),
+      list_of<&T::lines>("lines", line_fields(),
+                         {.written = Written::if_known, .known = when<[](const T& one) { return one.with_lines; }>}),
+      list_of<&T::findings>("findings", finding_fields(),
                             {.meaning = "what is known of the channel",
                              .written = Written::if_known,
                              .known = when<[](const T& one) { return !one.findings.empty(); }>}),
@@ -197,8 +181,8 @@ const Fields<SpectrumDocument>& spectrum_fields() {
 
 const Fields<DerivedNumbers>& derived_fields() {
   using T = DerivedNumbers;
-  static const Fields<AllanPoint> lowest = always(Fields<AllanPoint>{
-      field<&AllanPoint::deviation>("deviation"), field<&AllanPoint::tau_s>("tau_s")});
+  static const Fields<AllanPoint> lowest =
+      always(Fields<AllanPoint>{field<&AllanPoint::deviation>("deviation"), field<&AllanPoint::tau_s>("tau_s")});
   static const Fields<ReadOff> points = always(Fields<ReadOff>{
       field<&ReadOff::term>("term", {.words = term_words()}),
       field<&ReadOff::tau_s>("tau_s"),
@@ -210,9 +194,8 @@ const Fields<DerivedNumbers>& derived_fields() {
       field<&T::noise_density_one_sided>("noise_density_one_sided"),
       maybe_part<&T::allan_minimum>("allan_minimum", lowest),
       list_of<&T::read_off_points>("read_off_points", points, {.written = Written::always}),
-      field<&T::plain_from_s>("plain_from_s",
-                              {.meaning = "averaging time from which the noise terms are the curve",
-                               .written = Written::always}),
+      field<&T::plain_from_s>("plain_from_s", {.meaning = "averaging time from which the noise terms are the curve",
+                                               .written = Written::always}),
   };
   return rows;
 }
@@ -238,19 +221,19 @@ const Fields<TraceOfChannel>& trace_fields() {
       field<&TraceMark::to_s>("to_s"),
       field<&TraceMark::label>("label"),
   });
-  static const Fields<T> own = {field<&T::own_rate_hz>(
-      "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
-  static const Fields<T> rows = joined(
-      always(Fields<T>{
-          field<&T::name>("name"),
-          field<&T::unit>("unit"),
-          field<&T::trace, &Trace::block>("samples_per_block", {.range = kPositive}),
-          field<&T::trace, &Trace::low>("low", {.meaning = "smallest sample of each block"}),
-          field<&T::trace, &Trace::high>("high", {.meaning = "largest"}),
-          written<T, write_missing>("missing", "pairs", {.meaning = "block, missing samples"}),
-          list_of<&T::marks>("marks", marks),
-      }),
-      own);
+  static const Fields<T> own = {
+      field<&T::own_rate_hz>("own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
+  static const Fields<T> rows =
+      joined(always(Fields<T>{
+                 field<&T::name>("name"),
+                 field<&T::unit>("unit"),
+                 field<&T::trace, &Trace::block>("samples_per_block", {.range = kPositive}),
+                 field<&T::trace, &Trace::low>("low", {.meaning = "smallest sample of each block"}),
+                 field<&T::trace, &Trace::high>("high", {.meaning = "largest"}),
+                 written<T, write_missing>("missing", "pairs", {.meaning = "block, missing samples"}),
+                 list_of<&T::marks>("marks", marks),
+             }),
+             own);
   return rows;
 }
 
@@ -265,9 +248,8 @@ const Fields<VerificationOfChannel>& verification_fields() {
       field<&Of::simulated, &Coefficient::value>("simulated"),
       field<&Of::agrees>("agrees"),
       field<&Of::simulated, &Coefficient::ci95>(
-          "simulated_ci95",
-          {.written = Written::if_known,
-           .known = when<[](const Of& term) { return term.simulated.value.has_value(); }>}),
+          "simulated_ci95", {.written = Written::if_known,
+                             .known = when<[](const Of& term) { return term.simulated.value.has_value(); }>}),
   });
   static const Fields<Point> points = always(Fields<Point>{
       field<&Point::tau_s>("tau_s"),
@@ -288,9 +270,7 @@ const Fields<VerificationOfChannel>& verification_fields() {
   return rows;
 }
 
-AllanOfChannel allan_of_channel(const Channel& channel,
-                                const AllanCurve& curve,
-                                const ModelCurve* model) {
+AllanOfChannel allan_of_channel(const Channel& channel, const AllanCurve& curve, const ModelCurve* model) {
   AllanOfChannel out;
   out.name = channel.name;
   out.unit = channel.unit;
@@ -301,10 +281,8 @@ AllanOfChannel allan_of_channel(const Channel& channel,
   return out;
 }
 
-SpectrumOfChannel spectrum_of_channel(const Channel& channel,
-                                      const Spectrum& spectrum,
-                                      const std::vector<std::optional<Interval>>& ci95,
-                                      const ModelCurve* model) {
+SpectrumOfChannel spectrum_of_channel(const Channel& channel, const Spectrum& spectrum,
+                                      const std::vector<std::optional<Interval>>& ci95, const ModelCurve* model) {
   SpectrumOfChannel out;
   out.name = channel.name;
   out.unit = channel.unit;
@@ -319,9 +297,7 @@ SpectrumOfChannel spectrum_of_channel(const Channel& channel,
 namespace {
 
 // As long as the curve, or absent.
-void check_lengths(const MapReader& document,
-                   std::string_view abscissa,
-                   std::initializer_list<std::string_view> keys) {
+void check_lengths(const MapReader& document, std::string_view abscissa, std::initializer_list<std::string_view> keys) {
   for (const MapReader& channel : document.maps("channels")) {
     if (!channel.has(abscissa)) continue;
     const std::size_t length = channel.list(abscissa).size();

@@ -78,12 +78,9 @@ struct VerificationOfChannel {
   SpectrumOfChannel spectrum;
 };
 
-AllanOfChannel allan_of_channel(const Channel& channel,
-                                const AllanCurve& curve,
-                                const ModelCurve* model = nullptr);
+AllanOfChannel allan_of_channel(const Channel& channel, const AllanCurve& curve, const ModelCurve* model = nullptr);
 /// `ci95`: one per bin.
-SpectrumOfChannel spectrum_of_channel(const Channel& channel,
-                                      const Spectrum& spectrum,
+SpectrumOfChannel spectrum_of_channel(const Channel& channel, const Spectrum& spectrum,
                                       const std::vector<std::optional<Interval>>& ci95,
                                       const ModelCurve* model = nullptr);
 

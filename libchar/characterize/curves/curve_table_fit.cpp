@@ -25,8 +25,7 @@ Table unnamed_table(const std::string& path, const CurveTableOptions& options, P
   reading.rate_hz = 1;  // rows of a curve have no time
   const Recording read = read_recording(path, reading, progress);
   if (read.samples.size() < 2)
-    throw input_error("E0803", path)
-        .says("a curve needs two columns: averaging time or frequency, and values");
+    throw input_error("E0803", path).says("a curve needs two columns: averaging time or frequency, and values");
   Table table{read.info, {}, {}};
   for (std::size_t c = 1; c < read.samples.size(); ++c) {
     DigitisedCurve curve;
@@ -46,15 +45,11 @@ bool stands_for(const std::string& word, const std::string& name) {
   return word == name || (is_pattern(word) && matches(word, name));
 }
 
-void refuse_unknown(const std::string& path,
-                    const CurveTable& named,
-                    const std::vector<std::string>& wanted) {
+void refuse_unknown(const std::string& path, const CurveTable& named, const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
   for (const NamedCurve& n : named.curves) names.push_back(n.name);
   for (const std::string& word : wanted)
-    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) {
-          return stands_for(word, name);
-        }))
+    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return stands_for(word, name); }))
       throw usage_error("E0320", path)
           .says("no curve of this name")
           .got(word)
@@ -86,12 +81,9 @@ Table named_table(const std::string& path, const CurveTable& named, const ReadOp
 
 }  // namespace
 
-CurveTableFit fit_curve_table(const std::string& path,
-                              const CurveTableOptions& options,
-                              Progress& progress) {
+CurveTableFit fit_curve_table(const std::string& path, const CurveTableOptions& options, Progress& progress) {
   const auto named = read_curve_table(path, options.is_allan);
-  Table table =
-      named ? named_table(path, *named, options.reading) : unnamed_table(path, options, progress);
+  Table table = named ? named_table(path, *named, options.reading) : unnamed_table(path, options, progress);
   CurveTableFit out{table.info, {}};
   for (std::size_t c = 0; c < table.curves.size(); ++c) {
     DigitisedCurve& curve = table.curves[c];

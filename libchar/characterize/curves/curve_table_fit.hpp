@@ -17,9 +17,8 @@ struct CurveTableOptions {
   Sides sides = Sides::one;  ///< of spectral densities
   std::optional<bool>
       root;  ///< values are roots (deviation, U/√Hz); none: as the header says, else deviations are and densities are not
-  std::optional<double>
-      duration_s;       ///< of the record behind an Allan curve: gives honest intervals
-  ReadOptions reading;  ///< its channels, units and rate, and what a table of numbers needs
+  std::optional<double> duration_s;  ///< of the record behind an Allan curve: gives honest intervals
+  ReadOptions reading;               ///< its channels, units and rate, and what a table of numbers needs
   FitOptions fit;
 };
 
@@ -36,8 +35,7 @@ struct CurveTableFit {
 /// Reads a table whose header names its curves, or one whose first column is the averaging time or the frequency and every other one
 /// a curve, and fits each. Throws as read_log and fit_curve, Error(input) for fewer than two columns, Error(usage) where no curve has
 /// the names wanted.
-CurveTableFit fit_curve_table(const std::string& path,
-                              const CurveTableOptions& options = {},
+CurveTableFit fit_curve_table(const std::string& path, const CurveTableOptions& options = {},
                               Progress& progress = no_progress());
 
 }  // namespace libchar

@@ -51,8 +51,8 @@ LogSpectra spectra_of(Characterization found, std::uint64_t wanted) {
   if (found.still) out.notes.push_back(found.still->sentence);
   const bool longer = wanted > found.log.samples;
   if (longer)
-    out.notes.push_back(fmt::format(
-        "a segment of {} samples is longer than the record of {}", wanted, found.log.samples));
+    out.notes.push_back(
+        fmt::format("a segment of {} samples is longer than the record of {}", wanted, found.log.samples));
   for (ChannelResult& c : found.channels) {
     if (!c.spectrum.value.empty()) {
       if (longer) continue;
@@ -85,24 +85,19 @@ LogSpectra on_one_axis(const CharacterizeOptions& options, const Characterize& c
   if (segment == 0) return spectra_of(std::move(found), wanted);
   asked.spectrum.segment = segment;
   LogSpectra out = spectra_of(characterize(asked), 0);
-  out.notes.push_back(fmt::format(
-      "all channels: segments of {} samples, the shortest that one of them needs", segment));
+  out.notes.push_back(
+      fmt::format("all channels: segments of {} samples, the shortest that one of them needs", segment));
   return out;
 }
 
 }  // namespace
 
-LogSpectra log_spectra(const std::string& path,
-                       const CharacterizeOptions& options,
-                       Progress& progress) {
-  return on_one_axis(options, [&](const CharacterizeOptions& asked) {
-    return characterize(path, asked, progress);
-  });
+LogSpectra log_spectra(const std::string& path, const CharacterizeOptions& options, Progress& progress) {
+  return on_one_axis(options, [&](const CharacterizeOptions& asked) { return characterize(path, asked, progress); });
 }
 
 LogSpectra log_spectra(const RecordingView& recording, const CharacterizeOptions& options) {
-  return on_one_axis(
-      options, [&](const CharacterizeOptions& asked) { return characterize(recording, asked); });
+  return on_one_axis(options, [&](const CharacterizeOptions& asked) { return characterize(recording, asked); });
 }
 
 namespace {
@@ -110,34 +105,27 @@ namespace {
 WelchOptions segments_of(const CharacterizeOptions& options, double rate_hz) {
   WelchOptions welch = options.spectrum;
   welch.threads = options.reading.threads;
-  if (welch.segment == 0 && options.segment_s > 0)
-    welch.segment = segment_samples(options.segment_s, rate_hz);
+  if (welch.segment == 0 && options.segment_s > 0) welch.segment = segment_samples(options.segment_s, rate_hz);
   return welch;
 }
 
 }  // namespace
 
-LogCrossSpectrum log_cross_spectrum(const std::string& path,
-                                    const std::string& first,
-                                    const std::string& second,
-                                    const CharacterizeOptions& options,
-                                    Progress& progress) {
+LogCrossSpectrum log_cross_spectrum(const std::string& path, const std::string& first, const std::string& second,
+                                    const CharacterizeOptions& options, Progress& progress) {
   ReadOptions reading = options.reading;
-  if (first == second)
-    throw usage_error("E0873").says("a cross spectrum is of two channels").got(first + " twice");
+  if (first == second) throw usage_error("E0873").says("a cross spectrum is of two channels").got(first + " twice");
   reading.channels = {first, second};
   Recording recording = read_recording(path, reading, progress);
   // They come in the order of the log.
-  const bool turned =
-      recording.info.channels[0].name == second || recording.info.channels[1].name == first;
+  const bool turned = recording.info.channels[0].name == second || recording.info.channels[1].name == first;
   const std::size_t x = turned ? 1 : 0, y = turned ? 0 : 1;
   const double rate_hz = known_rate_hz(recording.info);
   LogCrossSpectrum out;
   out.first = recording.info.channels[x];
   out.second = recording.info.channels[y];
   WelchOptions welch = segments_of(options, rate_hz);
-  const bool in_leaves =
-      welch.segment == 0 && !options.quarter_segments && recording.channel(x).size() > kLeafSamples;
+  const bool in_leaves = welch.segment == 0 && !options.quarter_segments && recording.channel(x).size() > kLeafSamples;
   if (in_leaves) welch = streamed_spectrum(welch);
   out.cross = cross_spectrum(recording.channel(x), recording.channel(y), rate_hz, welch);
   if (in_leaves) out.cross.notes.insert(out.cross.notes.begin(), streamed_segment_note());
@@ -145,9 +133,7 @@ LogCrossSpectrum log_cross_spectrum(const std::string& path,
   return out;
 }
 
-LogSpectrograms log_spectrograms(const std::string& path,
-                                 const CharacterizeOptions& options,
-                                 Progress& progress) {
+LogSpectrograms log_spectrograms(const std::string& path, const CharacterizeOptions& options, Progress& progress) {
   Recording recording = read_recording(path, options.reading, progress);
   const double rate_hz = known_rate_hz(recording.info);
   const WelchOptions welch = segments_of(options, rate_hz);

@@ -11,9 +11,7 @@
 namespace libchar {
 namespace {
 
-double theta_of(const NoiseFit& fit, Term term) {
-  return fit.theta[static_cast<std::size_t>(term)];
-}
+double theta_of(const NoiseFit& fit, Term term) { return fit.theta[static_cast<std::size_t>(term)]; }
 
 /// What the interval of a sum is made of.
 struct SquaredReach {
@@ -31,10 +29,7 @@ struct SquaredReach {
 
 }  // namespace
 
-std::optional<double> model_deviation(const NoiseFit& fit,
-                                      DeviationType type,
-                                      double m,
-                                      double dt_s) {
+std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, double m, double dt_s) {
   if (!deviation_row(type).is_allan()) return std::nullopt;
   const double variance = shaped_allan_variance(fit, m, dt_s);
   if (!(variance > 0)) return std::nullopt;
@@ -46,32 +41,25 @@ std::optional<double> model_deviation(const NoiseFit& fit,
 //   V - sqrt(sum (V_i - l_i)²) .. V + sqrt(sum (u_i - V_i)²),
 // wide enough where estimates are negatively correlated, as those of flicker and walk are. A shape multiplies it as a whole; what
 // differs between stretches is added on the logarithm.
-std::optional<Interval> model_interval(const NoiseFit& fit,
-                                       DeviationType type,
-                                       double m,
-                                       double dt_s) {
+std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, double m, double dt_s) {
   const auto deviation = model_deviation(fit, type, m, dt_s);
   if (!deviation) return std::nullopt;
   SquaredReach reach;
   for (std::size_t t = 0; t < kTerms; ++t) {
     Mixture one{};
     one[t] = 1;
-    if (fit.term[t].status != Status::not_fitted)
-      reach.add(fit.term[t], fit.theta[t], allan_variance(one, m, dt_s));
+    if (fit.term[t].status != Status::not_fitted) reach.add(fit.term[t], fit.theta[t], allan_variance(one, m, dt_s));
   }
   if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
     const double sigma = *fit.gauss_markov->sigma.value;
-    reach.add(fit.gauss_markov->sigma,
-              sigma * sigma,
-              process_allan_variance(fit, m, dt_s) / (sigma * sigma));
+    reach.add(fit.gauss_markov->sigma, sigma * sigma, process_allan_variance(fit, m, dt_s) / (sigma * sigma));
   }
   if (fit.flicker_phase) {
     const double f = fit.flicker_phase->value.value_or(0);
     reach.add(*fit.flicker_phase, f * f, flicker_phase_allan_variance(m, dt_s));
   }
   if (!(reach.variance > 0)) return std::nullopt;
-  const double low = 1 - std::sqrt(reach.down) / reach.variance,
-               high = 1 + std::sqrt(reach.up) / reach.variance;
+  const double low = 1 - std::sqrt(reach.down) / reach.variance, high = 1 + std::sqrt(reach.up) / reach.variance;
   const double spread = spread_reach(fit.stationarity, m * dt_s);
   return Interval{low > 0 ? *deviation * std::exp(-std::hypot(0.5 * std::log(low), spread)) : 0,
                   *deviation * std::exp(std::hypot(0.5 * std::log(high), spread))};
@@ -85,9 +73,7 @@ double scaled_density(const Spectrum& spectrum, double two_sided_density) {
   return value;
 }
 
-std::optional<double> model_spectrum(const NoiseFit& fit,
-                                     const Spectrum& shown,
-                                     double frequency_hz) {
+std::optional<double> model_spectrum(const NoiseFit& fit, const Spectrum& shown, double frequency_hz) {
   const double f = std::fabs(frequency_hz), dt_s = 1 / shown.rate_hz;
   if (!(f > 0)) return std::nullopt;
   const double density = shaped_density(fit, f, dt_s);
@@ -100,11 +86,8 @@ std::vector<Asymptote> allan_asymptotes(const NoiseFit& fit, const AllanCurve& c
   if (curve.points.empty() || !deviation_row(curve.type).is_allan()) return lines;
   for (std::size_t t = 0; t < kTerms; ++t) {
     if (!(fit.theta[t] > 0)) continue;
-    Asymptote line{static_cast<Term>(t),
-                   {curve.points.front().tau_s / 10, curve.points.back().tau_s * 10},
-                   {}};
-    for (std::size_t i = 0; i < 2; ++i)
-      line.y[i] = std::sqrt(fit.theta[t] * allan_asymptote(line.term, line.x[i]));
+    Asymptote line{static_cast<Term>(t), {curve.points.front().tau_s / 10, curve.points.back().tau_s * 10}, {}};
+    for (std::size_t i = 0; i < 2; ++i) line.y[i] = std::sqrt(fit.theta[t] * allan_asymptote(line.term, line.x[i]));
     lines.push_back(line);
   }
   return lines;
@@ -112,14 +95,12 @@ std::vector<Asymptote> allan_asymptotes(const NoiseFit& fit, const AllanCurve& c
 
 std::vector<Asymptote> spectrum_asymptotes(const NoiseFit& fit, const Spectrum& shown) {
   std::vector<Asymptote> lines;
-  const auto first = std::find_if(
-      shown.frequency_hz.begin(), shown.frequency_hz.end(), [](double f) { return f > 0; });
+  const auto first = std::find_if(shown.frequency_hz.begin(), shown.frequency_hz.end(), [](double f) { return f > 0; });
   if (first == shown.frequency_hz.end()) return lines;
   for (std::size_t t = 0; t < kTerms; ++t) {
     Asymptote line{static_cast<Term>(t), {*first / 10, shown.frequency_hz.back() * 10}, {}};
     for (std::size_t i = 0; i < 2; ++i) {
-      line.y[i] = scaled_density(
-          shown, fit.theta[t] * spectrum_asymptote(line.term, line.x[i], 1 / shown.rate_hz));
+      line.y[i] = scaled_density(shown, fit.theta[t] * spectrum_asymptote(line.term, line.x[i], 1 / shown.rate_hz));
     }
     if (line.y[0] > 0 && line.y[1] > 0) lines.push_back(line);
   }
@@ -129,17 +110,14 @@ std::vector<Asymptote> spectrum_asymptotes(const NoiseFit& fit, const Spectrum& 
 const AllanPoint* allan_minimum(const AllanCurve& curve) {
   const AllanPoint* best = nullptr;
   for (const AllanPoint& point : curve.points) {
-    if (point.reliable && point.deviation > 0 &&
-        (best == nullptr || point.deviation < best->deviation))
-      best = &point;
+    if (point.reliable && point.deviation > 0 && (best == nullptr || point.deviation < best->deviation)) best = &point;
   }
   return best;
 }
 
 std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve) {
   std::vector<ReadOff> points;
-  const double q2 = theta_of(fit, Term::white), b2 = theta_of(fit, Term::flicker),
-               k2 = theta_of(fit, Term::walk);
+  const double q2 = theta_of(fit, Term::white), b2 = theta_of(fit, Term::flicker), k2 = theta_of(fit, Term::walk);
   if (q2 > 0) points.push_back({Term::white, 1, std::sqrt(q2), "N at τ = 1 s"});
   if (b2 > 0) {
     // On the floor line, where the other two asymptotes cross (or at the curve's minimum): there
@@ -147,8 +125,7 @@ std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curv
     const AllanPoint* lowest = allan_minimum(curve);
     double tau_s = lowest != nullptr ? lowest->tau_s : 1;
     if (q2 > 0 && k2 > 0) tau_s = std::sqrt(3 * q2 / k2);
-    points.push_back(
-        {Term::flicker, tau_s, std::sqrt(allan_asymptote(Term::flicker, tau_s) * b2), "0.664·B"});
+    points.push_back({Term::flicker, tau_s, std::sqrt(allan_asymptote(Term::flicker, tau_s) * b2), "0.664·B"});
   }
   if (k2 > 0) points.push_back({Term::walk, 3, std::sqrt(k2), "K at τ = 3 s"});
   return points;
@@ -191,9 +168,8 @@ NoiseFit sensor_model_fit(const SensorModel& model) {
     process.in_model = true;
     process.sigma.value = model.gauss_markov.sigma;
     const std::vector<double>& ends = model.gauss_markov.sigma_ci95;
-    process.sigma.ci95 = ends.size() == 2
-                             ? Interval{ends[0], ends[1]}
-                             : Interval{model.gauss_markov.sigma, model.gauss_markov.sigma};
+    process.sigma.ci95 =
+        ends.size() == 2 ? Interval{ends[0], ends[1]} : Interval{model.gauss_markov.sigma, model.gauss_markov.sigma};
     process.tau_s.value = model.gauss_markov.tau_s;
     fit.gauss_markov = process;
   }
@@ -232,8 +208,7 @@ AllanCurve sensor_model_curve(const SensorModel& model, const NoiseFit& fit) {
     const double m = tau / out.dt_s;
     point.tau_s = tau;
     point.deviation = model_deviation(fit, out.type, m, out.dt_s).value_or(kNone);
-    point.ci95 = model_interval(fit, out.type, m, out.dt_s)
-                     .value_or(Interval{point.deviation, point.deviation});
+    point.ci95 = model_interval(fit, out.type, m, out.dt_s).value_or(Interval{point.deviation, point.deviation});
   }
   return out;
 }

@@ -18,24 +18,16 @@ namespace libchar {
 /// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing
 /// for types other than the (overlapping) Allan deviation, whose curves are the only ones we have
 /// in exact form.
-std::optional<double> model_deviation(const NoiseFit& fit,
-                                      DeviationType type,
-                                      double m,
-                                      double dt_s);
+std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
 /// Where the deviation of another stretch of the record, or of another recording of the sensor, is expected to lie (95 %, beside what
 /// chance makes of a measured curve): from the intervals and limits of all terms, also of those that were not seen, and from what
 /// differs between stretches of the record (fit/stationarity.hpp). Nothing where `model_deviation` gives nothing.
-std::optional<Interval> model_interval(const NoiseFit& fit,
-                                       DeviationType type,
-                                       double m,
-                                       double dt_s);
+std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
 /// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for
 /// a vanishing model.
-std::optional<double> model_spectrum(const NoiseFit& fit,
-                                     const Spectrum& spectrum,
-                                     double frequency_hz);
+std::optional<double> model_spectrum(const NoiseFit& fit, const Spectrum& spectrum, double frequency_hz);
 
 /// A two-sided density in the sides and scaling of `spectrum`.
 double scaled_density(const Spectrum& spectrum, double two_sided_density);

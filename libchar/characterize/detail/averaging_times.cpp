@@ -22,8 +22,7 @@ double between(double a, double b, double share) {
 }
 
 bool reaches(const std::vector<AllanPoint>& curve, double tau_s) {
-  return curve.size() > 1 && curve.front().tau_s <= tau_s * 1.0001 &&
-         curve.back().tau_s >= tau_s * 0.9999;
+  return curve.size() > 1 && curve.front().tau_s <= tau_s * 1.0001 && curve.back().tau_s >= tau_s * 0.9999;
 }
 
 std::vector<ComparedGroup::Range> ranges_of(const std::vector<ComparedGroup::Time>& times) {
@@ -46,8 +45,7 @@ std::vector<ComparedGroup::Range> with_borders(std::vector<ComparedGroup::Range>
   std::vector<ComparedGroup::Range> kept;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const bool inside = i > 0 && i + 1 < ranges.size();
-    const bool is_border =
-        inside && ranges[i].lowest.size() > 1 && ranges[i].to_s < kBorder * ranges[i].from_s;
+    const bool is_border = inside && ranges[i].lowest.size() > 1 && ranges[i].to_s < kBorder * ranges[i].from_s;
     if (is_border) continue;
     if (!kept.empty() && kept.back().lowest == ranges[i].lowest)
       kept.back().to_s = ranges[i].to_s;
@@ -90,14 +88,12 @@ std::string lowest_words(const ComparedGroup& group) {
     const ComparedGroup::Range& range = group.ranges[k];
     const std::string where = range_words(group.ranges, k);
     if (range.lowest.size() == 1)
-      lowest.push_back(group.candidates[range.lowest[0]].name +
-                       (lowest.empty() ? " is lowest" : "") + where);
+      lowest.push_back(group.candidates[range.lowest[0]].name + (lowest.empty() ? " is lowest" : "") + where);
     else
       apart.push_back(names_of(group, range.lowest) + where);
   }
   std::string out = lowest.empty() ? "" : fmt::format("{}.", fmt::join(lowest, ", "));
-  if (!apart.empty())
-    out += fmt::format("{}Not distinguished: {}.", out.empty() ? "" : " ", fmt::join(apart, "; "));
+  if (!apart.empty()) out += fmt::format("{}Not distinguished: {}.", out.empty() ? "" : " ", fmt::join(apart, "; "));
   return out;
 }
 
@@ -107,11 +103,9 @@ std::string shorter_words(const ComparedGroup& group) {
   for (const ComparedGroup::Candidate& one : group.candidates) {
     if (!one.takes_part || one.curve.size() < 2) continue;
     if (!reaches(one.curve, group.times.back().tau_s))
-      out +=
-          fmt::format(" The curve of {} ends at {}.", one.name, time_words(one.curve.back().tau_s));
+      out += fmt::format(" The curve of {} ends at {}.", one.name, time_words(one.curve.back().tau_s));
     if (!reaches(one.curve, group.times.front().tau_s))
-      out += fmt::format(
-          " The curve of {} begins at {}.", one.name, time_words(one.curve.front().tau_s));
+      out += fmt::format(" The curve of {} begins at {}.", one.name, time_words(one.curve.front().tau_s));
   }
   return out;
 }
@@ -121,27 +115,22 @@ std::string shorter_words(const ComparedGroup& group) {
 Coefficient curve_at(const std::vector<AllanPoint>& curve, double tau_s) {
   Coefficient out;
   if (!reaches(curve, tau_s)) return out;
-  auto right = std::find_if(curve.begin() + 1, curve.end(), [&](const AllanPoint& p) {
-    return p.tau_s >= tau_s * 0.9999;
-  });
+  auto right =
+      std::find_if(curve.begin() + 1, curve.end(), [&](const AllanPoint& p) { return p.tau_s >= tau_s * 0.9999; });
   if (right == curve.end()) --right;
   const auto left = right - 1;
-  const double share =
-      std::clamp(std::log(tau_s / left->tau_s) / std::log(right->tau_s / left->tau_s), 0.0, 1.0);
+  const double share = std::clamp(std::log(tau_s / left->tau_s) / std::log(right->tau_s / left->tau_s), 0.0, 1.0);
   if (!(left->deviation > 0) || !(right->deviation > 0)) return out;
   out.value = between(left->deviation, right->deviation, share);
-  out.ci95 = {between(left->ci95.low, right->ci95.low, share),
-              between(left->ci95.high, right->ci95.high, share)};
+  out.ci95 = {between(left->ci95.low, right->ci95.low, share), between(left->ci95.high, right->ci95.high, share)};
   out.status = out.ci95.high > 0 ? Status::detected : Status::undetermined;
   return out;
 }
 
 std::vector<double> compared_times(const ComparedGroup& group) {
   // A model has a curve at any averaging time: recordings say which are of interest.
-  const bool recorded = std::any_of(
-      group.candidates.begin(), group.candidates.end(), [](const ComparedGroup::Candidate& c) {
-        return c.measured && c.takes_part;
-      });
+  const bool recorded = std::any_of(group.candidates.begin(), group.candidates.end(),
+                                    [](const ComparedGroup::Candidate& c) { return c.measured && c.takes_part; });
   std::vector<double> begins, ends, out;
   std::size_t curves = 0;
   for (const ComparedGroup::Candidate& one : group.candidates) {
@@ -157,8 +146,7 @@ std::vector<double> compared_times(const ComparedGroup& group) {
   const std::size_t second = begins.size() > 1 ? 1 : 0;
   const int first = static_cast<int>(std::ceil(kADecade * std::log10(begins[second]) - 1e-4)),
             last = static_cast<int>(std::floor(kADecade * std::log10(ends[second]) + 1e-4));
-  for (int k = first; k <= last; ++k)
-    out.push_back(std::pow(10.0, static_cast<double>(k) / kADecade));
+  for (int k = first; k <= last; ++k) out.push_back(std::pow(10.0, static_cast<double>(k) / kADecade));
   return out;
 }
 
@@ -172,19 +160,15 @@ void compare_times(ComparedGroup& group, double share) {
   for (const ComparedGroup::Candidate& one : group.candidates) takes_part.push_back(one.takes_part);
   for (const double tau_s : compared_times(group)) {
     ComparedGroup::Time time{tau_s, {}, {}};
-    for (const ComparedGroup::Candidate& one : group.candidates)
-      time.values.push_back(curve_at(one.curve, tau_s));
+    for (const ComparedGroup::Candidate& one : group.candidates) time.values.push_back(curve_at(one.curve, tau_s));
     time.lowest = lowest_of(time.values, takes_part, share);
     const auto known = std::count_if(time.values.begin(), time.values.end(), relied_on);
     if (known >= 2) group.times.push_back(std::move(time));
   }
   group.ranges = with_borders(ranges_of(group.times));
   if (group.ranges.empty()) return;
-  group.sentence = fmt::format("{}{} Compared from {} to {}.",
-                               lowest_words(group),
-                               shorter_words(group),
-                               time_words(group.times.front().tau_s),
-                               time_words(group.times.back().tau_s));
+  group.sentence = fmt::format("{}{} Compared from {} to {}.", lowest_words(group), shorter_words(group),
+                               time_words(group.times.front().tau_s), time_words(group.times.back().tau_s));
 }
 
 }  // namespace libchar::detail

@@ -34,8 +34,7 @@ constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which ever
 // time.
 Mixture white_alone(const AllanCurve& curve) {
   Mixture theta{};
-  if (!curve.points.empty())
-    theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
+  if (!curve.points.empty()) theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
   return theta;
 }
 
@@ -46,10 +45,7 @@ bool octaves_only(const AllanOptions& allan, DeviationType type) {
 
 // A step that the numbers do not allow becomes a finding of the result; the other steps go on.
 template <class Step>
-void attempt(ChannelResult& result,
-             std::string_view what,
-             Step&& step,
-             std::string_view code = "not_computed") {
+void attempt(ChannelResult& result, std::string_view what, Step&& step, std::string_view code = "not_computed") {
   try {
     step();
   } catch (const Error& error) {
@@ -113,8 +109,7 @@ class Finish {
 // By an option that was given.
 bool Finish::is_answered(const Finding& one) const {
   if (one.code == "spiky") return options_.unwrap > 0 || options_.frozen > 1;
-  return (options_.unwrap > 0 && one.code == "phase_wraps") ||
-         (options_.frozen > 1 && one.code == "stuck") ||
+  return (options_.unwrap > 0 && one.code == "phase_wraps") || (options_.frozen > 1 && one.code == "stuck") ||
          (options_.interpolated > 0 && one.code == "interpolated");
 }
 
@@ -145,10 +140,8 @@ void Finish::scale_sums(double rate_hz) {
 // by the sum of the means.
 std::vector<NoiseType> Finish::noise_types(double rate_hz) const {
   if (options_.data == SampleKind::rate || !wants_fit()) return {};
-  if (is_whole() && options_.data == SampleKind::frequency)
-    return types_of_rate(kept_, 1 / rate_hz);
-  if (is_whole())
-    return lag1_noise_types(despiked_.samples.empty() ? kept_ : despiked_.samples, 1 / rate_hz);
+  if (is_whole() && options_.data == SampleKind::frequency) return types_of_rate(kept_, 1 / rate_hz);
+  if (is_whole()) return lag1_noise_types(despiked_.samples.empty() ? kept_ : despiked_.samples, 1 / rate_hz);
   const MeanMeter& means = read_.sums.record.plain.means;
   const std::uint64_t per_mean = means.per_mean();
   std::vector<NoiseType> types = read_.sums.types;
@@ -172,8 +165,7 @@ AllanCurve Finish::octaves(double rate_hz) {
   if (!is_whole()) return octave_curve(read_.sums.record.plain.allan, 1 / rate_hz);
   AllanOptions octaves;
   octaves.threads = options_.allan.threads;
-  if (options_.ten_a_decade && octaves_only(options_.allan, options_.allan.type) &&
-      count_missing(kept_) == 0)
+  if (options_.ten_a_decade && octaves_only(options_.allan, options_.allan.type) && count_missing(kept_) == 0)
     octaves.more_factors = detail::exact_factors(options_.allan, 1 / rate_hz, kept_.size());
   AllanCurve curve = allan_deviation(kept_, 1 / rate_hz, octaves);
   std::erase_if(curve.points, [&](const AllanPoint& point) {
@@ -184,35 +176,28 @@ AllanCurve Finish::octaves(double rate_hz) {
   return curve;
 }
 
-AllanCurve Finish::wanted_curve(const AllanCurve& octaves,
-                                DeviationType type,
-                                double rate_hz) const {
+AllanCurve Finish::wanted_curve(const AllanCurve& octaves, DeviationType type, double rate_hz) const {
   if (octaves_only(options_.allan, type) && (is_whole() || !options_.full_overlap)) {
     AllanCurve curve = limited(octaves, options_.allan);
-    if (options_.ten_a_decade && is_whole())
-      add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve, between_);
+    if (options_.ten_a_decade && is_whole()) add_ten_a_decade(kept_, options_.allan, kLeafSamples, curve, between_);
     return curve;
   }
   AllanOptions allan = options_.allan;
   allan.type = type;
   allan.data = DataKind::rate;  // `make_rate` has differenced phase data
-  const bool many_times = (allan.grid == TauGrid::dense && !is_whole()) ||
-                          (allan.grid == TauGrid::all && kept_.size() > kLongForAll);
+  const bool many_times =
+      (allan.grid == TauGrid::dense && !is_whole()) || (allan.grid == TauGrid::all && kept_.size() > kLongForAll);
   if (many_times && !options_.full_overlap) allan.stride_divisor = kPyramidStride;
   if (options_.full_overlap) allan.work_a_point = 0;
   return allan_deviation(kept_, 1 / rate_hz, allan);
 }
 
 void Finish::add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const {
-  attempt(result, "Allan deviation", [&] {
-    result.allan = wanted_curve(octaves, options_.allan.type, rate_hz);
-  });
+  attempt(result, "Allan deviation", [&] { result.allan = wanted_curve(octaves, options_.allan.type, rate_hz); });
   for (const DeviationType type : options_.more_types) {
     result.more_allan.push_back({});
     result.more_allan.back().type = type;
-    attempt(result, name_of(type), [&] {
-      result.more_allan.back() = wanted_curve(octaves, type, rate_hz);
-    });
+    attempt(result, name_of(type), [&] { result.more_allan.back() = wanted_curve(octaves, type, rate_hz); });
   }
 }
 
@@ -229,21 +214,14 @@ NoiseFit Finish::fit_of_kept(const AllanCurve& octaves, double rate_hz, FitOptio
     if (options_.data == SampleKind::rate) known.missing = found_.missing;
   }
   if (cleaned && opinion) own = pyramid_deviation(despiked_.samples, 1 / rate_hz);
-  NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_,
-                            rate_hz,
-                            opinion ? cleaned ? &own : &octaves : nullptr,
-                            options,
-                            &workspace_.fit,
-                            known);
+  NoiseFit fit = fit_record(cleaned ? despiked_.samples : kept_, rate_hz, opinion ? cleaned ? &own : &octaves : nullptr,
+                            options, &workspace_.fit, known);
   add_spike_answer(despiked_.answer, fit);
   return fit;
 }
 
 NoiseFit Finish::fit_of_sums(const AllanCurve& octaves, double rate_hz, FitOptions options) {
-  return fit_sums(std::move(read_.sums.record),
-                  rate_hz,
-                  octaves.points.empty() ? nullptr : &octaves,
-                  options,
+  return fit_sums(std::move(read_.sums.record), rate_hz, octaves.points.empty() ? nullptr : &octaves, options,
                   &workspace_.fit);
 }
 
@@ -275,8 +253,7 @@ void Finish::find_motion(ChannelResult& result, double rate_hz) {
 bool Finish::is_at_rest(ChannelResult& result, double rate_hz) {
   find_motion(result, rate_hz);
   if (!result.motion.whole || !options_.wanted.fit) return true;
-  result.findings.push_back(
-      finding("no_fit", "no noise fit: the recording holds a signal throughout"));
+  result.findings.push_back(finding("no_fit", "no noise fit: the recording holds a signal throughout"));
   return false;
 }
 
@@ -285,14 +262,10 @@ void Finish::find_digital(ChannelResult& result, double rate_hz) const {
   if (options_.data != SampleKind::rate || !options_.wanted.fit) return;
   if (found_.samples == 0) return;
   const ValueCensus census = census_of(found_);
-  const DigitalSums of_kept =
-      is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
+  const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
   result.digital =
-      find_digital_faults(is_whole() ? of_kept : read_.sums.digital,
-                          census,
-                          rate_hz,
-                          has(found_.findings, "dead_band") ? std::nullopt : found_.resolution,
-                          result.channel.unit);
+      find_digital_faults(is_whole() ? of_kept : read_.sums.digital, census, rate_hz,
+                          has(found_.findings, "dead_band") ? std::nullopt : found_.resolution, result.channel.unit);
   add_findings(result.digital.findings, result);
 }
 
@@ -300,8 +273,7 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
   if (!is_noise(result)) return;
   find_digital(result, rate_hz);
   attempt(
-      result,
-      "noise fit",
+      result, "noise fit",
       [&] {
         if (!is_at_rest(result, rate_hz)) return;
         FitOptions options = options_.fit;
@@ -313,8 +285,7 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
             !(found_.signs.held_times > 1))
           options.difference_kurtosis = found_.difference_kurtosis;
         const bool of_kept = is_whole() || read_.temperature;
-        result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options)
-                             : fit_of_sums(octaves, rate_hz, options);
+        result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options) : fit_of_sums(octaves, rate_hz, options);
         result.fit->moving_s = result.motion.moving_s;
         doubt_digital(result.digital, *result.fit);
       },
@@ -338,8 +309,7 @@ void Finish::curve_and_fit(ChannelResult& curve, ChannelResult& result, double r
 
 void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
   const auto make = [&] {
-    if (options_.average == SegmentAverage::median)
-      return median_welch(kept_, rate_hz, options_.spectrum);
+    if (options_.average == SegmentAverage::median) return median_welch(kept_, rate_hz, options_.spectrum);
     if (is_whole()) return welch(kept_, rate_hz, options_.spectrum, &workspace_.welch);
     if (spectrum_of_all(options_))
       return welch_using_up(std::move(kept_), rate_hz, options_.spectrum, &workspace_.welch);
@@ -388,8 +358,7 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
   result.spectrum = std::move(spectrum.spectrum);
   result.lines = std::move(spectrum.lines);
   add_findings(spectrum.findings, curve);
-  result.findings.insert(result.findings.begin() + static_cast<std::ptrdiff_t>(before),
-                         curve.findings.begin(),
+  result.findings.insert(result.findings.begin() + static_cast<std::ptrdiff_t>(before), curve.findings.begin(),
                          curve.findings.end());
 }
 
@@ -404,11 +373,9 @@ void Finish::doubt_frequency(ChannelResult& result) const {
         "frequency_mean",
         fmt::format("The values scatter by {} of their mean, {}: they look like frequencies or "
                     "periods themselves, not like {}.",
-                    number_text(found_.standard_deviation / std::abs(found_.mean), 2),
-                    number_text(found_.mean, 6),
+                    number_text(found_.standard_deviation / std::abs(found_.mean), 2), number_text(found_.mean, 6),
                     options_.data == SampleKind::phase ? "a phase" : "fractions of them"));
-    Finding::Help& help =
-        whole.help.emplace_back(Finding::Help{"Take them as fractions of their mean."});
+    Finding::Help& help = whole.help.emplace_back(Finding::Help{"Take them as fractions of their mean."});
     if (options_.data == SampleKind::phase) help.options.push_back({"data", "frequency"});
     help.options.push_back({"nominal_frequency", shortest(rounded(found_.mean, 9))});
     result.findings.push_back(std::move(whole));
@@ -418,13 +385,11 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
   if (std::abs(off) <= kMostOff) return;
   result.findings.push_back(finding(
-      "frequency_mean",
-      nominal == 0 ? fmt::format("The mean is {}: without `nominal_frequency` values are taken "
-                                 "for fractional frequencies, which are small.",
-                                 number_text(found_.mean, 6))
-                   : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
-                                 number_text(found_.mean, 6),
-                                 number_text(nominal, 6))));
+      "frequency_mean", nominal == 0 ? fmt::format("The mean is {}: without `nominal_frequency` values are taken "
+                                                   "for fractional frequencies, which are small.",
+                                                   number_text(found_.mean, 6))
+                                     : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
+                                                   number_text(found_.mean, 6), number_text(nominal, 6))));
 }
 
 // The integral of a rate's white noise is a random walk; the rate of a sensor has white noise on top, at the latest
@@ -436,18 +401,16 @@ void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   const Coefficient& white = (*result.fit)[Term::white];
   if (walk.status != Status::detected || !walk.value || !white.upper95) return;
   if (*white.upper95 > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
-  Finding integral = finding(
-      "looks_integrated",
-      "The record is a random walk up to its fastest samples, without white noise: so is an "
-      "angle, a velocity or a phase, and no rate.");
+  Finding integral = finding("looks_integrated",
+                             "The record is a random walk up to its fastest samples, without white noise: so is an "
+                             "angle, a velocity or a phase, and no rate.");
   integral.help.push_back({"Where it is one, say so.", {{"data", "phase"}}});
   result.findings.push_back(std::move(integral));
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string Finish::unit_of_rate(const std::string& unit) const {
-  if (options_.data == SampleKind::phase)
-    return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  if (options_.data == SampleKind::phase) return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
   return options_.data == SampleKind::frequency && options_.nominal_frequency != 0 ? "1" : unit;
 }
 
@@ -461,8 +424,7 @@ ChannelQuality Finish::quality_of_rate() const {
   }
   const double nominal = options_.nominal_frequency;
   if (options_.data != SampleKind::frequency || nominal == 0) return quality;
-  for (double* value : {&quality.mean, &quality.minimum, &quality.maximum})
-    *value = (*value - nominal) / nominal;
+  for (double* value : {&quality.mean, &quality.minimum, &quality.maximum}) *value = (*value - nominal) / nominal;
   for (double* value : {&quality.standard_deviation, &quality.difference_sd, &quality.float32_step})
     *value /= std::abs(nominal);
   if (quality.resolution) *quality.resolution /= std::abs(nominal);
@@ -486,10 +448,9 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
     result.trace_unit = channel.unit;
   }
   if (rate_hz <= 0) {
-    const std::string why =
-        found_.samples < 2
-            ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
-            : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
+    const std::string why = found_.samples < 2
+                                ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
+                                : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
     result.findings.push_back(finding("no_fit", "no curves and no fit: " + why));
     return result;
   }
@@ -501,13 +462,11 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   doubt_rate(result, rate_hz);
   result.noise_types = noise_types_;
   if (result.fit && !noise_types_.empty())
-    result.fit->findings.push_back(
-        finding("noise_types",
-                "Noise types by the lag-1 autocorrelation, as Stable32 names them: " +
-                    noise_types_text(noise_types_) + "."));
+    result.fit->findings.push_back(finding(
+        "noise_types",
+        "Noise types by the lag-1 autocorrelation, as Stable32 names them: " + noise_types_text(noise_types_) + "."));
   const auto add_to = [&](AllanCurve& curve) {
-    result.fit ? add_fit_intervals(curve, *result.fit)
-               : add_intervals(curve, white_alone(result.allan));
+    result.fit ? add_fit_intervals(curve, *result.fit) : add_intervals(curve, white_alone(result.allan));
   };
   add_to(result.allan);
   for (AllanCurve& curve : result.more_allan) add_to(curve);
@@ -519,10 +478,9 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
 std::string what_needs_all_samples(const CharacterizeOptions& options) {
   if (!options.temperature.empty()) return "a correction for temperature";
   if (options.wanted.spectrum && spectrum_of_all(options))
-    return options.quarter_segments ? "a spectrum of segments of a quarter of the record"
-           : options.average == SegmentAverage::median
-               ? "a median of segments"
-               : "a spectrum of a phase with these segments";
+    return options.quarter_segments                    ? "a spectrum of segments of a quarter of the record"
+           : options.average == SegmentAverage::median ? "a median of segments"
+                                                       : "a spectrum of a phase with these segments";
   if (!options.wanted.allan) return "";
   std::vector<DeviationType> types = options.more_types;
   types.insert(types.begin(), options.allan.type);
@@ -532,11 +490,8 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
   return options.full_overlap ? "a curve with full overlap" : "";
 }
 
-ChannelResult finish_channel(ReadChannel read,
-                             const CharacterizeOptions& options,
-                             CharacterizeWorkspace& workspace,
-                             const Channel& channel,
-                             double rate_hz) {
+ChannelResult finish_channel(ReadChannel read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace,
+                             const Channel& channel, double rate_hz) {
   return Finish(read, options, workspace).result(channel, rate_hz);
 }
 

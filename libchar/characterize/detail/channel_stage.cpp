@@ -8,9 +8,7 @@
 
 namespace libchar {
 
-ChannelStage::ChannelStage(const CharacterizeOptions& options,
-                           CharacterizeWorkspace& workspace,
-                           bool keep)
+ChannelStage::ChannelStage(const CharacterizeOptions& options, CharacterizeWorkspace& workspace, bool keep)
     : options_(&options),
       workspace_(&workspace),
       keep_(keep),
@@ -33,8 +31,7 @@ void ChannelStage::push(std::span<const double> samples) {
 }
 
 void ChannelStage::end_leaf(bool last) {
-  if (leaves_ == 0 && in_turn_)
-    spectrum_.emplace(streamed_spectrum(options_->spectrum), &workspace_->welch);
+  if (leaves_ == 0 && in_turn_) spectrum_.emplace(streamed_spectrum(options_->spectrum), &workspace_->welch);
   const auto end = leaf_.begin() + static_cast<std::ptrdiff_t>(last ? leaf_.size() : kLeafSamples);
   if (spectrum_) {
     std::vector<double> rate(leaf_.begin(), end);
@@ -42,8 +39,7 @@ void ChannelStage::end_leaf(bool last) {
     spectrum_->push(rate);
   }
   const std::size_t rows = last ? leaf_.size() : detail::in_memory(stage_->rows());
-  tree_.add(
-      {0, leaves_++, stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
+  tree_.add({0, leaves_++, stage_->take(std::span(leaf_).first(rows), last, std::exchange(meters_, {}))});
   meters_.traces = options_->wanted.quality;
   leaf_.erase(leaf_.begin(), end);
   meters_.push(leaf_);

@@ -38,11 +38,8 @@ struct ReadChannel {
 
 /// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says
 /// why.
-ChannelResult finish_channel(ReadChannel read,
-                             const CharacterizeOptions& options,
-                             CharacterizeWorkspace& workspace,
-                             const Channel& channel,
-                             double rate_hz);
+ChannelResult finish_channel(ReadChannel read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace,
+                             const Channel& channel, double rate_hz);
 
 class ChannelStage {
  public:
@@ -60,9 +57,7 @@ class ChannelStage {
   /// All samples, where they are kept.
   std::span<const double> kept() const { return all_; }
   /// What the temperature does is taken out of the record before its noise is fitted.
-  void set_temperature(std::shared_ptr<const TemperatureRecord> temperature) {
-    temperature_ = std::move(temperature);
-  }
+  void set_temperature(std::shared_ptr<const TemperatureRecord> temperature) { temperature_ = std::move(temperature); }
   /// Curves and fit, as `finish_channel`. The stage is done.
   ChannelResult finish(const Channel& channel, double rate_hz);
 
@@ -89,10 +84,7 @@ class ChannelStages final : public BlockSink {
  public:
   /// Of the channels from `first` on as many as memory allows, or all. The workspace must live as
   /// long.
-  ChannelStages(const CharacterizeOptions& options,
-                CharacterizeWorkspace& workspace,
-                std::size_t first,
-                bool all);
+  ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace, std::size_t first, bool all);
 
   void begin(const LogInfo& so_far) override;
   void block(const SampleBlock& samples) override;
@@ -128,10 +120,7 @@ class ChannelStages final : public BlockSink {
 /// A segment of `samples`, or of `seconds` where that is 0, before anything is set up for it: throws
 /// Error(usage) where the log is shorter, with
 /// the longest that fits. Only where the segment is so long that setting it up takes long is the log read for that.
-void refuse_longer_segment(const std::string& path,
-                           const ReadOptions& reading,
-                           std::uint64_t samples,
-                           double seconds,
+void refuse_longer_segment(const std::string& path, const ReadOptions& reading, std::uint64_t samples, double seconds,
                            Progress& progress);
 
 }  // namespace libchar

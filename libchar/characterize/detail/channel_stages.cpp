@@ -27,17 +27,13 @@ constexpr std::size_t kMostFitted = 5000;
 void refuse_too_many(const LogInfo& log) {
   if (log.channels.size() > kMostFitted)
     throw input_error("E0707", log.file)
-        .says("{} channels are more than are characterized at a time, {}",
-              log.channels.size(),
-              kMostFitted)
+        .says("{} channels are more than are characterized at a time, {}", log.channels.size(), kMostFitted)
         .hint("choose some of them with `channels`");
 }
 
 }  // namespace
 
-ChannelStages::ChannelStages(const CharacterizeOptions& options,
-                             CharacterizeWorkspace& workspace,
-                             std::size_t first,
+ChannelStages::ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace, std::size_t first,
                              bool all)
     : options_(options),
       workspace_(workspace),
@@ -51,8 +47,7 @@ std::size_t ChannelStages::channels_at_once(const LogInfo& so_far) const {
   if (all_ || !needs_all_samples_.empty()) return channels;
   const std::uint64_t most_rows = so_far.samples > 0 ? so_far.samples : so_far.bytes / channels;
   const bool fitted = options_.wanted.fit || options_.wanted.allan;
-  const std::uint64_t each =
-      std::min(fitted ? kChannelBytes : kSpectrumBytes, (most_rows + 1) * sizeof(double));
+  const std::uint64_t each = std::min(fitted ? kChannelBytes : kSpectrumBytes, (most_rows + 1) * sizeof(double));
   const std::uint64_t some = std::min(options_.memory_bytes, kMostOfPass) / each;
   return std::clamp<std::size_t>(detail::in_memory(some), 1, channels);
 }
@@ -66,8 +61,7 @@ void ChannelStages::begin(const LogInfo& so_far) {
   const std::size_t end = std::min(channels, first_ + channels_at_once(so_far));
   for (std::size_t c = first_; c < end; ++c) {
     const bool temperature = !options_.temperature.empty() && c == temperature_index_;
-    stages_.emplace_back(
-        temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
+    stages_.emplace_back(temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
     stages_.back().reserve(detail::in_memory(so_far.bytes / std::max<std::size_t>(channels, 1)));
   }
   arena_.limit_to(threads_beside_reading(so_far, options_.reading.threads));
@@ -126,11 +120,9 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
   if (known && known->quantity != Quantity::temperature)
     throw usage_error("E0702", so_far.file)
         .says("the channel {} is in {}, which is no temperature", name, unit)
-        .hint(
-            "choose a channel in degC, K or degF, or one without a unit, which is taken for degC");
+        .hint("choose a channel in degC, K or degF, or one without a unit, which is taken for degC");
   if (channels.size() < 2)
-    throw usage_error("E0702", so_far.file)
-        .says("{} is the only channel: there is none that it could move", name);
+    throw usage_error("E0702", so_far.file).says("{} is the only channel: there is none that it could move", name);
   temperature_options_ = options_;
   temperature_options_.data = SampleKind::rate;
 }
@@ -166,14 +158,9 @@ void ChannelStages::refuse(const LogInfo& log) const {
   const std::string_view name = allowed < (1U << 20U) ? "KiB" : "MiB";
   const std::uint64_t needed = (rows_ * stages_.size() * sizeof(double) + unit - 1) / unit;
   throw usage_error("E0701", log.file)
-      .says("{} takes all samples at once: {} {}, and {} {} are allowed",
-            needs_all_samples_,
-            needed,
-            name,
-            allowed / unit,
-            name)
-      .hint(
-          "give `memory_bytes` {}{}, or read less with `channels`, `from_s`, `to_s`", needed, name);
+      .says("{} takes all samples at once: {} {}, and {} {} are allowed", needs_all_samples_, needed, name,
+            allowed / unit, name)
+      .hint("give `memory_bytes` {}{}, or read less with `channels`, `from_s`, `to_s`", needed, name);
 }
 
 std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& progress) {
@@ -181,8 +168,7 @@ std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& p
   if (!options_.temperature.empty()) give_temperature(log);
   std::vector<ChannelResult> results(stages_.size());
   for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
-    progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()),
-                    "fitting");
+    progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()), "fitting");
     const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
     parallel::for_each(first, last, [&](std::size_t c) {
       results[c] = stages_[c].finish(log.channels[first_ + c], log.time.rate_hz);

@@ -13,9 +13,7 @@
 namespace libchar {
 namespace {
 
-bool is_wild(double x) {
-  return std::abs(x) > kLargestSample;
-}
+bool is_wild(double x) { return std::abs(x) > kLargestSample; }
 
 void forget_wild(std::span<double> samples) {
   for (double& x : samples)
@@ -54,12 +52,8 @@ std::vector<NoiseType> types_of_rate(std::span<const double> rate, double dt_s) 
 
 ValueCensus census_of(const ChannelQuality& quality) {
   if (quality.samples == 0) return {1, 0, 0, 0, 0};
-  return {quality.minimum,
-          quality.maximum,
-          quality.at_minimum,
-          quality.at_maximum,
-          quality.repeats,
-          quality.signs.held_times};
+  return {quality.minimum,    quality.maximum, quality.at_minimum,
+          quality.at_maximum, quality.repeats, quality.signs.held_times};
 }
 
 void SampleMeters::push(std::span<const double> samples) {
@@ -80,8 +74,7 @@ std::string streamed_segment_note() {
   return fmt::format(
       "segments of {} samples: a quarter of a record of more than {} is taken where `segment` asks "
       "for N/4",
-      kStreamedSegment,
-      kLeafSamples);
+      kStreamedSegment, kLeafSamples);
 }
 
 std::string why_not_in_leaves(const CharacterizeOptions& options) {
@@ -97,8 +90,7 @@ bool spectrum_of_all(const CharacterizeOptions& options) {
 LeafStage::LeafStage(const CharacterizeOptions& options, WelchWorkspace& workspace)
     : options_(&options),
       workspace_(&workspace),
-      wants_spectrum_(options.wanted.spectrum && !spectrum_of_all(options) &&
-                      why_not_in_leaves(options).empty()),
+      wants_spectrum_(options.wanted.spectrum && !spectrum_of_all(options) && why_not_in_leaves(options).empty()),
       blocks_(PowerPart::kBlock, &workspace) {}
 
 WelchParts& LeafStage::spectrum() const {
@@ -126,18 +118,15 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   ChannelSums sums;
   sums.meters = std::move(meters);
   const ChannelQuality found = sums.meters.quality.finish();
-  const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0 &&
-                        options_->frozen <= 1 && options_->interpolated == 0 &&
-                        !(options_->unwrap > 0);
+  const bool as_it_is = options_->data == SampleKind::rate && found.beyond == 0 && options_->frozen <= 1 &&
+                        options_->interpolated == 0 && !(options_->unwrap > 0);
   if (!as_it_is) {
     rate_.assign(samples.begin(), samples.end());
     make_rate(rate_);
     samples = rate_;
   }
-  if (!is_phase() && options_->wanted.fit)
-    sums.digital = digital_sums(samples, census_of(found), found.missing);
-  const bool clean = options_->fit.remedies && wants_fit() &&
-                     found.difference_kurtosis > spike_alarm(found.samples);
+  if (!is_phase() && options_->wanted.fit) sums.digital = digital_sums(samples, census_of(found), found.missing);
+  const bool clean = options_->fit.remedies && wants_fit() && found.difference_kurtosis > spike_alarm(found.samples);
   std::vector<double> cleaned;
   if (clean) cleaned = cleaned_record(samples, sums.record.spikes);
   sums.record.spikes.samples = found.samples;
@@ -151,8 +140,7 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   PowerPart bins;
   LeafKind kind{last, options_->fit.remedies, found.missing == 0 && !is_phase()};
   // Blocks of another length are of no use.
-  const bool shares = wants_spectrum_ && wants_fit() && kind.whole &&
-                      spectrum().shared_length() == PowerPart::kBlock;
+  const bool shares = wants_spectrum_ && wants_fit() && kind.whole && spectrum().shared_length() == PowerPart::kBlock;
   if (wants_spectrum_) sums.spectrum = spectrum().take(samples, shares ? &bins : nullptr);
   if (!wants_fit()) {
     if (options_->wanted.spectrum) sums.record.plain.means = means_of_leaf(samples);

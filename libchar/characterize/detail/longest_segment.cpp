@@ -15,10 +15,7 @@ struct Nothing final : BlockSink {
 
 }  // namespace
 
-void refuse_longer_segment(const std::string& path,
-                           const ReadOptions& reading,
-                           std::uint64_t samples,
-                           double seconds,
+void refuse_longer_segment(const std::string& path, const ReadOptions& reading, std::uint64_t samples, double seconds,
                            Progress& progress) {
   if ((samples == 0 && !(seconds > 0)) || read_once(path)) return;
   if (samples == 0) {

@@ -10,8 +10,7 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion =
-    3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
+constexpr std::uint32_t kVersion = 3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);
@@ -89,8 +88,8 @@ LogInfo read_log_state(StateReader& from) {
 
 /// About as many bytes as a node takes.
 std::size_t size_of(const ChannelSums& sums) {
-  std::size_t reals = 65536 + sums.kept.size() + sums.spectrum.power.size() +
-                      sums.spectrum.head.size() + sums.spectrum.tail.size();
+  std::size_t reals =
+      65536 + sums.kept.size() + sums.spectrum.power.size() + sums.spectrum.head.size() + sums.spectrum.tail.size();
   const auto add = [&](const PowerSums& bins) {
     reals += bins.blocks.power.size() + bins.tail.size();
     for (const PooledSums& piece : bins.pieces) reals += piece.power.size();
@@ -131,9 +130,7 @@ std::string write_stretch(const StretchState& state, std::vector<ChannelNode>& n
   return to.finish();
 }
 
-StateReader stretch_reader(std::string_view bytes, const std::string& name) {
-  return {bytes, name, kKind, kVersion};
-}
+StateReader stretch_reader(std::string_view bytes, const std::string& name) { return {bytes, name, kKind, kVersion}; }
 
 StretchState read_stretch(StateReader& from) {
   StretchState state;
@@ -152,16 +149,13 @@ StretchState read_stretch(StateReader& from) {
   return state;
 }
 
-std::size_t read_node_count(StateReader& from) {
-  return from.count(16);
-}
+std::size_t read_node_count(StateReader& from) { return from.count(16); }
 
 ChannelNode read_node(StateReader& from, const LeafStage& stage) {
   ChannelNode node;
   node.height = from.number();
   node.place = from.number();
-  if (node.height > 40 || node.place > (std::uint64_t{1} << (44 - node.height)))
-    from.refuse("the place of a node");
+  if (node.height > 40 || node.place > (std::uint64_t{1} << (44 - node.height))) from.refuse("the place of a node");
   node.sums = stage.read_state(from);
   return node;
 }

@@ -23,9 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostJournalBytes = std::size_t{1} << 24U;
 
-fs::path journal_of(const fs::path& folder) {
-  return folder / ".libchar-outputs.json";
-}
+fs::path journal_of(const fs::path& folder) { return folder / ".libchar-outputs.json"; }
 
 constexpr const char* kRunAgain = "run it again: it first finishes what this run has begun";
 
@@ -72,14 +70,13 @@ bool is_in_place(const fs::path& target, const WaitingFile& waiting) {
   if (::lstat(target.c_str(), &status) != 0) return false;
   const WaitingFile there = described(status);
   return waiting.bytes < 0 ||
-         (there.bytes == waiting.bytes &&
-          (there.changed_ns == waiting.changed_ns || there.number == waiting.number));
+         (there.bytes == waiting.bytes && (there.changed_ns == waiting.changed_ns || there.number == waiting.number));
 }
 
 Refusal lost(const fs::path& folder, const WaitingFile& waiting, bool begun) {
-  Refusal refusal = output_error("E0525", (folder / waiting.name).string())
-                        .says("is lost: {}, under which it waited on the disk, is not there",
-                              printable(waiting.temporary));
+  Refusal refusal =
+      output_error("E0525", (folder / waiting.name).string())
+          .says("is lost: {}, under which it waited on the disk, is not there", printable(waiting.temporary));
   if (!begun) return refusal.hint("run it again");
   return refusal.hint("results there may be of two runs; remove {}, then run it again",
                       printable(journal_of(folder).string()));
@@ -118,19 +115,15 @@ bool JournalFile::there() const noexcept {
 JournalFile journal_file(const fs::path& folder, const OutputJournal& journal) {
   Json document = {{"rename", Json::array()}, {"remove", Json(journal.remove)}};
   for (const WaitingFile& one : journal.rename)
-    document["rename"].push_back(
-        one.bytes < 0
-            ? Json::array({one.temporary, one.name})
-            : Json::array({one.temporary, one.name, one.bytes, one.changed_ns, one.number}));
+    document["rename"].push_back(one.bytes < 0
+                                     ? Json::array({one.temporary, one.name})
+                                     : Json::array({one.temporary, one.name, one.bytes, one.changed_ns, one.number}));
   return {journal_of(folder).string(), document.dump() + "\n"};
 }
 
-WaitingFile waiting_file(const fs::path& folder,
-                         const std::string& temporary,
-                         const std::string& name) {
+WaitingFile waiting_file(const fs::path& folder, const std::string& temporary, const std::string& name) {
   struct stat status {};
-  if (::lstat((folder / temporary).c_str(), &status) != 0)
-    throw failure_on(folder / name, "find its temporary file");
+  if (::lstat((folder / temporary).c_str(), &status) != 0) throw failure_on(folder / name, "find its temporary file");
   WaitingFile out = described(status);
   out.temporary = temporary;
   out.name = name;
@@ -142,8 +135,7 @@ void run_journal(const fs::path& folder, const OutputJournal& journal) {
   for (const WaitingFile& one : journal.rename) {
     const fs::path source = folder / one.temporary, target = folder / one.name;
     // A second attempt: what failed once may have been a signal or a busy server.
-    if (::rename(source.c_str(), target.c_str()) == 0 ||
-        (errno == ENOENT && is_in_place(target, one)) ||
+    if (::rename(source.c_str(), target.c_str()) == 0 || (errno == ENOENT && is_in_place(target, one)) ||
         ::rename(source.c_str(), target.c_str()) == 0) {
       begun = true;
       continue;
@@ -154,8 +146,7 @@ void run_journal(const fs::path& folder, const OutputJournal& journal) {
     errno = error;
     throw failure_on(target, "rename into place").hint(begun ? kRunAgain : "");
   }
-  for (const std::string& name : journal.remove)
-    remove_file(folder / name, "remove this file of an earlier run");
+  for (const std::string& name : journal.remove) remove_file(folder / name, "remove this file of an earlier run");
   sync_folder(folder.string());
   remove_file(journal_of(folder), "remove this list of what was to be done");
 }

@@ -32,9 +32,7 @@ struct JournalFile {
 JournalFile journal_file(const std::filesystem::path& folder, const OutputJournal& journal);
 
 /// A file as it lies there now. Throws Error(output) where it does not.
-WaitingFile waiting_file(const std::filesystem::path& folder,
-                         const std::string& temporary,
-                         const std::string& name);
+WaitingFile waiting_file(const std::filesystem::path& folder, const std::string& temporary, const std::string& name);
 
 /// Does what was written down and removes the journal. What is done already is passed over, so that it can be done again after a kill.
 /// Throws Error(output) where a name cannot be given, or where a file is under neither of its names: then the

@@ -5,36 +5,23 @@ namespace {
 
 constexpr Word kStatuses[] = {
     {name_of(Status::detected), static_cast<int>(Status::detected)},
-    {name_of(Status::not_detected),
-     static_cast<int>(Status::not_detected),
-     "no value: only an upper limit is known"},
-    {name_of(Status::undetermined),
-     static_cast<int>(Status::undetermined),
+    {name_of(Status::not_detected), static_cast<int>(Status::not_detected), "no value: only an upper limit is known"},
+    {name_of(Status::undetermined), static_cast<int>(Status::undetermined),
      "undetermined: the record cannot tell it from another term, or contradicts it"},
-    {name_of(Status::misfit),
-     static_cast<int>(Status::misfit),
+    {name_of(Status::misfit), static_cast<int>(Status::misfit),
      "the noise terms do not describe the recording: do not rely on it"},
     {name_of(Status::given), static_cast<int>(Status::given), "stated, not fitted"},
-    {name_of(Status::not_fitted),
-     static_cast<int>(Status::not_fitted),
-     "not part of the model that was fitted"},
+    {name_of(Status::not_fitted), static_cast<int>(Status::not_fitted), "not part of the model that was fitted"},
 };
-constexpr Word kIntervals[] = {{"profile", 1, "likelihood"},
-                               {"covariance", 0, "of the fit, log-normal"}};
+constexpr Word kIntervals[] = {{"profile", 1, "likelihood"}, {"covariance", 0, "of the fit, log-normal"}};
 
-bool has_value(const Coefficient& c) {
-  return c.value.has_value();
-}
+bool has_value(const Coefficient& c) { return c.value.has_value(); }
 
 }  // namespace
 
-std::span<const Word> status_words() {
-  return kStatuses;
-}
+std::span<const Word> status_words() { return kStatuses; }
 
-std::span<const Word> interval_words() {
-  return kIntervals;
-}
+std::span<const Word> interval_words() { return kIntervals; }
 
 std::span<const Word> term_words() {
   static constexpr auto words = [] {
@@ -48,24 +35,18 @@ std::span<const Word> term_words() {
 const Fields<Coefficient>& coefficient_fields() {
   static const Fields<Coefficient> rows = always(Fields<Coefficient>{
       field<&Coefficient::value>("value", {.range = kNotNegative, .meaning = "the coefficient"}),
-      field<&Coefficient::ci95>(
-          "ci95", {.range = kNotNegative, .meaning = "95 % interval", .known = when<has_value>}),
+      field<&Coefficient::ci95>("ci95", {.range = kNotNegative, .meaning = "95 % interval", .known = when<has_value>}),
       field<&Coefficient::status>("status", {.words = kStatuses, .meaning = "how it is known"}),
-      field<&Coefficient::upper95>(
-          "upper95",
-          {.range = kNotNegative, .meaning = "upper limit of a term that was not detected"}),
-      field<&Coefficient::relative_sd>("relative_sd",
-                                       {.range = kNotNegative,
-                                        .meaning = "standard deviation over the value",
-                                        .known = when<has_value>}),
-      field<&Coefficient::profile>(
-          "ci95_by", {.words = kIntervals, .meaning = "where the interval comes from"}),
-      field<&Coefficient::likelihood_ratio>("likelihood_ratio",
-                                            {.meaning = "2 (ln L with the term - ln L without)"}),
+      field<&Coefficient::upper95>("upper95",
+                                   {.range = kNotNegative, .meaning = "upper limit of a term that was not detected"}),
+      field<&Coefficient::relative_sd>(
+          "relative_sd",
+          {.range = kNotNegative, .meaning = "standard deviation over the value", .known = when<has_value>}),
+      field<&Coefficient::profile>("ci95_by", {.words = kIntervals, .meaning = "where the interval comes from"}),
+      field<&Coefficient::likelihood_ratio>("likelihood_ratio", {.meaning = "2 (ln L with the term - ln L without)"}),
       field<&Coefficient::bound>("bound_relative_sd", {.meaning = "Cramér–Rao bound"}),
       field<&Coefficient::seconds_for_10_percent>(
-          "seconds_for_10_percent",
-          {.unit = "s", .meaning = "length of a recording whose bound is 10 %"}),
+          "seconds_for_10_percent", {.unit = "s", .meaning = "length of a recording whose bound is 10 %"}),
   });
   return rows;
 }
@@ -114,8 +95,7 @@ const Fields<Finding::Help>& help_fields() {
   using T = Finding::Help;
   static const Fields<T> rows = {
       field<&T::sentence>("sentence", {.written = Written::always}),
-      list_of<&T::options>(
-          "options", setting_fields(), {.meaning = "of the same call, that do it"}),
+      list_of<&T::options>("options", setting_fields(), {.meaning = "of the same call, that do it"}),
   };
   return rows;
 }

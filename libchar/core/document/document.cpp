@@ -25,9 +25,7 @@ namespace {
 constexpr std::size_t kMaxKey = 1024;
 constexpr std::size_t kMaxKeys = 10000;  // a map is searched key by key
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 Document scalar(Document::Kind kind, const std::string& text) {
   Document node;
@@ -46,8 +44,7 @@ Document unquoted(const std::string& value) {
   if (value == "null" || value == "~") return scalar(Document::Kind::null, value);
   const std::string_view magnitude = std::string_view(value).substr(value.starts_with('-') ? 1 : 0);
   const bool octal = magnitude.size() > 1 && magnitude[0] == '0' && is_digit(magnitude[1]);
-  if (magnitude.empty() || !is_digit(magnitude[0]) || octal)
-    return scalar(Document::Kind::text, value);
+  if (magnitude.empty() || !is_digit(magnitude[0]) || octal) return scalar(Document::Kind::text, value);
   const auto number = parse_double(value);
   if (!number) return scalar(Document::Kind::text, value);
   Document node = scalar(Document::Kind::number, value);
@@ -72,26 +69,20 @@ class Builder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     throw refusal(mark).says("aliases are not read").got("*");
   }
-  void OnScalar(const YAML::Mark& mark,
-                const std::string& tag,
-                YAML::anchor_t anchor,
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     const bool quoted = tag == "!";  // "!" marks a quoted text, "?" an unquoted one
     check(mark, quoted ? "" : tag, anchor);
     if (!quoted && value == "<<") throw refusal(mark).says("merge keys are not read").got(value);
     put(mark, quoted ? scalar(Document::Kind::text, value) : unquoted(value));
   }
-  void OnSequenceStart(const YAML::Mark& mark,
-                       const std::string& tag,
-                       YAML::anchor_t anchor,
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
     check(mark, tag, anchor);
     open(mark, Document::Kind::list);
   }
   void OnSequenceEnd() override { stack_.pop_back(); }
-  void OnMapStart(const YAML::Mark& mark,
-                  const std::string& tag,
-                  YAML::anchor_t anchor,
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
     check(mark, tag, anchor);
     open(mark, Document::Kind::map);
@@ -113,10 +104,8 @@ class Builder : public YAML::EventHandler {
   }
 
   void add_key(const YAML::Mark& mark, Level& level, const std::string& key) {
-    if (key.size() > kMaxKey)
-      throw refusal(mark).says("a key is longer than {} characters", kMaxKey).got(key);
-    if (level.node->map.size() >= kMaxKeys)
-      throw refusal(mark).says("a map has more than {} keys", kMaxKeys).got(key);
+    if (key.size() > kMaxKey) throw refusal(mark).says("a key is longer than {} characters", kMaxKey).got(key);
+    if (level.node->map.size() >= kMaxKeys) throw refusal(mark).says("a map has more than {} keys", kMaxKeys).got(key);
     if (level.node->find(key) != nullptr) throw refusal(mark).says("a key stands twice").got(key);
     level.node->map.push_back({key, mark.line + 1, mark.column + 1, {}});
     level.awaits_value = true;
@@ -147,8 +136,7 @@ class Builder : public YAML::EventHandler {
   void open(const YAML::Mark& mark, Document::Kind kind) {
     if (stack_.size() >= kMaxDocumentDepth)
       throw refusal(mark).says("is nested deeper than {} levels", kMaxDocumentDepth);
-    if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map &&
-        !stack_.back().awaits_value)
+    if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map && !stack_.back().awaits_value)
       throw refusal(mark).says("a list or map cannot be a key");
     stack_.push_back({put(mark, scalar(kind, "")), false});
   }
@@ -160,17 +148,14 @@ class Builder : public YAML::EventHandler {
 
 void check_bytes(std::string_view text, const std::string& file) {
   if (text.size() > kMaxDocumentBytes)
-    throw input_error("E0522", file)
-        .says("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes);
+    throw input_error("E0522", file).says("YAML of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes);
   if (first_invalid_utf8(text) != std::string_view::npos)
-    throw input_error("E0522", fmt::format("{} (byte {})", file, first_invalid_utf8(text)))
-        .says("is not valid UTF-8");
+    throw input_error("E0522", fmt::format("{} (byte {})", file, first_invalid_utf8(text))).says("is not valid UTF-8");
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n');
     const std::size_t start = zero == 0 ? std::string_view::npos : text.rfind('\n', zero - 1);
     const std::size_t column = start == std::string_view::npos ? zero + 1 : zero - start;
-    throw input_error("E0522", fmt::format("{}:{}:{}", file, line, column))
-        .says("holds a zero byte");
+    throw input_error("E0522", fmt::format("{}:{}:{}", file, line, column)).says("holds a zero byte");
   }
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw input_error("E0522", file + ":1:1").says("is empty");
@@ -192,12 +177,10 @@ Json number_json(const Document& node) {
   const char* const end = node.text.data() + node.text.size();
   if (node.whole) {
     std::uint64_t natural = 0;
-    if (const auto r = std::from_chars(node.text.data(), end, natural);
-        r.ec == std::errc() && r.ptr == end)
+    if (const auto r = std::from_chars(node.text.data(), end, natural); r.ec == std::errc() && r.ptr == end)
       return natural;
     std::int64_t integer = 0;
-    if (const auto r = std::from_chars(node.text.data(), end, integer);
-        r.ec == std::errc() && r.ptr == end)
+    if (const auto r = std::from_chars(node.text.data(), end, integer); r.ec == std::errc() && r.ptr == end)
       return integer;
   }
   return node.number;
@@ -217,25 +200,21 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
     std::istringstream in{std::string(text)};
     YAML::Parser parser(in);
     Builder builder(file);
-    if (!parser.HandleNextDocument(builder))
-      throw input_error("E0522", file + ":1:1").says("holds no document");
+    if (!parser.HandleNextDocument(builder)) throw input_error("E0522", file + ":1:1").says("holds no document");
     Builder second(file);
-    if (parser.HandleNextDocument(second))
-      throw input_error("E0522", file).says("holds a second document");
+    if (parser.HandleNextDocument(second)) throw input_error("E0522", file).says("holds a second document");
     return builder.take();
   } catch (const YAML::Exception& error) {
     if (const int line = line_indented_by_tab(text); line > 0 && line <= error.mark.line + 1)
       throw input_error("E0522", fmt::format("{}:{}:1", file, line))
           .says("is not valid YAML: a line is indented with a tab, blanks are wanted");
-    throw input_error("E0522",
-                      fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1))
+    throw input_error("E0522", fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1))
         .says("is not valid YAML: " + error.msg);
   }
 }
 
 Document parse_document(std::string_view text, const std::string& file) {
-  return file.ends_with(".json") ? parse_json_document(text, file)
-                                 : parse_yaml_document(text, file);
+  return file.ends_with(".json") ? parse_json_document(text, file) : parse_yaml_document(text, file);
 }
 
 Json as_json(const Document& node) {
@@ -277,8 +256,7 @@ std::string read_document_text(const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0)
     throw input_error("E0551", path).says(std::string("cannot be read: ") + std::strerror(errno));
-  if (S_ISDIR(status.st_mode))
-    throw input_error("E0551", path).says("is a folder, a file was expected");
+  if (S_ISDIR(status.st_mode)) throw input_error("E0551", path).says("is a folder, a file was expected");
   if (!S_ISREG(status.st_mode)) throw input_error("E0551", path).says("is no regular file");
   if (static_cast<std::size_t>(status.st_size) > kMaxDocumentBytes)
     throw input_error("E0551", path)

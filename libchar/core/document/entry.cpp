@@ -33,16 +33,14 @@ Json json_list(const std::vector<T>& list, const Element& element) {
 Json json_value(const Value& value) {
   const auto number = [](double x) { return json_number(x); };
   const auto text = [](const std::string& x) { return Json(json_text(x)); };
-  return std::visit(
-      Match{[](std::monostate) { return Json(nullptr); },
-            [&](double x) { return number(x); },
-            [&](const std::string& x) { return text(x); },
-            [&](const std::vector<double>& list) { return json_list(list, number); },
-            [&](const std::vector<std::string>& list) { return json_list(list, text); },
-            [](const Interval& interval) { return json_interval(interval); },
-            [](const std::vector<Interval>& list) { return json_list(list, json_interval); },
-            [](const auto& plain) { return Json(plain); }},
-      value);
+  return std::visit(Match{[](std::monostate) { return Json(nullptr); }, [&](double x) { return number(x); },
+                          [&](const std::string& x) { return text(x); },
+                          [&](const std::vector<double>& list) { return json_list(list, number); },
+                          [&](const std::vector<std::string>& list) { return json_list(list, text); },
+                          [](const Interval& interval) { return json_interval(interval); },
+                          [](const std::vector<Interval>& list) { return json_list(list, json_interval); },
+                          [](const auto& plain) { return Json(plain); }},
+                    value);
 }
 
 Json json_entry(const Entry& entry) {
@@ -51,14 +49,11 @@ Json json_entry(const Entry& entry) {
     for (const Entry& element : entry.below) list.push_back(json_entry(element));
     return list;
   }
-  const bool part =
-      entry.form != Entry::Form::value && std::holds_alternative<std::monostate>(entry.value);
+  const bool part = entry.form != Entry::Form::value && std::holds_alternative<std::monostate>(entry.value);
   return part ? json_of(entry.below) : json_value(entry.value);
 }
 
-std::string yaml_number(double value) {
-  return std::isfinite(value) ? shortest_yaml(value) : "null";
-}
+std::string yaml_number(double value) { return std::isfinite(value) ? shortest_yaml(value) : "null"; }
 
 std::string yaml_value(const Entry& entry) {
   const auto listed = [](const auto& list, auto text) {
@@ -66,23 +61,20 @@ std::string yaml_value(const Entry& entry) {
     for (const auto& one : list) out += (out.empty() ? "" : ", ") + text(one);
     return "[" + out + "]";
   };
-  const auto interval = [&](const Interval& ends) {
-    return listed(std::vector{ends.low, ends.high}, yaml_number);
-  };
-  return std::visit(
-      Match{[](std::monostate) -> std::string { return "null"; },
-            [](bool value) -> std::string { return value ? "true" : "false"; },
-            [](double value) { return yaml_number(value); },
-            [&](const std::string& text) { return entry.bare ? text : quoted_yaml(text); },
-            [&](const std::vector<double>& list) { return listed(list, yaml_number); },
-            [&](const std::vector<std::string>& list) { return listed(list, quoted_yaml); },
-            [&](const Interval& ends) { return interval(ends); },
-            [&](const std::vector<Interval>& list) { return listed(list, interval); },
-            []<class T>(const std::vector<T>&) -> std::string {
-              throw std::logic_error("a list that only JSON documents have");
-            },
-            [](auto whole) { return std::to_string(whole); }},
-      entry.value);
+  const auto interval = [&](const Interval& ends) { return listed(std::vector{ends.low, ends.high}, yaml_number); };
+  return std::visit(Match{[](std::monostate) -> std::string { return "null"; },
+                          [](bool value) -> std::string { return value ? "true" : "false"; },
+                          [](double value) { return yaml_number(value); },
+                          [&](const std::string& text) { return entry.bare ? text : quoted_yaml(text); },
+                          [&](const std::vector<double>& list) { return listed(list, yaml_number); },
+                          [&](const std::vector<std::string>& list) { return listed(list, quoted_yaml); },
+                          [&](const Interval& ends) { return interval(ends); },
+                          [&](const std::vector<Interval>& list) { return listed(list, interval); },
+                          []<class T>(const std::vector<T>&) -> std::string {
+                            throw std::logic_error("a list that only JSON documents have");
+                          },
+                          [](auto whole) { return std::to_string(whole); }},
+                    entry.value);
 }
 
 std::string flow_of(const std::vector<Entry>& entries) {
@@ -132,8 +124,7 @@ Value finite_or_null(double value) {
 Entry tool_entry(std::string_view key) {
   Entry name{"name", std::string("sensorchar")};
   name.bare = true;
-  return part_entry(
-      std::string(key), {std::move(name), {"version", std::string(version())}}, Entry::Form::flow);
+  return part_entry(std::string(key), {std::move(name), {"version", std::string(version())}}, Entry::Form::flow);
 }
 
 Json json_of(const std::vector<Entry>& entries) {
@@ -152,8 +143,7 @@ std::string yaml_of(const std::vector<Entry>& entries, const std::string& indent
     if (entry.form == Entry::Form::block || entry.form == Entry::Form::list)
       out += comment + "\n" + block_of(entry, indent, comments);
     else
-      out += " " + (entry.form == Entry::Form::flow ? flow_of(entry.below) : yaml_value(entry)) +
-             comment + "\n";
+      out += " " + (entry.form == Entry::Form::flow ? flow_of(entry.below) : yaml_value(entry)) + comment + "\n";
   }
   return out;
 }

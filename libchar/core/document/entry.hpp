@@ -12,18 +12,10 @@
 
 namespace libchar {
 
-using Value = std::variant<std::monostate,  // null
-                           bool,
-                           double,
-                           std::uint64_t,
-                           std::int64_t,
-                           std::string,
-                           std::vector<double>,
-                           std::vector<std::string>,
-                           std::vector<bool>,
-                           std::vector<std::uint64_t>,
-                           Interval,
-                           std::vector<Interval>>;
+using Value =
+    std::variant<std::monostate,  // null
+                 bool, double, std::uint64_t, std::int64_t, std::string, std::vector<double>, std::vector<std::string>,
+                 std::vector<bool>, std::vector<std::uint64_t>, Interval, std::vector<Interval>>;
 
 /// One key of a document with its value, or with the keys below it.
 struct Entry {
@@ -56,9 +48,7 @@ Entry tool_entry(std::string_view key = "tool");
 Json json_of(const std::vector<Entry>& entries);
 
 /// Numbers read back to the same double in YAML 1.1 and 1.2 readers; what is not finite is null.
-std::string yaml_of(const std::vector<Entry>& entries,
-                    const std::string& indent = "",
-                    bool comments = true);
+std::string yaml_of(const std::vector<Entry>& entries, const std::string& indent = "", bool comments = true);
 
 // What to do with a variant, one case a type: std::visit(Match{[](double x) {…}, [](const std::string& s) {…}}, value).
 

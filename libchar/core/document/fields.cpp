@@ -21,36 +21,26 @@ std::vector<std::string> texts_of(std::span<const Word> words) {
 }
 
 int number_of(std::span<const Word> words, std::string_view text) {
-  return std::find_if(words.begin(), words.end(), [&](const Word& w) { return w.word == text; })
-      ->value;
+  return std::find_if(words.begin(), words.end(), [&](const Word& w) { return w.word == text; })->value;
 }
 
-bool is_columns(const Field& row) {
-  return row.layout == Layout::columns;
-}
+bool is_columns(const Field& row) { return row.layout == Layout::columns; }
 
 // The keys of a part stand beside the others.
-bool is_beside(const Field& row) {
-  return row.key.empty() && row.slot != nullptr;
-}
+bool is_beside(const Field& row) { return row.key.empty() && row.slot != nullptr; }
 
 // ---- reading ----
 
 std::vector<Interval> read_intervals(const MapReader& at, std::string_view key) {
   std::vector<Interval> out;
   for (const Document& one : at.list(key))
-    out.push_back(one.kind == Document::Kind::null ? Interval{kNone, kNone}
-                                                   : at.interval_in(key, one));
+    out.push_back(one.kind == Document::Kind::null ? Interval{kNone, kNone} : at.interval_in(key, one));
   return out;
 }
 
-[[noreturn]] void refuse_element(const MapReader& at,
-                                 std::string_view key,
-                                 const Document& value,
+[[noreturn]] void refuse_element(const MapReader& at, std::string_view key, const Document& value,
                                  const char* expected) {
-  throw input_error("E0982", at.where(value))
-      .says("{}: {} was expected", at.path_of(key), expected)
-      .got(value.text);
+  throw input_error("E0982", at.where(value)).says("{}: {} was expected", at.path_of(key), expected).got(value.text);
 }
 
 // One value of a column. What is null stays as it is where the row says what that means, and is NaN elsewhere.
@@ -62,21 +52,20 @@ void read_element(const Field& row, const MapReader& at, const Document& value, 
     return value.number;
   };
   const bool is_number = value.kind == Document::Kind::number;
-  std::visit(Match{[&](double* to) { *to = null ? kNone : number("a number", is_number); },
-                   [&](std::uint64_t* to) {
-                     *to = static_cast<std::uint64_t>(
-                         number("a whole number", is_number && value.whole && value.number >= 0));
-                   },
-                   [&](bool* to) {
-                     number("true or false", value.kind == Document::Kind::boolean);
-                     *to = value.boolean;
-                   },
-                   [&](Interval* to) {
-                     *to = null ? Interval{kNone, kNone} : at.interval_in(row.key, value);
-                   },
-                   [&](std::string* to) { *to = value.text; },
-                   [](auto) {}},
-             row.slot(part));
+  std::visit(
+      Match{[&](double* to) { *to = null ? kNone : number("a number", is_number); },
+            [&](std::uint64_t* to) {
+              *to = static_cast<std::uint64_t>(number("a whole number", is_number && value.whole && value.number >= 0));
+            },
+            [&](bool* to) {
+              number("true or false", value.kind == Document::Kind::boolean);
+              *to = value.boolean;
+            },
+            [&](Interval* to) {
+              *to = null ? Interval{kNone, kNone} : at.interval_in(row.key, value);
+            },
+            [&](std::string* to) { *to = value.text; }, [](auto) {}},
+      row.slot(part));
 }
 
 void read_columns(const Field& columns, const MapReader& at, const PartsSlot& parts) {
@@ -86,8 +75,7 @@ void read_columns(const Field& columns, const MapReader& at, const PartsSlot& pa
     if (std::exchange(first, false)) parts.resize(parts.at, at.list(row.key).size());
     const std::size_t length = parts.size(parts.at);
     const std::vector<Document>& values = at.list(row.key, length);
-    for (std::size_t i = 0; i < length; ++i)
-      read_element(row, at, values[i], parts.part(parts.at, i));
+    for (std::size_t i = 0; i < length; ++i) read_element(row, at, values[i], parts.part(parts.at, i));
   }
 }
 
@@ -96,12 +84,10 @@ void read_parts(const Field& row, const MapReader& at, const PartsSlot& parts) {
     if (is_beside(row)) return read_columns(row, at, parts);
     return read_columns(row, at.map(row.key, keys_of(row.below)), parts);
   }
-  const std::vector<MapReader> maps = row.kind == "list"
-                                          ? at.maps(row.key, keys_of(row.below))
-                                          : std::vector{at.map(row.key, keys_of(row.below))};
+  const std::vector<MapReader> maps =
+      row.kind == "list" ? at.maps(row.key, keys_of(row.below)) : std::vector{at.map(row.key, keys_of(row.below))};
   parts.resize(parts.at, maps.size());
-  for (std::size_t i = 0; i < maps.size(); ++i)
-    fields_detail::read(row.below, maps[i], parts.part(parts.at, i));
+  for (std::size_t i = 0; i < maps.size(); ++i) fields_detail::read(row.below, maps[i], parts.part(parts.at, i));
 }
 
 void read_row(const Field& row, const MapReader& at, void* object) {
@@ -113,40 +99,34 @@ void read_row(const Field& row, const MapReader& at, void* object) {
       at.refuse(key, fmt::format("expected numbers of at least {}", shortest(text.range.lowest)));
     return ends;
   };
-  std::visit(Match{[&](void* part) {
-                     if (is_beside(row)) return fields_detail::read(row.below, at, part);
-                     fields_detail::read(row.below, at.map(key, keys_of(row.below)), part);
-                   },
-                   [&](bool* value) {
-                     *value = text.words.empty()
-                                  ? at.flag_or(key, false)
-                                  : number_of(text.words, at.word(key, texts_of(text.words))) != 0;
-                   },
-                   [&](double* value) { *value = at.number(key, text.range); },
-                   [&](std::uint64_t* value) { *value = at.count(key, text.range); },
-                   [&](std::string* value) {
-                     *value =
-                         text.words.empty() ? at.text(key) : at.word(key, texts_of(text.words));
-                   },
-                   [&](std::optional<double>* value) { *value = at.number(key, text.range); },
-                   [&](std::optional<std::uint64_t>* value) { *value = at.count(key, text.range); },
-                   [&](std::optional<std::int64_t>* value) { *value = at.whole(key); },
-                   [&](std::vector<double>* value) { *value = at.numbers(key); },
-                   [&](std::vector<std::string>* value) { *value = at.texts(key); },
-                   [&](int* value) { *value = static_cast<int>(at.whole(key)); },
-                   [&](Interval* value) { *value = interval(); },
-                   [&](std::optional<Interval>* value) { *value = interval(); },
-                   [&](std::vector<Interval>* value) { *value = read_intervals(at, key); },
-                   [&](std::vector<std::vector<double>>* value) {
-                     value->clear();
-                     for (const Document& one : at.list(key))
-                       value->push_back(at.numbers_in(key, one));
-                   },
-                   [&](const PartsSlot& parts) { read_parts(row, at, parts); },
-                   [&](const WordSlot& slot) {
-                     slot.set(slot.at, number_of(text.words, at.word(key, texts_of(text.words))));
-                   }},
-             row.slot(object));
+  std::visit(
+      Match{
+          [&](void* part) {
+            if (is_beside(row)) return fields_detail::read(row.below, at, part);
+            fields_detail::read(row.below, at.map(key, keys_of(row.below)), part);
+          },
+          [&](bool* value) {
+            *value = text.words.empty() ? at.flag_or(key, false)
+                                        : number_of(text.words, at.word(key, texts_of(text.words))) != 0;
+          },
+          [&](double* value) { *value = at.number(key, text.range); },
+          [&](std::uint64_t* value) { *value = at.count(key, text.range); },
+          [&](std::string* value) { *value = text.words.empty() ? at.text(key) : at.word(key, texts_of(text.words)); },
+          [&](std::optional<double>* value) { *value = at.number(key, text.range); },
+          [&](std::optional<std::uint64_t>* value) { *value = at.count(key, text.range); },
+          [&](std::optional<std::int64_t>* value) { *value = at.whole(key); },
+          [&](std::vector<double>* value) { *value = at.numbers(key); },
+          [&](std::vector<std::string>* value) { *value = at.texts(key); },
+          [&](int* value) { *value = static_cast<int>(at.whole(key)); }, [&](Interval* value) { *value = interval(); },
+          [&](std::optional<Interval>* value) { *value = interval(); },
+          [&](std::vector<Interval>* value) { *value = read_intervals(at, key); },
+          [&](std::vector<std::vector<double>>* value) {
+            value->clear();
+            for (const Document& one : at.list(key)) value->push_back(at.numbers_in(key, one));
+          },
+          [&](const PartsSlot& parts) { read_parts(row, at, parts); },
+          [&](const WordSlot& slot) { slot.set(slot.at, number_of(text.words, at.word(key, texts_of(text.words)))); }},
+      row.slot(object));
 }
 
 // What a null of a report says of a number.
@@ -167,30 +147,27 @@ Value value_of(const Field& row, void* object) {
     if (*value) return **value;
     return {};
   };
-  return std::visit(Match{[](void*) -> Value { return {}; },
-                          [](const PartsSlot&) -> Value { return {}; },
-                          [](std::vector<std::vector<double>>*) -> Value { return {}; },
-                          [](int* value) -> Value { return std::int64_t{*value}; },
-                          [&](std::optional<Interval>* value) { return optional(value); },
-                          [&](bool* value) -> Value {
-                            if (row.text.words.empty()) return *value;
-                            return std::string(word_of(row.text.words, *value ? 1 : 0));
-                          },
-                          [&](std::optional<double>* value) { return optional(value); },
-                          [&](std::optional<std::uint64_t>* value) { return optional(value); },
-                          [&](std::optional<std::int64_t>* value) { return optional(value); },
-                          [&](const WordSlot& slot) -> Value {
-                            return std::string(word_of(row.text.words, slot.get(slot.at)));
-                          },
-                          [](auto* value) -> Value { return *value; }},
-                    row.slot(object));
+  return std::visit(
+      Match{[](void*) -> Value { return {}; }, [](const PartsSlot&) -> Value { return {}; },
+            [](std::vector<std::vector<double>>*) -> Value { return {}; },
+            [](int* value) -> Value { return std::int64_t{*value}; },
+            [&](std::optional<Interval>* value) { return optional(value); },
+            [&](bool* value) -> Value {
+              if (row.text.words.empty()) return *value;
+              return std::string(word_of(row.text.words, *value ? 1 : 0));
+            },
+            [&](std::optional<double>* value) { return optional(value); },
+            [&](std::optional<std::uint64_t>* value) { return optional(value); },
+            [&](std::optional<std::int64_t>* value) { return optional(value); },
+            [&](const WordSlot& slot) -> Value { return std::string(word_of(row.text.words, slot.get(slot.at))); },
+            [](auto* value) -> Value { return *value; }},
+      row.slot(object));
 }
 
 bool same(const Field& row, void* object, void* defaults) {
   const Slot one = row.slot(object), other = row.slot(defaults);
   if (const auto* parts = std::get_if<PartsSlot>(&one)) return parts->size(parts->at) == 0;
-  if (auto* const* lists = std::get_if<std::vector<std::vector<double>>*>(&one))
-    return (*lists)->empty();
+  if (auto* const* lists = std::get_if<std::vector<std::vector<double>>*>(&one)) return (*lists)->empty();
   if (!std::holds_alternative<void*>(one)) return value_of(row, object) == value_of(row, defaults);
   return std::all_of(row.below.begin(), row.below.end(), [&](const Field& below) {
     return below.slot == nullptr || same(below, std::get<void*>(one), std::get<void*>(other));
@@ -217,16 +194,13 @@ std::string_view comment_of(const Field& row, const Value& value) {
 
 Entry constant_entry(const Field& row, const Substitutions& substitutions) {
   Entry entry{std::string(row.key), *row.constant};
-  if (auto* text = std::get_if<std::string>(&entry.value))
-    *text = substituted(*text, substitutions);
+  if (auto* text = std::get_if<std::string>(&entry.value)) *text = substituted(*text, substitutions);
   entry.comment = row.text.comment;
   entry.bare = true;
   return entry;
 }
 
-bool is_known(const Field& row, const void* object) {
-  return row.text.known == nullptr || row.text.known(object);
-}
+bool is_known(const Field& row, const void* object) { return row.text.known == nullptr || row.text.known(object); }
 
 template <class T>
 Value gathered(const Field& row, const PartsSlot& parts, const T& none) {
@@ -286,8 +260,7 @@ Entry entry_of(const Field& row, void* object, void* defaults, const Substitutio
   entry.bare = !row.text.words.empty() && !row.text.quoted;
   entry.form = row.text.form;
   const Slot slot = row.slot(object);
-  if (const auto* parts = std::get_if<PartsSlot>(&slot))
-    return parts_entry(row, *parts, substitutions);
+  if (const auto* parts = std::get_if<PartsSlot>(&slot)) return parts_entry(row, *parts, substitutions);
   if (auto* const* lists = std::get_if<std::vector<std::vector<double>>*>(&slot)) {
     entry.form = Entry::Form::list;
     for (const std::vector<double>& list : **lists) entry.below.push_back({"", list});
@@ -295,8 +268,7 @@ Entry entry_of(const Field& row, void* object, void* defaults, const Substitutio
   if (void* const* part = std::get_if<void*>(&slot)) {
     const bool flow = entry.form == Entry::Form::flow;
     entry.form = flow ? Entry::Form::flow : Entry::Form::block;
-    entry.below = fields_detail::entries(
-        row.below, *part, std::get<void*>(row.slot(defaults)), substitutions, flow);
+    entry.below = fields_detail::entries(row.below, *part, std::get<void*>(row.slot(defaults)), substitutions, flow);
   }
   return entry;
 }
@@ -338,23 +310,11 @@ std::vector<std::string> keys_of(std::span<const Field> rows) {
 namespace fields_detail {
 
 std::string_view kind_of(const Slot& slot) {
-  constexpr std::string_view kKinds[] = {"",
-                                         "true, false",
-                                         "number",
-                                         "whole number",
-                                         "text",
-                                         "number",
-                                         "whole number",
-                                         "whole number",
-                                         "list of numbers",
-                                         "list of texts",
-                                         "",
-                                         "whole number",
-                                         "[low, high]",
-                                         "[low, high]",
-                                         "list of [low, high]",
-                                         "",
-                                         "lists of numbers"};
+  constexpr std::string_view kKinds[] = {
+      "",       "true, false",     "number",       "whole number",    "text",
+      "number", "whole number",    "whole number", "list of numbers", "list of texts",
+      "",       "whole number",    "[low, high]",  "[low, high]",     "list of [low, high]",
+      "",       "lists of numbers"};
   return kKinds[slot.index()];
 }
 
@@ -392,11 +352,8 @@ void read(std::span<const Field> rows, const MapReader& at, void* object) {
   }
 }
 
-std::vector<Entry> entries(std::span<const Field> rows,
-                           const void* object,
-                           const void* defaults,
-                           const Substitutions& substitutions,
-                           bool all) {
+std::vector<Entry> entries(std::span<const Field> rows, const void* object, const void* defaults,
+                           const Substitutions& substitutions, bool all) {
   void* const from = const_cast<void*>(object);
   void* const usual = const_cast<void*>(defaults);
   std::vector<Entry> out;
@@ -415,13 +372,11 @@ std::vector<Entry> entries(std::span<const Field> rows,
       gap = true;
     else if (is_beside(row))
       std::ranges::move(entry_of(row, from, usual, substitutions).below, std::back_inserter(out));
-    else if (all || written == Written::if_known || written == Written::always ||
-             !same(row, from, usual))
+    else if (all || written == Written::if_known || written == Written::always || !same(row, from, usual))
       out.push_back(entry_of(row, from, usual, substitutions));
     if (before == out.size()) continue;
     out[before].gap = std::exchange(gap, false);
-    for (std::size_t i = before; i < out.size(); ++i)
-      out[i].comment = substituted(out[i].comment, substitutions);
+    for (std::size_t i = before; i < out.size(); ++i) out[i].comment = substituted(out[i].comment, substitutions);
   }
   return out;
 }

@@ -43,10 +43,9 @@ template <EnumWithTable Enum>
 std::span<const Word> words_in_fields() {
   static constexpr auto words = [] {
     std::array<Word, enum_table<Enum>.size()> out;
-    std::transform(
-        enum_table<Enum>.begin(), enum_table<Enum>.end(), out.begin(), [](const auto& row) {
-          return Word{row.word, static_cast<int>(row.value)};
-        });
+    std::transform(enum_table<Enum>.begin(), enum_table<Enum>.end(), out.begin(), [](const auto& row) {
+      return Word{row.word, static_cast<int>(row.value)};
+    });
     return out;
   }();
   return words;
@@ -69,23 +68,10 @@ struct PartsSlot {
 };
 
 /// Where the value of a row is in memory: `void*` is a part with rows of its own.
-using Slot = std::variant<void*,
-                          bool*,
-                          double*,
-                          std::uint64_t*,
-                          std::string*,
-                          std::optional<double>*,
-                          std::optional<std::uint64_t>*,
-                          std::optional<std::int64_t>*,
-                          std::vector<double>*,
-                          std::vector<std::string>*,
-                          WordSlot,
-                          int*,
-                          Interval*,
-                          std::optional<Interval>*,
-                          std::vector<Interval>*,
-                          PartsSlot,
-                          std::vector<std::vector<double>>*>;
+using Slot = std::variant<void*, bool*, double*, std::uint64_t*, std::string*, std::optional<double>*,
+                          std::optional<std::uint64_t>*, std::optional<std::int64_t>*, std::vector<double>*,
+                          std::vector<std::string>*, WordSlot, int*, Interval*, std::optional<Interval>*,
+                          std::vector<Interval>*, PartsSlot, std::vector<std::vector<double>>*>;
 
 enum class Written {
   usual,     ///< as `when_set`, in `always(…)` as `always`
@@ -102,18 +88,17 @@ enum class Layout {
 };
 
 struct FieldText {
-  std::string_view unit = "";      ///< in docs
-  NumberRange range = kAnyNumber;  ///< of a number
-  std::span<const Word> words =
-      {};  ///< all that a text or an enumeration may be; of an enum with a table: those
-  std::string_view comment = "";    ///< in YAML; "{NAME}" stands for a substitution
-  std::string_view meaning = "";    ///< in docs; the comment when empty
-  std::string_view otherwise = "";  ///< in docs: what an absent key means
+  std::string_view unit = "";        ///< in docs
+  NumberRange range = kAnyNumber;    ///< of a number
+  std::span<const Word> words = {};  ///< all that a text or an enumeration may be; of an enum with a table: those
+  std::string_view comment = "";     ///< in YAML; "{NAME}" stands for a substitution
+  std::string_view meaning = "";     ///< in docs; the comment when empty
+  std::string_view otherwise = "";   ///< in docs: what an absent key means
   Written written = Written::usual;
   /// Of the object: whether the value is known; null, or no key, where it is not (`when<has_value>`).
   bool (*known)(const void* object) = nullptr;
   bool required = false;
-  bool quoted = false;  ///< a word that YAML 1.1 would not take for a text: yes, no
+  bool quoted = false;                    ///< a word that YAML 1.1 would not take for a text: yes, no
   Entry::Form form = Entry::Form::value;  ///< in YAML, of a list or of a part with rows of its own
 };
 
@@ -174,8 +159,7 @@ Slot slot_of(V& value) {
   // A pointer to any other number would become one to an object: std::size_t where it has 32 bits.
   static_assert(!std::is_arithmetic_v<V> || is_one_of<V*>(static_cast<const Slot*>(nullptr)));
   if constexpr (std::is_enum_v<V>) {
-    return WordSlot{&value,
-                    [](const void* at) { return static_cast<int>(*static_cast<const V*>(at)); },
+    return WordSlot{&value, [](const void* at) { return static_cast<int>(*static_cast<const V*>(at)); },
                     [](void* at, int number) { *static_cast<V*>(at) = static_cast<V>(number); }};
   } else if constexpr (std::is_constructible_v<Slot, V*> && !std::is_class_v<V>) {
     return &value;
@@ -193,9 +177,7 @@ Slot parts_slot_of(V& value) {
   static const Part usual{};
   PartsSlot slot{&value, nullptr, nullptr, nullptr, &usual};
   if constexpr (std::is_same_v<V, std::optional<Part>>) {
-    slot.size = [](const void* at) {
-      return std::size_t{static_cast<const V*>(at)->has_value() ? 1U : 0U};
-    };
+    slot.size = [](const void* at) { return std::size_t{static_cast<const V*>(at)->has_value() ? 1U : 0U}; };
     slot.resize = [](void* at, std::size_t) { static_cast<V*>(at)->emplace(); };
     slot.part = [](void* at, std::size_t) -> void* { return &**static_cast<V*>(at); };
   } else {
@@ -232,8 +214,8 @@ Slot slot_at(void* object) {
 }
 
 template <auto First, auto... Rest>
-using MemberAt = std::remove_cvref_t<decltype((
-    (std::declval<typename MemberOf<decltype(First)>::Class&>().*First).*....*Rest))>;
+using MemberAt =
+    std::remove_cvref_t<decltype(((std::declval<typename MemberOf<decltype(First)>::Class&>().*First).*....*Rest))>;
 
 template <class Member>
 FieldText with_enum_words(FieldText text) {
@@ -245,11 +227,8 @@ FieldText with_enum_words(FieldText text) {
 std::string_view kind_of(const Slot& slot);
 
 void read(std::span<const Field> rows, const MapReader& at, void* object);
-std::vector<Entry> entries(std::span<const Field> rows,
-                           const void* object,
-                           const void* defaults,
-                           const Substitutions& substitutions,
-                           bool all = false);
+std::vector<Entry> entries(std::span<const Field> rows, const void* object, const void* defaults,
+                           const Substitutions& substitutions, bool all = false);
 
 }  // namespace fields_detail
 
@@ -259,13 +238,9 @@ auto field(std::string_view key, const FieldText& text = {}) {
   using T = typename fields_detail::MemberOf<decltype(First)>::Class;
   T object{};
   using Member = fields_detail::MemberAt<First, Rest...>;
-  Field row{key,
-            &fields_detail::slot_at<First, Rest...>,
-            fields_detail::with_enum_words<Member>(text),
+  Field row{key, &fields_detail::slot_at<First, Rest...>, fields_detail::with_enum_words<Member>(text),
             fields_detail::kind_of(fields_detail::slot_at<First, Rest...>(&object))};
-  row.optional = requires(Member member) {
-    member.has_value();
-  };
+  row.optional = requires(Member member) { member.has_value(); };
   return Row<T>(std::move(row));
 }
 
@@ -273,9 +248,7 @@ auto field(std::string_view key, const FieldText& text = {}) {
 template <auto First, auto... Rest>
 auto field_or_null(std::string_view key, FieldText text = {}) {
   using T = typename fields_detail::MemberOf<decltype(First)>::Class;
-  text.known = [](const void* object) {
-    return !((static_cast<const T*>(object)->*First).*....*Rest).empty();
-  };
+  text.known = [](const void* object) { return !((static_cast<const T*>(object)->*First).*....*Rest).empty(); };
   return field<First, Rest...>(key, text);
 }
 
@@ -291,8 +264,7 @@ template <auto Get>
 auto computed(std::string_view key, const FieldText& text = {}) {
   using Getter = fields_detail::GetterOf<decltype(+Get)>;
   using T = typename Getter::Class;
-  using V = std::conditional_t<std::is_convertible_v<typename Getter::Type, std::string_view>,
-                               std::string,
+  using V = std::conditional_t<std::is_convertible_v<typename Getter::Type, std::string_view>, std::string,
                                typename Getter::Type>;
   Field row{key, nullptr, text, fields_detail::kind_of(Value(V{}))};
   row.read = [](const MapReader&, std::string_view, void*) {};
@@ -375,9 +347,7 @@ template <class T>
 Row<T> tool_row() {
   Field row{"tool", nullptr, {.meaning = "the program that wrote the file"}, "`name`, `version`"};
   row.read = [](const MapReader& at, std::string_view key, void*) { read_tool(at, key); };
-  row.write = [](const Field& field, const void*, std::vector<Entry>& out) {
-    out.push_back(tool_entry(field.key));
-  };
+  row.write = [](const Field& field, const void*, std::vector<Entry>& out) { out.push_back(tool_entry(field.key)); };
   return row;
 }
 
@@ -392,9 +362,7 @@ Row<T> empty_line() {
 template <class T, auto Read, auto Write>
 Row<T> custom(std::string_view key, std::string_view kind, const FieldText& text = {}) {
   Field row{key, nullptr, text, kind};
-  row.read = [](const MapReader& at, std::string_view name, void* object) {
-    Read(at, name, *static_cast<T*>(object));
-  };
+  row.read = [](const MapReader& at, std::string_view name, void* object) { Read(at, name, *static_cast<T*>(object)); };
   row.write = [](const Field& f, const void* object, std::vector<Entry>& out) {
     Write(f, *static_cast<const T*>(object), out);
   };
@@ -422,9 +390,7 @@ void read_fields(const Fields<T>& fields, const MapReader& at, T& object) {
 
 /// What a file about `object` says.
 template <class T>
-std::vector<Entry> entries_of(const Fields<T>& fields,
-                              const T& object,
-                              const Substitutions& substitutions = {}) {
+std::vector<Entry> entries_of(const Fields<T>& fields, const T& object, const Substitutions& substitutions = {}) {
   const T defaults{};
   return fields_detail::entries(fields.rows, &object, &defaults, substitutions);
 }
@@ -452,9 +418,7 @@ Fields<T> joined(Fields<T> first, const Fields<T>& second) {
 
 /// The rows of these keys in this order, each written always or when it is set.
 template <class T>
-Fields<T> selected(const Fields<T>& fields,
-                   std::initializer_list<std::string_view> keys,
-                   Written written) {
+Fields<T> selected(const Fields<T>& fields, std::initializer_list<std::string_view> keys, Written written) {
   Fields<T> out({});
   for (const std::string_view key : keys)
     for (const Field& row : fields.rows)

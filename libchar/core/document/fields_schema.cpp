@@ -13,9 +13,7 @@ Json type_of(std::string_view word, bool nullable) {
   return nullable ? Json{{"type", {word, "null"}}} : Json{{"type", word}};
 }
 
-Json list_schema(Json items) {
-  return {{"type", "array"}, {"items", std::move(items)}};
-}
+Json list_schema(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
 
 // An end that is not known or infinite is null.
 Json interval_schema(bool nullable) {
@@ -31,9 +29,7 @@ Json plain_list(std::string_view word, bool file) {
   return file ? Json{{"anyOf", {list, type_of(word, false)}}} : list;
 }
 
-bool may_be_null(const Field& row) {
-  return row.text.written == Written::always && row.text.known != nullptr;
-}
+bool may_be_null(const Field& row) { return row.text.written == Written::always && row.text.known != nullptr; }
 
 Json value_schema(const Field& row, bool file) {
   const bool nullable = may_be_null(row);
@@ -56,8 +52,7 @@ Json value_schema(const Field& row, bool file) {
   if (row.kind.starts_with("list")) return list_schema(Json::object());
   if (row.kind.starts_with("map")) return type_of("object", false);
   if (row.kind == "pairs") return list_schema(plain_list("integer", false));
-  if (row.kind == "counts")
-    return {{"type", "object"}, {"additionalProperties", {{"type", "integer"}}}};
+  if (row.kind == "counts") return {{"type", "object"}, {"additionalProperties", {{"type", "integer"}}}};
   return Json::object();
 }
 
@@ -97,8 +92,7 @@ Json known_schema(const Field& row, bool file) {
 
 Json row_schema(const Field& row, bool file) {
   Json out = known_schema(row, file);
-  if (may_be_null(row) && out.contains("type") && out["type"].is_string())
-    out["type"] = {out["type"], "null"};
+  if (may_be_null(row) && out.contains("type") && out["type"].is_string()) out["type"] = {out["type"], "null"};
   return out;
 }
 

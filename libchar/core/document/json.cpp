@@ -20,11 +20,8 @@ void check_finite(const Json& node) {
 
 // nlohmann would throw, or write U+FFFD: what was there is kept readable instead.
 void escape_strings(Json& node) {
-  const auto bad = [](const std::string& text) {
-    return first_invalid_utf8(text) != std::string_view::npos;
-  };
-  if (node.is_string() && bad(node.get_ref<const std::string&>()))
-    node = printable(node.get_ref<const std::string&>());
+  const auto bad = [](const std::string& text) { return first_invalid_utf8(text) != std::string_view::npos; };
+  if (node.is_string() && bad(node.get_ref<const std::string&>())) node = printable(node.get_ref<const std::string&>());
   if (node.is_array())
     for (Json& child : node) escape_strings(child);
   if (!node.is_object()) return;
@@ -37,8 +34,7 @@ void escape_strings(Json& node) {
 }
 
 bool all_utf8(const Json& node) {
-  if (node.is_string())
-    return first_invalid_utf8(node.get_ref<const std::string&>()) == std::string_view::npos;
+  if (node.is_string()) return first_invalid_utf8(node.get_ref<const std::string&>()) == std::string_view::npos;
   if (node.is_array())
     for (const Json& child : node)
       if (!all_utf8(child)) return false;
@@ -50,12 +46,8 @@ bool all_utf8(const Json& node) {
 
 }  // namespace
 
-Json json_number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-Json json_number(const std::optional<double>& value) {
-  return value ? json_number(*value) : Json(nullptr);
-}
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json json_number(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
 
 std::string json_text(std::string_view text) {
   return first_invalid_utf8(text) == std::string_view::npos ? std::string(text) : printable(text);
@@ -91,8 +83,7 @@ class Comparison {
     if (was.is_number() && now.is_number()) return compare_numbers(at, was, now);
     if (was.is_object() && now.is_object()) return compare_objects(at, was, now);
     if (was.is_array() && now.is_array() && was.size() == now.size()) {
-      for (std::size_t i = 0; i < was.size(); ++i)
-        compare(at + "/" + std::to_string(i), was[i], now[i]);
+      for (std::size_t i = 0; i < was.size(); ++i) compare(at + "/" + std::to_string(i), was[i], now[i]);
       return;
     }
     if (was != now) found.push_back({at, excerpt(was), excerpt(now)});
@@ -107,8 +98,7 @@ class Comparison {
   void compare_numbers(const std::string& at, const Json& was, const Json& now) {
     if (was == now) return;
     const auto a = was.get<double>(), b = now.get<double>();
-    found.push_back(
-        {at, excerpt(was), excerpt(now), std::abs(a - b) / std::max(std::abs(a), std::abs(b))});
+    found.push_back({at, excerpt(was), excerpt(now), std::abs(a - b) / std::max(std::abs(a), std::abs(b))});
   }
   void compare_objects(const std::string& at, const Json& was, const Json& now) {
     for (const auto& [key, value] : was.items()) {
@@ -119,16 +109,14 @@ class Comparison {
         found.push_back({at + "/" + key, excerpt(value), "nothing"});
     }
     for (const auto& [key, value] : now.items())
-      if (!is_ignored(key) && !was.contains(key))
-        found.push_back({at + "/" + key, "nothing", excerpt(value)});
+      if (!is_ignored(key) && !was.contains(key)) found.push_back({at + "/" + key, "nothing", excerpt(value)});
   }
   const std::vector<std::string>& ignored_;
 };
 
 }  // namespace
 
-std::vector<JsonDifference> json_differences(const Json& was,
-                                             const Json& now,
+std::vector<JsonDifference> json_differences(const Json& was, const Json& now,
                                              const std::vector<std::string>& ignored) {
   Comparison comparison(ignored);
   comparison.compare("", was, now);

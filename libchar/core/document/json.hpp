@@ -40,8 +40,7 @@ struct JsonDifference {
 };
 
 /// Differences in order of the first document; members named in `ignored` are skipped at every depth.
-std::vector<JsonDifference> json_differences(const Json& was,
-                                             const Json& now,
+std::vector<JsonDifference> json_differences(const Json& was, const Json& now,
                                              const std::vector<std::string>& ignored = {});
 
 }  // namespace libchar

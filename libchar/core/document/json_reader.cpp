@@ -26,8 +26,7 @@ struct Place {
 // Line and column of bytes that are asked for in rising order; a byte order mark takes no column.
 class Places {
  public:
-  explicit Places(std::string_view text)
-      : text_(text), next_(text.starts_with(kMark) ? kMark.size() : 0) {}
+  explicit Places(std::string_view text) : text_(text), next_(text.starts_with(kMark) ? kMark.size() : 0) {}
   Place at(std::size_t byte) {
     for (; next_ < std::min(byte, text_.size()); ++next_) {
       ++place_.column;
@@ -74,8 +73,7 @@ struct Cursor {
 // Walks the events of the parser: builds the document, and refuses what nlohmann lets through.
 class Guard : public nlohmann::json_sax<Json> {
  public:
-  Guard(std::string_view text, const std::string& file)
-      : text_(text), file_(file), read_(text.data()), places_(text) {}
+  Guard(std::string_view text, const std::string& file) : text_(text), file_(file), read_(text.data()), places_(text) {}
   const char** furthest() { return &read_; }
   Document take() { return std::move(root_); }
 
@@ -97,8 +95,7 @@ class Guard : public nlohmann::json_sax<Json> {
   }
   bool number_float(number_float_t value, const string_t& literal) override {
     const std::size_t start = start_of_number(literal);
-    if (!std::isfinite(value))
-      throw refusal("E0602", start).says("a number is out of range").got(literal);
+    if (!std::isfinite(value)) throw refusal("E0602", start).says("a number is out of range").got(literal);
     if (literal.find_first_of(".eE") == string_t::npos)
       throw refusal("E0602", start).says("an integer has more than 64 bits").got(literal);
     put(Document::Kind::number, literal, start).number = value;
@@ -121,26 +118,18 @@ class Guard : public nlohmann::json_sax<Json> {
     stack_.back()->map.push_back({name, place.line, place.column, {}});
     return true;
   }
-  bool parse_error(std::size_t position,
-                   const std::string& token,
-                   const nlohmann::detail::exception& e) override {
-    if (e.id == 406)
-      throw refusal("E0602", start_of_number(token)).says("a number is out of range").got(token);
+  bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& e) override {
+    if (e.id == 406) throw refusal("E0602", start_of_number(token)).says("a number is out of range").got(token);
     std::string reason = e.what();
     const std::size_t colon = reason.find("syntax error");
-    reason = colon == std::string::npos ? "is not valid JSON"
-                                        : "is not valid JSON: " + reason.substr(colon);
+    reason = colon == std::string::npos ? "is not valid JSON" : "is not valid JSON: " + reason.substr(colon);
     const std::size_t semicolon = reason.find("; last read");
     if (semicolon != std::string::npos) reason.resize(semicolon);
-    throw input_error("E0601", described(text_, position == 0 ? 0 : position - 1, file_))
-        .says(reason)
-        .got(token);
+    throw input_error("E0601", described(text_, position == 0 ? 0 : position - 1, file_)).says(reason).got(token);
   }
 
  private:
-  Refusal refusal(const char* code, std::size_t byte) {
-    return input_error(code, described(text_, byte, file_));
-  }
+  Refusal refusal(const char* code, std::size_t byte) { return input_error(code, described(text_, byte, file_)); }
   std::size_t byte() const { return static_cast<std::size_t>(read_ - text_.data()); }
   // Words, brackets and texts have been read to their last character.
   std::size_t start_of(std::string_view word) const { return byte() - word.size(); }
@@ -167,8 +156,7 @@ class Guard : public nlohmann::json_sax<Json> {
   Document& slot() {
     if (stack_.empty()) return root_;
     Document& parent = *stack_.back();
-    return parent.kind == Document::Kind::list ? parent.list.emplace_back()
-                                               : parent.map.back().value;
+    return parent.kind == Document::Kind::list ? parent.list.emplace_back() : parent.map.back().value;
   }
   Document& put(Document::Kind kind, std::string text, std::size_t start) {
     Document& node = slot();
@@ -188,8 +176,7 @@ class Guard : public nlohmann::json_sax<Json> {
   }
   bool open(Document::Kind kind) {
     if (stack_.size() >= kMaxDocumentDepth)
-      throw input_error("E0604", file_)
-          .says("JSON is nested deeper than {} levels", kMaxDocumentDepth);
+      throw input_error("E0604", file_).says("JSON is nested deeper than {} levels", kMaxDocumentDepth);
     stack_.push_back(&put(kind, "", byte() - 1));
     keys_.emplace_back();
     return true;
@@ -217,8 +204,7 @@ Document parse_json_document(std::string_view text, const std::string& file) {
         .says("JSON file of {} bytes exceeds the limit of {}", text.size(), kMaxDocumentBytes);
   const std::string_view body = text.substr(text.starts_with(kMark) ? kMark.size() : 0);
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw input_error("E0606", file + ":1:1 (byte 0)")
-        .says("is empty, a JSON document was expected");
+    throw input_error("E0606", file + ":1:1 (byte 0)").says("is empty, a JSON document was expected");
   if (const std::size_t bad = first_invalid_utf8(text); bad != std::string_view::npos)
     throw input_error("E0607", described(text, bad, file))
         .says("is not valid UTF-8")
@@ -229,8 +215,6 @@ Document parse_json_document(std::string_view text, const std::string& file) {
   return guard.take();
 }
 
-Json parse_json(std::string_view text, const std::string& file) {
-  return as_json(parse_json_document(text, file));
-}
+Json parse_json(std::string_view text, const std::string& file) { return as_json(parse_json_document(text, file)); }
 
 }  // namespace libchar

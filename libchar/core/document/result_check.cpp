@@ -63,30 +63,23 @@ CheckedFile checked_input(const Json& input, const std::string& inputs_in) {
   return out;
 }
 
-ResultCheck check_document(const fs::path& path,
-                           const Json& document,
-                           const std::string& inputs_in) {
+ResultCheck check_document(const fs::path& path, const Json& document, const std::string& inputs_in) {
   const Json& tool = member(document, "tool");
   ResultCheck out{path.string(), text_at(tool, "version"), text_at(tool, "build"), {}};
-  for (const Json& input : list_at(document, "input"))
-    out.files.push_back(checked_input(input, inputs_in));
+  for (const Json& input : list_at(document, "input")) out.files.push_back(checked_input(input, inputs_in));
   const Json& digests = member(document, "files_sha256");
   for (const Json& name : list_at(document, "files")) {
     if (!name.is_string()) continue;
     const fs::path file = path.parent_path() / fs::path(name.get<std::string>()).filename();
     out.files.push_back(
-        {file.string(),
-         false,
-         state_of(file.string(), text_at(digests, name.get<std::string>().c_str()))});
+        {file.string(), false, state_of(file.string(), text_at(digests, name.get<std::string>().c_str()))});
   }
   return out;
 }
 
 }  // namespace
 
-Json result_document(const std::string& path) {
-  return Json::parse(file_text(path, kMostOfDocument), nullptr, false);
-}
+Json result_document(const std::string& path) { return Json::parse(file_text(path, kMostOfDocument), nullptr, false); }
 
 std::string_view state_word(FileState state) {
   switch (state) {
@@ -110,8 +103,7 @@ bool ResultCheck::holds() const {
   });
 }
 
-std::vector<ResultCheck> check_results(const std::string& folder_or_document,
-                                       const std::string& inputs_in) {
+std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in) {
   refuse_interrupted(folder_or_document);
   std::vector<fs::path> documents = {folder_or_document};
   std::error_code problem;

@@ -12,7 +12,7 @@ enum class FileState {
   same,     ///< the digest is that of the document
   changed,  ///< another one
   missing,  ///< cannot be found or read
-  there,  ///< the document has no digest of it (the document itself, streamed estimates, results of older versions)
+  there,    ///< the document has no digest of it (the document itself, streamed estimates, results of older versions)
   unknown,  ///< not a file (standard input)
 };
 
@@ -39,7 +39,6 @@ Json result_document(const std::string& path);
 /// Looks at all documents in a folder that name files of theirs, or at the one document. Paths of inputs are those of the document, below
 /// `inputs_in` where they are relative ("": as they are). Throws Error(input) where there is none, or one cannot be read, and
 /// Error(output) where a run was interrupted there.
-std::vector<ResultCheck> check_results(const std::string& folder_or_document,
-                                       const std::string& inputs_in = "");
+std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in = "");
 
 }  // namespace libchar

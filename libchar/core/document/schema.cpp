@@ -66,8 +66,7 @@ std::optional<T> integer(const Document& value) {
 }  // namespace
 
 std::string shown(const Document& value) {
-  if (value.kind == Document::Kind::list || value.kind == Document::Kind::map)
-    return kind_name(value.kind);
+  if (value.kind == Document::Kind::list || value.kind == Document::Kind::map) return kind_name(value.kind);
   return value.text;
 }
 
@@ -75,16 +74,11 @@ MapReader::MapReader(const Document& node, std::string file, std::string path)
     : node_(&node), file_(std::move(file)), path_(std::move(path)), any_keys_(true) {
   if (node.kind != Document::Kind::map)
     throw input_error("E0541", where(node))
-        .says("{}expected a map of keys and values, found {}",
-              path_.empty() ? "" : path_ + ": ",
-              kind_name(node.kind))
+        .says("{}expected a map of keys and values, found {}", path_.empty() ? "" : path_ + ": ", kind_name(node.kind))
         .got(node.text);
 }
 
-MapReader::MapReader(const Document& node,
-                     std::string file,
-                     std::string path,
-                     std::vector<std::string> keys)
+MapReader::MapReader(const Document& node, std::string file, std::string path, std::vector<std::string> keys)
     : MapReader(node, std::move(file), std::move(path)) {
   any_keys_ = false;
   for (const DocumentEntry& entry : node.map) {
@@ -102,16 +96,13 @@ const Document* MapReader::get(std::string_view key) const {
   return entry == nullptr || entry->value.kind == Document::Kind::null ? nullptr : &entry->value;
 }
 
-bool MapReader::is_null(std::string_view key) const {
-  return any_keys_ && node_->find(key) != nullptr && !has(key);
-}
+bool MapReader::is_null(std::string_view key) const { return any_keys_ && node_->find(key) != nullptr && !has(key); }
 
 const Document& MapReader::require(std::string_view key) const {
   const Document* value = get(key);
   if (value != nullptr) return *value;
   const DocumentEntry* entry = node_->find(key);
-  throw input_error("E0542", where(entry != nullptr ? entry->value : *node_))
-      .says("{} is missing", path_of(key));
+  throw input_error("E0542", where(entry != nullptr ? entry->value : *node_)).says("{} is missing", path_of(key));
 }
 
 double MapReader::checked(std::string_view key, const Document& value, NumberRange range) const {
@@ -120,25 +111,19 @@ double MapReader::checked(std::string_view key, const Document& value, NumberRan
         .says("{}: expected a number, found {}", path_of(key), kind_name(value.kind))
         .got(value.text)
         .hint(number_hint(key, value.text));
-  const bool inside = value.number <= range.highest &&
-                      (range.open_low ? value.number > range.lowest : value.number >= range.lowest);
+  const bool inside =
+      value.number <= range.highest && (range.open_low ? value.number > range.lowest : value.number >= range.lowest);
   if (inside) return value.number;
   const bool above = range.highest == std::numeric_limits<double>::max();
   throw input_error("E0543", where(value))
-      .says(above ? fmt::format("{}: expected a number {} {}",
-                                path_of(key),
-                                range.open_low ? "above" : "of at least",
+      .says(above ? fmt::format("{}: expected a number {} {}", path_of(key), range.open_low ? "above" : "of at least",
                                 shortest(range.lowest))
-                  : fmt::format("{}: expected a number from {} to {}",
-                                path_of(key),
-                                shortest(range.lowest),
+                  : fmt::format("{}: expected a number from {} to {}", path_of(key), shortest(range.lowest),
                                 shortest(range.highest)))
       .got(value.text);
 }
 
-double MapReader::number(std::string_view key, NumberRange range) const {
-  return checked(key, require(key), range);
-}
+double MapReader::number(std::string_view key, NumberRange range) const { return checked(key, require(key), range); }
 
 double MapReader::number_or(std::string_view key, double fallback, NumberRange range) const {
   const Document* value = get(key);
@@ -156,9 +141,7 @@ std::uint64_t MapReader::count(std::string_view key, NumberRange range) const {
   const auto natural = integer<std::uint64_t>(value);
   if (!natural)
     throw input_error("E0541", where(value))
-        .says("{}: expected a whole number of at least {}",
-              path_of(key),
-              shortest(std::max(range.lowest, 0.0)))
+        .says("{}: expected a whole number of at least {}", path_of(key), shortest(std::max(range.lowest, 0.0)))
         .got(shown(value));
   checked(key, value, range);
   return *natural;
@@ -180,8 +163,7 @@ std::string MapReader::text(std::string_view key) const {
   const Document& value = require(key);
   // A name such as 1, no or true is a name.
   if (value.kind == Document::Kind::list || value.kind == Document::Kind::map)
-    throw input_error("E0541", where(value))
-        .says("{}: expected a text, found {}", path_of(key), kind_name(value.kind));
+    throw input_error("E0541", where(value)).says("{}: expected a text, found {}", path_of(key), kind_name(value.kind));
   return value.text;
 }
 
@@ -193,9 +175,7 @@ bool MapReader::flag_or(std::string_view key, bool fallback) const {
   const Document* value = get(key);
   if (value == nullptr) return fallback;
   if (value->kind == Document::Kind::boolean) return value->boolean;
-  throw input_error("E0541", where(*value))
-      .says("{}: expected true or false", path_of(key))
-      .got(shown(*value));
+  throw input_error("E0541", where(*value)).says("{}: expected true or false", path_of(key)).got(shown(*value));
 }
 
 std::string MapReader::word(std::string_view key, const std::vector<std::string>& words) const {
@@ -229,18 +209,14 @@ Interval MapReader::interval_in(std::string_view key, const Document& value) con
       .got(shown(value));
 }
 
-std::vector<double> MapReader::numbers(std::string_view key) const {
-  return numbers_in(key, require(key));
-}
+std::vector<double> MapReader::numbers(std::string_view key) const { return numbers_in(key, require(key)); }
 
 std::vector<double> MapReader::numbers_in(std::string_view key, const Document& value) const {
   if (value.kind != Document::Kind::list) return {checked(key, value, kAnyNumber)};
   std::vector<double> out;
   out.reserve(value.list.size());
   for (const Document& element : value.list)
-    out.push_back(any_keys_ && element.kind == Document::Kind::null
-                      ? kNone
-                      : checked(key, element, kAnyNumber));
+    out.push_back(any_keys_ && element.kind == Document::Kind::null ? kNone : checked(key, element, kAnyNumber));
   return out;
 }
 
@@ -268,43 +244,32 @@ const std::vector<Document>& MapReader::list(std::string_view key, std::size_t l
   const std::vector<Document>& elements = list(key);
   if (elements.size() == length) return elements;
   throw input_error("E0982", where(require(key)))
-      .says("{}: {} values, {} expected: one a point of the curve",
-            path_of(key),
-            elements.size(),
-            length)
+      .says("{}: {} values, {} expected: one a point of the curve", path_of(key), elements.size(), length)
       .hint("was the report edited? write it again");
 }
 
-MapReader MapReader::below(const Document& node,
-                           std::string path,
-                           std::vector<std::string> keys) const {
-  return any_keys_ ? MapReader(node, file_, std::move(path))
-                   : MapReader(node, file_, std::move(path), std::move(keys));
+MapReader MapReader::below(const Document& node, std::string path, std::vector<std::string> keys) const {
+  return any_keys_ ? MapReader(node, file_, std::move(path)) : MapReader(node, file_, std::move(path), std::move(keys));
 }
 
 MapReader MapReader::map(std::string_view key, std::vector<std::string> keys) const {
   return below(require(key), path_of(key), std::move(keys));
 }
 
-std::vector<MapReader> MapReader::maps(std::string_view key,
-                                       const std::vector<std::string>& keys) const {
+std::vector<MapReader> MapReader::maps(std::string_view key, const std::vector<std::string>& keys) const {
   std::vector<MapReader> out;
   for (const Document& node : list(key))
     out.push_back(below(node, fmt::format("{}[{}]", path_of(key), out.size()), keys));
   return out;
 }
 
-std::string MapReader::where(const Document& value) const {
-  return place(file_, value.line, value.column);
-}
+std::string MapReader::where(const Document& value) const { return place(file_, value.line, value.column); }
 
 std::string MapReader::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
 }
 
-void MapReader::refuse(std::string_view key,
-                       const std::string& what,
-                       const std::string& hint) const {
+void MapReader::refuse(std::string_view key, const std::string& what, const std::string& hint) const {
   const DocumentEntry* entry = node_->find(key);
   const Document& at = entry != nullptr ? entry->value : *node_;
   throw input_error("E0545", where(at))
@@ -313,40 +278,27 @@ void MapReader::refuse(std::string_view key,
       .hint(hint);
 }
 
-void check_format(const Document& document,
-                  const std::string& file,
-                  std::string_view format,
-                  std::uint64_t version) {
+void check_format(const Document& document, const std::string& file, std::string_view format, std::uint64_t version) {
   const auto at = [&](const Document& node) { return place(file, node.line, node.column); };
-  const std::string begin = fmt::format(
-      "a {} file begins with \"format: {}\" and \"version: {}\"", format, format, version);
+  const std::string begin =
+      fmt::format("a {} file begins with \"format: {}\" and \"version: {}\"", format, format, version);
   if (document.kind != Document::Kind::map)
     throw input_error("E0546", document.line > 0 ? at(document) : file)
         .says("is no " + std::string(format))
         .got(shown(document))
         .hint(begin);
   const DocumentEntry* kind = document.find("format");
-  if (kind == nullptr)
-    throw input_error("E0546", at(document)).says("the key format is missing").hint(begin);
+  if (kind == nullptr) throw input_error("E0546", at(document)).says("the key format is missing").hint(begin);
   if (kind->value.text != format)
-    throw input_error("E0546", at(kind->value))
-        .says("expected the format {}", format)
-        .got(shown(kind->value));
+    throw input_error("E0546", at(kind->value)).says("expected the format {}", format).got(shown(kind->value));
   const DocumentEntry* number = document.find("version");
-  if (number == nullptr)
-    throw input_error("E0546", at(document)).says("the key version is missing").hint(begin);
+  if (number == nullptr) throw input_error("E0546", at(document)).says("the key version is missing").hint(begin);
   const Document& value = number->value;
-  if (value.kind == Document::Kind::number && value.whole &&
-      value.number == static_cast<double>(version))
-    return;
-  const bool newer = value.kind == Document::Kind::number && value.whole &&
-                     value.number > static_cast<double>(version);
+  if (value.kind == Document::Kind::number && value.whole && value.number == static_cast<double>(version)) return;
+  const bool newer = value.kind == Document::Kind::number && value.whole && value.number > static_cast<double>(version);
   throw input_error("E0546", at(value))
-      .says(newer ? fmt::format(
-                        "version {} of the format {} is newer than this program, which reads {}",
-                        value.text,
-                        format,
-                        version)
+      .says(newer ? fmt::format("version {} of the format {} is newer than this program, which reads {}", value.text,
+                                format, version)
                   : fmt::format("expected version: {}", version))
       .got(shown(value))
       .hint(newer ? "update sensorchar" : "");

@@ -28,10 +28,7 @@ inline constexpr NumberRange kPositive{0, std::numeric_limits<double>::max(), tr
 /// A key whose value is null counts as absent.
 class MapReader {
  public:
-  MapReader(const Document& node,
-            std::string file,
-            std::string path,
-            std::vector<std::string> keys);
+  MapReader(const Document& node, std::string file, std::string path, std::vector<std::string> keys);
   /// Of a report, which grows keys from version to version: those that nobody asks for are left
   /// alone, here and below, and what is null in a list is NaN.
   MapReader(const Document& node, std::string file, std::string path);
@@ -72,8 +69,7 @@ class MapReader {
   /// The map behind `key`.
   MapReader map(std::string_view key, std::vector<std::string> keys = {}) const;
   /// The maps of the list behind `key`.
-  std::vector<MapReader> maps(std::string_view key,
-                              const std::vector<std::string>& keys = {}) const;
+  std::vector<MapReader> maps(std::string_view key, const std::vector<std::string>& keys = {}) const;
 
   /// "FILE:LINE:COL" of a value (FILE when unknown).
   std::string where(const Document& value) const;
@@ -81,9 +77,7 @@ class MapReader {
   const std::string& file() const { return file_; }
   const Document& node() const { return *node_; }
   /// Throws Error(input): "KEY: WHAT".
-  [[noreturn]] void refuse(std::string_view key,
-                           const std::string& what,
-                           const std::string& hint = "") const;
+  [[noreturn]] void refuse(std::string_view key, const std::string& what, const std::string& hint = "") const;
 
  private:
   double checked(std::string_view key, const Document& value, NumberRange range) const;
@@ -96,10 +90,7 @@ class MapReader {
 
 /// Checks `format` and `version` of a whole file before anything else of it: another format and a
 /// newer version are refused by name. Throws Error(input).
-void check_format(const Document& document,
-                  const std::string& file,
-                  std::string_view format,
-                  std::uint64_t version);
+void check_format(const Document& document, const std::string& file, std::string_view format, std::uint64_t version);
 
 /// A number of the file's own, for messages: exactly as written there.
 std::string shown(const Document& value);

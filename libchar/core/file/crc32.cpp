@@ -24,8 +24,7 @@ std::uint32_t reversed(std::uint32_t bits) {
 
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t before) {
 #if LIBCHAR_HAVE_ZLIB
-  return static_cast<std::uint32_t>(
-      ::crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  return static_cast<std::uint32_t>(::crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 #else
   // Goes on from a result: the register is its complement, whose bits Boost takes in the other order.
   boost::crc_optimal<32, 0x04C11DB7, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc(reversed(~before));

@@ -80,16 +80,13 @@ std::string place_of_process() {
 }
 
 std::string temporary_name(const std::string& path, int attempt) {
-  const std::string suffix =
-      fmt::format("{}{}-{}-{}", kTemporaryMark, place_of_process(), ::getpid(), attempt);
+  const std::string suffix = fmt::format("{}{}-{}-{}", kTemporaryMark, place_of_process(), ::getpid(), attempt);
   constexpr std::size_t kLongestName = 255;
   const std::size_t begin = path.rfind('/') + 1;  // 0 where there is none
   return path.substr(0, begin) + path.substr(begin, kLongestName - suffix.size()) + suffix;
 }
 
-bool FileOwner::is_gone() const {
-  return place == place_of_process() && ::kill(process, 0) != 0 && errno == ESRCH;
-}
+bool FileOwner::is_gone() const { return place == place_of_process() && ::kill(process, 0) != 0 && errno == ESRCH; }
 
 std::optional<FileOwner> owner_by_name(std::string_view file_name) {
   const std::size_t mark = file_name.rfind(kTemporaryMark);
@@ -104,27 +101,21 @@ std::optional<FileOwner> owner_by_name(std::string_view file_name) {
   }
   const auto read = std::from_chars(rest.data(), rest.data() + rest.size(), owner.process);
   const std::string_view number(read.ptr, static_cast<std::size_t>(rest.end() - read.ptr));
-  const bool known = read.ec == std::errc{} && owner.process > 0 && number.size() > 1 &&
-                     number[0] == '-' &&
+  const bool known = read.ec == std::errc{} && owner.process > 0 && number.size() > 1 && number[0] == '-' &&
                      number.find_first_not_of("0123456789", 1) == std::string_view::npos &&
                      owner.place.find_first_not_of("0123456789abcdef") == std::string::npos;
   return known ? std::optional(owner) : std::nullopt;
 }
 
-Lock lock_whole_file(int descriptor) {
-  return lock_as(descriptor, F_WRLCK);
-}
+Lock lock_whole_file(int descriptor) { return lock_as(descriptor, F_WRLCK); }
 
-Lock share_whole_file(int descriptor) {
-  return lock_as(descriptor, F_RDLCK);
-}
+Lock share_whole_file(int descriptor) { return lock_as(descriptor, F_RDLCK); }
 
 void remove_litter(const std::string& folder) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(folder.c_str()), ::closedir);
   if (!entries) return;
   while (const dirent* entry = ::readdir(entries.get()))
-    if (const auto owner = owner_by_name(entry->d_name))
-      remove_if_left(folder + "/" + entry->d_name, *owner);
+    if (const auto owner = owner_by_name(entry->d_name)) remove_if_left(folder + "/" + entry->d_name, *owner);
 }
 
 }  // namespace libchar::detail

@@ -19,8 +19,7 @@ constexpr std::size_t kPiece = std::size_t{1} << 16U;
 }
 
 struct OpenFile {
-  explicit OpenFile(const std::string& path)
-      : descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  explicit OpenFile(const std::string& path) : descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     if (descriptor < 0) fail_to("opened", path);
   }
   OpenFile(const OpenFile&) = delete;
@@ -46,8 +45,7 @@ std::string rest_of_file(int descriptor, const std::string& path, std::size_t mo
   }
 }
 
-void for_pieces_of_file(const std::string& path,
-                        std::size_t piece_bytes,
+void for_pieces_of_file(const std::string& path, std::size_t piece_bytes,
                         const std::function<void(std::string_view)>& take) {
   const OpenFile file(path);
   for (;;) {

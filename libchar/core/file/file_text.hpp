@@ -12,8 +12,7 @@ namespace libchar {
 std::string rest_of_file(int descriptor, const std::string& path, std::size_t most);
 
 /// A file of any length, a piece after the other. Throws Error(input) where it cannot be opened or read.
-void for_pieces_of_file(const std::string& path,
-                        std::size_t piece_bytes,
+void for_pieces_of_file(const std::string& path, std::size_t piece_bytes,
                         const std::function<void(std::string_view)>& take);
 
 /// The first `most` bytes of a file, all of a smaller one. Throws Error(input) where it cannot be opened or read.

@@ -38,8 +38,7 @@ Unlocked& unlocked() {
 void remember_unlocked(const std::string& folder) {
   Unlocked& all = unlocked();
   const std::lock_guard guard(all.mutex);
-  if (std::find(all.folders.begin(), all.folders.end(), folder) == all.folders.end())
-    all.folders.push_back(folder);
+  if (std::find(all.folders.begin(), all.folders.end(), folder) == all.folders.end()) all.folders.push_back(folder);
 }
 
 std::string this_host() {
@@ -59,13 +58,9 @@ void sign(int file) {
   const auto day = std::chrono::floor<std::chrono::days>(now);
   const std::chrono::year_month_day date(day);
   const std::chrono::hh_mm_ss time(now - day);
-  text["since"] = fmt::format("{}-{:02}-{:02} {:02}:{:02}:{:02} UTC",
-                              static_cast<int>(date.year()),
-                              static_cast<unsigned>(date.month()),
-                              static_cast<unsigned>(date.day()),
-                              time.hours().count(),
-                              time.minutes().count(),
-                              time.seconds().count());
+  text["since"] = fmt::format("{}-{:02}-{:02} {:02}:{:02}:{:02} UTC", static_cast<int>(date.year()),
+                              static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                              time.hours().count(), time.minutes().count(), time.seconds().count());
   const std::string line = text.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
   if (::ftruncate(file, 0) != 0) return;
   [[maybe_unused]] const ssize_t said = ::pwrite(file, line.data(), line.size(), 0);
@@ -78,16 +73,12 @@ std::string owner_of_lock(const std::string& path) {
   if (file < 0) return "";
   const ssize_t size = ::read(file, bytes.data(), bytes.size());
   ::close(file);
-  const Json text =
-      Json::parse(bytes.data(), bytes.data() + std::max<ssize_t>(size, 0), nullptr, false);
+  const Json text = Json::parse(bytes.data(), bytes.data() + std::max<ssize_t>(size, 0), nullptr, false);
   if (!text.is_object() || !text.contains("process") || !text["process"].is_number_integer() ||
-      !text.contains("host") || !text["host"].is_string() || !text.contains("since") ||
-      !text["since"].is_string())
+      !text.contains("host") || !text["host"].is_string() || !text.contains("since") || !text["since"].is_string())
     return "";
-  return fmt::format(" (process {} of {}, since {})",
-                     text["process"].get<std::int64_t>(),
-                     printable(text["host"].get<std::string>()),
-                     printable(text["since"].get<std::string>()));
+  return fmt::format(" (process {} of {}, since {})", text["process"].get<std::int64_t>(),
+                     printable(text["host"].get<std::string>()), printable(text["since"].get<std::string>()));
 }
 
 /// Who may write into the folder may lock it: the file has the folder's rights of writing.
@@ -134,12 +125,10 @@ bool FolderLock::take() {
   descriptor_ = opened_lock(path_, for_writing);
   if (descriptor_ < 0) {
     if (errno == ENOENT) {  // given up between two looks, unless the folder is none
-      if (std::error_code ignored; fs::is_directory(fs::path(path_).parent_path(), ignored))
-        return false;
+      if (std::error_code ignored; fs::is_directory(fs::path(path_).parent_path(), ignored)) return false;
       errno = ENOENT;
     }
-    throw output_error("E0501", path_)
-        .says("cannot create a file in this folder: {}", std::strerror(errno));
+    throw output_error("E0501", path_).says("cannot create a file in this folder: {}", std::strerror(errno));
   }
   const Lock lock = for_writing ? lock_whole_file(descriptor_) : share_whole_file(descriptor_);
   if (lock == Lock::impossible) {

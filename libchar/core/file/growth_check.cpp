@@ -31,8 +31,7 @@ GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words) 
   if (plus == std::string_view::npos || text.empty() || text.back() != '%')
     refuse_check(text, "expected METRIC+NUMBER%", words.example);
   const auto percent = parse_double(text.substr(plus + 1, text.size() - plus - 2));
-  if (!percent || *percent < 0)
-    refuse_check(text, "expected a number of at least 0 between + and %", words.example);
+  if (!percent || *percent < 0) refuse_check(text, "expected a number of at least 0 between + and %", words.example);
   out.share = *percent / 100;
   std::string_view metric = text.substr(0, plus);
   if (const std::size_t colon = metric.rfind(':'); colon != std::string_view::npos) {
@@ -42,11 +41,9 @@ GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words) 
     metric.remove_prefix(colon + 1);
   }
   out.metric = metric;
-  if (std::find(words.metrics.begin(), words.metrics.end(), out.metric) != words.metrics.end())
-    return out;
+  if (std::find(words.metrics.begin(), words.metrics.end(), out.metric) != words.metrics.end()) return out;
   const auto near = nearest(metric, words.metrics);
-  refuse_check(text,
-               fmt::format("expected {} in front of the plus sign", either(words.metrics)),
+  refuse_check(text, fmt::format("expected {} in front of the plus sign", either(words.metrics)),
                did_you_mean(near, words.example));
 }
 

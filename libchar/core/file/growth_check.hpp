@@ -25,8 +25,6 @@ struct GrowthWords {
 GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words);
 
 /// A check that says no more than it may. Throws Error(usage).
-[[noreturn]] void refuse_check(std::string_view text,
-                               const std::string& what,
-                               const std::string& hint);
+[[noreturn]] void refuse_check(std::string_view text, const std::string& what, const std::string& hint);
 
 }  // namespace libchar

@@ -35,8 +35,7 @@ std::vector<std::string> tables_in(const fs::path& folder) {
   std::error_code none;
   for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none)) {
     const std::string suffix = at->path().extension().string();
-    if ((suffix == ".csv" || suffix == ".tsv") && at->is_regular_file(none))
-      files.push_back(at->path().string());
+    if ((suffix == ".csv" || suffix == ".tsv") && at->is_regular_file(none)) files.push_back(at->path().string());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -71,12 +70,9 @@ std::vector<std::string> files_of_log(const std::string& file) {
   if (!is_rosbag2(file)) return files;
   const Document document = parse_yaml_document(read_document_text(file), file);
   const DocumentEntry* const about = document.find(kInformation);
-  const DocumentEntry* const parts =
-      about == nullptr ? nullptr : about->value.find("relative_file_paths");
+  const DocumentEntry* const parts = about == nullptr ? nullptr : about->value.find("relative_file_paths");
   if (parts == nullptr || parts->value.kind != Document::Kind::list || parts->value.list.empty())
-    throw input_error("E0448", file)
-        .says("lists no parts of the recording (relative_file_paths)")
-        .hint(kWriteAgain);
+    throw input_error("E0448", file).says("lists no parts of the recording (relative_file_paths)").hint(kWriteAgain);
   for (const Document& part : parts->value.list)
     files.push_back(part_in(fs::path(file).parent_path(), part.text, file));
   return files;
@@ -85,8 +81,7 @@ std::vector<std::string> files_of_log(const std::string& file) {
 std::string stem_of_log(const std::string& file) {
   const fs::path path = fs::path(named_log_file(file));
   if (path.filename() != kMetadata) return path.stem().string();
-  const std::string folder =
-      fs::absolute(path).lexically_normal().parent_path().filename().string();
+  const std::string folder = fs::absolute(path).lexically_normal().parent_path().filename().string();
   return folder.empty() ? path.stem().string() : folder;
 }
 

@@ -20,23 +20,18 @@ void make_folder(const std::filesystem::path& folder) {
   if (folder.empty()) return;  // the folder one is in
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw output_error("E0505", folder.string())
-        .says("cannot make this folder: " + problem.message());
+  if (problem) throw output_error("E0505", folder.string()).says("cannot make this folder: " + problem.message());
 }
 
 /// Of a document that is replaced; a larger one is none of ours.
 constexpr std::size_t kMostReportBytes = std::size_t{1} << 30U;
 
-bool is_document(const std::filesystem::path& path) {
-  return path.extension() == ".json";
-}
+bool is_document(const std::filesystem::path& path) { return path.extension() == ".json"; }
 
 /// Names that a document gives as files written with it: plain ones.
 std::vector<std::string> files_named_in(const Json& document) {
   std::vector<std::string> names;
-  if (!document.is_object() || !document.contains("files") || !document["files"].is_array())
-    return names;
+  if (!document.is_object() || !document.contains("files") || !document["files"].is_array()) return names;
   for (const Json& value : document["files"])
     if (value.is_string() && value.get<std::string>().find('/') == std::string::npos)
       names.push_back(value.get<std::string>());
@@ -60,8 +55,7 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
     if (!is_document(output.path)) continue;
     if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
       for (std::string& name : detail::named_files(output.path)) before.insert(std::move(name));
-    for (std::string& name : files_named_in(Json::parse(output.text, nullptr, false)))
-      now.insert(std::move(name));
+    for (std::string& name : files_named_in(Json::parse(output.text, nullptr, false))) now.insert(std::move(name));
   }
   std::vector<std::string> stale;
   for (const std::string& name : before) {
@@ -82,8 +76,7 @@ bool is_of_results(const std::filesystem::path& folder, const std::filesystem::p
     return file.filename() == "plan.jsonl" || file.parent_path() != folder;
   if (is_document(file)) return true;
   for (const auto& entry : fs::directory_iterator(file.parent_path(), ignored)) {
-    if (!is_document(entry.path()) || !entry.is_regular_file(ignored) ||
-        entry.file_size(ignored) >= kMostReportBytes)
+    if (!is_document(entry.path()) || !entry.is_regular_file(ignored) || entry.file_size(ignored) >= kMostReportBytes)
       continue;
     const std::vector<std::string> names = detail::named_files(entry.path().string());
     if (std::find(names.begin(), names.end(), file.filename().string()) != names.end()) return true;
@@ -93,9 +86,7 @@ bool is_of_results(const std::filesystem::path& folder, const std::filesystem::p
 
 void refuse_itself(const std::string& input, const std::string& output) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(input, ignored) ||
-      !std::filesystem::equivalent(input, output, ignored))
-    return;
+  if (!std::filesystem::is_regular_file(input, ignored) || !std::filesystem::equivalent(input, output, ignored)) return;
   throw output_error("E0504", output)
       .says("is the input itself; an input is never overwritten")
       .hint("choose another name");
@@ -126,18 +117,15 @@ void tidy(const std::filesystem::path& folder, const detail::FolderLock& lock) {
 }
 
 /// All names at once, as far as a file system can: the journal first, then what it says. The folder is locked.
-void give_names(const std::vector<WholeFile*>& files,
-                const std::vector<std::string>& stale,
+void give_names(const std::vector<WholeFile*>& files, const std::vector<std::string>& stale,
                 const std::filesystem::path& folder) {
   for (WholeFile* file : files) file->prepare();
   OutputJournal journal;
   journal.remove = stale;
   for (const WholeFile* file : files)
     if (!file->temporary().empty())
-      journal.rename.push_back(
-          waiting_file(folder,
-                       std::filesystem::path(file->temporary()).filename().string(),
-                       std::filesystem::path(file->path()).filename().string()));
+      journal.rename.push_back(waiting_file(folder, std::filesystem::path(file->temporary()).filename().string(),
+                                            std::filesystem::path(file->path()).filename().string()));
   for (WholeFile* file : files)
     if (file->temporary().empty()) file->commit();  // a device
   const JournalFile written = journal_file(folder, journal);
@@ -170,10 +158,8 @@ void commit_set(const std::vector<WholeFile*>& files, const std::filesystem::pat
 
 }  // namespace
 
-void check_outputs(const std::vector<std::string>& paths,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::string>& inputs,
-                   bool force) {
+void check_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
+                   const std::vector<std::string>& inputs, bool force) {
   make_folder(folder);
   for (const std::string& path : paths) {
     for (const std::string& input : inputs) refuse_same_file(input, path);
@@ -181,19 +167,15 @@ void check_outputs(const std::vector<std::string>& paths,
   }
 }
 
-void foresee_outputs(const std::vector<std::string>& paths,
-                     const std::filesystem::path& folder,
-                     const std::vector<std::string>& inputs,
-                     bool force) {
+void foresee_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs, bool force) {
   std::error_code ignored;
   const auto there = std::filesystem::status(folder.empty() ? "." : folder, ignored).type();
   if (there != std::filesystem::file_type::not_found) check_outputs(paths, folder, inputs, force);
 }
 
-std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
-                                       const std::filesystem::path& into,
-                                       const std::vector<std::string>& inputs,
-                                       bool force,
+std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, const std::filesystem::path& into,
+                                       const std::vector<std::string>& inputs, bool force,
                                        const std::vector<WholeFile*>& streamed) {
   const std::filesystem::path folder = into.empty() ? "." : into;  // the one we are in
   make_folder(folder);
@@ -285,21 +267,19 @@ namespace {
 constexpr std::size_t kLongest = 100;  // bytes; file systems take 255, and suffixes follow
 
 bool plain_ascii(std::uint32_t c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
-         c == '_' || c == '-';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
 }
 
 // What beyond ASCII is no letter, digit or sign with a shape of its own: controls, blanks, invisible and private characters.
 bool unusual(std::uint32_t c) {
-  return c <= 0xA0 || c == 0xAD || c == 0x061C || c == 0x1680 || c == 0x180E ||
-         (c >= 0x2000 && c <= 0x206F) || c == 0x3000 || (c >= 0xE000 && c <= 0xF8FF) ||
-         c == 0xFEFF || (c >= 0xFFF0 && c <= 0xFFFF) || c >= 0xE0000;
+  return c <= 0xA0 || c == 0xAD || c == 0x061C || c == 0x1680 || c == 0x180E || (c >= 0x2000 && c <= 0x206F) ||
+         c == 0x3000 || (c >= 0xE000 && c <= 0xF8FF) || c == 0xFEFF || (c >= 0xFFF0 && c <= 0xFFFF) || c >= 0xE0000;
 }
 
 // Small letters for capitals of the scripts that have them in pairs: Latin, Greek, Cyrillic.
 std::uint32_t small(std::uint32_t c) {
-  if ((c >= 'A' && c <= 'Z') || (c >= 0xC0 && c <= 0xDE && c != 0xD7) ||
-      (c >= 0x391 && c <= 0x3A9) || (c >= 0x410 && c <= 0x42F))
+  if ((c >= 'A' && c <= 'Z') || (c >= 0xC0 && c <= 0xDE && c != 0xD7) || (c >= 0x391 && c <= 0x3A9) ||
+      (c >= 0x410 && c <= 0x42F))
     return c + 0x20;
   if (c >= 0x400 && c <= 0x40F) return c + 0x50;
   const bool even_capitals = (c >= 0x100 && c <= 0x137) || (c >= 0x14A && c <= 0x177);

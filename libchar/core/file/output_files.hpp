@@ -18,17 +18,13 @@ struct OutputFile {
 
 /// Makes the folder and finds out whether these files can be written, before hours of work. Throws
 /// as `write_outputs`.
-void check_outputs(const std::vector<std::string>& paths,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::string>& inputs,
-                   bool force);
+void check_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
+                   const std::vector<std::string>& inputs, bool force);
 
 /// The same where nothing is made yet: files of a folder that does not exist cannot be in the way. For results whose other names are known
 /// only once they are there.
-void foresee_outputs(const std::vector<std::string>& paths,
-                     const std::filesystem::path& folder,
-                     const std::vector<std::string>& inputs,
-                     bool force);
+void foresee_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
+                     const std::vector<std::string>& inputs, bool force);
 
 /// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
 /// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
@@ -36,10 +32,8 @@ void foresee_outputs(const std::vector<std::string>& paths,
 /// the new one does not is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run
 /// keeps writing there. `streamed` are files of the set that were written piece by piece, in the same folder. Returns the names
 /// that were removed.
-std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs,
-                                       const std::filesystem::path& folder,
-                                       const std::vector<std::string>& inputs,
-                                       bool force,
+std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, const std::filesystem::path& folder,
+                                       const std::vector<std::string>& inputs, bool force,
                                        const std::vector<WholeFile*>& streamed = {});
 
 /// Gives files that were written piece by piece their names together, as `write_outputs` does; those of another folder than the

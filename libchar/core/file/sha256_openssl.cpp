@@ -17,13 +17,10 @@ struct Sha256::State {
 
 Sha256::Sha256() : state_(detail::hidden<State>()) {
   // OpenSSL has no other reason to refuse this.
-  if (!state_->context || EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1)
-    throw std::bad_alloc();
+  if (!state_->context || EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
 }
 
-void Sha256::update(std::string_view bytes) {
-  EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size());
-}
+void Sha256::update(std::string_view bytes) { EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size()); }
 
 std::string Sha256::finish() {
   unsigned char digest[EVP_MAX_MD_SIZE];

@@ -36,14 +36,8 @@ std::uint32_t big_endian(const char* bytes) {
 }
 
 /// A round (2): of the eight words two change, which are d and h here.
-[[gnu::always_inline]] inline void round(std::uint32_t a,
-                                         std::uint32_t b,
-                                         std::uint32_t c,
-                                         std::uint32_t& d,
-                                         std::uint32_t e,
-                                         std::uint32_t f,
-                                         std::uint32_t g,
-                                         std::uint32_t& h,
+[[gnu::always_inline]] inline void round(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t& d,
+                                         std::uint32_t e, std::uint32_t f, std::uint32_t g, std::uint32_t& h,
                                          std::uint32_t k_and_w) {
   const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
   const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
@@ -80,14 +74,7 @@ void add_block(const char* block, Words& hash) {
 }  // namespace
 
 struct Sha256::State {
-  Words hash = {0x6a09e667,
-                0xbb67ae85,
-                0x3c6ef372,
-                0xa54ff53a,
-                0x510e527f,
-                0x9b05688c,
-                0x1f83d9ab,
-                0x5be0cd19};
+  Words hash = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   std::array<char, kBlock> rest{};
   std::size_t held = 0;     // of rest
   std::uint64_t bytes = 0;  // so far

@@ -15,8 +15,7 @@ std::atomic_flag list_taken = ATOMIC_FLAG_INIT;
 int sets_getting_names = 0;
 bool some_have_names = false;
 
-std::set<std::string>* unfinished =
-    nullptr;  // never destroyed: a signal may come while the program ends
+std::set<std::string>* unfinished = nullptr;  // never destroyed: a signal may come while the program ends
 
 /// The list for one thread, which no signal interrupts meanwhile: its handler would wait for the thread it runs on.
 class TheList {

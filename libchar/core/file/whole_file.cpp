@@ -69,9 +69,7 @@ int own_descriptor(std::string path) {
 void refuse_name(const std::string& path, bool overwrite) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
-    throw output_error("E0502", path)
-        .says("is a folder, a file was expected")
-        .hint("name a file inside it");
+    throw output_error("E0502", path).says("is a folder, a file was expected").hint("name a file inside it");
   if (::lstat(path.c_str(), &status) != 0) return;
   if (!overwrite)
     throw output_error("E0503", path)
@@ -104,8 +102,7 @@ void WholeFile::fail(std::string_view doing) const {
   throw output_error("E0501", path_).says("cannot {}: {}", doing, std::strerror(errno));
 }
 
-WholeFile::WholeFile(std::string path, bool overwrite)
-    : path_(std::move(path)), overwrite_(overwrite) {
+WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)), overwrite_(overwrite) {
   if (path_.empty()) throw output_error("E0502").says("an output file needs a name");
   if (open_through()) return;
   refuse_name(path_, overwrite_);
@@ -132,8 +129,7 @@ bool WholeFile::open_through() {
   const int own = own_descriptor(path_);
   special_ = own >= 0 || is_special(path_);
   if (!special_) return false;
-  descriptor_ =
-      own >= 0 ? ::fcntl(own, F_DUPFD_CLOEXEC, 3) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  descriptor_ = own >= 0 ? ::fcntl(own, F_DUPFD_CLOEXEC, 3) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) fail("open for writing");
   const bool appends = (::fcntl(descriptor_, F_GETFL) & O_APPEND) != 0;
   begin_ = appends ? -1 : ::lseek(descriptor_, 0, SEEK_CUR);
@@ -191,10 +187,8 @@ void WholeFile::rewrite(std::size_t offset, std::string_view bytes) {
         .hint("write to a file, or as CSV");
   flush();
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t n = ::pwrite(descriptor_,
-                               bytes.data() + done,
-                               bytes.size() - done,
-                               begin_ + static_cast<off_t>(offset + done));
+    const ssize_t n =
+        ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, begin_ + static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) fail("write");
     done += static_cast<std::size_t>(n);
@@ -211,8 +205,7 @@ void WholeFile::flush_to_disk() {
 // False where the name is taken.
 bool WholeFile::link_to(const std::string& name) const {
   const std::string source = fmt::format("/proc/self/fd/{}", descriptor_);
-  if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
-    return true;
+  if (::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
   if (errno != EEXIST) fail("name the finished file");
   return false;
 }
@@ -287,9 +280,7 @@ void WholeFile::commit_in_locked_folder() {
   ::close(std::exchange(descriptor_, -1));
 }
 
-bool writes_through(const std::string& path) {
-  return own_descriptor(path) >= 0 || is_special(path);
-}
+bool writes_through(const std::string& path) { return own_descriptor(path) >= 0 || is_special(path); }
 
 void check_output(const std::string& path, bool overwrite) {
   // A device or pipe is not even opened: who reads it would take that for the whole of it.

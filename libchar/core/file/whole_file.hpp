@@ -58,8 +58,7 @@ class WholeFile {
   [[noreturn]] void fail(std::string_view doing) const;
   std::string path_, temporary_, buffer_;
   int descriptor_ = -1;
-  std::int64_t begin_ =
-      0;  ///< place of our first byte in the file; negative where nothing can be gone back to
+  std::int64_t begin_ = 0;  ///< place of our first byte in the file; negative where nothing can be gone back to
   bool flushed_ = false, on_disk_ = false, overwrite_ = false, special_ = false;
 };
 

@@ -20,14 +20,13 @@ namespace {
 
 // No promotion to long double: 1e-13 is reached without, three times faster. Errors come back as
 // values, not exceptions.
-using Policy = boost::math::policies::policy<
-    boost::math::policies::promote_double<false>,
-    boost::math::policies::domain_error<boost::math::policies::ignore_error>,
-    boost::math::policies::overflow_error<boost::math::policies::ignore_error>,
-    boost::math::policies::evaluation_error<boost::math::policies::ignore_error>>;
+using Policy =
+    boost::math::policies::policy<boost::math::policies::promote_double<false>,
+                                  boost::math::policies::domain_error<boost::math::policies::ignore_error>,
+                                  boost::math::policies::overflow_error<boost::math::policies::ignore_error>,
+                                  boost::math::policies::evaluation_error<boost::math::policies::ignore_error>>;
 
-constexpr double kAllIsOne =
-    1e18;  // relative spread sqrt(2/nu) far below the interval's own rounding
+constexpr double kAllIsOne = 1e18;  // relative spread sqrt(2/nu) far below the interval's own rounding
 
 constexpr double kHuge = 1e6;  // from here on the expansions
 constexpr double kFar = 0.06;  // |x / nu - 1|: 40 standard deviations and more
@@ -35,8 +34,7 @@ constexpr double kFar = 0.06;  // |x / nu - 1|: 40 standard deviations and more
 /// z: standard normal quantile of the same probability.
 double huge_quantile(double z, double nu) {
   const double w = z * z, root = std::sqrt(2 * nu);
-  return nu + (root * z + 2 * (w - 1) / 3 + z * (w - 7) / (9 * root) -
-               (w * (6 * w + 14) - 32) / (405 * nu) +
+  return nu + (root * z + 2 * (w - 1) / 3 + z * (w - 7) / (9 * root) - (w * (6 * w + 14) - 32) / (405 * nu) +
                z * (w * (9 * w + 256) - 433) / (4860 * nu * root));
 }
 
@@ -62,24 +60,20 @@ double huge_tail(double x, double nu, double side) {
 double huge_density(double x, double nu) {
   const double a = nu / 2, mu = x / nu - 1;
   if (std::fabs(mu) > kFar) return 0;
-  return std::exp(-a * log_excess(mu) - 1 / (12 * a)) / (2 * std::sqrt(2 * std::numbers::pi * a)) /
-         (1 + mu);
+  return std::exp(-a * log_excess(mu) - 1 / (12 * a)) / (2 * std::sqrt(2 * std::numbers::pi * a)) / (1 + mu);
 }
 
 }  // namespace
 
 double chi_square_quantile(double probability, double dof) {
   assert(dof > 0 && probability > 0 && probability < 1);
-  if (dof > kHuge)
-    return huge_quantile(-std::numbers::sqrt2 * boost::math::erfc_inv(2 * probability, Policy()),
-                         dof);
+  if (dof > kHuge) return huge_quantile(-std::numbers::sqrt2 * boost::math::erfc_inv(2 * probability, Policy()), dof);
   return 2 * boost::math::gamma_p_inv(dof / 2, probability, Policy());
 }
 
 double chi_square_upper_quantile(double tail, double dof) {
   assert(dof > 0 && tail > 0 && tail < 1);
-  if (dof > kHuge)
-    return huge_quantile(std::numbers::sqrt2 * boost::math::erfc_inv(2 * tail, Policy()), dof);
+  if (dof > kHuge) return huge_quantile(std::numbers::sqrt2 * boost::math::erfc_inv(2 * tail, Policy()), dof);
   return 2 * boost::math::gamma_q_inv(dof / 2, tail, Policy());
 }
 
@@ -109,10 +103,8 @@ LogMoments chi_square_log_moments(double dof) {
     derivative += 1 / (x * x);
   }
   const double r = 1 / (x * x);
-  psi += std::log(x) - 0.5 / x -
-         r * (1.0 / 12 - r * (1.0 / 120 - r * (1.0 / 252 - r * (1.0 / 240 - r / 132))));
-  derivative += 1 / x + 0.5 * r +
-                r / x * (1.0 / 6 - r * (1.0 / 30 - r * (1.0 / 42 - r * (1.0 / 30 - r * 5 / 66))));
+  psi += std::log(x) - 0.5 / x - r * (1.0 / 12 - r * (1.0 / 120 - r * (1.0 / 252 - r * (1.0 / 240 - r / 132))));
+  derivative += 1 / x + 0.5 * r + r / x * (1.0 / 6 - r * (1.0 / 30 - r * (1.0 / 42 - r * (1.0 / 30 - r * 5 / 66))));
   return {psi, derivative};
 }
 

@@ -45,9 +45,7 @@ MatrixXd least_squares(const MatrixXd& a, const MatrixXd& b) {
   return x;
 }
 
-PivotedSolution pivoted_least_squares(const MatrixXd& a,
-                                      const VectorXd& b,
-                                      std::optional<double> threshold) {
+PivotedSolution pivoted_least_squares(const MatrixXd& a, const VectorXd& b, std::optional<double> threshold) {
   // Columns of length one: what counts as nothing beyond the others must not depend on units.
   VectorXd scale = a.colwise().norm().cwiseInverse();
   for (double& s : scale)
@@ -57,10 +55,8 @@ PivotedSolution pivoted_least_squares(const MatrixXd& a,
   // By hand: Eigen's solve() goes by pivots that are not exactly zero, and what rounding leaves of a column twice is none of these.
   const Eigen::Index rank = qr.rank();
   const VectorXd rotated = qr.householderQ().setLength(rank).adjoint() * b;
-  const VectorXd solved = qr.matrixQR()
-                              .topLeftCorner(rank, rank)
-                              .triangularView<Eigen::Upper>()
-                              .solve(rotated.head(rank));
+  const VectorXd solved =
+      qr.matrixQR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(rotated.head(rank));
   VectorXd x = VectorXd::Zero(a.cols());
   for (Eigen::Index i = 0; i < rank; ++i) {
     const Eigen::Index column = qr.colsPermutation().indices()[i];
@@ -77,9 +73,7 @@ PivotedSolution shortest_least_squares(const MatrixXd& a, const VectorXd& b, dou
   return {cod.solve(b), cod.rank()};
 }
 
-MatrixXd general_solve(const MatrixXd& a, const MatrixXd& b) {
-  return Eigen::PartialPivLU<MatrixXd>(a).solve(b);
-}
+MatrixXd general_solve(const MatrixXd& a, const MatrixXd& b) { return Eigen::PartialPivLU<MatrixXd>(a).solve(b); }
 
 std::optional<MatrixXd> cholesky_factor(const MatrixXd& a) {
   const Eigen::LLT<MatrixXd> llt(a);
@@ -92,33 +86,21 @@ MatrixXd inverse_cholesky_factor(const MatrixXd& a) {
   return llt.matrixL().solve(MatrixXd::Identity(a.rows(), a.rows()));
 }
 
-MatrixXd solve_lower(const MatrixXd& l, const MatrixXd& b) {
-  return l.triangularView<Eigen::Lower>().solve(b);
-}
+MatrixXd solve_lower(const MatrixXd& l, const MatrixXd& b) { return l.triangularView<Eigen::Lower>().solve(b); }
 
-VectorXd solve_lower(const MatrixXd& l, const VectorXd& b) {
-  return l.triangularView<Eigen::Lower>().solve(b);
-}
+VectorXd solve_lower(const MatrixXd& l, const VectorXd& b) { return l.triangularView<Eigen::Lower>().solve(b); }
 
 VectorXd solve_factored(const MatrixXd& l, const VectorXd& b) {
   return l.transpose().triangularView<Eigen::Upper>().solve(solve_lower(l, b));
 }
 
-MatrixXd cholesky_inverse(const MatrixXd& a) {
-  return a.llt().solve(MatrixXd::Identity(a.rows(), a.rows()));
-}
+MatrixXd cholesky_inverse(const MatrixXd& a) { return a.llt().solve(MatrixXd::Identity(a.rows(), a.rows())); }
 
-VectorXd ldlt_solve(const MatrixXd& a, const VectorXd& b) {
-  return a.ldlt().solve(b);
-}
+VectorXd ldlt_solve(const MatrixXd& a, const VectorXd& b) { return a.ldlt().solve(b); }
 
-MatrixXd complement_projector(const MatrixXd& q) {
-  return MatrixXd::Identity(q.rows(), q.rows()) - q * q.transpose();
-}
+MatrixXd complement_projector(const MatrixXd& q) { return MatrixXd::Identity(q.rows(), q.rows()) - q * q.transpose(); }
 
-MatrixXd without_columns_of(const MatrixXd& q, const MatrixXd& y) {
-  return y - q * (q.transpose() * y);
-}
+MatrixXd without_columns_of(const MatrixXd& q, const MatrixXd& y) { return y - q * (q.transpose() * y); }
 
 MatrixXd upper_times_transposed(const MatrixXd& u, const MatrixXd& b, Index rows) {
   return u.triangularView<Eigen::Upper>() * b.topRows(rows).transpose();

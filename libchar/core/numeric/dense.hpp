@@ -15,8 +15,7 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 /// Of the tridiagonal matrix with this diagonal (n values) and this subdiagonal (n - 1).
-SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal,
-                                 const Eigen::VectorXd& subdiagonal);
+SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& subdiagonal);
 
 /// A = Q R of an m x n matrix, m >= n, by Householder: Q m x n, and the diagonal of R.
 struct ThinQr {
@@ -37,15 +36,12 @@ struct PivotedSolution {
   Eigen::Index rank = 0;
 };
 /// A pivot of the scaled columns below `threshold` times the largest counts as zero; none given: Eigen's, n epsilon.
-PivotedSolution pivoted_least_squares(const Eigen::MatrixXd& a,
-                                      const Eigen::VectorXd& b,
+PivotedSolution pivoted_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                                       std::optional<double> threshold = {});
 
 /// The same, but of all x that do as well the shortest (complete orthogonal decomposition): columns
 /// that say the same share what they are worth.
-PivotedSolution shortest_least_squares(const Eigen::MatrixXd& a,
-                                       const Eigen::VectorXd& b,
-                                       double threshold);
+PivotedSolution shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold);
 
 /// A^-1 B of a square A, by LU with partial pivoting.
 Eigen::MatrixXd general_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
@@ -69,8 +65,6 @@ Eigen::MatrixXd complement_projector(const Eigen::MatrixXd& q);
 /// Y - Q (Q' Y).
 Eigen::MatrixXd without_columns_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& y);
 /// U times the transpose of the first `rows` rows of B, U upper triangular.
-Eigen::MatrixXd upper_times_transposed(const Eigen::MatrixXd& u,
-                                       const Eigen::MatrixXd& b,
-                                       Eigen::Index rows);
+Eigen::MatrixXd upper_times_transposed(const Eigen::MatrixXd& u, const Eigen::MatrixXd& b, Eigen::Index rows);
 
 }  // namespace libchar

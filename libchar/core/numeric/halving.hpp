@@ -65,8 +65,7 @@ struct Halving {
   void read_state(StateReader& from, std::string_view what) {
     from(length, filled);
     from.list(parts, sizeof(Part), [&](Part& part) { Part::layout(from, part); });
-    if (parts.empty() || parts.size() > kMost || !std::has_single_bit(length) || filled >= length)
-      from.refuse(what);
+    if (parts.empty() || parts.size() > kMost || !std::has_single_bit(length) || filled >= length) from.refuse(what);
     open = std::move(parts.back());
     parts.pop_back();
   }

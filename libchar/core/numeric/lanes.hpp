@@ -37,9 +37,7 @@ struct InLanes<kKernel> {
   }
 
  private:
-  [[gnu::noinline]] static Result with_any(Arguments... arguments) {
-    return kKernel(arguments...);
-  }
+  [[gnu::noinline]] static Result with_any(Arguments... arguments) { return kKernel(arguments...); }
 #if defined(LIBCHAR_X86_64)
   __attribute__((LIBCHAR_AVX2, noinline)) static Result with_avx2(Arguments... arguments) {
     return kKernel(arguments...);

@@ -32,8 +32,7 @@ LIBCHAR_LANES double shifted_sum_lanes(const double* x, int n, double shift) {
 constexpr InLanes<shifted_sum_lanes> shifted_sum;
 
 /// Sums of the first four powers of (x - shift) - offset.
-LIBCHAR_LANES void power_sums_lanes(
-    const double* x, int n, double shift, double offset, double out[4]) {
+LIBCHAR_LANES void power_sums_lanes(const double* x, int n, double shift, double offset, double out[4]) {
   Four sum[4][2] = {};
   const int whole = n - n % kLanes;
   for (int i = 0; i < whole; i += kLanes)
@@ -104,11 +103,7 @@ Moments::Central Moments::of_block(const double* x, int n) const {
 Moments::Central Moments::in_unit(const Central& c, int exponent) {
   const int up = c.exponent - exponent;
   if (up == 0) return c;
-  return {c.n,
-          std::ldexp(c.mean, up),
-          std::ldexp(c.m2, 2 * up),
-          std::ldexp(c.m3, 3 * up),
-          std::ldexp(c.m4, 4 * up),
+  return {c.n,     std::ldexp(c.mean, up), std::ldexp(c.m2, 2 * up), std::ldexp(c.m3, 3 * up), std::ldexp(c.m4, 4 * up),
           exponent};
 }
 
@@ -187,9 +182,7 @@ Moments::Central Moments::total() const {
 std::uint64_t Moments::count() const {
   return static_cast<std::uint64_t>(done_.n) + static_cast<std::uint64_t>(pending_count_);
 }
-std::uint64_t Moments::missing() const {
-  return missing_;
-}
+std::uint64_t Moments::missing() const { return missing_; }
 double Moments::mean() const {
   const Central c = total();
   return origin_ + std::ldexp(c.mean, c.exponent);
@@ -210,11 +203,7 @@ double Moments::kurtosis() const {
   const Central c = total();
   return c.m2 > 0 ? c.n * c.m4 / (c.m2 * c.m2) : 0.0;
 }
-double Moments::minimum() const {
-  return minimum_;
-}
-double Moments::maximum() const {
-  return maximum_;
-}
+double Moments::minimum() const { return minimum_; }
+double Moments::maximum() const { return maximum_; }
 
 }  // namespace libchar

@@ -19,8 +19,7 @@ double boxcar_ratio(double taps, double frequency_hz, double rate_hz) {
 double measured_ratio(const NoiseShape& shape, double frequency_hz) {
   const std::vector<double>& f = shape.frequency_hz;
   if (f.empty() || frequency_hz < f.front() * kBelowFirst) return 1;
-  const auto after =
-      static_cast<std::size_t>(std::upper_bound(f.begin(), f.end(), frequency_hz) - f.begin());
+  const auto after = static_cast<std::size_t>(std::upper_bound(f.begin(), f.end(), frequency_hz) - f.begin());
   if (after == 0 || after == f.size()) return shape.ratio[after == 0 ? 0 : after - 1];
   const bool nearer = frequency_hz * frequency_hz < f[after - 1] * f[after];
   return shape.ratio[nearer ? after - 1 : after];

@@ -21,8 +21,7 @@ struct NoiseShape {
   std::vector<double> ratio;         ///< measured: a density over that of the noise terms, > 0
 };
 template <>
-inline constexpr auto enum_table<NoiseShape::Kind> =
-    enum_words<NoiseShape::Kind, "none boxcar bartlett measured">;
+inline constexpr auto enum_table<NoiseShape::Kind> = enum_words<NoiseShape::Kind, "none boxcar bartlett measured">;
 
 /// Power gain at a frequency, 0 < f <= rate/2. boxcar: (sin(pi f m dt) / (m sin(pi f dt)))²; bartlett: its square; measured: that
 /// of the nearest point in ln f, 1 from a sixteenth of an octave below the first.

@@ -102,19 +102,14 @@ std::size_t finite_run(std::span<const double> samples) {
   return n;
 }
 
-std::size_t count_missing(std::span<const double> samples) {
-  return missing_in(samples.data(), samples.size());
-}
+std::size_t count_missing(std::span<const double> samples) { return missing_in(samples.data(), samples.size()); }
 
-std::size_t count_beyond(std::span<const double> samples) {
-  return beyond_in(samples.data(), samples.size());
-}
+std::size_t count_beyond(std::span<const double> samples) { return beyond_in(samples.data(), samples.size()); }
 
 PresentMean present_mean(std::span<const double> samples) {
   if (std::isfinite(samples[0])) {
     const double sum = sum_about(samples, samples[0]);
-    if (std::isfinite(sum))
-      return {samples[0] + sum / static_cast<double>(samples.size()), samples.size()};
+    if (std::isfinite(sum)) return {samples[0] + sum / static_cast<double>(samples.size()), samples.size()};
   }
   double first = kNone, sum = 0;
   std::size_t present = 0;
@@ -127,8 +122,6 @@ PresentMean present_mean(std::span<const double> samples) {
   return {present == 0 ? kNone : first + sum / static_cast<double>(present), present};
 }
 
-double mean_present(std::span<const double> samples) {
-  return present_mean(samples).mean;
-}
+double mean_present(std::span<const double> samples) { return present_mean(samples).mean; }
 
 }  // namespace libchar

@@ -82,15 +82,12 @@ std::vector<bool> far_off(std::span<const double> y, std::span<const double> v) 
   for (std::size_t i = 0; i < y.size(); ++i) sorted[i] = std::abs(y[i] - median);
   const double sd = kMadToSd * median_in_place(sorted);
   std::vector<bool> out(y.size());
-  for (std::size_t i = 0; i < y.size(); ++i)
-    out[i] = std::abs(y[i] - median) > 5 * std::sqrt(sd * sd + v[i]);
+  for (std::size_t i = 0; i < y.size(); ++i) out[i] = std::abs(y[i] - median) > 5 * std::sqrt(sd * sd + v[i]);
   return out;
 }
 
 /// How far each is from what those inside, without itself, let expect: in standard deviations of that difference.
-std::vector<double> deviations(std::span<const double> y,
-                               std::span<const double> v,
-                               const std::vector<bool>& outside) {
+std::vector<double> deviations(std::span<const double> y, std::span<const double> v, const std::vector<bool>& outside) {
   const Deleted inside = picked(y, v, outside);
   const double spread = random_effects(inside.y, inside.v).spread, square = spread * spread;
   const Weighted at = weighted(inside.y, inside.v, square);
@@ -109,18 +106,14 @@ std::vector<double> deviations(std::span<const double> y,
     }
     const double share = weight / at.weights, own = weight * off * off / (1 - share);
     // Q of the others is less by `own` and wants to be less by 1: the spread that does that. For equal uncertainties it is exact.
-    const double less =
-        slope > 0 ? std::max(0.0, square + (1 - own) / slope * (count - 1) / (count - 2)) : square;
-    out[i] = off / (1 - share) /
-             std::sqrt(v[i] + less + (v[i] + less) / (1 / weight) / (at.weights * (1 - share)));
+    const double less = slope > 0 ? std::max(0.0, square + (1 - own) / slope * (count - 1) / (count - 2)) : square;
+    out[i] = off / (1 - share) / std::sqrt(v[i] + less + (v[i] + less) / (1 / weight) / (at.weights * (1 - share)));
   }
   return out;
 }
 
 /// The way for many values: O(n log n).
-std::vector<Outlier> outliers_of_many(std::span<const double> y,
-                                      std::span<const double> v,
-                                      double probability) {
+std::vector<Outlier> outliers_of_many(std::span<const double> y, std::span<const double> v, double probability) {
   std::vector<bool> outside = far_off(y, v);
   std::vector<Outlier> out;
   const double count = static_cast<double>(y.size());
@@ -133,16 +126,13 @@ std::vector<Outlier> outliers_of_many(std::span<const double> y,
     out.clear();
     for (std::size_t i = 0; i < y.size(); ++i) {
       next[i] = std::abs(t[i]) > least;
-      if (next[i])
-        out.push_back(
-            {i, t[i], std::min(1.0, count * 2 * student_tail(std::abs(t[i]), inside - 2))});
+      if (next[i]) out.push_back({i, t[i], std::min(1.0, count * 2 * student_tail(std::abs(t[i]), inside - 2))});
     }
     if (next == outside) break;
     outside = std::move(next);
   }
-  std::sort(out.begin(), out.end(), [](const Outlier& a, const Outlier& b) {
-    return std::abs(a.deviation) > std::abs(b.deviation);
-  });
+  std::sort(out.begin(), out.end(),
+            [](const Outlier& a, const Outlier& b) { return std::abs(a.deviation) > std::abs(b.deviation); });
   return out;
 }
 
@@ -162,8 +152,7 @@ RandomEffects random_effects(std::span<const double> y, std::span<const double> 
   }
   const double scale = mean_of(v);
   const auto q = [&](double square) { return weighted(y, v, square).q; };
-  const double q0 = q(0), median = chi_square_quantile(0.5, dof),
-               weights = weighted(y, v, 0).weights;
+  const double q0 = q(0), median = chi_square_quantile(0.5, dof), weights = weighted(y, v, 0).weights;
   const auto constrained = [&](double square) {
     return q0 >= median ? q(square) : median * weighted(y, v, square).weights / weights;
   };
@@ -179,8 +168,7 @@ RandomEffects random_effects(std::span<const double> y, std::span<const double> 
   return out;
 }
 
-std::vector<Outlier> find_outliers(std::span<const double> value,
-                                   std::span<const double> variance,
+std::vector<Outlier> find_outliers(std::span<const double> value, std::span<const double> variance,
                                    double probability) {
   if (value.size() > kFew) return outliers_of_many(value, variance, probability);
   std::vector<Outlier> out;

@@ -18,7 +18,7 @@ struct RandomEffects {
   Interval mean_ci95;    ///< by Student's t: very wide for two values, as it must be
   double spread = 0;     ///< standard deviation of d; 0: the scatter is that of the uncertainties
   Interval spread_ci95;  ///< low 0: a spread of zero is not excluded. NaN for fewer than two values
-  double p = 1;  ///< probability of more scatter without any spread (chi-square of count - 1)
+  double p = 1;          ///< probability of more scatter without any spread (chi-square of count - 1)
 };
 
 /// Throws nothing; `variance` > 0, one per value, at least one value.
@@ -35,8 +35,7 @@ inline constexpr std::size_t kFewestForOutliers = 4;
 /// Values that the others do not let expect: each against the mean and spread of the others (deleted residual, Student's t), the
 /// worst taken out first, then the worst of the rest, up to a third of them; those up to the last with p < `probability`. A p that was
 /// hidden by another outlier is given as `probability`. Nobody, of fewer than kFewestForOutliers values.
-std::vector<Outlier> find_outliers(std::span<const double> value,
-                                   std::span<const double> variance,
+std::vector<Outlier> find_outliers(std::span<const double> value, std::span<const double> variance,
                                    double probability = 0.01);
 
 // Weighted means of values with known variances and a spread on top, and where a falling function takes a value.
@@ -88,9 +87,8 @@ double falls_to(Function&& f, double value, double scale) {
     const double guess = high - below * (high - low) / (below - above);
     // A guess at an end would not move it: a step inside keeps the bracket shrinking.
     const double least = 1e-14 * high;
-    const double x = i % 8 == 7 || !std::isfinite(guess)
-                         ? (low + high) / 2
-                         : std::clamp(guess, low + least, high - least);
+    const double x =
+        i % 8 == 7 || !std::isfinite(guess) ? (low + high) / 2 : std::clamp(guess, low + least, high - least);
     const double fx = f(x) - value;
     if (fx == 0) return x;
     if (fx > 0) {

@@ -46,9 +46,7 @@ StateWriter::StateWriter(std::string_view kind, std::uint32_t version)
   text(kind);
 }
 
-void StateWriter::number(std::uint64_t value) {
-  bytes_ += little(value, 8);
-}
+void StateWriter::number(std::uint64_t value) { bytes_ += little(value, 8); }
 
 // mantissa * 2^exponent with a mantissa of 64 bits: exact for every format of at most as many. Of
 // 113, as a web page has them, these are
@@ -104,28 +102,20 @@ std::string StateWriter::finish() {
   return std::move(bytes_);
 }
 
-StateReader::StateReader(std::string_view bytes,
-                         std::string name,
-                         std::string_view kind,
-                         std::uint32_t version)
+StateReader::StateReader(std::string_view bytes, std::string name, std::string_view kind, std::uint32_t version)
     : name_(std::move(name)) {
   if (!bytes.starts_with(kMagic))
-    throw input_error("E0723", name_)
-        .says(bytes.empty() ? "is empty" : "is no partial state")
-        .hint(kAgain);
+    throw input_error("E0723", name_).says(bytes.empty() ? "is empty" : "is no partial state").hint(kAgain);
   if (bytes.size() < kHead + kDigest)
     throw input_error("E0723", name_).says("is cut: {} bytes", bytes.size()).hint(kAgain);
   const std::uint64_t found = little(bytes.substr(kMagic.size(), 4));
   const std::uint64_t length = little(bytes.substr(kLengthAt, 8));
   const std::uint64_t present = bytes.size() - kHead - kDigest;
-  const bool whole = length == present && digest_of(bytes.substr(0, bytes.size() - kDigest)) ==
-                                              bytes.substr(bytes.size() - kDigest);
+  const bool whole =
+      length == present && digest_of(bytes.substr(0, bytes.size() - kDigest)) == bytes.substr(bytes.size() - kDigest);
   if (!whole && length > present)
-    throw input_error("E0723", name_)
-        .says("is cut: {} bytes of its content of {}", present, length)
-        .hint(kAgain);
-  if (!whole)
-    throw input_error("E0723", name_).says("is damaged: its digest is another one").hint(kAgain);
+    throw input_error("E0723", name_).says("is cut: {} bytes of its content of {}", present, length).hint(kAgain);
+  if (!whole) throw input_error("E0723", name_).says("is damaged: its digest is another one").hint(kAgain);
   rest_ = bytes.substr(kHead, detail::in_memory(length));
   if (const std::string is = text(); is != kind)
     throw input_error("E0723", name_).says("is a state of {}, not of {}", is, kind);
@@ -150,20 +140,17 @@ void StateReader::finish() const {
   if (!rest_.empty()) refuse("more stands in it than was expected");
 }
 
-std::uint64_t StateReader::number() {
-  return little(take(8));
-}
+std::uint64_t StateReader::number() { return little(take(8)); }
 
 long double StateReader::wide() {
   const auto kind = static_cast<unsigned char>(take(1)[0]);
   const std::uint64_t mantissa = number();
   const auto exponent = static_cast<std::int64_t>(number());
   if (kind == not_a_number) return std::numeric_limits<long double>::quiet_NaN();
-  if (kind > (infinite | negative) || exponent < -20000 || exponent > 20000)
-    refuse("a wide number");
-  const long double size = (kind & infinite) != 0 ? std::numeric_limits<long double>::infinity()
-                                                  : std::ldexp(static_cast<long double>(mantissa),
-                                                               static_cast<int>(exponent) - 64);
+  if (kind > (infinite | negative) || exponent < -20000 || exponent > 20000) refuse("a wide number");
+  const long double size = (kind & infinite) != 0
+                               ? std::numeric_limits<long double>::infinity()
+                               : std::ldexp(static_cast<long double>(mantissa), static_cast<int>(exponent) - 64);
   return (kind & negative) != 0 ? -size : size;
 }
 
@@ -179,9 +166,7 @@ std::size_t StateReader::count(std::size_t least) {
   return static_cast<std::size_t>(count);
 }
 
-std::string StateReader::text() {
-  return std::string(take(count(1)));
-}
+std::string StateReader::text() { return std::string(take(count(1))); }
 
 std::vector<std::string> StateReader::texts() {
   std::vector<std::string> out(count(8));

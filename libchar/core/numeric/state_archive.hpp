@@ -73,10 +73,7 @@ class StateWriter {
 class StateReader {
  public:
   /// `name`: of the state, for messages. The bytes must stay. Throws Error(input) unless they are whole, of this kind and version.
-  StateReader(std::string_view bytes,
-              std::string name,
-              std::string_view kind,
-              std::uint32_t version);
+  StateReader(std::string_view bytes, std::string name, std::string_view kind, std::uint32_t version);
 
   std::uint64_t number();
   double real() { return std::bit_cast<double>(number()); }

@@ -21,8 +21,7 @@ namespace detail {
 /// A number of things in memory: where sizes have 32 bits (a web page), the largest of them for all
 /// that memory could not hold.
 constexpr std::size_t in_memory(std::uint64_t count) {
-  return static_cast<std::size_t>(
-      std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
+  return static_cast<std::size_t>(std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
 }
 }  // namespace detail
 

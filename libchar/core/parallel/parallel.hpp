@@ -21,8 +21,8 @@ template <class Result, class... Arguments>
 class Call<Result(Arguments...)> {
  public:
   template <class Function>
-  requires(!std::is_same_v<std::remove_cvref_t<Function>, Call>) Call(
-      Function&& function)  // NOLINT(google-explicit-constructor): lambdas are given as they are
+  requires(!std::is_same_v<std::remove_cvref_t<Function>, Call>)
+      Call(Function&& function)  // NOLINT(google-explicit-constructor): lambdas are given as they are
       : object_(const_cast<void*>(static_cast<const void*>(std::addressof(function)))),
         call_([](void* object, Arguments... arguments) -> Result {
           return (*static_cast<std::remove_reference_t<Function>*>(object))(arguments...);
@@ -38,10 +38,7 @@ class Call<Result(Arguments...)> {
 bool has_threads();
 
 /// Ranges [begin, end) of [first, last), at least `grain` long where there are as many.
-void over_ranges(std::size_t first,
-                 std::size_t last,
-                 std::size_t grain,
-                 Call<void(std::size_t, std::size_t)> work);
+void over_ranges(std::size_t first, std::size_t last, std::size_t grain, Call<void(std::size_t, std::size_t)> work);
 
 /// Every index of [first, last).
 template <class Work>

@@ -5,14 +5,9 @@
 namespace libchar {
 namespace parallel {
 
-bool has_threads() {
-  return false;
-}
+bool has_threads() { return false; }
 
-void over_ranges(std::size_t first,
-                 std::size_t last,
-                 std::size_t,
-                 Call<void(std::size_t, std::size_t)> work) {
+void over_ranges(std::size_t first, std::size_t last, std::size_t, Call<void(std::size_t, std::size_t)> work) {
   if (first < last) work(first, last);
 }
 
@@ -21,9 +16,7 @@ void both(Call<void()> one, Call<void()> other) {
   other();
 }
 
-void isolated(Call<void()> work) {
-  work();
-}
+void isolated(Call<void()> work) { work(); }
 
 void in_order(std::size_t, const Stages& stages) {
   while (void* const item = stages.read()) {
@@ -39,9 +32,7 @@ Threads::Threads(int) : state_(detail::hidden<State>()) {}
 
 void Threads::limit_to(int) {}
 
-void Threads::run(Call<void()> work) {
-  work();
-}
+void Threads::run(Call<void()> work) { work(); }
 
 struct OneThread::State {};
 
@@ -49,9 +40,7 @@ OneThread::OneThread() : state_(detail::hidden<State>()) {}
 
 }  // namespace parallel
 
-int processors_given() {
-  return 1;
-}
+int processors_given() { return 1; }
 
 void keep_to_threads_given() {}
 

@@ -21,26 +21,17 @@
 namespace libchar {
 namespace parallel {
 
-bool has_threads() {
-  return true;
-}
+bool has_threads() { return true; }
 
-void over_ranges(std::size_t first,
-                 std::size_t last,
-                 std::size_t grain,
-                 Call<void(std::size_t, std::size_t)> work) {
+void over_ranges(std::size_t first, std::size_t last, std::size_t grain, Call<void(std::size_t, std::size_t)> work) {
   if (first >= last) return;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain),
                     [&](const auto& range) { work(range.begin(), range.end()); });
 }
 
-void both(Call<void()> one, Call<void()> other) {
-  tbb::parallel_invoke(one, other);
-}
+void both(Call<void()> one, Call<void()> other) { tbb::parallel_invoke(one, other); }
 
-void isolated(Call<void()> work) {
-  tbb::this_task_arena::isolate(work);
-}
+void isolated(Call<void()> work) { tbb::this_task_arena::isolate(work); }
 
 void in_order(std::size_t most, const Stages& stages) {
   using tbb::filter_mode;
@@ -50,17 +41,15 @@ void in_order(std::size_t most, const Stages& stages) {
       return item;
     };
   };
-  tbb::parallel_pipeline(
-      most,
-      tbb::make_filter<void, void*>(filter_mode::serial_in_order,
-                                    [&](tbb::flow_control& flow) {
-                                      void* const item = stages.read();
-                                      if (item == nullptr) flow.stop();
-                                      return item;
-                                    }) &
-          tbb::make_filter<void*, void*>(filter_mode::serial_in_order, pass(stages.first)) &
-          tbb::make_filter<void*, void*>(filter_mode::parallel, pass(stages.work)) &
-          tbb::make_filter<void*, void>(filter_mode::serial_in_order, stages.last));
+  tbb::parallel_pipeline(most, tbb::make_filter<void, void*>(filter_mode::serial_in_order,
+                                                             [&](tbb::flow_control& flow) {
+                                                               void* const item = stages.read();
+                                                               if (item == nullptr) flow.stop();
+                                                               return item;
+                                                             }) &
+                                   tbb::make_filter<void*, void*>(filter_mode::serial_in_order, pass(stages.first)) &
+                                   tbb::make_filter<void*, void*>(filter_mode::parallel, pass(stages.work)) &
+                                   tbb::make_filter<void*, void>(filter_mode::serial_in_order, stages.last));
 }
 
 struct Threads::State {
@@ -72,13 +61,9 @@ Threads::Threads(int threads) : state_(detail::hidden<State>()) {
 }
 
 // TBB warns on stderr of more threads than there are cores.
-void Threads::limit_to(int threads) {
-  state_->arena.initialize(std::min(threads, processors_given()));
-}
+void Threads::limit_to(int threads) { state_->arena.initialize(std::min(threads, processors_given())); }
 
-void Threads::run(Call<void()> work) {
-  state_->arena.execute(work);
-}
+void Threads::run(Call<void()> work) { state_->arena.execute(work); }
 
 struct OneThread::State {
   tbb::global_control control{tbb::global_control::max_allowed_parallelism, 1};
@@ -123,9 +108,7 @@ bool address_space_is_limited() {
 }  // namespace
 
 // The C++ library's own count is that of the machine.
-int processors_given() {
-  return std::max(1, tbb::info::default_concurrency());
-}
+int processors_given() { return std::max(1, tbb::info::default_concurrency()); }
 
 void keep_to_threads_given() {
   const bool limited = address_space_is_limited();
@@ -145,9 +128,8 @@ void keep_to_threads(int threads) {
   // For good: where one ends the pool wants its threads at once, in a destructor.
   using Controls = std::vector<std::unique_ptr<tbb::global_control>>;
   static Controls* const controls = new Controls;
-  controls->push_back(
-      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                            static_cast<std::size_t>(std::max(1, threads))));
+  controls->push_back(std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                            static_cast<std::size_t>(std::max(1, threads))));
 }
 
 }  // namespace libchar

@@ -23,9 +23,7 @@ Instructions instructions_there();
 
 /// Those that kernels use: all that are there.
 inline std::atomic<Instructions> g_instructions{instructions_there()};
-inline Instructions instructions() {
-  return g_instructions.load(std::memory_order_relaxed);
-}
+inline Instructions instructions() { return g_instructions.load(std::memory_order_relaxed); }
 
 /// While one lives, kernels use no more than these: for tests and benches. Results never depend on
 /// it.

@@ -10,9 +10,7 @@ namespace libchar {
 namespace {
 
 #if __has_include(<glog/log_severity.h>)
-int set_level(int level) {
-  return std::exchange(FLAGS_minloglevel, level);
-}
+int set_level(int level) { return std::exchange(FLAGS_minloglevel, level); }
 constexpr int kSilent = google::GLOG_FATAL;
 #else
 // Ceres was built with the small log of its own (a web page), which writes to std::cerr as nothing else here does.

@@ -3,11 +3,7 @@
 #include <libchar_commit.hpp>
 
 namespace libchar {
-std::string_view version() {
-  return LIBCHAR_VERSION;
-}
+std::string_view version() { return LIBCHAR_VERSION; }
 
-std::string build() {
-  return LIBCHAR_BUILD ", " LIBCHAR_COMMIT;
-}
+std::string build() { return LIBCHAR_BUILD ", " LIBCHAR_COMMIT; }
 }  // namespace libchar

@@ -20,8 +20,7 @@ WorkDone all_done() {
 Json work_json(const WorkDone& work) {
   Json out = Json::object();
   for (const auto& [kind, word] : enum_table<WorkKind>)
-    if (const std::uint64_t count = work[static_cast<std::size_t>(kind)]; count > 0)
-      out[std::string(word)] = count;
+    if (const std::uint64_t count = work[static_cast<std::size_t>(kind)]; count > 0) out[std::string(word)] = count;
   return out;
 }
 

@@ -36,24 +36,10 @@ constexpr LatexWord kLatexText[] = {{"\\", "\\textbackslash{}"},
                                     {"\u202F", "\\,"}};
 
 // In mathematics.
-constexpr LatexWord kLatexUnit[] = {{"·", "\\cdot "},
-                                    {"²", "^{2}"},
-                                    {"³", "^{3}"},
-                                    {"µ", "\\mu "},
-                                    {"°", "^{\\circ}"},
-                                    {"%", "\\%"},
-                                    {"(", "("},
-                                    {")", ")"},
-                                    {"/", "/"},
-                                    {"^", "\\hat{}"},
-                                    {"\\", "\\backslash "},
-                                    {"_", "\\_"},
-                                    {"$", "\\$"},
-                                    {"&", "\\&"},
-                                    {"#", "\\#"},
-                                    {"{", "\\{"},
-                                    {"}", "\\}"},
-                                    {"~", "\\sim "}};
+constexpr LatexWord kLatexUnit[] = {
+    {"·", "\\cdot "}, {"²", "^{2}"}, {"³", "^{3}"}, {"µ", "\\mu "},   {"°", "^{\\circ}"},     {"%", "\\%"},
+    {"(", "("},       {")", ")"},    {"/", "/"},    {"^", "\\hat{}"}, {"\\", "\\backslash "}, {"_", "\\_"},
+    {"$", "\\$"},     {"&", "\\&"},  {"#", "\\#"},  {"{", "\\{"},     {"}", "\\}"},           {"~", "\\sim "}};
 
 const LatexWord* latex_word(std::span<const LatexWord> words, std::string_view text) {
   for (const LatexWord& word : words)
@@ -65,17 +51,8 @@ const LatexWord* latex_word(std::span<const LatexWord> words, std::string_view t
 std::pair<std::size_t, std::string> latex_power(std::string_view text) {
   constexpr std::string_view kTimes = "×10";
   if (!text.starts_with(kTimes)) return {0, ""};
-  constexpr LatexWord kRaised[] = {{"⁻", "-"},
-                                   {"⁰", "0"},
-                                   {"¹", "1"},
-                                   {"²", "2"},
-                                   {"³", "3"},
-                                   {"⁴", "4"},
-                                   {"⁵", "5"},
-                                   {"⁶", "6"},
-                                   {"⁷", "7"},
-                                   {"⁸", "8"},
-                                   {"⁹", "9"}};
+  constexpr LatexWord kRaised[] = {{"⁻", "-"}, {"⁰", "0"}, {"¹", "1"}, {"²", "2"}, {"³", "3"}, {"⁴", "4"},
+                                   {"⁵", "5"}, {"⁶", "6"}, {"⁷", "7"}, {"⁸", "8"}, {"⁹", "9"}};
   std::size_t at = kTimes.size();
   std::string exponent;
   while (const LatexWord* digit = latex_word(kRaised, text.substr(at))) {
@@ -85,9 +62,7 @@ std::pair<std::size_t, std::string> latex_power(std::string_view text) {
   return {at, "$\\times 10^{" + exponent + "}$"};
 }
 
-bool latex_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
+bool latex_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 }  // namespace
 

@@ -76,9 +76,7 @@ FlatTable flat_table(Table table, Table::Door door) {
       const Cell& cell = table.cell(r, c);
       return FlatCell{cell.high.empty() ? cell.low : cell.low + " … " + cell.high};
     });
-    add_flat(out, "unit", false, rows, [&](std::size_t r) {
-      return FlatCell{table.cell(r, c).unit, {}, true};
-    });
+    add_flat(out, "unit", false, rows, [&](std::size_t r) { return FlatCell{table.cell(r, c).unit, {}, true}; });
   }
   return out;
 }
@@ -96,9 +94,7 @@ std::string line_of(const Cells& cells, std::string_view between, Write&& write)
 
 }  // namespace
 
-Cell Cell::number(double value, int digits) {
-  return Cell::shown(number_text(value, digits), value);
-}
+Cell Cell::number(double value, int digits) { return Cell::shown(number_text(value, digits), value); }
 
 Cell Cell::number(double value, const Interval& ci95, int digits) {
   Cell out = Cell::number(value, digits);
@@ -146,13 +142,10 @@ Table::Table(std::string_view heads, std::string_view keys) {
   }
 }
 
-void Table::add(std::vector<Cell> cells, Kind kind) {
-  rows.push_back({std::move(cells), kind});
-}
+void Table::add(std::vector<Cell> cells, Kind kind) { rows.push_back({std::move(cells), kind}); }
 
 Table::Column& Table::column(std::string_view head) {
-  return *std::find_if(
-      columns.begin(), columns.end(), [&](const Column& c) { return c.head == head; });
+  return *std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.head == head; });
 }
 
 void Table::drop(std::string_view head) {
@@ -235,8 +228,7 @@ std::string in_csv(const Table& table) {
       const std::string& key = table.columns[c].key;
       const Cell& cell = table.cell(r, c);
       if (key.empty()) continue;
-      out += cell.is_number ? csv_cell(cell.value)
-                            : csv_cell(cell.data.empty() ? cell.text : cell.data);
+      out += cell.is_number ? csv_cell(cell.value) : csv_cell(cell.data.empty() ? cell.text : cell.data);
       if (has_interval(key)) out += "," + csv_cell(cell.ci95.low) + "," + csv_cell(cell.ci95.high);
       out += ',';
     }

@@ -54,7 +54,7 @@ struct Table {
   enum Door : unsigned { kTerminal = 1, kDocument = 2, kPage = 4 };
   struct Column {
     std::string head;
-    std::string key = {};  ///< in CSV, of a number "KEY,LOW,HIGH" with its interval; "": not there
+    std::string key = {};    ///< in CSV, of a number "KEY,LOW,HIGH" with its interval; "": not there
     std::string about = {};  ///< what it means, where the pointer rests
     unsigned doors = kTerminal | kDocument | kPage;
     bool folded = false;  ///< on a page, at first
@@ -90,9 +90,7 @@ struct Table {
   bool holds_numbers(std::size_t column) const;
 };
 
-std::string terminal_table(const Table& table,
-                           const TextLook& look = {},
-                           std::string_view indent = "  ");
+std::string terminal_table(const Table& table, const TextLook& look = {}, std::string_view indent = "  ");
 
 enum class TableFormat { markdown, latex, csv };
 template <>

@@ -31,8 +31,7 @@ double rounded(double value, int digits) {
 std::optional<double> parse_double(std::string_view text) {
   double value = 0;
   const auto [end, status] = detail::read_double(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
+  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

@@ -17,13 +17,10 @@ namespace {
 
 /// Do the digits in front of the exponent say anything but zero?
 bool says_nonzero(std::string_view number) {
-  return number.substr(0, number.find_first_of("eE")).find_first_of("123456789") !=
-         std::string_view::npos;
+  return number.substr(0, number.find_first_of("eE")).find_first_of("123456789") != std::string_view::npos;
 }
 
-bool spells_infinity(std::string_view number) {
-  return number.find_first_of("iI") != std::string_view::npos;
-}
+bool spells_infinity(std::string_view number) { return number.find_first_of("iI") != std::string_view::npos; }
 
 /// 0.digits * 10^exponent
 struct Decimal {
@@ -37,8 +34,7 @@ Decimal shortest_decimal(double value) {
   Decimal out;
   const std::size_t e = std::min(text.find('e'), text.size());
   if (e < text.size())  // from_chars takes no '+'
-    std::from_chars(
-        text.data() + e + (text[e + 1] == '+' ? 2 : 1), text.data() + text.size(), out.exponent);
+    std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), text.data() + text.size(), out.exponent);
   const std::size_t point = std::min(text.find('.'), e);
   out.exponent += static_cast<int>(point);
   for (const char c : std::string_view(text).substr(0, e))
@@ -59,11 +55,9 @@ std::string scientific(const Decimal& number) {
 
 std::string fixed(const Decimal& number, double value) {
   const auto count = static_cast<int>(number.digits.size());
-  if (number.exponent <= 0)
-    return "0." + std::string(static_cast<std::size_t>(-number.exponent), '0') + number.digits;
+  if (number.exponent <= 0) return "0." + std::string(static_cast<std::size_t>(-number.exponent), '0') + number.digits;
   const auto whole = static_cast<std::size_t>(number.exponent);
-  if (number.exponent < count)
-    return number.digits.substr(0, whole) + "." + number.digits.substr(whole);
+  if (number.exponent < count) return number.digits.substr(0, whole) + "." + number.digits.substr(whole);
   // All digits of a whole number, as printf has them: beyond 2^53 more than the shortest.
   return fmt::format("{:.0f}", value);
 }
@@ -92,8 +86,7 @@ std::from_chars_result read_double(const char* first, const char* last, double& 
 
 std::to_chars_result write_double(char* first, char* last, double value) {
   const std::string text = (std::signbit(value) ? "-" : "") + shortest_text(std::fabs(value));
-  if (static_cast<std::size_t>(last - first) < text.size())
-    return {last, std::errc::value_too_large};
+  if (static_cast<std::size_t>(last - first) < text.size()) return {last, std::errc::value_too_large};
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 

@@ -62,8 +62,7 @@ std::string without_control_bytes(std::string_view text) {
 
 // Spreadsheets take the full-width signs (U+FF1D, FF0B, FF0D, FF20) for the ASCII ones.
 bool begins_like_a_formula(std::string_view text) {
-  for (const std::string_view wide :
-       {"\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"})
+  for (const std::string_view wide : {"\xEF\xBC\x9D", "\xEF\xBC\x8B", "\xEF\xBC\x8D", "\xEF\xBC\xA0"})
     if (text.starts_with(wide)) return true;
   return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
 }
@@ -77,12 +76,8 @@ std::string csv_cell(std::string_view text) {
   return quoted + '"';
 }
 
-std::string csv_cell(double value) {
-  return std::isfinite(value) ? shortest(value) : "";
-}
+std::string csv_cell(double value) { return std::isfinite(value) ? shortest(value) : ""; }
 
-std::string csv_cell(const std::optional<double>& value) {
-  return value ? csv_cell(*value) : "";
-}
+std::string csv_cell(const std::optional<double>& value) { return value ? csv_cell(*value) : ""; }
 
 }  // namespace libchar

@@ -8,9 +8,7 @@
 namespace libchar {
 namespace {
 
-bool is_decimal(char c) {
-  return c >= '0' && c <= '9';
-}
+bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
 // Behind the character at `i`; of broken UTF-8 one byte.
 std::size_t behind_character(std::string_view text, std::size_t i) {
@@ -28,9 +26,7 @@ std::string_view number_at(std::string_view text, std::size_t& i) {
 
 }  // namespace
 
-bool is_pattern(std::string_view word) {
-  return word.find_first_of("*?") != std::string_view::npos;
-}
+bool is_pattern(std::string_view word) { return word.find_first_of("*?") != std::string_view::npos; }
 
 // The last star takes one character more whenever what follows it does not fit: linear in practice, the
 // product of both lengths at worst.

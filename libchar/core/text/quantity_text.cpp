@@ -20,26 +20,19 @@ using Units = std::initializer_list<std::pair<std::string_view, double>>;
   throw usage_error("E0201").says("expected " + expected).got(std::string(text));
 }
 
-bool may_follow(char c) {
-  return (c >= '0' && c <= '9') || c == '.' || c == '-';
-}
+bool may_follow(char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; }
 
 // A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor
 // "nan", "inf", "0x10".
-std::pair<double, std::string_view> leading_number(std::string_view text,
-                                                   const std::string& expected) {
+std::pair<double, std::string_view> leading_number(std::string_view text, const std::string& expected) {
   std::string_view digits = text;
   if (digits.starts_with('+')) digits.remove_prefix(1);
   const std::string_view magnitude = digits.starts_with('-') ? digits.substr(1) : digits;
-  const bool octal_looking =
-      magnitude.size() > 1 && magnitude[0] == '0' && magnitude[1] >= '0' && magnitude[1] <= '9';
-  if (digits.empty() || !may_follow(digits[0]) || octal_looking || text.starts_with("+-"))
-    refuse(text, expected);
+  const bool octal_looking = magnitude.size() > 1 && magnitude[0] == '0' && magnitude[1] >= '0' && magnitude[1] <= '9';
+  if (digits.empty() || !may_follow(digits[0]) || octal_looking || text.starts_with("+-")) refuse(text, expected);
   double value = 0;
-  const auto [end, status] =
-      detail::read_double(digits.data(), digits.data() + digits.size(), value);
-  if (status != std::errc() || magnitude.empty() ||
-      !(magnitude[0] == '.' || may_follow(magnitude[0])))
+  const auto [end, status] = detail::read_double(digits.data(), digits.data() + digits.size(), value);
+  if (status != std::errc() || magnitude.empty() || !(magnitude[0] == '.' || may_follow(magnitude[0])))
     refuse(text, expected);
   std::string_view rest(end, static_cast<std::size_t>(digits.data() + digits.size() - end));
   while (rest.starts_with(' ')) rest.remove_prefix(1);
@@ -80,8 +73,7 @@ std::uint64_t parse_count(std::string_view text, std::uint64_t lowest, std::uint
   std::uint64_t value = 0;
   const bool octal_looking = text.size() > 1 && text[0] == '0';
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (octal_looking || status != std::errc() || end != text.data() + text.size() ||
-      value < lowest || value > highest)
+  if (octal_looking || status != std::errc() || end != text.data() + text.size() || value < lowest || value > highest)
     refuse(text, expected);
   return value;
 }
@@ -105,9 +97,8 @@ double seconds_in(std::string_view text, const std::string& expected) {
 }  // namespace
 
 double parse_duration_s(std::string_view text, bool lasts) {
-  const std::string expected =
-      fmt::format("a duration such as 90s, 250ms, 5min, 2h or 1d (a bare number is in seconds){}",
-                  lasts ? ", above zero" : "");
+  const std::string expected = fmt::format(
+      "a duration such as 90s, 250ms, 5min, 2h or 1d (a bare number is in seconds){}", lasts ? ", above zero" : "");
   const double value = seconds_in(text, expected);
   if (!(value >= 0 && value < 1e12) || (lasts && value == 0)) refuse(text, expected);
   return value;
@@ -126,10 +117,8 @@ double parse_rate_hz(std::string_view text) {
     }
     const char end = text.empty() ? ' ' : text.back();
     if (end == 's' || end == 'n' || end == 'h' || end == 'd') return 1 / seconds_in(text, expected);
-    return with_unit(
-        text,
-        {{"", 1}, {"Hz", 1}, {"hz", 1}, {"mHz", 1e-3}, {"kHz", 1e3}, {"khz", 1e3}, {"MHz", 1e6}},
-        expected);
+    return with_unit(text, {{"", 1}, {"Hz", 1}, {"hz", 1}, {"mHz", 1e-3}, {"kHz", 1e3}, {"khz", 1e3}, {"MHz", 1e6}},
+                     expected);
   };
   const double value = rate();
   if (!(value >= 1e-9 && value <= 1e9)) refuse(text, expected + " between 1e-9 and 1e9 Hz");

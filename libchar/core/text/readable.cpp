@@ -37,35 +37,27 @@ std::string written(double value, int digits, bool brief) {
   if (!std::isfinite(value)) return "–";
   if (value == 0) return "0";
   const Scientific s = scientific(value, digits);
-  std::string decimal =
-      s.power ? s.mantissa : fmt::format("{:.{}f}", value, std::max(0, digits - 1 - s.exponent));
+  std::string decimal = s.power ? s.mantissa : fmt::format("{:.{}f}", value, std::max(0, digits - 1 - s.exponent));
   if (brief) decimal = without_zeros(std::move(decimal));
   return s.power ? decimal + "×" + power_of_ten(s.exponent) : decimal;
 }
 
 }  // namespace
 
-std::string number_text(double value, int digits) {
-  return written(value, digits, false);
-}
+std::string number_text(double value, int digits) { return written(value, digits, false); }
 
 std::string end_text(double end, double of, int digits) {
   if (std::isinf(end)) return "no end";
-  if (end == 0 || of == 0 || !std::isfinite(end) || !std::isfinite(of))
-    return number_text(end, digits);
+  if (end == 0 || of == 0 || !std::isfinite(end) || !std::isfinite(of)) return number_text(end, digits);
   const Scientific s = scientific(of, digits);
   // Where only the end would have a power, it has few digits of the value's.
   if (!s.power)
-    return scientific(end, digits).power
-               ? fmt::format("{:.{}f}", end, std::max(0, digits - 1 - s.exponent))
-               : number_text(end, digits);
-  return fmt::format(
-      "{:.{}f}×{}", end / std::pow(10.0, s.exponent), digits - 1, power_of_ten(s.exponent));
+    return scientific(end, digits).power ? fmt::format("{:.{}f}", end, std::max(0, digits - 1 - s.exponent))
+                                         : number_text(end, digits);
+  return fmt::format("{:.{}f}×{}", end / std::pow(10.0, s.exponent), digits - 1, power_of_ten(s.exponent));
 }
 
-std::string brief_text(double value, int digits) {
-  return written(value, digits, true);
-}
+std::string brief_text(double value, int digits) { return written(value, digits, true); }
 
 std::string power_of_ten(int exponent) {
   static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -84,9 +76,7 @@ int digits_of(double value, const Interval& ci95) {
   return value > 0 ? digits_for((ci95.high - ci95.low) / (4 * value)) : 3;
 }
 
-int digits_of(const Coefficient& c) {
-  return digits_of(c.value.value_or(0), c.ci95);
-}
+int digits_of(const Coefficient& c) { return digits_of(c.value.value_or(0), c.ci95); }
 
 std::string duration_text(double seconds, int digits) {
   if (!std::isfinite(seconds)) return "–";
@@ -94,17 +84,11 @@ std::string duration_text(double seconds, int digits) {
   struct {
     double below, unit;
     const char* symbol;
-  } constexpr kSizes[] = {{1e-6, 1e-9, "ns"},
-                          {1e-3, 1e-6, "µs"},
-                          {1, 1e-3, "ms"},
-                          {120, 1, "s"},
-                          {7200, 60, "min"},
-                          {2 * kDay, 3600, "h"},
-                          {2 * kYear, kDay, "d"}};
+  } constexpr kSizes[] = {{1e-6, 1e-9, "ns"}, {1e-3, 1e-6, "µs"},    {1, 1e-3, "ms"},       {120, 1, "s"},
+                          {7200, 60, "min"},  {2 * kDay, 3600, "h"}, {2 * kYear, kDay, "d"}};
   if (seconds == 0) return "0 s";
   for (const auto& size : kSizes)
-    if (std::fabs(seconds) < size.below)
-      return brief_text(seconds / size.unit, digits) + " " + size.symbol;
+    if (std::fabs(seconds) < size.below) return brief_text(seconds / size.unit, digits) + " " + size.symbol;
   return brief_text(seconds / kYear, digits) + " years";
 }
 
@@ -139,9 +123,7 @@ std::string coefficient_text(const Coefficient& c, double factor) {
   if (!c.value) return value_text(c, factor);
   const int digits = digits_of(c);
   const double value = *c.value * factor;
-  return fmt::format("{} [{}, {}]",
-                     number_text(value, digits),
-                     end_text(c.ci95.low * factor, value, digits),
+  return fmt::format("{} [{}, {}]", number_text(value, digits), end_text(c.ci95.low * factor, value, digits),
                      end_text(c.ci95.high * factor, value, digits));
 }
 

@@ -25,8 +25,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::optional<std::string> nearest(std::string_view word,
-                                   const std::vector<std::string>& candidates) {
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::optional<std::string> best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
@@ -46,8 +45,7 @@ std::string did_you_mean(const std::optional<std::string>& near, std::string oth
 std::string first_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 12;
   std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
-    out += (i > 0 ? ", " : "") + printable(names[i], 40);
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) out += (i > 0 ? ", " : "") + printable(names[i], 40);
   return names.size() > kMost ? fmt::format("{} and {} more", out, names.size() - kMost) : out;
 }
 

@@ -10,8 +10,7 @@ namespace libchar {
 
 /// The candidate nearest to `word` by edit distance, if it is near enough to be a slip (distance <=
 /// 2, or <= a third of the word's length).
-std::optional<std::string> nearest(std::string_view word,
-                                   const std::vector<std::string>& candidates);
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// A hint: the nearest word, if there is one, else `otherwise`.
 std::string did_you_mean(const std::optional<std::string>& near, std::string otherwise = "");

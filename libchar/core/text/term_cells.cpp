@@ -9,9 +9,7 @@
 namespace libchar {
 namespace {
 
-std::string plus_minus(double share) {
-  return "±" + percent_text(share);
-}
+std::string plus_minus(double share) { return "±" + percent_text(share); }
 
 // Longer ones are extrapolated by too much.
 constexpr double kLongestLength_s = 3.2e8;
@@ -28,15 +26,10 @@ ShownValue shown_value(const Coefficient& c, double factor, std::string unit) {
   return out;
 }
 
-std::string known_to(const Coefficient& c) {
-  return c.value && c.relative_sd > 0 ? plus_minus(c.relative_sd) : "";
-}
+std::string known_to(const Coefficient& c) { return c.value && c.relative_sd > 0 ? plus_minus(c.relative_sd) : ""; }
 
 TermCells term_cells(const Coefficient& c, Term term, const std::string& unit, bool clock) {
-  constexpr const char* kOfClock[] = {"White frequency",
-                                      "Flicker frequency",
-                                      "Random-walk frequency",
-                                      "White phase",
+  constexpr const char* kOfClock[] = {"White frequency", "Flicker frequency", "Random-walk frequency", "White phase",
                                       "Frequency drift"};
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
   TermCells out;
@@ -48,8 +41,7 @@ TermCells term_cells(const Coefficient& c, Term term, const std::string& unit, b
   out.known_to = known_to(c);
   if (c.bound) out.best_possible = plus_minus(*c.bound);
   if (const auto& length = c.seconds_for_10_percent)
-    out.length_for_10_percent =
-        *length < kLongestLength_s ? duration_text(*length, 2) : "> 10 years";
+    out.length_for_10_percent = *length < kLongestLength_s ? duration_text(*length, 2) : "> 10 years";
   if (!c.value && !c.upper95) return out;
   for (const HabitualValue& habit : habitual_units(name.key, unit)) {
     out.field.push_back(shown_value(c, habit.factor, habit.symbol));

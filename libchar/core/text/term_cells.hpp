@@ -15,7 +15,7 @@ namespace libchar {
 
 /// A coefficient in one unit.
 struct ShownValue {
-  std::string value;  ///< "0.2406", "≤ 0.0012", "–"; as many digits as its interval supports
+  std::string value;      ///< "0.2406", "≤ 0.0012", "–"; as many digits as its interval supports
   std::string low, high;  ///< of the 95 % interval, "no end" for infinity; "" where none is known
   std::string unit;       ///< "" for a number without
   Reading reading = Reading::plain;
@@ -34,10 +34,7 @@ struct TermCells {
 };
 
 /// `unit`: of the channel, as it is to be shown. A clock's terms have a clock's words.
-TermCells term_cells(const Coefficient& coefficient,
-                     Term term,
-                     const std::string& unit,
-                     bool clock = false);
+TermCells term_cells(const Coefficient& coefficient, Term term, const std::string& unit, bool clock = false);
 
 /// Its standard deviation, "±0.37 %"; "" where it has none.
 std::string known_to(const Coefficient& coefficient);

@@ -107,10 +107,7 @@ std::string wrapped(std::string_view text, std::size_t width, std::string_view i
   return lines;
 }
 
-std::string text_table(const Rows& rows,
-                       std::string_view indent,
-                       bool words_last,
-                       std::size_t width) {
+std::string text_table(const Rows& rows, std::string_view indent, bool words_last, std::size_t width) {
   if (rows.empty()) return "";
   const std::vector<std::size_t> widths = widths_of(rows);
   const std::size_t count = widths.size();
@@ -129,9 +126,8 @@ std::string text_table(const Rows& rows,
     first = last;
   }
   if (words_last)
-    text += plain_table(
-        columns(rows, count - 1, count),
-        {indent, true, std::max(kNarrowestWords, width - std::min(width, first_column))});
+    text += plain_table(columns(rows, count - 1, count),
+                        {indent, true, std::max(kNarrowestWords, width - std::min(width, first_column))});
   return text;
 }
 

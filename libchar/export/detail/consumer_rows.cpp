@@ -16,64 +16,27 @@ constexpr double kGravity = 9.80665;  // standard gravity, m/s^2
 constexpr double kRoot2 = std::numbers::sqrt2;
 
 // Factors: what the formulas beside them say, and the change from SI to the row's unit.
-double one(const RowTimes&) {
-  return 1;
-}
-double rate(const RowTimes& t) {
-  return t.rate_hz;
-}
-double root_rate(const RowTimes& t) {
-  return std::sqrt(t.rate_hz);
-}
-double per_root_rate(const RowTimes& t) {
-  return 1 / std::sqrt(t.rate_hz);
-}
+double one(const RowTimes&) { return 1; }
+double rate(const RowTimes& t) { return t.rate_hz; }
+double root_rate(const RowTimes& t) { return std::sqrt(t.rate_hz); }
+double per_root_rate(const RowTimes& t) { return 1 / std::sqrt(t.rate_hz); }
 // VINS: the derivation is in targets/vins.cpp.
-double root_two_rate(const RowTimes& t) {
-  return std::sqrt(2 * t.rate_hz);
-}
-double per_root_step(const RowTimes& t) {
-  return 1 / std::sqrt(t.filter_step_s);
-}
-double root_2(const RowTimes&) {
-  return kRoot2;
-}
-double root_2_degrees(const RowTimes&) {
-  return kDegreesPerRadian * kRoot2;
-}
-double root_2_micro_g(const RowTimes&) {
-  return 1 / kGravity * 1e6 * kRoot2;
-}
-double sixty(const RowTimes&) {
-  return 60;
-}
-double sixty_degrees(const RowTimes&) {
-  return 60 * kDegreesPerRadian;
-}
-double degrees_per_hour(const RowTimes&) {
-  return kDegreesPerRadian * 3600;
-}
-double micro_g(const RowTimes&) {
-  return 1 / kGravity * 1e6;
-}
-double milli_g(const RowTimes&) {
-  return 1e3 / kGravity;
-}
-double root_tau_degrees_per_hour(const RowTimes& t) {
-  return std::sqrt(t.bias_tau_s) * 3600 * kDegreesPerRadian;
-}
-double root_tau_micro_g(const RowTimes& t) {
-  return std::sqrt(t.bias_tau_s) * 1e6 / kGravity;
-}
-double micro(const RowTimes&) {
-  return 1e6;
-}
-double micro_root_rate(const RowTimes& t) {
-  return 1e6 * std::sqrt(t.rate_hz);
-}
+double root_two_rate(const RowTimes& t) { return std::sqrt(2 * t.rate_hz); }
+double per_root_step(const RowTimes& t) { return 1 / std::sqrt(t.filter_step_s); }
+double root_2(const RowTimes&) { return kRoot2; }
+double root_2_degrees(const RowTimes&) { return kDegreesPerRadian * kRoot2; }
+double root_2_micro_g(const RowTimes&) { return 1 / kGravity * 1e6 * kRoot2; }
+double sixty(const RowTimes&) { return 60; }
+double sixty_degrees(const RowTimes&) { return 60 * kDegreesPerRadian; }
+double degrees_per_hour(const RowTimes&) { return kDegreesPerRadian * 3600; }
+double micro_g(const RowTimes&) { return 1 / kGravity * 1e6; }
+double milli_g(const RowTimes&) { return 1e3 / kGravity; }
+double root_tau_degrees_per_hour(const RowTimes& t) { return std::sqrt(t.bias_tau_s) * 3600 * kDegreesPerRadian; }
+double root_tau_micro_g(const RowTimes& t) { return std::sqrt(t.bias_tau_s) * 1e6 / kGravity; }
+double micro(const RowTimes&) { return 1e6; }
+double micro_root_rate(const RowTimes& t) { return 1e6 * std::sqrt(t.rate_hz); }
 
-constexpr std::string_view kKalibr = "Kalibr, EuRoC, OpenVINS",
-                           kKalibrTargets = "kalibr euroc openvins";
+constexpr std::string_view kKalibr = "Kalibr, EuRoC, OpenVINS", kKalibrTargets = "kalibr euroc openvins";
 constexpr std::string_view kVins = "VINS-Mono, VINS-Fusion", kRos = "ROS sensor_msgs/Imu";
 constexpr std::string_view kGyroparams = "MATLAB gyroparams (double-sided)";
 constexpr std::string_view kAccelparams = "MATLAB accelparams (double-sided)";
@@ -201,9 +164,7 @@ bool among(std::string_view words, std::string_view word) {
 
 }  // namespace
 
-std::span<const ConsumerRow> consumer_table() {
-  return kRows;
-}
+std::span<const ConsumerRow> consumer_table() { return kRows; }
 
 std::vector<const ConsumerRow*> rows_of(std::string_view target, std::string_view sensor) {
   std::vector<const ConsumerRow*> out;
@@ -216,9 +177,7 @@ const ConsumerRow& row_of(std::string_view target, std::string_view sensor, Term
   for (const ConsumerRow* row : rows_of(target, sensor))
     if (row->term == term) return *row;
   throw std::logic_error(fmt::format("the table of consumers has no {} of a {} for {}",
-                                     kTermNames[static_cast<std::size_t>(term)].key,
-                                     sensor,
-                                     target));
+                                     kTermNames[static_cast<std::size_t>(term)].key, sensor, target));
 }
 
 double row_value(const ConsumerRow& row, double coefficient, const RowTimes& times) {

@@ -28,8 +28,8 @@ struct RowTimes {
 struct ConsumerRow {
   std::string_view consumer;  ///< "Kalibr, EuRoC, OpenVINS"
   std::string_view targets;   ///< export targets whose files hold it: "kalibr euroc openvins"
-  std::string_view sensor;  ///< "gyroscope"…; "": any; "other": neither rotation nor acceleration
-  std::string_view key;     ///< "gyroscope_noise_density"
+  std::string_view sensor;    ///< "gyroscope"…; "": any; "other": neither rotation nor acceleration
+  std::string_view key;       ///< "gyroscope_noise_density"
   Term term = Term::white;
   int power = 1;             ///< of the coefficient: 1 or 2
   std::string_view formula;  ///< "N·√(2f)"

@@ -45,9 +45,7 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   const double driving = driving_density(placed.model->gauss_markov);
   // An undetermined process says no more of slow noise than the terms' limits do.
   const Status status = placed.model->gauss_markov.status;
-  if (term != Term::walk || !(driving > 0) || status == Status::undetermined ||
-      status == Status::misfit)
-    return out;
+  if (term != Term::walk || !(driving > 0) || status == Status::undetermined || status == Status::misfit) return out;
   out.value = std::hypot(out.value.value_or(0), driving * factor);
   out.driven = true;
   return out;
@@ -55,7 +53,7 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
 
 std::string said(const AxisNumber& n) {
   if (n.value)
-    return shortest(rounded(*n.value, 4)) + (n.driven ? " (Gauss-Markov driving density)"
+    return shortest(rounded(*n.value, 4)) + (n.driven                           ? " (Gauss-Markov driving density)"
                                              : n.status == Status::undetermined ? " (undetermined)"
                                              : n.status == Status::misfit       ? " (misfit)"
                                                                                 : "");
@@ -71,25 +69,17 @@ std::string absence(const AxisNumber& n) {
 
 ExportFigure one_axis(const AxisNumber& n, Absent absent) {
   if (n.driven)
-    return {n.value,
-            false,
+    return {n.value, false,
             "driving density sigma sqrt(2/tau) of the Gauss-Markov process: as a walk it holds for "
             "times well below tau"};
   if (n.value) {
-    if (n.status == Status::misfit)
-      return {n.value, false, "misfit: the noise terms do not describe the recording"};
+    if (n.status == Status::misfit) return {n.value, false, "misfit: the noise terms do not describe the recording"};
     const bool doubtful = n.status == Status::undetermined;
-    return {n.value,
-            false,
-            doubtful
-                ? "undetermined: the record cannot tell it from another term, or contradicts it"
-                : ""};
+    return {n.value, false,
+            doubtful ? "undetermined: the record cannot tell it from another term, or contradicts it" : ""};
   }
   if (absent == Absent::zero)
-    return {0.0,
-            false,
-            n.limit ? fmt::format("{}, {}: taken as 0", absence(n), said(n))
-                    : absence(n) + ": taken as 0"};
+    return {0.0, false, n.limit ? fmt::format("{}, {}: taken as 0", absence(n), said(n)) : absence(n) + ": taken as 0"};
   if (n.limit) return {n.limit, true, absence(n) + ": upper 95 % limit"};
   return {std::nullopt, false, absence(n)};
 }
@@ -115,15 +105,12 @@ double combined(const std::vector<double>& values, AxisChoice choice) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double positive(const std::optional<double>& value) {
-  return value ? *value : 0;
-}
+double positive(const std::optional<double>& value) { return value ? *value : 0; }
 
 // The middle of the flat part: where white noise and random walk are equal, or between the end of
 // white noise and the end of the record.
 double floor_tau(const SensorModel& m, double q, double b, double k, double record_s) {
-  const double white_ends =
-      q * q / (2 * std::numbers::ln2 / std::numbers::pi * b * b);  // N^2/tau = floor^2
+  const double white_ends = q * q / (2 * std::numbers::ln2 / std::numbers::pi * b * b);  // N^2/tau = floor^2
   double tau = 0;
   if (k > 0 && q > 0)
     tau = std::numbers::sqrt3 * q / k;
@@ -148,18 +135,14 @@ const PlacedModel& representative(const SensorTriad& triad, const ExportOptions&
   return *triad.axis[only_axis(options).value_or(0)];
 }
 
-ExportFigure scalar_figure(const SensorTriad& triad,
-                           Term term,
-                           Absent absent,
-                           const ExportOptions& options) {
+ExportFigure scalar_figure(const SensorTriad& triad, Term term, Absent absent, const ExportOptions& options) {
   const auto only = only_axis(options);
   require_axes(triad, only);
   const auto numbers = numbers_of(triad, term, options.inflate);
   if (triad.shared || only) {
     ExportFigure figure = one_axis(numbers[only.value_or(0)], absent);
     if (only && !triad.shared)
-      figure.origin = fmt::format(
-          "{} axis{}{}", kAxisNames[*only], figure.origin.empty() ? "" : "; ", figure.origin);
+      figure.origin = fmt::format("{} axis{}{}", kAxisNames[*only], figure.origin.empty() ? "" : "; ", figure.origin);
     return figure;
   }
   std::vector<double> values, limits;
@@ -168,21 +151,15 @@ ExportFigure scalar_figure(const SensorTriad& triad,
     if (n.limit) limits.push_back(*n.limit);
   }
   const char* how = options.axes == AxisChoice::rms ? "root mean square" : "largest";
-  if (!values.empty())
-    return {combined(values, options.axes), false, fmt::format("{} of {}", how, all_said(numbers))};
-  if (absent == Absent::zero)
-    return {0.0, false, fmt::format("on no axis ({}): taken as 0", all_said(numbers))};
+  if (!values.empty()) return {combined(values, options.axes), false, fmt::format("{} of {}", how, all_said(numbers))};
+  if (absent == Absent::zero) return {0.0, false, fmt::format("on no axis ({}): taken as 0", all_said(numbers))};
   if (!limits.empty())
-    return {
-        combined(limits, options.axes),
-        true,
-        fmt::format("{} upper 95 % limit: not detected on any axis ({})", how, all_said(numbers))};
+    return {combined(limits, options.axes), true,
+            fmt::format("{} upper 95 % limit: not detected on any axis ({})", how, all_said(numbers))};
   return {std::nullopt, false, "unknown on every axis"};
 }
 
-std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad,
-                                         Term term,
-                                         Absent absent,
+std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad, Term term, Absent absent,
                                          const ExportOptions& options) {
   if (options.axes != AxisChoice::automatic || triad.shared) {
     const ExportFigure one = scalar_figure(triad, term, absent, options);
@@ -198,33 +175,24 @@ namespace {
 /// A data sheet that gives a floor and no walk: what drives the Gauss-Markov bias with that floor.
 std::string walk_of_floor(const SensorTriad& triad, const ExportOptions& options) {
   const PlacedModel& placed = representative(triad, options);
-  if (!(placed.model->noise[static_cast<std::size_t>(Term::flicker)].value.value_or(0) > 0))
-    return "";
+  if (!(placed.model->noise[static_cast<std::size_t>(Term::flicker)].value.value_or(0) > 0)) return "";
   const double driving = gauss_markov(placed, options).driving / placed.to_si / options.inflate;
-  return fmt::format(
-      "; a bias with this bias_instability as its floor is driven by {} {} two-sided, {} one-sided",
-      shortest(rounded(driving, 3)),
-      term_unit(kTermNames[static_cast<std::size_t>(Term::walk)].key, placed.model->unit),
-      shortest(rounded(driving * std::sqrt(2.0), 3)));
+  return fmt::format("; a bias with this bias_instability as its floor is driven by {} {} two-sided, {} one-sided",
+                     shortest(rounded(driving, 3)),
+                     term_unit(kTermNames[static_cast<std::size_t>(Term::walk)].key, placed.model->unit),
+                     shortest(rounded(driving * std::sqrt(2.0), 3)));
 }
 
 }  // namespace
 
-ExportFigure positive_figure(const SensorTriad& triad,
-                             Term term,
-                             const ExportOptions& options,
-                             const std::string& consumer,
-                             const std::string& key) {
+ExportFigure positive_figure(const SensorTriad& triad, Term term, const ExportOptions& options,
+                             const std::string& consumer, const std::string& key) {
   ExportFigure figure = scalar_figure(triad, term, Absent::limit, options);
   if (figure.value) return figure;
   const TermName& name = kTermNames[static_cast<std::size_t>(term)];
   throw input_error("E0587", representative(triad, options).model->channel)
-      .says("{} needs {} > 0, and the model has neither a value nor an upper limit of {}",
-            consumer,
-            key,
-            name.key)
-      .hint(fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}",
-                        name.key) +
+      .says("{} needs {} > 0, and the model has neither a value nor an upper limit of {}", consumer, key, name.key)
+      .hint(fmt::format("state one in the model file: {}: {{value: …, unit: …, status: given}}", name.key) +
             (term == Term::walk ? walk_of_floor(triad, options) : ""));
 }
 
@@ -238,10 +206,9 @@ GaussMarkov own_process(const PlacedModel& placed, const ExportOptions& options)
   out.correlation_s = options.correlation_s.value_or(m.gauss_markov.tau_s);
   out.driving = driving_density(m.gauss_markov) * placed.to_si * options.inflate;
   out.steady_sd = out.driving * std::sqrt(out.correlation_s / 2);
-  out.origin =
-      fmt::format("Gauss-Markov process of the record, sigma {}, tau {} s",
-                  shortest(rounded(m.gauss_markov.sigma * placed.to_si * options.inflate, 4)),
-                  shortest(rounded(m.gauss_markov.tau_s, 4)));
+  out.origin = fmt::format("Gauss-Markov process of the record, sigma {}, tau {} s",
+                           shortest(rounded(m.gauss_markov.sigma * placed.to_si * options.inflate, 4)),
+                           shortest(rounded(m.gauss_markov.tau_s, 4)));
   if (options.correlation_s) out.origin += "; its driving density with your correlation time";
   for (const Term term : {Term::flicker, Term::walk})
     if (m[term].value.value_or(0) > 0)
@@ -269,8 +236,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
     out.origin = fmt::format(
         "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
         "steady state 1.0760 B{}",
-        shortest(rounded(b, 4)),
-        shortest(rounded(out.correlation_s * kPeakTau, 4)),
+        shortest(rounded(b, 4)), shortest(rounded(out.correlation_s * kPeakTau, 4)),
         k > 0 ? "; random_walk is left out" : "");
     return out;
   }
@@ -281,7 +247,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
   out.origin = k > 0 ? fmt::format("random_walk with a correlation time of {}{}",
                                    options.correlation_s ? "your choice"
                                    : record > 0          ? "ten records"
-                                                : "1e6 s, for the length of the record is unknown",
+                                                         : "1e6 s, for the length of the record is unknown",
                                    b > 0 ? "; bias_instability is left out" : "")
                      : "neither bias_instability nor random_walk was detected: no varying bias";
   return out;
@@ -300,8 +266,7 @@ GaussMarkov gauss_markov_scalar(const SensorTriad& triad, const ExportOptions& o
       which = i;
     }
   }
-  if (largest.driving > 0)
-    largest.origin = fmt::format("{} axis (the largest): {}", kAxisNames[which], largest.origin);
+  if (largest.driving > 0) largest.origin = fmt::format("{} axis (the largest): {}", kAxisNames[which], largest.origin);
   return largest;
 }
 
@@ -319,9 +284,8 @@ double rate_of(const SensorTriad& triad, std::vector<std::string>& notes) {
     differ = differ || std::abs(own - rate) > 1e-3 * rate;
   }
   if (differ)
-    notes.push_back(fmt::format("the axes of the {} have different rates; {} Hz is used",
-                                triad.kind,
-                                shortest(rounded(rate, 6))));
+    notes.push_back(
+        fmt::format("the axes of the {} have different rates; {} Hz is used", triad.kind, shortest(rounded(rate, 6))));
   return rate;
 }
 
@@ -331,21 +295,15 @@ const ExportFigure& figure_of(const ImuFigures& f, std::string_view sensor, Term
   return walk ? f.accelerometer_walk : f.accelerometer_white;
 }
 
-ImuFigures imu_figures(const SensorGroup& group,
-                       const ExportOptions& options,
-                       const std::string& consumer,
+ImuFigures imu_figures(const SensorGroup& group, const ExportOptions& options, const std::string& consumer,
                        std::vector<std::string>& notes) {
   ImuFigures out;
   const auto take = [&](const SensorTriad& triad, Term term) {
-    const std::string key =
-        fmt::format("the {}'s {}", triad.kind, kTermNames[static_cast<std::size_t>(term)].key);
+    const std::string key = fmt::format("the {}'s {}", triad.kind, kTermNames[static_cast<std::size_t>(term)].key);
     ExportFigure figure = positive_figure(triad, term, options, consumer, key);
     if (figure.limit)
-      notes.push_back(fmt::format(
-          "{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",
-          key,
-          shortest(rounded(*figure.value, 3)),
-          consumer));
+      notes.push_back(fmt::format("{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",
+                                  key, shortest(rounded(*figure.value, 3)), consumer));
     return figure;
   };
   out.gyroscope_white = take(*group.gyroscope, Term::white);
@@ -358,8 +316,7 @@ ImuFigures imu_figures(const SensorGroup& group,
     notes.push_back(
         fmt::format("gyroscope ({} Hz) and accelerometer ({} Hz) have different rates; the file "
                     "names the first",
-                    shortest(rounded(out.gyroscope_rate_hz, 6)),
-                    shortest(rounded(out.accelerometer_rate_hz, 6))));
+                    shortest(rounded(out.gyroscope_rate_hz, 6)), shortest(rounded(out.accelerometer_rate_hz, 6))));
   return out;
 }
 

@@ -22,30 +22,22 @@ enum class Absent {
 struct ExportFigure {
   std::optional<double> value;  ///< nothing: neither a value nor (where asked for) a limit is known
   bool limit = false;           ///< an upper limit, not a value
-  std::string origin;  ///< "largest of x 1.7e-4, y 1.6e-4, z <= 2e-4", "upper 95 % limit"…
+  std::string origin;           ///< "largest of x 1.7e-4, y 1.6e-4, z <= 2e-4", "upper 95 % limit"…
 };
 
 /// The term on every axis; one shared model gives the same three times. Any explicit choice of axes
 /// (max, rms, x…) gives its one number three times.
-std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad,
-                                         Term term,
-                                         Absent absent,
+std::array<ExportFigure, 3> axis_figures(const SensorTriad& triad, Term term, Absent absent,
                                          const ExportOptions& options);
 
 /// The one number for a consumer that takes one for all axes: the largest unless options say
 /// otherwise. Values go before limits: a limit only stands where no axis has a value.
-ExportFigure scalar_figure(const SensorTriad& triad,
-                           Term term,
-                           Absent absent,
-                           const ExportOptions& options);
+ExportFigure scalar_figure(const SensorTriad& triad, Term term, Absent absent, const ExportOptions& options);
 
 /// As `scalar_figure` with a limit for what is absent, and Error(input) when there is none, naming
 /// `consumer` and its `key`.
-ExportFigure positive_figure(const SensorTriad& triad,
-                             Term term,
-                             const ExportOptions& options,
-                             const std::string& consumer,
-                             const std::string& key);
+ExportFigure positive_figure(const SensorTriad& triad, Term term, const ExportOptions& options,
+                             const std::string& consumer, const std::string& key);
 
 /// A first-order Gauss-Markov (Ornstein-Uhlenbeck) bias: db = -b/Tc dt + q dW.
 struct GaussMarkov {
@@ -80,9 +72,7 @@ struct ImuFigures {
 const ExportFigure& figure_of(const ImuFigures& figures, std::string_view sensor, Term term);
 
 /// Notes on limits and rates go to `notes`. Throws as `positive_figure` and `rate_of`.
-ImuFigures imu_figures(const SensorGroup& group,
-                       const ExportOptions& options,
-                       const std::string& consumer,
+ImuFigures imu_figures(const SensorGroup& group, const ExportOptions& options, const std::string& consumer,
                        std::vector<std::string>& notes);
 
 }  // namespace libchar

@@ -26,9 +26,8 @@ std::vector<Source> sources(const SensorGroup& group) {
   std::vector<Source> out;
   for (const SensorModel* m : group.all) {
     const Source source{m->recording.file, m->recording.sha256};
-    const bool known = std::any_of(out.begin(), out.end(), [&](const Source& s) {
-      return s.sha256 == source.sha256 && s.file == source.file;
-    });
+    const bool known = std::any_of(out.begin(), out.end(),
+                                   [&](const Source& s) { return s.sha256 == source.sha256 && s.file == source.file; });
     if (!known) out.push_back(source);
   }
   return out;
@@ -36,8 +35,7 @@ std::vector<Source> sources(const SensorGroup& group) {
 
 std::string said(const Source& source, const SensorGroup& group) {
   if (!source.sha256.empty())
-    return fmt::format(
-        "{} sha256:{}", source.file.empty() ? "a recording" : source.file, source.sha256);
+    return fmt::format("{} sha256:{}", source.file.empty() ? "a recording" : source.file, source.sha256);
   for (const SensorModel* m : group.all)
     if (m->recording.sha256.empty() && !m->obtained.empty()) return m->obtained + " (no recording)";
   return "no recording";
@@ -52,39 +50,31 @@ std::string axes_said(AxisChoice axes) {
     case AxisChoice::rms:
       return "axes: their root mean square stands for all";
     default:
-      return fmt::format("axes: {} stands for all",
-                         "xyz"[static_cast<int>(axes) - static_cast<int>(AxisChoice::x)]);
+      return fmt::format("axes: {} stands for all", "xyz"[static_cast<int>(axes) - static_cast<int>(AxisChoice::x)]);
   }
 }
 
 }  // namespace
 
-std::string export_number(double value) {
-  return shortest_yaml(rounded(value, 10));
-}
+std::string export_number(double value) { return shortest_yaml(rounded(value, 10)); }
 
 std::string export_list(const std::array<double, 3>& values) {
-  return fmt::format(
-      "[{}, {}, {}]", export_number(values[0]), export_number(values[1]), export_number(values[2]));
+  return fmt::format("[{}, {}, {}]", export_number(values[0]), export_number(values[1]), export_number(values[2]));
 }
 
-double value_or_zero(const ExportFigure& figure) {
-  return figure.value.value_or(0);
-}
+double value_or_zero(const ExportFigure& figure) { return figure.value.value_or(0); }
 
 namespace {
 
 /// What readings of a number or a unit hold besides ASCII, in ASCII.
 std::string in_ascii(std::string text) {
   constexpr std::pair<std::string_view, std::string_view> kSpelt[] = {
-      {"×10", "e"}, {"×", "x"},    {"±", "+/-"}, {"⁻", "-"},     {"⁰", "0"},    {"¹", "1"},
-      {"²", "2"},   {"³", "3"},    {"⁴", "4"},   {"⁵", "5"},     {"⁶", "6"},    {"⁷", "7"},
-      {"⁸", "8"},   {"⁹", "9"},    {"µ", "u"},   {"√", "sqrt "}, {"°", "deg "}, {"·", "*"},
-      {"≤", "<="},  {"≥", ">="},   {"…", ".."},  {"–", "-"},     {"−", "-"},    {"χ", "chi"},
-      {"τ", "tau"}, {"σ", "sigma"}};
+      {"×10", "e"}, {"×", "x"},     {"±", "+/-"},  {"⁻", "-"},   {"⁰", "0"},    {"¹", "1"},  {"²", "2"},
+      {"³", "3"},   {"⁴", "4"},     {"⁵", "5"},    {"⁶", "6"},   {"⁷", "7"},    {"⁸", "8"},  {"⁹", "9"},
+      {"µ", "u"},   {"√", "sqrt "}, {"°", "deg "}, {"·", "*"},   {"≤", "<="},   {"≥", ">="}, {"…", ".."},
+      {"–", "-"},   {"−", "-"},     {"χ", "chi"},  {"τ", "tau"}, {"σ", "sigma"}};
   for (const auto& [from, to] : kSpelt)
-    for (std::size_t at = text.find(from); at != std::string::npos;
-         at = text.find(from, at + to.size()))
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);
   return text;
 }
@@ -105,23 +95,18 @@ std::string comment_text(std::string_view text) {
   return out;
 }
 
-std::vector<std::string> head_lines(const SensorGroup& group,
-                                    const ExportOptions& options,
-                                    std::string_view formula) {
+std::vector<std::string> head_lines(const SensorGroup& group, const ExportOptions& options, std::string_view formula) {
   std::vector<std::string> lines = {fmt::format("sensorchar {}", version())};
-  for (const Source& source : sources(group))
-    lines.push_back("source: " + comment_text(said(source, group)));
+  for (const Source& source : sources(group)) lines.push_back("source: " + comment_text(said(source, group)));
   std::string channels;
-  for (const SensorModel* m : group.all)
-    channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
+  for (const SensorModel* m : group.all) channels += (channels.empty() ? "" : ", ") + printable(m->channel, 40);
   lines.push_back("channels: " + comment_text(channels));
   lines.push_back(fmt::format("formula: {}", formula));
   for (const std::string& line : group.unexpressed) lines.push_back(comment_text(line));
   const std::string axes = axes_said(options.axes);
   if (!axes.empty()) lines.push_back(axes);
   if (options.inflate != 1)
-    lines.push_back(
-        fmt::format("every noise number is multiplied by {}", export_number(options.inflate)));
+    lines.push_back(fmt::format("every noise number is multiplied by {}", export_number(options.inflate)));
   return lines;
 }
 
@@ -147,12 +132,8 @@ std::string commented(const std::vector<std::string>& lines, std::string_view ma
   return out;
 }
 
-std::string yaml_line(std::string_view key,
-                      double value,
-                      std::string_view unit,
-                      const std::string& origin) {
-  return fmt::format(
-      "{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
+std::string yaml_line(std::string_view key, double value, std::string_view unit, const std::string& origin) {
+  return fmt::format("{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
 }
 
 std::string row_lines(std::string_view target, const ImuFigures& f, std::string_view indent) {
@@ -160,13 +141,9 @@ std::string row_lines(std::string_view target, const ImuFigures& f, std::string_
   for (const char* sensor : {"accelerometer", "gyroscope"})
     for (const ConsumerRow* row : rows_of(target, sensor)) {
       const ExportFigure& figure = figure_of(f, sensor, row->term);
-      const double rate_hz =
-          std::string_view(sensor) == "gyroscope" ? f.gyroscope_rate_hz : f.accelerometer_rate_hz;
+      const double rate_hz = std::string_view(sensor) == "gyroscope" ? f.gyroscope_rate_hz : f.accelerometer_rate_hz;
       out += indent;
-      out += yaml_line(row->key,
-                       row_value(*row, *figure.value, {.rate_hz = rate_hz}),
-                       file_unit(*row),
-                       figure.origin);
+      out += yaml_line(row->key, row_value(*row, *figure.value, {.rate_hz = rate_hz}), file_unit(*row), figure.origin);
     }
   return out;
 }
@@ -175,41 +152,32 @@ std::string axis_origins(const std::array<std::string, 3>& origins) {
   if (origins[0] == origins[1] && origins[1] == origins[2]) return origins[0];
   std::string out;
   for (std::size_t i = 0; i < 3; ++i)
-    if (!origins[i].empty())
-      out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
+    if (!origins[i].empty()) out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
   return out;
 }
 
-BiasOfAxes bias_of_axes(const SensorTriad& triad,
-                        const ExportOptions& options,
-                        double factor,
-                        std::string_view key,
+BiasOfAxes bias_of_axes(const SensorTriad& triad, const ExportOptions& options, double factor, std::string_view key,
                         std::vector<std::string>& notes) {
   const bool one = options.axes != AxisChoice::automatic;
   BiasOfAxes out;
   std::array<std::string, 3> origins;
   for (std::size_t i = 0; i < 3; ++i) {
     const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
-    const GaussMarkov process =
-        one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
+    const GaussMarkov process = one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
     out.model[i] = placed.model;
     out.to_unit[i] = placed.to_si * factor;
     out.steady_sd[i] = process.steady_sd * factor;
     out.correlation_s[i] = process.correlation_s;
     origins[i] = process.origin;
-    if (process.driving == 0)
-      notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
+    if (process.driving == 0) notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
   }
   out.origins = axis_origins(origins);
   return out;
 }
 
-void note_figure(std::vector<std::string>& notes,
-                 std::string_view key,
-                 const ExportFigure& figure) {
+void note_figure(std::vector<std::string>& notes, std::string_view key, const ExportFigure& figure) {
   if (figure.limit)
-    notes.push_back(
-        fmt::format("{}: an upper 95 % limit stands for a term that was not detected", key));
+    notes.push_back(fmt::format("{}: an upper 95 % limit stands for a term that was not detected", key));
   else if (!figure.value)
     notes.push_back(fmt::format("{}: left out ({})", key, figure.origin));
   else if (*figure.value == 0)
@@ -221,9 +189,7 @@ std::string topic_scalar(const SensorGroup& group, const ExportOptions& options)
   for (const SensorModel* m : group.all)
     if (topic.empty()) topic = m->recording.topic;
   if (topic.empty()) topic = "/imu0";
-  const auto allowed = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~';
-  };
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '~'; };
   const bool fine = !topic.empty() && std::isdigit(static_cast<unsigned char>(topic[0])) == 0 &&
                     std::all_of(topic.begin(), topic.end(), allowed);
   if (!fine)

@@ -27,9 +27,7 @@ std::string comment_text(std::string_view text);
 
 /// "sensorchar VERSION", "source: FILE sha256:…", channels, axes, inflation, `formula`: one line
 /// each, without comment signs.
-std::vector<std::string> head_lines(const SensorGroup& group,
-                                    const ExportOptions& options,
-                                    std::string_view formula);
+std::vector<std::string> head_lines(const SensorGroup& group, const ExportOptions& options, std::string_view formula);
 
 /// The same as an object, for JSON files.
 Json head_json(const SensorGroup& group, const ExportOptions& options, std::string_view formula);
@@ -38,15 +36,10 @@ Json head_json(const SensorGroup& group, const ExportOptions& options, std::stri
 std::string commented(const std::vector<std::string>& lines, std::string_view mark);
 
 /// "KEY: NUMBER  # UNIT; ORIGIN\n".
-std::string yaml_line(std::string_view key,
-                      double value,
-                      std::string_view unit,
-                      const std::string& origin);
+std::string yaml_line(std::string_view key, double value, std::string_view unit, const std::string& origin);
 
 /// The four numbers of a target as YAML, each line behind `indent`.
-std::string row_lines(std::string_view target,
-                      const ImuFigures& figures,
-                      std::string_view indent = "");
+std::string row_lines(std::string_view target, const ImuFigures& figures, std::string_view indent = "");
 
 /// What has to be said of three axes: once if it is the same, else axis by axis.
 std::string axis_origins(const std::array<std::string, 3>& origins);
@@ -59,10 +52,7 @@ struct BiasOfAxes {
   std::string origins;
 };
 /// Notes an axis without a process under its key.
-BiasOfAxes bias_of_axes(const SensorTriad& triad,
-                        const ExportOptions& options,
-                        double factor,
-                        std::string_view key,
+BiasOfAxes bias_of_axes(const SensorTriad& triad, const ExportOptions& options, double factor, std::string_view key,
                         std::vector<std::string>& notes);
 
 /// Puts down what was replaced or left out of `figure` under its key.

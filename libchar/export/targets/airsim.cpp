@@ -48,11 +48,9 @@ Export write_airsim(const SensorGroup& group, const ExportOptions& options) {
   if (!group.gyroscope || !group.accelerometer)
     out.notes.push_back(std::string("no ") + (group.gyroscope ? "accelerometer" : "gyroscope") +
                         " was given: AirSim's own (an MPU-6000) stays");
-  Json head = head_json(
-      group,
-      options,
-      "AngularRandomWalk = white_noise 60 180/pi; VelocityRandomWalk = white_noise 1e3/9.80665; "
-      "BiasStability = random_walk sqrt(tau), in deg/h and ug (not bias_instability)");
+  Json head = head_json(group, options,
+                        "AngularRandomWalk = white_noise 60 180/pi; VelocityRandomWalk = white_noise 1e3/9.80665; "
+                        "BiasStability = random_walk sqrt(tau), in deg/h and ug (not bias_instability)");
   if (!writer.comments.empty()) head["comments"] = writer.comments;
   Json document;
   document["SettingsVersion"] = 1.2;
@@ -65,15 +63,14 @@ Export write_airsim(const SensorGroup& group, const ExportOptions& options) {
 }  // namespace
 
 ExportTarget airsim_target() {
-  return {
-      "airsim",
-      "AirSim",
-      "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
-      "settings.json",
-      ExportNeeds::gyroscope_or_accelerometer,
-      "NK",
-      {.bias_tau = true},
-      write_airsim};
+  return {"airsim",
+          "AirSim",
+          "deg/sqrt(h), mg/sqrt(Hz); the bias is a random walk K = stability / sqrt(tau) in deg/h, ug",
+          "settings.json",
+          ExportNeeds::gyroscope_or_accelerometer,
+          "NK",
+          {.bias_tau = true},
+          write_airsim};
 }
 
 }  // namespace libchar

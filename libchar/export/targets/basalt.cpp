@@ -59,8 +59,7 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
       const ConsumerRow& row = row_of("basalt", triad->kind, term);
       value[std::string(row.key)] = writer.numbers(row, *triad);
     }
-  Json head = head_json(group,
-                        options,
+  Json head = head_json(group, options,
                         "noise_std = white_noise, bias_std = random_walk (roots of two-sided, "
                         "continuous densities, SI units; the code makes them discrete itself)");
   if (!comments.empty()) head["comments"] = comments;
@@ -68,11 +67,8 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
   document["value0"] = value;
   document["sensorchar"] = head;
   out.text = dump_json(document);
-  out.notes.emplace_back(
-      "merge the five keys into value0 of your calibration; the key sensorchar is ignored there");
-  if (!options.older)
-    out.notes.emplace_back(
-        "releases whose calibrations hold one number in place of three: `older`");
+  out.notes.emplace_back("merge the five keys into value0 of your calibration; the key sensorchar is ignored there");
+  if (!options.older) out.notes.emplace_back("releases whose calibrations hold one number in place of three: `older`");
   return out;
 }
 

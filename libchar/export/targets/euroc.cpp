@@ -10,8 +10,7 @@ namespace {
 Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "density = white_noise, walk = random_walk (roots of two-sided, "
                                   "continuous densities)"),
                        "# ");
@@ -26,8 +25,7 @@ Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
       "         0.0, 0.0, 0.0, 1.0]\n";
   out.text += yaml_line("rate_hz", f.gyroscope_rate_hz, "Hz", "");
   out.text += row_lines("kalibr", f);
-  out.notes.emplace_back(
-      "T_BS is the identity: a recording at rest does not say where the sensor sits");
+  out.notes.emplace_back("T_BS is the identity: a recording at rest does not say where the sensor sits");
   return out;
 }
 

@@ -21,11 +21,8 @@ struct GnssInsSimWriter {
   const ExportOptions& options;
   Export& out;
 
-  void line(const std::string& key,
-            const std::array<double, 3>& values,
-            const std::string& comment) {
-    out.text += fmt::format(
-        "    '{}': np.array({}),  # {}\n", key, export_list(values), comment_text(comment));
+  void line(const std::string& key, const std::array<double, 3>& values, const std::string& comment) {
+    out.text += fmt::format("    '{}': np.array({}),  # {}\n", key, export_list(values), comment_text(comment));
   }
 
   void white(const SensorTriad& triad, double rate_hz = 0) {
@@ -55,8 +52,7 @@ struct GnssInsSimWriter {
 Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   GnssInsSimWriter writer{options, out};
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "arw = white_noise 60 180/pi, vrw = white_noise 60, b_stability "
                                   "= steady standard deviation of a Gauss-Markov bias"),
                        "# ");
@@ -82,16 +78,15 @@ Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options
 }  // namespace
 
 ExportTarget gnss_ins_sim_target() {
-  return {
-      "gnss-ins-sim",
-      "gnss-ins-sim",
-      "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, "
-      "m/s^2",
-      "imu_err.py",
-      ExportNeeds::gyroscope_and_accelerometer,
-      "NBK",
-      {.magnetometer = true, .gauss_markov = true},
-      write_gnss_ins_sim};
+  return {"gnss-ins-sim",
+          "gnss-ins-sim",
+          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, "
+          "m/s^2",
+          "imu_err.py",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "NBK",
+          {.magnetometer = true, .gauss_markov = true},
+          write_gnss_ins_sim};
 }
 
 }  // namespace libchar

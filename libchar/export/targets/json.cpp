@@ -12,8 +12,7 @@ Export write_json(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = dump_json(models_json(group.all));
   if (options.inflate != 1 || options.axes != AxisChoice::automatic)
-    out.notes.emplace_back(
-        "the models are written as they are: `inflate` and `axes` are for the other targets");
+    out.notes.emplace_back("the models are written as they are: `inflate` and `axes` are for the other targets");
   return out;
 }
 

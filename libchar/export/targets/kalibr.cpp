@@ -12,8 +12,7 @@ namespace {
 Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "density = white_noise, walk = random_walk (roots of two-sided, "
                                   "continuous densities; Kalibr makes them discrete itself)"),
                        "# ");

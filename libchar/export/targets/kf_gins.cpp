@@ -44,19 +44,16 @@ class KfGinsWriter {
       values[i] = process.driving * std::sqrt(common_s_ / 2) * factor;
       origins[i] = process.origin;
       if (std::abs(process.correlation_s / common_s_ - 1) > 1e-6 && process.driving > 0)
-        origins[i] +=
-            fmt::format("; correlation time {} s replaced by corrtime, driving density kept",
-                        shortest(rounded(process.correlation_s, 4)));
-      if (process.driving == 0)
-        out_.notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
+        origins[i] += fmt::format("; correlation time {} s replaced by corrtime, driving density kept",
+                                  shortest(rounded(process.correlation_s, 4)));
+      if (process.driving == 0) out_.notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
     }
     line(key, values, unit, axis_origins(origins));
   }
 
   void scale(const std::string& key, const SensorTriad& triad) {
     std::array<double, 3> values{};
-    for (std::size_t i = 0; i < 3; ++i)
-      values[i] = placed(triad, i).model->scale_factor.spread * kPartsPerMillion;
+    for (std::size_t i = 0; i < 3; ++i) values[i] = placed(triad, i).model->scale_factor.spread * kPartsPerMillion;
     line(key, values, "ppm", "not in a recording at rest: 0 unless the model states a spread");
   }
 
@@ -70,14 +67,9 @@ class KfGinsWriter {
     return only_axis(options_) ? representative(triad, options_) : *triad.axis[i];
   }
 
-  void line(const std::string& key,
-            const std::array<double, 3>& values,
-            const std::string& unit,
+  void line(const std::string& key, const std::array<double, 3>& values, const std::string& unit,
             const std::string& origin) {
-    out_.text += fmt::format("  {}: {}  # {}{}\n",
-                             key,
-                             export_list(values),
-                             unit,
+    out_.text += fmt::format("  {}: {}  # {}{}\n", key, export_list(values), unit,
                              origin.empty() ? "" : comment_text("; " + origin));
   }
 
@@ -92,13 +84,11 @@ Export write_kf_gins(const SensorGroup& group, const ExportOptions& options) {
   require_axes(*group.accelerometer, only_axis(options));
   const double common_s = gauss_markov_scalar(*group.gyroscope, options).correlation_s;
   KfGinsWriter writer(options, common_s, out);
-  out.text = commented(
-      head_lines(
-          group,
-          options,
-          "arw, vrw = 60 white_noise; gbstd, abstd: steady standard deviation of a Gauss-Markov "
-          "bias; corrtime: its correlation time, one for all (that of the gyroscope)"),
-      "# ");
+  out.text =
+      commented(head_lines(group, options,
+                           "arw, vrw = 60 white_noise; gbstd, abstd: steady standard deviation of a Gauss-Markov "
+                           "bias; corrtime: its correlation time, one for all (that of the gyroscope)"),
+                "# ");
   out.text += "imunoise:\n";
   writer.white(*group.gyroscope);
   writer.white(*group.accelerometer);

@@ -13,8 +13,7 @@ namespace {
 Export write_lio_sam(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "LIO-SAM", out.notes);
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "imuAccNoise, imuGyrNoise = white_noise; imuAccBiasN, "
                                   "imuGyrBiasN = random_walk (densities)"),
                        "# ");

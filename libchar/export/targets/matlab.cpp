@@ -23,51 +23,37 @@ struct MatlabWriter {
     for (std::size_t i = 0; i < 3; ++i) {
       v[i] = row_value(row, value_or_zero(figures[i]));
       const std::string origin = figures[i].origin.empty() ? "" : comment_text(figures[i].origin);
-      const std::string line = fmt::format("%   {}: {}\n",
-                                           row.key,
-                                           triad.shared || options.axes != AxisChoice::automatic
-                                               ? origin
-                                               : fmt::format("{} {}", "xyz"[i], origin));
+      const std::string line = fmt::format(
+          "%   {}: {}\n", row.key,
+          triad.shared || options.axes != AxisChoice::automatic ? origin : fmt::format("{} {}", "xyz"[i], origin));
       if (!origin.empty() && comments.find(line) == std::string::npos) comments += line;
     }
     if (v[0] == 0 && v[1] == 0 && v[2] == 0) {
-      out.notes.push_back(
-          fmt::format("{} of the {}: left out ({})", row.key, triad.kind, figures[0].origin));
+      out.notes.push_back(fmt::format("{} of the {}: left out ({})", row.key, triad.kind, figures[0].origin));
       return "";
     }
-    if (v[0] == v[1] && v[1] == v[2])
-      return fmt::format(", ...\n    '{}', {}", row.key, export_number(v[0]));
-    return fmt::format(", ...\n    '{}', [{} {} {}]",
-                       row.key,
-                       export_number(v[0]),
-                       export_number(v[1]),
+    if (v[0] == v[1] && v[1] == v[2]) return fmt::format(", ...\n    '{}', {}", row.key, export_number(v[0]));
+    return fmt::format(", ...\n    '{}', [{} {} {}]", row.key, export_number(v[0]), export_number(v[1]),
                        export_number(v[2]));
   }
 
-  void block(const std::optional<SensorTriad>& triad,
-             const char* name,
-             const char* function,
-             const char* unit) {
+  void block(const std::optional<SensorTriad>& triad, const char* name, const char* function, const char* unit) {
     if (!triad) return;
     require_axes(*triad, only_axis(options));
     std::string comments;
     std::string call = fmt::format("{} = {}('NoiseType', 'double-sided'", name, function);
-    for (const ConsumerRow* row : rows_of("matlab", triad->kind))
-      call += argument(*triad, *row, comments);
+    for (const ConsumerRow* row : rows_of("matlab", triad->kind)) call += argument(*triad, *row, comments);
     const ExportFigure white = scalar_figure(*triad, Term::white, Absent::zero, options);
     out.text += fmt::format(
         "% {}: NoiseDensity in ({})/sqrt(Hz), RandomWalk in ({})/s/sqrt(Hz), BiasInstability in "
         "{}\n",
-        function,
-        unit,
-        unit,
-        unit);
+        function, unit, unit, unit);
     out.text += comments;
     out.text += fmt::format(
         "% Releases without NoiseType apply sqrt(fs/2): there NoiseDensity is sqrt(2) times as "
         "large, {}.\n",
-        export_number(row_value(row_of("matlab", triad->kind, Term::white),
-                                1.4142135623730951 * value_or_zero(white))));
+        export_number(
+            row_value(row_of("matlab", triad->kind, Term::white), 1.4142135623730951 * value_or_zero(white))));
     out.text += call + ");\n";
   }
 };
@@ -75,8 +61,7 @@ struct MatlabWriter {
 Export write_matlab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   MatlabWriter writer{options, out};
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "NoiseDensity = white_noise, RandomWalk = random_walk, "
                                   "BiasInstability = bias_instability (two-sided densities)"),
                        "% ");

@@ -20,12 +20,8 @@ struct NavegoWriter {
   Export& out;
 
   void line(const std::string& key, const std::array<double, 3>& v, const std::string& comment) {
-    out.text += fmt::format("imu.{} = [{} {} {}];  % {}\n",
-                            key,
-                            export_number(v[0]),
-                            export_number(v[1]),
-                            export_number(v[2]),
-                            comment_text(comment));
+    out.text += fmt::format("imu.{} = [{} {} {}];  % {}\n", key, export_number(v[0]), export_number(v[1]),
+                            export_number(v[2]), comment_text(comment));
   }
 
   void white(const SensorTriad& triad) {
@@ -58,8 +54,7 @@ Export write_navego(const SensorGroup& group, const ExportOptions& options) {
   require_axes(*group.accelerometer, only_axis(options));
   const double rate = rate_of(*group.gyroscope, out.notes);
   NavegoWriter writer{options, out};
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "arw, vrw = 60 white_noise; gb_dyn, ab_dyn, gb_corr, ab_corr: a "
                                   "Gauss-Markov bias; arrw, vrrw 0: the walk is in it"),
                        "% ");
@@ -81,16 +76,15 @@ Export write_navego(const SensorGroup& group, const ExportOptions& options) {
 }  // namespace
 
 ExportTarget navego_target() {
-  return {
-      "navego",
-      "NaveGo",
-      "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its standard deviation in deg/s, mg and "
-      "correlation time in s",
-      "imu_profile.m",
-      ExportNeeds::gyroscope_and_accelerometer,
-      "NBK",
-      {.gauss_markov = true},
-      write_navego};
+  return {"navego",
+          "NaveGo",
+          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its standard deviation in deg/s, mg and "
+          "correlation time in s",
+          "imu_profile.m",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "NBK",
+          {.gauss_markov = true},
+          write_navego};
 }
 
 }  // namespace libchar

@@ -12,10 +12,7 @@ namespace libchar {
 namespace {
 
 /// Where the sensor saturates, where its model says so.
-void add_range(const char* key,
-               const SensorTriad& triad,
-               const ExportOptions& options,
-               Export& out) {
+void add_range(const char* key, const SensorTriad& triad, const ExportOptions& options, Export& out) {
   const PlacedModel& placed = representative(triad, options);
   const std::optional<double>& high = placed.model->saturation_high;
   if (high)
@@ -28,8 +25,7 @@ Export write_okvis(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OKVIS", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group,
-                                   options,
+  out.text += commented(head_lines(group, options,
                                    "sigma_g_c, sigma_a_c = white_noise; sigma_gw_c, sigma_aw_c = "
                                    "random_walk (continuous densities)"),
                         "# ");

@@ -25,8 +25,7 @@ Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OpenVINS", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group,
-                                   options,
+  out.text += commented(head_lines(group, options,
                                    "density = white_noise, walk = random_walk (roots of two-sided, "
                                    "continuous densities)"),
                         "# ");
@@ -36,8 +35,7 @@ Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
   out.text += "  rostopic: " + topic_scalar(group, options) + "\n  time_offset: 0.0\n";
   out.text += "  " + yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
   out.text += "  model: \"kalibr\"\n";
-  out.text +=
-      matrix("Tw", 3, true, "  # intrinsics: ideal, a recording at rest does not show them");
+  out.text += matrix("Tw", 3, true, "  # intrinsics: ideal, a recording at rest does not show them");
   out.text += matrix("R_IMUtoGYRO", 3, true, "");
   out.text += matrix("Ta", 3, true, "");
   out.text += matrix("R_IMUtoACC", 3, true, "");

@@ -18,14 +18,12 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "ORB-SLAM3", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group,
-                                   options,
+  out.text += commented(head_lines(group, options,
                                    "Noise = white_noise, Walk = random_walk (roots of two-sided, "
                                    "continuous densities; the code makes them discrete itself)"),
                         "# ");
   out.text += "# Put the IMU lines into your settings file, which begins with %YAML:1.0 itself.\n";
-  if (!options.older)
-    out.text += "File.version: \"1.0\"  # with it IMU.Frequency has to be a real number\n";
+  if (!options.older) out.text += "File.version: \"1.0\"  # with it IMU.Frequency has to be a real number\n";
   for (const Term term : {Term::white, Term::walk})
     for (const char* sensor : {"gyroscope", "accelerometer"}) {
       const ConsumerRow& row = row_of("orbslam3", sensor, term);
@@ -37,14 +35,12 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
     return out;
   }
   const double whole = std::round(f.gyroscope_rate_hz);
-  out.text += fmt::format(
-      "IMU.Frequency: {:.0f}  # Hz; files without File.version take whole numbers only\n", whole);
+  out.text += fmt::format("IMU.Frequency: {:.0f}  # Hz; files without File.version take whole numbers only\n", whole);
   if (whole != f.gyroscope_rate_hz)
     out.notes.push_back(
         fmt::format("IMU.Frequency: {} Hz rounded to {:.0f}, for files without File.version take "
                     "whole numbers only",
-                    f.gyroscope_rate_hz,
-                    whole));
+                    f.gyroscope_rate_hz, whole));
   return out;
 }
 

@@ -17,41 +17,31 @@ namespace libchar {
 namespace {
 
 std::string pegasus_line(const char* key, double value, const std::string& comment) {
-  return fmt::format(
-      "        \"{}\": {},  # {}\n", key, export_number(value), comment_text(comment));
+  return fmt::format("        \"{}\": {},  # {}\n", key, export_number(value), comment_text(comment));
 }
 
-std::string pegasus_sensor(const SensorTriad& triad,
-                           const char* unit,
-                           const ExportOptions& options,
-                           Export& out) {
+std::string pegasus_sensor(const SensorTriad& triad, const char* unit, const ExportOptions& options, Export& out) {
   const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   const GaussMarkov bias = gauss_markov_scalar(triad, options);
   const ConsumerRow& row = row_of("pegasus", triad.kind, Term::white);
   note_figure(out.notes, fmt::format("{} noise_density", triad.kind), white);
-  if (bias.driving == 0)
-    out.notes.push_back(fmt::format("{} random_walk: 0 ({})", triad.kind, bias.origin));
+  if (bias.driving == 0) out.notes.push_back(fmt::format("{} random_walk: 0 ({})", triad.kind, bias.origin));
   const PlacedModel& placed = representative(triad, options);
   const std::string origin = white.origin.empty() ? "" : "; " + white.origin;
   return fmt::format("    \"{}\": {{\n", triad.kind) +
-         pegasus_line(
-             "noise_density", row_value(row, value_or_zero(white)), file_unit(row) + origin) +
-         pegasus_line("random_walk",
-                      bias.driving,
+         pegasus_line("noise_density", row_value(row, value_or_zero(white)), file_unit(row) + origin) +
+         pegasus_line("random_walk", bias.driving,
                       fmt::format("{}/s/sqrt(Hz), driving density; {}", unit, bias.origin)) +
          pegasus_line("bias_correlation_time", bias.correlation_s, "s") +
-         pegasus_line("turn_on_bias_sigma",
-                      placed.model->bias.spread * placed.to_si,
+         pegasus_line("turn_on_bias_sigma", placed.model->bias.spread * placed.to_si,
                       fmt::format("{}; 0 unless stated", unit)) +
          "    },\n";
 }
 
 Export write_pegasus(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  const double rate =
-      std::max(rate_of(*group.gyroscope, out.notes), rate_of(*group.accelerometer, out.notes));
-  out.text = commented(head_lines(group,
-                                  options,
+  const double rate = std::max(rate_of(*group.gyroscope, out.notes), rate_of(*group.accelerometer, out.notes));
+  out.text = commented(head_lines(group, options,
                                   "noise_density = white_noise (root of the two-sided density); "
                                   "random_walk = driving density q of a Gauss-Markov bias"),
                        "# ");

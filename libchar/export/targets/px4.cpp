@@ -19,13 +19,8 @@ namespace {
 constexpr std::array kGyroscopeDefaults = {"0.015", "0.001"};
 constexpr std::array kAccelerometerDefaults = {"0.35", "0.003"};
 
-void put(const SensorTriad& triad,
-         const ConsumerRow& row,
-         const char* px4_default,
-         const ExportOptions& options,
-         Export& out,
-         std::string& px4,
-         std::string& ardupilot) {
+void put(const SensorTriad& triad, const ConsumerRow& row, const char* px4_default, const ExportOptions& options,
+         Export& out, std::string& px4, std::string& ardupilot) {
   const ConsumerRow& other = row_of("ardupilot", triad.kind, row.term);
   const ExportFigure figure = scalar_figure(triad, row.term, Absent::limit, options);
   note_figure(out.notes, row.key, figure);
@@ -34,15 +29,9 @@ void put(const SensorTriad& triad,
     ardupilot += fmt::format("# {} keeps its value: {}\n", other.key, comment_text(figure.origin));
     return;
   }
-  const std::string value =
-      export_number(row_value(row, *figure.value, {.filter_step_s = options.filter_step_s}));
-  px4 += fmt::format("# {}, PX4's default is {}{}{}\nparam set {} {}\n",
-                     file_unit(row),
-                     px4_default,
-                     figure.origin.empty() ? "" : "; before conversion: ",
-                     comment_text(figure.origin),
-                     row.key,
-                     value);
+  const std::string value = export_number(row_value(row, *figure.value, {.filter_step_s = options.filter_step_s}));
+  px4 += fmt::format("# {}, PX4's default is {}{}{}\nparam set {} {}\n", file_unit(row), px4_default,
+                     figure.origin.empty() ? "" : "; before conversion: ", comment_text(figure.origin), row.key, value);
   ardupilot += fmt::format("param set {} {}\n", other.key, value);
 }
 
@@ -52,26 +41,22 @@ Export write_px4(const SensorGroup& group, const ExportOptions& options) {
   const auto put_all = [&](const std::optional<SensorTriad>& triad, const auto& defaults) {
     if (!triad) return;
     const auto rows = rows_of("px4", triad->kind);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      put(*triad, *rows[i], defaults.at(i), options, out, px4, ardupilot);
+    for (std::size_t i = 0; i < rows.size(); ++i) put(*triad, *rows[i], defaults.at(i), options, out, px4, ardupilot);
   };
   put_all(group.gyroscope, kGyroscopeDefaults);
   put_all(group.accelerometer, kAccelerometerDefaults);
-  out.text =
-      commented(head_lines(group,
-                           options,
-                           fmt::format("noise = white_noise / sqrt(dt), bias noise = random_walk / "
-                                       "sqrt(dt), dt = {} s, the step of the filter",
-                                       export_number(options.filter_step_s))),
-                "# ");
+  out.text = commented(head_lines(group, options,
+                                  fmt::format("noise = white_noise / sqrt(dt), bias noise = random_walk / "
+                                              "sqrt(dt), dt = {} s, the step of the filter",
+                                              export_number(options.filter_step_s))),
+                       "# ");
   out.text +=
       "# A floor, not advice: vibration and what the filter does not model want ten times as much "
       "and more, and\n"
       "# the autopilots clip to their own ranges.\n"
       "# PX4 EKF2 (nsh):\n" +
       px4 + "# ArduPilot EK3 (MAVProxy):\n" + ardupilot;
-  out.notes.emplace_back(
-      "these are the sensor's own noise at rest, a lower bound for the filter's numbers");
+  out.notes.emplace_back("these are the sensor's own noise at rest, a lower bound for the filter's numbers");
   return out;
 }
 

@@ -14,9 +14,7 @@ namespace {
 
 const char* const kNotProvided = "[-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]";
 
-std::string covariance(const char* sensor,
-                       const std::optional<SensorTriad>& triad,
-                       const ExportOptions& options,
+std::string covariance(const char* sensor, const std::optional<SensorTriad>& triad, const ExportOptions& options,
                        Export& out) {
   const ConsumerRow& row = row_of("ros", sensor, Term::white);
   const std::string key(row.key);
@@ -36,26 +34,17 @@ std::string covariance(const char* sensor,
     origins[i] = figure.origin;
   }
   const std::string comment = axis_origins(origins);
-  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}, at {} Hz{}{}\n",
-                     key,
-                     export_number(variance[0]),
-                     export_number(variance[1]),
-                     export_number(variance[2]),
-                     file_unit(row),
-                     export_number(rate),
-                     comment.empty() ? "" : "; ",
-                     comment);
+  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}, at {} Hz{}{}\n", key,
+                     export_number(variance[0]), export_number(variance[1]), export_number(variance[2]), file_unit(row),
+                     export_number(rate), comment.empty() ? "" : "; ", comment);
 }
 
 Export write_ros(const SensorGroup& group, const ExportOptions& options) {
   Export out;
-  out.text = commented(
-      head_lines(group, options, "variance of a sample = white_noise^2 f (row major, x y z)"),
-      "# ");
+  out.text = commented(head_lines(group, options, "variance of a sample = white_noise^2 f (row major, x y z)"), "# ");
   out.text += "# Samples averaged n to 1 before publishing have 1/n of these variances.\n";
-  out.text += fmt::format(
-      "orientation_covariance: {}  # not provided: no attitude in this device's noise\n",
-      kNotProvided);
+  out.text +=
+      fmt::format("orientation_covariance: {}  # not provided: no attitude in this device's noise\n", kNotProvided);
   out.text += covariance("gyroscope", group.gyroscope, options, out);
   out.text += covariance("accelerometer", group.accelerometer, options, out);
   if (group.magnetometer) out.text += covariance("magnetometer", group.magnetometer, options, out);

@@ -15,53 +15,41 @@ namespace libchar {
 namespace {
 
 std::string parameter(const std::string& key, double value, const std::string& comment) {
-  return fmt::format(
-      "  <{0}>{1}</{0}>  <!-- {2} -->\n", key, export_number(value), comment_text(comment));
+  return fmt::format("  <{0}>{1}</{0}>  <!-- {2} -->\n", key, export_number(value), comment_text(comment));
 }
 
-std::string triad_block(const SensorTriad& triad,
-                        const char* unit,
-                        const ExportOptions& options,
-                        Export& out) {
+std::string triad_block(const SensorTriad& triad, const char* unit, const ExportOptions& options, Export& out) {
   const std::string name = triad.kind;
   const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   const GaussMarkov bias = gauss_markov_scalar(triad, options);
   const ConsumerRow& row = row_of("rotors", name, Term::white);
   note_figure(out.notes, row.key, white);
   if (bias.driving == 0) out.notes.push_back(name + "RandomWalk: 0 (" + bias.origin + ")");
-  std::string text = parameter(
-      std::string(row.key),
-      row_value(row, value_or_zero(white)),
-      fmt::format("{}{}{}", file_unit(row), white.origin.empty() ? "" : "; ", white.origin));
+  std::string text = parameter(std::string(row.key), row_value(row, value_or_zero(white)),
+                               fmt::format("{}{}{}", file_unit(row), white.origin.empty() ? "" : "; ", white.origin));
   const std::string driving = fmt::format("{}/s/sqrt(Hz); {}", unit, bias.origin);
   if (name == "gyroscope")
-    text += parameter(
-        "gyroscopeBiasRandomWalk", bias.driving, "the key that the code reads; " + driving);
+    text += parameter("gyroscopeBiasRandomWalk", bias.driving, "the key that the code reads; " + driving);
   text += parameter(name + "RandomWalk", bias.driving, driving);
   text += parameter(name + "BiasCorrelationTime", bias.correlation_s, "s");
   const PlacedModel& placed = representative(triad, options);
-  text += parameter(
-      name + "TurnOnBiasSigma",
-      placed.model->bias.spread * placed.to_si,
-      fmt::format(
-          "{}; the spread between two switchings on is not in one recording, 0 unless stated",
-          unit));
+  text +=
+      parameter(name + "TurnOnBiasSigma", placed.model->bias.spread * placed.to_si,
+                fmt::format("{}; the spread between two switchings on is not in one recording, 0 unless stated", unit));
   return text;
 }
 
 Export write_rotors(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
-  out.text += commented(head_lines(group,
-                                   options,
+  out.text += commented(head_lines(group, options,
                                    "NoiseDensity = white_noise (root of the two-sided density); "
                                    "RandomWalk = driving density q of a Gauss-Markov bias"),
                         "  ");
   out.text +=
       "  The defaults of the plugins are an ADIS16448 with its noise doubled: leave none of these "
       "keys out.\n-->\n";
-  out.text +=
-      "<plugin name=\"rotors_gazebo_imu_plugin\" filename=\"librotors_gazebo_imu_plugin.so\">\n";
+  out.text += "<plugin name=\"rotors_gazebo_imu_plugin\" filename=\"librotors_gazebo_imu_plugin.so\">\n";
   out.text += triad_block(*group.gyroscope, "rad/s", options, out);
   out.text += triad_block(*group.accelerometer, "m/s^2", options, out);
   out.text += "</plugin>\n";

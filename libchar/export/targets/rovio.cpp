@@ -17,20 +17,15 @@ namespace {
 Export write_rovio(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "ROVIO", out.notes);
-  out.text = commented(
-      head_lines(
-          group, options, "att, vel = white_noise^2; gyb, acb = random_walk^2 (covariances)"),
-      "; ");
+  out.text =
+      commented(head_lines(group, options, "att, vel = white_noise^2; gyb, acb = random_walk^2 (covariances)"), "; ");
   out.text += "Prediction\n{\n    PredictionNoise\n    {\n";
   for (const char* sensor : {"accelerometer", "gyroscope"})
     for (const Term term : {Term::white, Term::walk}) {
       const ConsumerRow& row = row_of("rovio", sensor, term);
       for (const int axis : {0, 1, 2})
-        out.text += fmt::format("        {}_{} {};    {}\n",
-                                row.key,
-                                axis,
-                                export_number(row_value(row, *figure_of(f, sensor, term).value)),
-                                file_unit(row));
+        out.text += fmt::format("        {}_{} {};    {}\n", row.key, axis,
+                                export_number(row_value(row, *figure_of(f, sensor, term).value)), file_unit(row));
     }
   out.text += "    }\n}\n";
   return out;
@@ -39,13 +34,11 @@ Export write_rovio(const SensorGroup& group, const ExportOptions& options) {
 Export write_maplab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "maplab", out.notes);
-  out.text = commented(head_lines(group,
-                                  options,
+  out.text = commented(head_lines(group, options,
                                   "noise_density = white_noise, bias_random_walk = random_walk "
                                   "(continuous densities)"),
                        "# ");
-  out.text +=
-      "topic: " + topic_scalar(group, options) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
+  out.text += "topic: " + topic_scalar(group, options) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
   return out;
 }
 

@@ -15,12 +15,8 @@
 namespace libchar {
 namespace {
 
-std::string noise_element(const std::string& sensor,
-                          const PlacedModel& placed,
-                          const ExportFigure& white,
-                          const GaussMarkov& bias,
-                          double rate_hz,
-                          const std::string& pad) {
+std::string noise_element(const std::string& sensor, const PlacedModel& placed, const ExportFigure& white,
+                          const GaussMarkov& bias, double rate_hz, const std::string& pad) {
   const SensorModel& m = *placed.model;
   std::string out = pad + "<noise type=\"gaussian\">\n";
   const auto line = [&](std::string_view key, double value) {
@@ -35,29 +31,23 @@ std::string noise_element(const std::string& sensor,
     line("dynamic_bias_stddev", bias.driving);
     line("dynamic_bias_correlation_time", bias.correlation_s);
   }
-  out += fmt::format("{}  <!-- {}{} -->\n",
-                     pad,
+  out += fmt::format("{}  <!-- {}{} -->\n", pad,
                      white.origin.empty() ? "" : comment_text("stddev: " + white.origin) + "; ",
                      comment_text("bias: " + bias.origin));
   return out + pad + "</noise>\n";
 }
 
-std::string triad_element(const char* element,
-                          const SensorTriad& triad,
-                          const ExportOptions& options,
-                          Export& out) {
+std::string triad_element(const char* element, const SensorTriad& triad, const ExportOptions& options, Export& out) {
   const double rate = rate_of(triad, out.notes);
   const auto white = axis_figures(triad, Term::white, Absent::zero, options);
   const bool one = options.axes != AxisChoice::automatic;
   std::string text = fmt::format("      <{}>\n", element);
   for (std::size_t i = 0; i < 3; ++i) {
     const PlacedModel& placed = one ? representative(triad, options) : *triad.axis[i];
-    const GaussMarkov bias =
-        one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
+    const GaussMarkov bias = one ? gauss_markov_scalar(triad, options) : gauss_markov(placed, options);
     note_figure(out.notes, fmt::format("{} {}: stddev", triad.kind, "xyz"[i]), white[i]);
     if (bias.driving == 0)
-      out.notes.push_back(
-          fmt::format("{} {}: no dynamic bias ({})", triad.kind, "xyz"[i], bias.origin));
+      out.notes.push_back(fmt::format("{} {}: no dynamic bias ({})", triad.kind, "xyz"[i], bias.origin));
     text += fmt::format("        <{}>\n", "xyz"[i]);
     text += noise_element(triad.kind, placed, white[i], bias, rate, "          ");
     text += fmt::format("        </{}>\n", "xyz"[i]);
@@ -70,9 +60,7 @@ std::string sensor_element(const char* type, double rate_hz, const std::string& 
       "  <sensor name=\"{0}_sensor\" type=\"{0}\">\n    <always_on>1</always_on>\n"
       "    <update_rate>{1}</update_rate>  <!-- the stddev below holds at this rate only -->\n{2}  "
       "</sensor>\n",
-      type,
-      export_number(rate_hz),
-      inside);
+      type, export_number(rate_hz), inside);
 }
 
 std::string barometer_element(const SensorModel& m, const ExportOptions& options, Export& out) {
@@ -87,27 +75,20 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
   const double rate = rate_of(triad, out.notes);
   const ExportFigure white = scalar_figure(triad, Term::white, Absent::zero, options);
   note_figure(out.notes, "barometer: stddev", white);
-  return sensor_element("air_pressure",
-                        rate,
-                        "    <air_pressure>\n      <pressure>\n" +
-                            noise_element(triad.kind,
-                                          *triad.axis[0],
-                                          white,
-                                          gauss_markov(*triad.axis[0], options),
-                                          rate,
-                                          "        ") +
-                            "      </pressure>\n    </air_pressure>\n");
+  return sensor_element(
+      "air_pressure", rate,
+      "    <air_pressure>\n      <pressure>\n" +
+          noise_element(triad.kind, *triad.axis[0], white, gauss_markov(*triad.axis[0], options), rate, "        ") +
+          "      </pressure>\n    </air_pressure>\n");
 }
 
 Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   std::string sensors, imu;
   if (group.gyroscope) imu += triad_element("angular_velocity", *group.gyroscope, options, out);
-  if (group.accelerometer)
-    imu += triad_element("linear_acceleration", *group.accelerometer, options, out);
+  if (group.accelerometer) imu += triad_element("linear_acceleration", *group.accelerometer, options, out);
   if (!imu.empty()) {
-    const double rate =
-        rate_of(group.gyroscope ? *group.gyroscope : *group.accelerometer, out.notes);
+    const double rate = rate_of(group.gyroscope ? *group.gyroscope : *group.accelerometer, out.notes);
     sensors += sensor_element("imu", rate, "    <imu>\n" + imu + "    </imu>\n");
   }
   if (group.magnetometer) {
@@ -119,9 +100,8 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
     if (kind_of(*m) == "barometer")
       sensors += barometer_element(*m, options, out);
     else
-      out.notes.push_back(fmt::format("{}: SDFormat has no noise element for a {}; left out",
-                                      comment_text(m->channel),
-                                      kind_of(*m)));
+      out.notes.push_back(
+          fmt::format("{}: SDFormat has no noise element for a {}; left out", comment_text(m->channel), kind_of(*m)));
   }
   if (sensors.empty())
     throw input_error("E0593")
@@ -130,8 +110,7 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
             "barometers, and none of these was given")
         .hint("where name and unit do not say what a channel is: `axis` NAME=gx");
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
-  out.text += commented(head_lines(group,
-                                   options,
+  out.text += commented(head_lines(group, options,
                                    "stddev = white_noise sqrt(update_rate); dynamic bias: driving "
                                    "density q of a Gauss-Markov process"),
                         "  ");

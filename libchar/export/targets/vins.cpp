@@ -21,27 +21,22 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
   const ImuFigures f = imu_figures(group, options, "VINS", out.notes);
   out.text = "%YAML:1.0\n";
   out.text += commented(
-      head_lines(group,
-                 options,
-                 "acc_n, gyr_n = white_noise sqrt(2 f); acc_w, gyr_w = random_walk sqrt(f)"),
-      "# ");
-  out.text +=
-      commented({"Why these factors (f: rate of the IMU messages, dt = 1/f): the midpoint "
-                 "integration takes the two",
-                 "ends of a step as independent, so a step adds dt^2 n^2 / 2 to the variance of "
-                 "the velocity and a",
-                 "second adds dt n^2 / 2; white noise of density N adds N^2 a second, hence n = N "
-                 "sqrt(2 f). A bias step",
-                 "has the variance dt^2 w^2, a second dt w^2; a random walk has K^2 a second, "
-                 "hence w = K sqrt(f).",
-                 "Put these lines into your configuration, which begins with %YAML:1.0 itself."},
-                "# ");
+      head_lines(group, options, "acc_n, gyr_n = white_noise sqrt(2 f); acc_w, gyr_w = random_walk sqrt(f)"), "# ");
+  out.text += commented({"Why these factors (f: rate of the IMU messages, dt = 1/f): the midpoint "
+                         "integration takes the two",
+                         "ends of a step as independent, so a step adds dt^2 n^2 / 2 to the variance of "
+                         "the velocity and a",
+                         "second adds dt n^2 / 2; white noise of density N adds N^2 a second, hence n = N "
+                         "sqrt(2 f). A bias step",
+                         "has the variance dt^2 w^2, a second dt w^2; a random walk has K^2 a second, "
+                         "hence w = K sqrt(f).",
+                         "Put these lines into your configuration, which begins with %YAML:1.0 itself."},
+                        "# ");
   const auto line = [&](const char* sensor, Term term, double rate, std::string how) {
     const ConsumerRow& row = row_of("vins", sensor, term);
     const ExportFigure& figure = figure_of(f, sensor, term);
     if (!figure.origin.empty()) how += "; " + figure.origin;
-    out.text +=
-        yaml_line(row.key, row_value(row, *figure.value, {.rate_hz = rate}), file_unit(row), how);
+    out.text += yaml_line(row.key, row_value(row, *figure.value, {.rate_hz = rate}), file_unit(row), how);
   };
   const double fa = f.accelerometer_rate_hz, fg = f.gyroscope_rate_hz;
   const std::string a = export_number(fa), g = export_number(fg);
@@ -56,16 +51,15 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
 }  // namespace
 
 ExportTarget vins_target() {
-  return {
-      "vins",
-      "VINS-Mono, VINS-Fusion",
-      "per sample, as its code reads them: acc_n, gyr_n = N sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
-      "OpenCV YAML",
-      "imu_vins.yaml",
-      ExportNeeds::gyroscope_and_accelerometer,
-      "NK",
-      {.gravity = true},
-      write_vins};
+  return {"vins",
+          "VINS-Mono, VINS-Fusion",
+          "per sample, as its code reads them: acc_n, gyr_n = N sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
+          "OpenCV YAML",
+          "imu_vins.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "NK",
+          {.gravity = true},
+          write_vins};
 }
 
 }  // namespace libchar

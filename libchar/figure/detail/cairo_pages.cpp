@@ -73,12 +73,10 @@ Faces faces_of(Findings& warnings) {
   out.plain = face_of(false, plain);
   out.bold = face_of(true, bold);
   if (plain != kFigureFont)
-    warnings.add("figure_font",
-                 fmt::format("the font {} is not installed (Debian's package fonts-liberation2): "
-                             "text stands in {}, whose letters are not as wide as the layout takes "
-                             "them to be",
-                             kFigureFont,
-                             plain));
+    warnings.add("figure_font", fmt::format("the font {} is not installed (Debian's package fonts-liberation2): "
+                                            "text stands in {}, whose letters are not as wide as the layout takes "
+                                            "them to be",
+                                            kFigureFont, plain));
   return out;
 }
 
@@ -126,10 +124,8 @@ void stroke_line(cairo_t* pen, const DrawnPath& p, const std::vector<Place>& lin
     const std::size_t end = std::min(begin + kPart + 2, line.size());
     double beyond = length;
     for (std::size_t i = begin; i < end; ++i) {
-      i == begin ? cairo_move_to(pen, line[i].x, line[i].y)
-                 : cairo_line_to(pen, line[i].x, line[i].y);
-      if (i > begin && i <= begin + kPart)
-        beyond += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
+      i == begin ? cairo_move_to(pen, line[i].x, line[i].y) : cairo_line_to(pen, line[i].x, line[i].y);
+      if (i > begin && i <= begin + kPart) beyond += std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
     }
     stroke_part(pen, p, length);
     length = beyond;
@@ -209,8 +205,7 @@ void write(cairo_t* pen, const DrawnText& t, const Faces& faces) {
   cairo_translate(pen, t.at.x, t.at.y);
   if (t.upright) cairo_rotate(pen, -std::numbers::pi / 2);
   const double width = run_through(pen, t, false, false);
-  if (t.anchor != Anchor::start)
-    cairo_translate(pen, t.anchor == Anchor::middle ? -width / 2 : -width, 0);
+  if (t.anchor != Anchor::start) cairo_translate(pen, t.anchor == Anchor::middle ? -width / 2 : -width, 0);
   if (t.halo) run_through(pen, t, true, true);
   run_through(pen, t, false, true);
   cairo_restore(pen);
@@ -247,13 +242,8 @@ std::string date_of_pdf() {
   const std::time_t time = static_cast<std::time_t>(*seconds);
   std::tm utc{};
   if (::gmtime_r(&time, &utc) == nullptr) return "";
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z",
-                     utc.tm_year + 1900,
-                     utc.tm_mon + 1,
-                     utc.tm_mday,
-                     utc.tm_hour,
-                     utc.tm_min,
-                     utc.tm_sec);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
 void put_big_endian(std::string& out, std::uint32_t value) {
@@ -280,22 +270,18 @@ void add_resolution(std::string& png, double dpi) {
 
 }  // namespace
 
-bool has_cairo() {
-  return true;
-}
+bool has_cairo() { return true; }
 
 std::string pdf_of(const Drawing& drawing, Findings& warnings) {
   const Faces faces = faces_of(warnings);
   std::string out;
-  const Surface surface(
-      cairo_pdf_surface_create_for_stream(append, &out, drawing.width, drawing.height));
+  const Surface surface(cairo_pdf_surface_create_for_stream(append, &out, drawing.width, drawing.height));
   std::string about;
   for (const TextRun& run : text_runs(drawing.about)) about += run.text;
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, about.c_str());
-  cairo_pdf_surface_set_metadata(
-      surface.get(), CAIRO_PDF_METADATA_CREATOR, fmt::format("sensorchar {}", version()).c_str());
-  cairo_pdf_surface_set_metadata(
-      surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, date_of_pdf().c_str());
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR,
+                                 fmt::format("sensorchar {}", version()).c_str());
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, date_of_pdf().c_str());
   const Pen pen(cairo_create(surface.get()));
   draw(pen.get(), drawing, faces);
   cairo_show_page(pen.get());
@@ -309,14 +295,13 @@ std::string png_of(const Drawing& drawing, double dpi, Findings& warnings) {
   constexpr double kMostPixels = 2e8;
   const double scale = dpi / 72;
   const double width = std::ceil(drawing.width * scale), height = std::ceil(drawing.height * scale);
-  if (!(width >= 1 && height >= 1 && width * height <= kMostPixels && width < 32000 &&
-        height < 32000))
+  if (!(width >= 1 && height >= 1 && width * height <= kMostPixels && width < 32000 && height < 32000))
     throw usage_error("E0981")
         .says("a picture of {:.0f} × {:.0f} pixels is none that can be drawn", width, height)
         .hint("a lower resolution (dpi) gives fewer; an SVG or PDF has none");
   const Faces faces = faces_of(warnings);
-  const Surface surface(cairo_image_surface_create(
-      CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)));
+  const Surface surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)));
   refuse_failed(cairo_surface_status(surface.get()));
   const Pen pen(cairo_create(surface.get()));
   set_colour(pen.get(), {1, 1, 1});
@@ -336,17 +321,11 @@ std::string png_of(const Drawing& drawing, double dpi, Findings& warnings) {
 
 namespace libchar {
 
-bool has_cairo() {
-  return false;
-}
+bool has_cairo() { return false; }
 
-std::string pdf_of(const Drawing& /*drawing*/, Findings& /*warnings*/) {
-  return "";
-}
+std::string pdf_of(const Drawing& /*drawing*/, Findings& /*warnings*/) { return ""; }
 
-std::string png_of(const Drawing& /*drawing*/, double /*dpi*/, Findings& /*warnings*/) {
-  return "";
-}
+std::string png_of(const Drawing& /*drawing*/, double /*dpi*/, Findings& /*warnings*/) { return ""; }
 
 }  // namespace libchar
 

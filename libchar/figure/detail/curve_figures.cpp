@@ -24,17 +24,12 @@ struct ChosenCurve {
   std::string name;
 };
 
-std::string source_name(std::span<const FigureSource> sources,
-                        std::size_t i,
-                        const FigureOptions& options) {
+std::string source_name(std::span<const FigureSource> sources, std::size_t i, const FigureOptions& options) {
   return i < options.labels.size() ? options.labels[i] : sources[i].name;
 }
 
 /// What tells one from another: the file, the channel, or both.
-std::string told_apart(const std::string& source,
-                       const std::string& channel,
-                       bool many_sources,
-                       bool many_channels) {
+std::string told_apart(const std::string& source, const std::string& channel, bool many_sources, bool many_channels) {
   if (!many_sources) return channel;
   return many_channels ? source + ": " + channel : source;
 }
@@ -48,11 +43,9 @@ std::string usual_name(const Part& part) {
 }
 
 template <class Part, class Usable>
-std::vector<std::pair<const Part*, std::string>> chosen_parts(
-    std::span<const FigureSource> sources,
-    const FigureOptions& options,
-    std::vector<Part> FigureSource::*parts,
-    Usable usable) {
+std::vector<std::pair<const Part*, std::string>> chosen_parts(std::span<const FigureSource> sources,
+                                                              const FigureOptions& options,
+                                                              std::vector<Part> FigureSource::*parts, Usable usable) {
   std::vector<std::pair<const Part*, std::size_t>> found;
   std::vector<std::string> all;
   std::set<std::string> channels;
@@ -62,8 +55,7 @@ std::vector<std::pair<const Part*, std::string>> chosen_parts(
       const std::string usual = usual_name(part);
       all.push_back(part.channel);
       if (usual != part.channel) all.push_back(usual);
-      if (!is_wanted(options.channels, part.channel) && !is_wanted(options.channels, usual))
-        continue;
+      if (!is_wanted(options.channels, part.channel) && !is_wanted(options.channels, usual)) continue;
       found.emplace_back(&part, s);
       channels.insert(sources.size() > 1 ? usual : part.channel);
     }
@@ -73,25 +65,20 @@ std::vector<std::pair<const Part*, std::string>> chosen_parts(
   std::vector<std::pair<const Part*, std::string>> out;
   out.reserve(found.size());
   for (const auto& [part, s] : found)
-    out.emplace_back(part,
-                     told_apart(source_name(sources, s, options),
-                                part->channel,
-                                used.size() > 1 || !options.labels.empty(),
-                                channels.size() > 1));
+    out.emplace_back(part, told_apart(source_name(sources, s, options), part->channel,
+                                      used.size() > 1 || !options.labels.empty(), channels.size() > 1));
   return out;
 }
 
 bool is_of_allan_family(const std::string& statistic) {
-  return statistic == "Allan deviation" || statistic == "Overlapping Allan deviation" ||
-         statistic == "Total deviation";
+  return statistic == "Allan deviation" || statistic == "Overlapping Allan deviation" || statistic == "Total deviation";
 }
 
 bool of_one_kind(const std::string& a, const std::string& b) {
   return a == b || (is_of_allan_family(a) && is_of_allan_family(b));
 }
 
-std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen,
-                                    const std::string& name) {
+std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen, const std::string& name) {
   std::set<std::string> found;
   for (const ChosenCurve& one : chosen)
     if (one.name == name) found.insert(one.curve->statistic);
@@ -104,9 +91,8 @@ std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen,
 void name_by_statistic(std::vector<ChosenCurve>& chosen) {
   std::set<std::string> names;
   for (const ChosenCurve& one : chosen) names.insert(one.name);
-  if (std::all_of(names.begin(), names.end(), [&](const std::string& name) {
-        return statistics_of(chosen, name).size() == 1;
-      }))
+  if (std::all_of(names.begin(), names.end(),
+                  [&](const std::string& name) { return statistics_of(chosen, name).size() == 1; }))
     return;
   for (ChosenCurve& one : chosen)
     one.name = names.size() == 1 ? one.curve->statistic : one.name + ", " + one.curve->statistic;
@@ -117,49 +103,33 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   for (const ChosenCurve& other : chosen) {
     if (other.curve->unit != first.curve->unit)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}",
-                first.name,
-                first.curve->unit.empty() ? "1" : first.curve->unit,
-                other.name,
+          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.name,
+                first.curve->unit.empty() ? "1" : first.curve->unit, other.name,
                 other.curve->unit.empty() ? "1" : other.curve->unit)
-          .hint("choose some with `channels` ('{}*'), a figure for each unit",
-                first.curve->channel.substr(0, 3));
-    if (other.curve->value_unit != first.curve->value_unit &&
-        other.curve->statistic != first.curve->statistic && other.curve->is_allan)
+          .hint("choose some with `channels` ('{}*'), a figure for each unit", first.curve->channel.substr(0, 3));
+    if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
+        other.curve->is_allan)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}",
-                first.curve->statistic,
-                first.curve->value_unit,
-                other.curve->statistic,
-                other.curve->value_unit)
+          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
+                first.curve->value_unit, other.curve->statistic, other.curve->value_unit)
           .hint("a figure for each unit");
     const std::string &a = first.curve->statistic, &b = other.curve->statistic;
-    if (!of_one_kind(a, b) &&
-        statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
+    if (!of_one_kind(a, b) && statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
       throw input_error("E0983")
-          .says("unlike curves do not share an axis: {} is {}, {} is {}",
-                first.name,
-                a,
-                other.name,
-                b)
+          .says("unlike curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
           .hint("compute both in the same way");
   }
   if (chosen.size() > detail::kMostCurves)
     throw usage_error("E0984")
-        .says("{} curves: more than {} cannot be told apart in one figure",
-              chosen.size(),
-              detail::kMostCurves)
+        .says("{} curves: more than {} cannot be told apart in one figure", chosen.size(), detail::kMostCurves)
         .hint("choose some with `channels`");
 }
 
-std::vector<ChosenCurve> chosen_curves(std::span<const FigureSource> sources,
-                                       const FigureOptions& options,
+std::vector<ChosenCurve> chosen_curves(std::span<const FigureSource> sources, const FigureOptions& options,
                                        bool is_allan) {
   std::vector<ChosenCurve> out;
-  for (const auto& [curve, name] :
-       chosen_parts(sources, options, &FigureSource::curves, [&](const SourceCurve& c) {
-         return c.is_allan == is_allan;
-       }))
+  for (const auto& [curve, name] : chosen_parts(sources, options, &FigureSource::curves,
+                                                [&](const SourceCurve& c) { return c.is_allan == is_allan; }))
     out.push_back({curve, name});
   if (out.empty())
     throw kind_refusal(sources[0], is_allan ? "allan" : "psd")
@@ -187,11 +157,9 @@ void set_band(FigureSeries& series, const SourceCurve& c) {
 
 void add_terms(Chart& figure, const SourceCurve& c) {
   for (const Asymptote& line : c.lines) {
-    figure.series.push_back(
-        line_series(term_words(line.term),
-                    {line.x.begin(), line.x.end()},
-                    {line.y.begin(), line.y.end()},
-                    {.ink = term_ink(line.term), .dash = term_dash(line.term), .width = 0.8}));
+    figure.series.push_back(line_series(term_words(line.term), {line.x.begin(), line.x.end()},
+                                        {line.y.begin(), line.y.end()},
+                                        {.ink = term_ink(line.term), .dash = term_dash(line.term), .width = 0.8}));
     figure.series.back().behind = true;
   }
 }
@@ -202,10 +170,7 @@ void add_coefficients(Chart& figure, const SourceCurve& c) {
       figure.marks.push_back({mark.tau_s,
                               mark.deviation,
                               mark.text,
-                              {.ink = term_ink(mark.term),
-                               .width = 0.9,
-                               .marker = term_marker(mark.term),
-                               .size = 2.9},
+                              {.ink = term_ink(mark.term), .width = 0.9, .marker = term_marker(mark.term), .size = 2.9},
                               true});
 }
 
@@ -224,21 +189,16 @@ void draw_alone(Chart& figure, const ChosenCurve& chosen) {
     measured.look.width = 0.7;
   }
   for (const Interval& out : c.left_out)
-    figure.stretches.push_back(
-        {out.low, out.high, c.is_allan ? "shaped by a filter" : "left out", Ink::grey});
+    figure.stretches.push_back({out.low, out.high, c.is_allan ? "shaped by a filter" : "left out", Ink::grey});
   figure.series.push_back(std::move(measured));
   if (!c.model.empty())
-    figure.series.push_back(line_series(
-        "fitted model", c.x, c.model, {.ink = Ink::vermilion, .dash = 0, .width = 1.2}));
+    figure.series.push_back(
+        line_series("fitted model", c.x, c.model, {.ink = Ink::vermilion, .dash = 0, .width = 1.2}));
   if (!c.data_sheet.empty())
-    figure.series.push_back(
-        line_series("data sheet", c.x, c.data_sheet, {.ink = Ink::black, .dash = 3, .width = 1}));
+    figure.series.push_back(line_series("data sheet", c.x, c.data_sheet, {.ink = Ink::black, .dash = 3, .width = 1}));
   if (!c.simulated_x.empty() && c.is_allan) {
-    figure.series.push_back(
-        line_series("simulated from the model",
-                    c.simulated_x,
-                    c.simulated_y,
-                    {.ink = Ink::grey, .width = 0, .marker = FigureMarker::triangle, .size = 2.1}));
+    figure.series.push_back(line_series("simulated from the model", c.simulated_x, c.simulated_y,
+                                        {.ink = Ink::grey, .width = 0, .marker = FigureMarker::triangle, .size = 2.1}));
     figure.series.back().hollow.assign(c.simulated_x.size(), true);
     figure.series.back().behind = true;
   }
@@ -295,18 +255,15 @@ void frame(Chart& figure, const std::vector<ChosenCurve>& chosen, const FigureOp
   set_ends(figure.y, y, options.y_range);
 }
 
-Chart curves_figure(std::span<const FigureSource> sources,
-                    const FigureOptions& options,
-                    bool is_allan) {
+Chart curves_figure(std::span<const FigureSource> sources, const FigureOptions& options, bool is_allan) {
   const std::vector<ChosenCurve> chosen = chosen_curves(sources, options, is_allan);
   const SourceCurve& first = *chosen[0].curve;
   Chart out;
   std::string statistic = first.statistic;
   for (const ChosenCurve& one : chosen)
     if (one.curve->statistic != first.statistic)
-      statistic = of_one_kind(one.curve->statistic, first.statistic) && statistic != "Deviation"
-                      ? "Allan deviation"
-                      : "Deviation";
+      statistic = of_one_kind(one.curve->statistic, first.statistic) && statistic != "Deviation" ? "Allan deviation"
+                                                                                                 : "Deviation";
   out.x = {.title = is_allan ? "Averaging time τ [s]" : "Frequency [Hz]", .log = true, .rows = {}};
   out.y = {.title = axis_title(statistic, first.value_unit), .log = true, .rows = {}};
   const bool alone = chosen.size() == 1;
@@ -315,8 +272,7 @@ Chart curves_figure(std::span<const FigureSource> sources,
   else
     draw_many(out, chosen);
   frame(out, chosen, options);
-  out.about =
-      statistic + " of " + (alone ? first.channel : fmt::format("{} curves", chosen.size()));
+  out.about = statistic + " of " + (alone ? first.channel : fmt::format("{} curves", chosen.size()));
   return out;
 }
 
@@ -349,10 +305,7 @@ FigureSeries residual_band(const FigureAxis& x) {
 }
 
 /// One wild bin may not flatten the rest: what is beyond `top` stands on the edge, as a triangle. How many do.
-std::size_t add_residual_dots(Chart& chart,
-                              const SourceResiduals& r,
-                              FigureSeries dots,
-                              double top) {
+std::size_t add_residual_dots(Chart& chart, const SourceResiduals& r, FigureSeries dots, double top) {
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < r.x.size(); ++i) {
     if (!is_fitted(r, i)) continue;
@@ -378,10 +331,9 @@ std::size_t add_residual_dots(Chart& chart,
 
 Chart residuals_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   constexpr double kLargest = 20;
-  const auto chosen = chosen_parts(
-      sources, options, &FigureSource::residuals, [](const SourceResiduals&) { return true; });
-  if (chosen.empty())
-    throw kind_refusal(sources[0], "residuals").says("it holds no residuals of a fit");
+  const auto chosen =
+      chosen_parts(sources, options, &FigureSource::residuals, [](const SourceResiduals&) { return true; });
+  if (chosen.empty()) throw kind_refusal(sources[0], "residuals").says("it holds no residuals of a fit");
   Chart out;
   Extent x(true);
   double largest = 0;
@@ -413,15 +365,13 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
     beyond += add_residual_dots(out, *chosen[k].first, std::move(dots), top);
   }
   if (beyond > 0)
-    out.note = fmt::format(
-        "{} beyond ±{}, up to {}", beyond, number_text(top, 2), number_text(largest, 3));
+    out.note = fmt::format("{} beyond ±{}, up to {}", beyond, number_text(top, 2), number_text(largest, 3));
   out.about = "Residuals of the fit of " + chosen[0].second;
   return out;
 }
 
 Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  const auto chosen = chosen_parts(
-      sources, options, &FigureSource::traces, [](const SourceTrace&) { return true; });
+  const auto chosen = chosen_parts(sources, options, &FigureSource::traces, [](const SourceTrace&) { return true; });
   if (chosen.empty()) throw kind_refusal(sources[0], "trace").says("it holds no recording");
   Chart out;
   Extent x(false), y(false);
@@ -429,17 +379,13 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     const auto& [trace, name] = chosen[k];
     if (trace->unit != chosen[0].first->unit)
       throw input_error("E0976")
-          .says("records in unlike units do not share an axis: {} in {}, {} in {}",
-                chosen[0].second,
-                chosen[0].first->unit,
-                name,
-                trace->unit)
+          .says("records in unlike units do not share an axis: {} in {}, {} in {}", chosen[0].second,
+                chosen[0].first->unit, name, trace->unit)
           .hint("choose some with `channels`, a figure for each unit");
     FigureSeries series;
     series.name = chosen.size() > 1 ? name : "";
     for (std::size_t i = 0; i < trace->low.size(); ++i)
-      add_extremes(
-          series, (static_cast<double>(i) + 0.5) * trace->block_s, trace->low[i], trace->high[i]);
+      add_extremes(series, (static_cast<double>(i) + 0.5) * trace->block_s, trace->low[i], trace->high[i]);
     series.look = series_look(k);
     series.look.marker = FigureMarker::none;
     series.look.width = 0.5;
@@ -453,9 +399,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
   x.take(0.0);
   y.pad(0.05);
   out.x = {.title = "Time [s]", .rows = {}};
-  out.y = {
-      .title = axis_title(chosen.size() > 1 ? "Record" : chosen[0].second, chosen[0].first->unit),
-      .rows = {}};
+  out.y = {.title = axis_title(chosen.size() > 1 ? "Record" : chosen[0].second, chosen[0].first->unit), .rows = {}};
   set_ends(out.x, x, options.x_range);
   set_ends(out.y, y, options.y_range);
   out.about = "The record of " + chosen[0].second;

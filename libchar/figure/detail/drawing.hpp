@@ -27,9 +27,7 @@ struct Box {
   bool meets(const Box& other) const {
     return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
   }
-  bool holds(const Place& p) const {
-    return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom;
-  }
+  bool holds(const Place& p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
 };
 
 /// A piece of a text: raised ones are smaller and above the line.

@@ -11,9 +11,7 @@
 
 namespace libchar {
 
-bool above_zero(double value) {
-  return std::isfinite(value) && value > 0;
-}
+bool above_zero(double value) { return std::isfinite(value) && value > 0; }
 
 void Extent::take(double value) {
   if (!std::isfinite(value) || (log_ && !(value > 0))) return;
@@ -46,9 +44,7 @@ void Extent::take_near(double value, const Extent& inner, double factor) {
 void set_ends(FigureAxis& axis, const Extent& extent, const std::optional<Interval>& range) {
   // An open end is where the data end.
   axis.low = range && std::isfinite(range->low) ? range->low : extent.empty() ? 0.1 : extent.low();
-  axis.high = range && std::isfinite(range->high) ? range->high
-              : extent.empty()                    ? 10
-                                                  : extent.high();
+  axis.high = range && std::isfinite(range->high) ? range->high : extent.empty() ? 10 : extent.high();
   if (axis.low < axis.high) return;
   Extent wider(axis.log);
   wider.take(axis.low);
@@ -58,12 +54,8 @@ void set_ends(FigureAxis& axis, const Extent& extent, const std::optional<Interv
 }
 
 FigureLook series_look(std::size_t k) {
-  constexpr FigureMarker kMarkers[] = {FigureMarker::circle,
-                                       FigureMarker::square,
-                                       FigureMarker::triangle,
-                                       FigureMarker::diamond,
-                                       FigureMarker::down,
-                                       FigureMarker::cross};
+  constexpr FigureMarker kMarkers[] = {FigureMarker::circle,  FigureMarker::square, FigureMarker::triangle,
+                                       FigureMarker::diamond, FigureMarker::down,   FigureMarker::cross};
   // Seven inks and five dashes have no common factor.
   return {.ink = static_cast<Ink>(k % kSeriesInks),
           .dash = k % 5,
@@ -77,16 +69,11 @@ Ink term_ink(Term term) {
   return kInks[static_cast<std::size_t>(term)];
 }
 
-std::size_t term_dash(Term term) {
-  return 1 + static_cast<std::size_t>(term);
-}
+std::size_t term_dash(Term term) { return 1 + static_cast<std::size_t>(term); }
 
 FigureMarker term_marker(Term term) {
-  constexpr FigureMarker kMarkers[] = {FigureMarker::diamond,
-                                       FigureMarker::triangle,
-                                       FigureMarker::square,
-                                       FigureMarker::down,
-                                       FigureMarker::cross};
+  constexpr FigureMarker kMarkers[] = {FigureMarker::diamond, FigureMarker::triangle, FigureMarker::square,
+                                       FigureMarker::down, FigureMarker::cross};
   return kMarkers[static_cast<std::size_t>(term)];
 }
 
@@ -105,8 +92,7 @@ void add_extremes(FigureSeries& series, double x, double low, double high) {
     return;
   }
   series.x.push_back(x);
-  const bool down =
-      !series.y.empty() && std::fabs(series.y.back() - high) < std::fabs(series.y.back() - low);
+  const bool down = !series.y.empty() && std::fabs(series.y.back() - high) < std::fabs(series.y.back() - low);
   series.y.push_back(down ? high : low);
   series.y.push_back(down ? low : high);
 }
@@ -116,17 +102,14 @@ std::string axis_title(const std::string& words, const std::string& unit) {
 }
 
 bool is_wanted(const std::vector<std::string>& patterns, std::string_view name) {
-  return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) {
-           return matches(p, name);
-         });
+  return patterns.empty() ||
+         std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) { return matches(p, name); });
 }
 
-void refuse_unmatched(const std::vector<std::string>& patterns,
-                      const std::vector<std::string>& names,
+void refuse_unmatched(const std::vector<std::string>& patterns, const std::vector<std::string>& names,
                       const std::string& file) {
   for (const std::string& pattern : patterns) {
-    if (std::any_of(names.begin(), names.end(), [&](const auto& n) { return matches(pattern, n); }))
-      continue;
+    if (std::any_of(names.begin(), names.end(), [&](const auto& n) { return matches(pattern, n); })) continue;
     throw usage_error("E0977", file)
         .says("nothing has this name")
         .got(pattern)
@@ -135,13 +118,10 @@ void refuse_unmatched(const std::vector<std::string>& patterns,
 }
 
 Refusal kind_refusal(const FigureSource& source, std::string_view kind) {
-  return usage_error("E0978", source.file)
-      .about(fmt::format("no figure `{}` can be drawn of it", kind));
+  return usage_error("E0978", source.file).about(fmt::format("no figure `{}` can be drawn of it", kind));
 }
 
-FigureSeries line_series(const std::string& name,
-                         const std::vector<double>& x,
-                         const std::vector<double>& y,
+FigureSeries line_series(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
                          const FigureLook& look) {
   FigureSeries out;
   out.name = name;

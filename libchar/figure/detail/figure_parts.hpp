@@ -34,8 +34,7 @@ class Extent {
 
  private:
   bool log_;
-  double low_ = std::numeric_limits<double>::infinity(),
-         high_ = -std::numeric_limits<double>::infinity();
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
 };
 
 /// Sets the ends: the user's range, else the extent, else 0.1 to 10.
@@ -52,9 +51,7 @@ std::string term_words(Term term);
 /// all its samples would.
 void add_extremes(FigureSeries& series, double x, double low, double high);
 
-FigureSeries line_series(const std::string& name,
-                         const std::vector<double>& x,
-                         const std::vector<double>& y,
+FigureSeries line_series(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
                          const FigureLook& look);
 
 /// "Error [rad/s]"; the words alone for a ratio.
@@ -63,8 +60,7 @@ std::string axis_title(const std::string& words, const std::string& unit);
 /// No patterns: every name.
 bool is_wanted(const std::vector<std::string>& patterns, std::string_view name);
 /// Every pattern has to match one of the names, or Error(usage) says which there are.
-void refuse_unmatched(const std::vector<std::string>& patterns,
-                      const std::vector<std::string>& names,
+void refuse_unmatched(const std::vector<std::string>& patterns, const std::vector<std::string>& names,
                       const std::string& file);
 
 /// Throws Error(usage): there is no such figure of this source.
@@ -119,23 +115,16 @@ void set_time_axis(Chart& figure, const ShownReplay& replay, const FigureOptions
 void add_run_marks(Chart& figure, const ShownReplay& replay);
 
 /// A track as a line between its smallest and largest values, with these as a band.
-FigureSeries track_series(const std::string& name,
-                          const Timeline& track,
-                          std::size_t series,
-                          const ShownReplay& replay,
-                          bool log,
-                          FigureLook look);
+FigureSeries track_series(const std::string& name, const Timeline& track, std::size_t series, const ShownReplay& replay,
+                          bool log, FigureLook look);
 
 /// The algorithms that are asked for; of nothing asked, those that the page shows first: the best,
 /// the best without a reference, the mean and the bounds.
-std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& replay,
-                                                             const FigureOptions& options);
+std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& replay, const FigureOptions& options);
 
 /// The algorithm that is asked for; of nothing asked the best that `has` what is drawn. Null: nobody has it.
-const ReplayReport::Algorithm* tracked_algorithm(
-    const ShownReplay& replay,
-    const FigureOptions& options,
-    bool (*has)(const ReplayReport::Algorithm& algorithm));
+const ReplayReport::Algorithm* tracked_algorithm(const ShownReplay& replay, const FigureOptions& options,
+                                                 bool (*has)(const ReplayReport::Algorithm& algorithm));
 
 /// Patterns of algorithms have to match one that ran.
 void refuse_unmatched_methods(const ShownReplay& replay, const FigureOptions& options);

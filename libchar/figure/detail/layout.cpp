@@ -15,14 +15,11 @@ constexpr double kEdge = 2.5, kTickGap = 3, kTickLength = 2.4;
 constexpr double kLeastFrame = 40;
 constexpr double kLargestMm = 2000;
 
-constexpr Colour kInkColours[] = {{0x00 / 255.0, 0x72 / 255.0, 0xb2 / 255.0},
-                                  {0xd5 / 255.0, 0x5e / 255.0, 0x00 / 255.0},
-                                  {0x00 / 255.0, 0x9e / 255.0, 0x73 / 255.0},
-                                  {0xb0 / 255.0, 0x50 / 255.0, 0x8a / 255.0},
-                                  {0xb3 / 255.0, 0x77 / 255.0, 0x00 / 255.0},
-                                  {0x3a / 255.0, 0x9f / 255.0, 0xd6 / 255.0},
-                                  {0x16 / 255.0, 0x19 / 255.0, 0x1d / 255.0},
-                                  {0x8a / 255.0, 0x92 / 255.0, 0x9b / 255.0}};
+constexpr Colour kInkColours[] = {
+    {0x00 / 255.0, 0x72 / 255.0, 0xb2 / 255.0}, {0xd5 / 255.0, 0x5e / 255.0, 0x00 / 255.0},
+    {0x00 / 255.0, 0x9e / 255.0, 0x73 / 255.0}, {0xb0 / 255.0, 0x50 / 255.0, 0x8a / 255.0},
+    {0xb3 / 255.0, 0x77 / 255.0, 0x00 / 255.0}, {0x3a / 255.0, 0x9f / 255.0, 0xd6 / 255.0},
+    {0x16 / 255.0, 0x19 / 255.0, 0x1d / 255.0}, {0x8a / 255.0, 0x92 / 255.0, 0x9b / 255.0}};
 constexpr double kInkGreys[] = {0.15, 0.45, 0.3, 0.55, 0.4, 0.6, 0.0, 0.6};
 
 struct Margins {
@@ -35,8 +32,7 @@ std::string shortened(const std::string& name, double width) {
   while (out.size() > 1 && text_width(text_runs(out + "…"), kTickSize) > width) {
     out.pop_back();
     // not in the middle of a character
-    while (out.size() > 1 && (static_cast<unsigned char>(out.back()) & 0xC0U) == 0x80U)
-      out.pop_back();
+    while (out.size() > 1 && (static_cast<unsigned char>(out.back()) & 0xC0U) == 0x80U) out.pop_back();
     if (static_cast<unsigned char>(out.back()) >= 0xC0U) out.pop_back();
   }
   return out + "…";
@@ -68,25 +64,21 @@ std::vector<Tick> x_ticks(const Chart& figure, double width) {
   return axis_ticks(figure.x, width, figure.x.log ? 26 : 34);
 }
 
-Margins margins_of(const Chart& figure,
-                   const std::vector<Tick>& x,
-                   const std::vector<Tick>& y,
-                   double legend) {
+Margins margins_of(const Chart& figure, const std::vector<Tick>& x, const std::vector<Tick>& y, double legend) {
   Margins m;
   m.left = kEdge + widest(y) + kTickGap + (figure.y.title.empty() ? 0 : 1.35 * kAxisSize + 1);
   // Half of the last word of the horizontal axis stands beyond the frame.
   m.right = kEdge + 3 + (x.empty() ? 0 : text_width(text_runs(x.back().label), kTickSize) / 2);
   m.top = kEdge + (figure.title.empty() ? 0.4 * kTickSize : kTitleSize + 5);
-  m.bottom = kEdge + kTickGap + kTickSize + (figure.x.title.empty() ? 0 : 1.45 * kAxisSize) +
-             (legend > 0 ? legend + 3 : 0);
+  m.bottom =
+      kEdge + kTickGap + kTickSize + (figure.x.title.empty() ? 0 : 1.45 * kAxisSize) + (legend > 0 ? legend + 3 : 0);
   return m;
 }
 
 /// What suits the width: a frame of about four to three in a column, lower across two; rows as many as there are.
 double frame_height(const Chart& figure, double width) {
   if (!figure.bars.empty()) return std::max(60.0, 25.0 * static_cast<double>(figure.y.rows.size()));
-  if (!figure.y.rows.empty())
-    return std::max(60.0, 11.5 * static_cast<double>(figure.y.rows.size()));
+  if (!figure.y.rows.empty()) return std::max(60.0, 11.5 * static_cast<double>(figure.y.rows.size()));
   return width < 300 ? 0.62 * width : 0.38 * width;
 }
 
@@ -98,11 +90,9 @@ void draw_grid(Sheet& sheet, const Axes& axes) {
     const double level = strong ? 0.80 : 0.925;
     lines.stroke = {level, level, level};
     for (const Tick& t : axes.x)
-      if (t.strong == strong)
-        lines.lines.push_back({{sheet.x.at(t.value), f.top}, {sheet.x.at(t.value), f.bottom}});
+      if (t.strong == strong) lines.lines.push_back({{sheet.x.at(t.value), f.top}, {sheet.x.at(t.value), f.bottom}});
     for (const Tick& t : axes.y)
-      if (t.strong == strong)
-        lines.lines.push_back({{f.left, sheet.y.at(t.value)}, {f.right, sheet.y.at(t.value)}});
+      if (t.strong == strong) lines.lines.push_back({{f.left, sheet.y.at(t.value)}, {f.right, sheet.y.at(t.value)}});
     if (!lines.lines.empty()) sheet.drawing.add(std::move(lines));
   }
 }
@@ -112,11 +102,7 @@ void draw_frame(Sheet& sheet, const Axes& axes) {
   DrawnPath path;
   path.width = 0.6;
   path.stroke = {0.3, 0.3, 0.3};
-  path.lines = {{{f.left, f.top},
-                 {f.right, f.top},
-                 {f.right, f.bottom},
-                 {f.left, f.bottom},
-                 {f.left, f.top}}};
+  path.lines = {{{f.left, f.top}, {f.right, f.top}, {f.right, f.bottom}, {f.left, f.bottom}, {f.left, f.top}}};
   for (const Tick& t : axes.x) {
     const double length = t.strong ? kTickLength : kTickLength / 2, at = sheet.x.at(t.value);
     path.lines.push_back({{at, f.bottom}, {at, f.bottom - length}});
@@ -129,12 +115,7 @@ void draw_frame(Sheet& sheet, const Axes& axes) {
   sheet.drawing.add(std::move(path));
 }
 
-void add_text(Sheet& sheet,
-              Place at,
-              Anchor anchor,
-              double size,
-              const std::string& words,
-              bool bold = false) {
+void add_text(Sheet& sheet, Place at, Anchor anchor, double size, const std::string& words, bool bold = false) {
   DrawnText text;
   text.at = at;
   text.anchor = anchor;
@@ -154,16 +135,11 @@ void draw_tick_words(Sheet& sheet, const Axes& axes) {
     const double at = std::min(sheet.x.at(t.value), sheet.drawing.width - kEdge - half);
     if (at - half < free_from) continue;
     free_from = at + half + 3;
-    add_text(
-        sheet, {at, f.bottom + kTickGap + 0.76 * kTickSize}, Anchor::middle, kTickSize, t.label);
+    add_text(sheet, {at, f.bottom + kTickGap + 0.76 * kTickSize}, Anchor::middle, kTickSize, t.label);
   }
   for (const Tick& t : axes.y)
     if (!t.label.empty())
-      add_text(sheet,
-               {f.left - kTickGap, sheet.y.at(t.value) + 0.36 * kTickSize},
-               Anchor::end,
-               kTickSize,
-               t.label);
+      add_text(sheet, {f.left - kTickGap, sheet.y.at(t.value) + 0.36 * kTickSize}, Anchor::end, kTickSize, t.label);
 }
 
 /// As large as fits the length of the axis.
@@ -177,23 +153,14 @@ void draw_titles(Sheet& sheet) {
   const Box& f = sheet.drawing.frame;
   const double middle = (f.left + f.right) / 2;
   if (!figure.title.empty())
-    add_text(
-        sheet,
-        {middle, f.top - 5},
-        Anchor::middle,
-        fitting(
-            figure.title, kTitleSize, 0.94 * 2 * std::min(middle, sheet.drawing.width - middle)),
-        figure.title,
-        true);
+    add_text(sheet, {middle, f.top - 5}, Anchor::middle,
+             fitting(figure.title, kTitleSize, 0.94 * 2 * std::min(middle, sheet.drawing.width - middle)), figure.title,
+             true);
   if (!figure.x.title.empty())
-    add_text(sheet,
-             {middle, f.bottom + kTickGap + kTickSize + 1.1 * kAxisSize},
-             Anchor::middle,
-             kAxisSize,
+    add_text(sheet, {middle, f.bottom + kTickGap + kTickSize + 1.1 * kAxisSize}, Anchor::middle, kAxisSize,
              figure.x.title);
   if (!figure.note.empty())
-    add_text(
-        sheet, {f.left + 4, f.top + 4 + 0.75 * kTickSize}, Anchor::start, kTickSize, figure.note);
+    add_text(sheet, {f.left + 4, f.top + 4 + 0.75 * kTickSize}, Anchor::start, kTickSize, figure.note);
   if (figure.y.title.empty()) return;
   DrawnText title;
   title.upright = true;
@@ -202,10 +169,8 @@ void draw_titles(Sheet& sheet) {
   title.runs = text_runs(figure.y.title);
   const double half = text_width(title.runs, title.size) / 2;
   // Beside the frame's middle, and on the page.
-  title.at = {kEdge + 0.8 * kAxisSize,
-              std::clamp((f.top + f.bottom) / 2,
-                         kEdge + half,
-                         std::max(kEdge + half, sheet.drawing.height - kEdge - half))};
+  title.at = {kEdge + 0.8 * kAxisSize, std::clamp((f.top + f.bottom) / 2, kEdge + half,
+                                                  std::max(kEdge + half, sheet.drawing.height - kEdge - half))};
   sheet.drawing.add(std::move(title));
 }
 
@@ -221,15 +186,11 @@ void draw_bar_notes(Sheet& sheet) {
     text.size = 6.5;
     text.halo = true;
     const double width = text_width(text.runs, text.size);
-    const double left = std::clamp(sheet.x.at(std::max(bar.from, sheet.x.low)) + 2,
-                                   f.left + 2,
+    const double left = std::clamp(sheet.x.at(std::max(bar.from, sheet.x.low)) + 2, f.left + 2,
                                    std::max(f.left + 2, f.right - width - 2));
-    const double middle =
-        sheet.y.at(static_cast<double>(bar.row)) + (bar.broad ? -0.28 : 0.29) * row;
+    const double middle = sheet.y.at(static_cast<double>(bar.row)) + (bar.broad ? -0.28 : 0.29) * row;
     const Box box{left, middle - 3.2, left + width, middle + 3.2};
-    if (std::any_of(
-            sheet.taken.begin(), sheet.taken.end(), [&](const Box& b) { return b.meets(box); }))
-      continue;
+    if (std::any_of(sheet.taken.begin(), sheet.taken.end(), [&](const Box& b) { return b.meets(box); })) continue;
     sheet.taken.push_back(box);
     text.at = {left, middle + 0.36 * text.size};
     sheet.drawing.add(std::move(text));
@@ -239,9 +200,7 @@ void draw_bar_notes(Sheet& sheet) {
 [[noreturn]] void refuse_size(double width_mm, double height_mm) {
   throw usage_error("E0981")
       .says("a page of {} × {} mm has no room for a plot with its axes, or is larger than {} mm",
-            brief_text(width_mm, 4),
-            brief_text(height_mm, 4),
-            kLargestMm)
+            brief_text(width_mm, 4), brief_text(height_mm, 4), kLargestMm)
       .hint("one column is 85 mm wide, two are 178 mm");
 }
 
@@ -254,8 +213,7 @@ Sheet make_sheet(const Chart& figure, const DrawingOptions& options, double lege
   axes.y = y_ticks(figure, width, inner);
   axes.x = x_ticks(figure, width);
   Margins m = margins_of(figure, axes.x, axes.y, legend);
-  const double height =
-      options.height_mm > 0 ? options.height_mm * kPointsAMm : inner + m.top + m.bottom;
+  const double height = options.height_mm > 0 ? options.height_mm * kPointsAMm : inner + m.top + m.bottom;
   inner = height - m.top - m.bottom;
   if (!(inner >= kLeastFrame && width - m.left - m.right >= kLeastFrame))
     refuse_size(options.width_mm, height / kPointsAMm);
@@ -282,10 +240,8 @@ void draw_contents(Sheet& sheet, const Axes& axes) {
   paper.filled = true;
   paper.stroked = false;
   paper.fill = {1, 1, 1};
-  paper.lines = {{{0, 0},
-                  {sheet.drawing.width, 0},
-                  {sheet.drawing.width, sheet.drawing.height},
-                  {0, sheet.drawing.height}}};
+  paper.lines = {
+      {{0, 0}, {sheet.drawing.width, 0}, {sheet.drawing.width, sheet.drawing.height}, {0, sheet.drawing.height}}};
   sheet.drawing.add(std::move(paper));
   draw_grid(sheet, axes);
   draw_backgrounds(sheet);
@@ -319,8 +275,7 @@ Drawing lay_out(const Chart& figure, const DrawingOptions& options) {
   std::vector<LegendEntry> entries =
       options.legend == LegendPlace::none ? std::vector<LegendEntry>{} : legend_entries(figure);
   // One name is never wider than the page.
-  for (LegendEntry& e : entries)
-    e.name = shortened(e.name, options.width_mm * kPointsAMm - 2 * kEdge - kLegendSwatch);
+  for (LegendEntry& e : entries) e.name = shortened(e.name, options.width_mm * kPointsAMm - 2 * kEdge - kLegendSwatch);
   Axes axes;
   if (options.legend != LegendPlace::below && !entries.empty()) {
     Sheet sheet = make_sheet(figure, options, 0, axes);
@@ -348,10 +303,8 @@ Drawing lay_out(const Chart& figure, const DrawingOptions& options) {
   draw_tick_words(sheet, axes);
   draw_titles(sheet);
   if (!entries.empty())
-    draw_legend_below(
-        sheet,
-        entries,
-        {kEdge, sheet.drawing.height - kEdge - legend, kEdge + room, sheet.drawing.height});
+    draw_legend_below(sheet, entries,
+                      {kEdge, sheet.drawing.height - kEdge - legend, kEdge + room, sheet.drawing.height});
   return std::move(sheet.drawing);
 }
 

@@ -16,13 +16,10 @@ double swatch_width(const LegendEntry& e) {
   return e.kind == LegendEntry::Kind::line && !(e.look.width > 0) ? 7 : kSwatch;
 }
 
-double entry_width(const LegendEntry& e) {
-  return swatch_width(e) + kGap + text_width(text_runs(e.name), kLegendSize);
-}
+double entry_width(const LegendEntry& e) { return swatch_width(e) + kGap + text_width(text_runs(e.name), kLegendSize); }
 
 /// Entries in rows.
-std::vector<std::vector<const LegendEntry*>> in_rows(const std::vector<LegendEntry>& entries,
-                                                     double width) {
+std::vector<std::vector<const LegendEntry*>> in_rows(const std::vector<LegendEntry>& entries, double width) {
   std::vector<std::vector<const LegendEntry*>> rows;
   double used = 0;
   for (const LegendEntry& e : entries) {
@@ -55,10 +52,8 @@ void draw_swatch(Sheet& sheet, const LegendEntry& e, double left, double middle)
   path.width = 0.8;
   path.fill = e.hollow ? Colour{1, 1, 1} : path.stroke;
   path.opacity = e.opacity;
-  path.lines = {{{left, middle - half},
-                 {left + width, middle - half},
-                 {left + width, middle + half},
-                 {left, middle + half}}};
+  path.lines = {
+      {{left, middle - half}, {left + width, middle - half}, {left + width, middle + half}, {left, middle + half}}};
   sheet.drawing.add(std::move(path));
 }
 
@@ -72,13 +67,12 @@ void draw_entry(Sheet& sheet, const LegendEntry& e, double left, double middle) 
 }
 
 std::size_t busy_in(const Sheet& sheet, const Box& box) {
-  return static_cast<std::size_t>(std::count_if(
-      sheet.busy.begin(), sheet.busy.end(), [&](const Place& p) { return box.holds(p); }));
+  return static_cast<std::size_t>(
+      std::count_if(sheet.busy.begin(), sheet.busy.end(), [&](const Place& p) { return box.holds(p); }));
 }
 
 bool is_free(const Sheet& sheet, const Box& box) {
-  return std::none_of(
-      sheet.taken.begin(), sheet.taken.end(), [&](const Box& b) { return b.meets(box); });
+  return std::none_of(sheet.taken.begin(), sheet.taken.end(), [&](const Box& b) { return b.meets(box); });
 }
 
 }  // namespace
@@ -91,8 +85,7 @@ std::vector<LegendEntry> legend_entries(const Chart& figure) {
       out.push_back(std::move(entry));
   };
   for (const FigureSeries& s : figure.series) {
-    const bool hollow = !s.hollow.empty() &&
-                        std::all_of(s.hollow.begin(), s.hollow.end(), [](bool h) { return h; });
+    const bool hollow = !s.hollow.empty() && std::all_of(s.hollow.begin(), s.hollow.end(), [](bool h) { return h; });
     add({LegendEntry::Kind::line, s.name, s.look, hollow, 1});
     if (!s.low.empty()) add({LegendEntry::Kind::area, s.band, s.look, false, kBandOpacity});
   }
@@ -134,9 +127,7 @@ bool draw_legend_inside(Sheet& sheet, const std::vector<LegendEntry>& entries, b
   for (const LegendEntry& e : entries) width = std::max(width, entry_width(e));
   width += 2 * kPad;
   const double height = kRow * static_cast<double>(entries.size()) + 2 * kPad;
-  if (!anyway &&
-      (width > 0.6 * (frame.right - frame.left) || height > 0.6 * (frame.bottom - frame.top)))
-    return false;
+  if (!anyway && (width > 0.6 * (frame.right - frame.left) || height > 0.6 * (frame.bottom - frame.top))) return false;
   const double l = frame.left + kInset, r = frame.right - kInset - width, t = frame.top + kInset,
                b = frame.bottom - kInset - height;
   Box best{};
@@ -155,10 +146,7 @@ bool draw_legend_inside(Sheet& sheet, const std::vector<LegendEntry>& entries, b
   back.stroked = false;
   back.fill = {1, 1, 1};
   back.opacity = 0.85;
-  back.lines = {{{best.left, best.top},
-                 {best.right, best.top},
-                 {best.right, best.bottom},
-                 {best.left, best.bottom}}};
+  back.lines = {{{best.left, best.top}, {best.right, best.top}, {best.right, best.bottom}, {best.left, best.bottom}}};
   sheet.drawing.add(std::move(back));
   double middle = best.top + kPad + kRow / 2;
   for (const LegendEntry& e : entries) {
@@ -182,17 +170,15 @@ std::vector<WordPlace> places_around(const Place& at, double width, double heigh
   for (const double ring : {0.0, 1.0, 2.0, 3.0}) {
     const double d = reach + ring * 8, e = ring * 8;
     const double h = height / 2;
-    const std::pair<double, double> corners[] = {
-        {at.x + d, at.y - h},
-        {at.x - d - width, at.y - h},
-        {at.x - width / 2, at.y - d - height},
-        {at.x - width / 2, at.y + d},
-        {at.x + reach + 0.7 * e, at.y - h - reach - e},
-        {at.x + reach + 0.7 * e, at.y - h + reach + e},
-        {at.x - reach - 0.7 * e - width, at.y - h - reach - e},
-        {at.x - reach - 0.7 * e - width, at.y - h + reach + e}};
-    for (const auto& [left, top] : corners)
-      out.push_back({{left, top, left + width, top + height}, ring});
+    const std::pair<double, double> corners[] = {{at.x + d, at.y - h},
+                                                 {at.x - d - width, at.y - h},
+                                                 {at.x - width / 2, at.y - d - height},
+                                                 {at.x - width / 2, at.y + d},
+                                                 {at.x + reach + 0.7 * e, at.y - h - reach - e},
+                                                 {at.x + reach + 0.7 * e, at.y - h + reach + e},
+                                                 {at.x - reach - 0.7 * e - width, at.y - h - reach - e},
+                                                 {at.x - reach - 0.7 * e - width, at.y - h + reach + e}};
+    for (const auto& [left, top] : corners) out.push_back({{left, top, left + width, top + height}, ring});
   }
   return out;
 }
@@ -203,8 +189,8 @@ const WordPlace* best_place(const Sheet& sheet, const std::vector<WordPlace>& pl
   const WordPlace* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const WordPlace& p : places) {
-    const bool inside = p.box.left > frame.left + 1 && p.box.right < frame.right - 1 &&
-                        p.box.top > frame.top + 1 && p.box.bottom < frame.bottom - 1;
+    const bool inside = p.box.left > frame.left + 1 && p.box.right < frame.right - 1 && p.box.top > frame.top + 1 &&
+                        p.box.bottom < frame.bottom - 1;
     if (!inside || !is_free(sheet, p.box)) continue;
     const double cost = static_cast<double>(busy_in(sheet, p.box)) + 3 * p.ring;
     if (cost < least) {
@@ -215,8 +201,7 @@ const WordPlace* best_place(const Sheet& sheet, const std::vector<WordPlace>& pl
   return best;
 }
 
-void draw_leader(
-    Sheet& sheet, const Place& at, const Box& box, double reach, const FigureLook& look) {
+void draw_leader(Sheet& sheet, const Place& at, const Box& box, double reach, const FigureLook& look) {
   const Place to{std::clamp(at.x, box.left, box.right), std::clamp(at.y, box.top, box.bottom)};
   const double length = std::hypot(to.x - at.x, to.y - at.y);
   if (length < reach + 4) return;
@@ -240,8 +225,7 @@ void draw_marks(Sheet& sheet) {
       sheet.taken.push_back({at.back().x - r, at.back().y - r, at.back().x + r, at.back().y + r});
   }
   for (std::size_t k = 0; k < marks.size(); ++k)
-    if (sheet.drawing.frame.holds(at[k]))
-      add_marker(sheet, marks[k].look, {at[k]}, marks[k].hollow, marks[k].tip);
+    if (sheet.drawing.frame.holds(at[k])) add_marker(sheet, marks[k].look, {at[k]}, marks[k].hollow, marks[k].tip);
   for (std::size_t k = 0; k < marks.size(); ++k) {
     const FigureMark& m = marks[k];
     if (m.text.empty() || !sheet.drawing.frame.holds(at[k])) continue;
@@ -250,8 +234,7 @@ void draw_marks(Sheet& sheet) {
     text.size = kLegendSize;
     text.halo = true;
     const double reach = m.look.size + 2.2;
-    const auto places =
-        places_around(at[k], text_width(text.runs, text.size), 1.05 * kLegendSize, reach);
+    const auto places = places_around(at[k], text_width(text.runs, text.size), 1.05 * kLegendSize, reach);
     const WordPlace* place = best_place(sheet, places);
     if (place == nullptr) continue;
     draw_leader(sheet, at[k], place->box, reach, m.look);

@@ -29,9 +29,7 @@ struct CostKind {
   bool ReplayReport::Algorithm::*on_front;
 };
 
-std::vector<CostPoint> cost_points(const ShownReplay& replay,
-                                   const FigureOptions& options,
-                                   const CostKind& kind) {
+std::vector<CostPoint> cost_points(const ShownReplay& replay, const FigureOptions& options, const CostKind& kind) {
   refuse_unmatched_methods(replay, options);
   std::vector<CostPoint> out;
   double least = kNone;
@@ -52,13 +50,10 @@ std::vector<CostPoint> cost_points(const ShownReplay& replay,
 
 // What the methods on it do not reach lies below and left of it.
 void add_staircase(Chart& figure, std::vector<CostPoint> points) {
-  points.erase(
-      std::remove_if(points.begin(), points.end(), [](const CostPoint& p) { return !p.on_front; }),
-      points.end());
+  points.erase(std::remove_if(points.begin(), points.end(), [](const CostPoint& p) { return !p.on_front; }),
+               points.end());
   if (points.empty()) return;
-  std::sort(points.begin(), points.end(), [](const CostPoint& a, const CostPoint& b) {
-    return a.cost < b.cost;
-  });
+  std::sort(points.begin(), points.end(), [](const CostPoint& a, const CostPoint& b) { return a.cost < b.cost; });
   FigureSeries line;
   line.name = "Pareto front";
   line.look = {.ink = Ink::vermilion, .dash = 1, .width = 0.9};
@@ -86,9 +81,7 @@ FigureSeries legend_key(const std::string& name, FigureMarker marker, Ink ink, b
   return out;
 }
 
-void add_cost_marks(Chart& figure,
-                    const ShownReplay& replay,
-                    const std::vector<CostPoint>& points) {
+void add_cost_marks(Chart& figure, const ShownReplay& replay, const std::vector<CostPoint>& points) {
   const auto look_of = [&](const CostPoint& p) {
     return FigureLook{.ink = p.algorithm->bound ? Ink::grey
                              : p.on_front       ? Ink::blue
@@ -100,35 +93,23 @@ void add_cost_marks(Chart& figure,
                       .size = p.algorithm->label == replay.report->best ? 3.4 : 2.3};
   };
   for (const CostPoint& p : points)
-    figure.marks.push_back(
-        {p.cost,
-         p.score,
-         p.algorithm->label + (p.beyond ? " ↑ " + number_text(p.algorithm->rmse, 3) : ""),
-         look_of(p),
-         p.algorithm->bound});
+    figure.marks.push_back({p.cost, p.score,
+                            p.algorithm->label + (p.beyond ? " ↑ " + number_text(p.algorithm->rmse, 3) : ""),
+                            look_of(p), p.algorithm->bound});
   const auto key = [&](const char* name, FigureMarker marker, Ink ink, bool any_of_it) {
     if (any_of_it) figure.series.push_back(legend_key(name, marker, ink, ink == Ink::grey));
   };
   const auto any = [&](auto is) {
-    return std::any_of(
-        points.begin(), points.end(), [&](const CostPoint& p) { return is(*p.algorithm); });
+    return std::any_of(points.begin(), points.end(), [&](const CostPoint& p) { return is(*p.algorithm); });
   };
-  key("needs no reference",
-      FigureMarker::circle,
-      Ink::blue,
+  key("needs no reference", FigureMarker::circle, Ink::blue,
       any([](const ReplayReport::Algorithm& a) { return !a.bound && !a.learns; }));
-  key("learns from a reference",
-      FigureMarker::square,
-      Ink::blue,
+  key("learns from a reference", FigureMarker::square, Ink::blue,
       any([](const ReplayReport::Algorithm& a) { return !a.bound && a.learns; }));
-  key("bound", FigureMarker::triangle, Ink::grey, any([](const ReplayReport::Algorithm& a) {
-        return a.bound;
-      }));
+  key("bound", FigureMarker::triangle, Ink::grey, any([](const ReplayReport::Algorithm& a) { return a.bound; }));
 }
 
-Chart cost_figure(std::span<const FigureSource> sources,
-                  const FigureOptions& options,
-                  const CostKind& kind) {
+Chart cost_figure(std::span<const FigureSource> sources, const FigureOptions& options, const CostKind& kind) {
   const ShownReplay replay = shown_replay(sources[0], {});
   const std::vector<CostPoint> points = cost_points(replay, options, kind);
   if (points.empty())
@@ -146,16 +127,12 @@ Chart cost_figure(std::span<const FigureSource> sources,
   x.pad(2.5);
   y.pad(std::max(1.2, std::pow(y.high() / y.low(), 0.08)));
   out.x = {.title = kind.title, .log = true, .rows = {}};
-  out.y = {.title = axis_title(std::string(replay.report->score_words()), replay.unit),
-           .log = true,
-           .rows = {}};
+  out.y = {.title = axis_title(std::string(replay.report->score_words()), replay.unit), .log = true, .rows = {}};
   set_ends(out.x, x, options.x_range);
   set_ends(out.y, y, options.y_range);
   add_staircase(out, points);
   if (above_zero(replay.optimum))
-    out.series.push_back(line_series("optimum of this scene",
-                                     {out.x.low, out.x.high},
-                                     {replay.optimum, replay.optimum},
+    out.series.push_back(line_series("optimum of this scene", {out.x.low, out.x.high}, {replay.optimum, replay.optimum},
                                      {.ink = Ink::black, .dash = 2, .width = 0.7}));
   add_cost_marks(out, replay, points);
   out.about = fmt::format("{} against {}", replay.report->score_words(), kind.title);
@@ -165,27 +142,20 @@ Chart cost_figure(std::span<const FigureSource> sources,
 }  // namespace
 
 Chart front_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  return cost_figure(sources,
-                     options,
-                     {"front",
-                      "Run time [ns a sample]",
-                      [](const auto& a) { return a.ns_per_sample; },
+  return cost_figure(sources, options,
+                     {"front", "Run time [ns a sample]", [](const auto& a) { return a.ns_per_sample; },
                       &ReplayReport::Algorithm::on_time_front});
 }
 
 Chart memory_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
-  return cost_figure(sources,
-                     options,
-                     {"memory",
-                      "Peak memory [bytes]",
-                      [](const auto& a) { return a.bytes(); },
+  return cost_figure(sources, options,
+                     {"memory", "Peak memory [bytes]", [](const auto& a) { return a.bytes(); },
                       &ReplayReport::Algorithm::on_memory_front});
 }
 
 namespace {
 
-std::vector<const ReplayReport::Algorithm*> ranking_rows(const ShownReplay& replay,
-                                                         const FigureOptions& options) {
+std::vector<const ReplayReport::Algorithm*> ranking_rows(const ShownReplay& replay, const FigureOptions& options) {
   refuse_unmatched_methods(replay, options);
   std::vector<const ReplayReport::Algorithm*> out;
   for (const ReplayReport::Algorithm* one : replay.ranked)
@@ -194,10 +164,7 @@ std::vector<const ReplayReport::Algorithm*> ranking_rows(const ShownReplay& repl
 }
 
 /// The mark of one method with its interval; what lies beyond `farthest` stands there as a square with its number.
-void add_ranking_row(Chart& chart,
-                     Extent& x,
-                     const ShownReplay& replay,
-                     const ReplayReport::Algorithm& one,
+void add_ranking_row(Chart& chart, Extent& x, const ShownReplay& replay, const ReplayReport::Algorithm& one,
                      double farthest) {
   const auto row = static_cast<double>(chart.y.rows.size());
   const bool beyond = one.rmse > farthest, best = one.label == replay.report->best;
@@ -225,8 +192,8 @@ void add_ranking_row(Chart& chart,
 
 void add_ranking_line(Chart& chart, const char* name, double at, std::size_t dash, Ink ink) {
   if (above_zero(at))
-    chart.series.push_back(line_series(
-        name, {at, at}, {chart.y.low, chart.y.high}, {.ink = ink, .dash = dash, .width = 0.8}));
+    chart.series.push_back(
+        line_series(name, {at, at}, {chart.y.low, chart.y.high}, {.ink = ink, .dash = dash, .width = 0.8}));
 }
 
 void add_ranking_keys(Chart& chart) {
@@ -235,8 +202,7 @@ void add_ranking_keys(Chart& chart) {
   if (any([](const FigureMark& m) { return m.hollow; }))
     chart.series.push_back(legend_key("bound", FigureMarker::circle, Ink::grey, true));
   if (any([](const FigureMark& m) { return m.look.marker == FigureMarker::square; }))
-    chart.series.push_back(
-        legend_key("beyond the axis", FigureMarker::square, Ink::vermilion, false));
+    chart.series.push_back(legend_key("beyond the axis", FigureMarker::square, Ink::vermilion, false));
 }
 
 }  // namespace
@@ -249,13 +215,10 @@ Chart ranking_figure(std::span<const FigureSource> sources, const FigureOptions&
   for (const ReplayReport::Algorithm* one : rows) least = std::fmin(least, one->rmse);
   Chart out;
   Extent x(true);
-  for (const ReplayReport::Algorithm* one : rows)
-    add_ranking_row(out, x, replay, *one, kFarthestOfRanking * least);
+  for (const ReplayReport::Algorithm* one : rows) add_ranking_row(out, x, replay, *one, kFarthestOfRanking * least);
   x.take(replay.optimum);
   x.pad(std::max(1.02, std::pow(x.high() / x.low(), 0.06)));
-  out.x = {.title = axis_title(std::string(replay.report->score_words()), replay.unit),
-           .log = true,
-           .rows = {}};
+  out.x = {.title = axis_title(std::string(replay.report->score_words()), replay.unit), .log = true, .rows = {}};
   set_ends(out.x, x, options.x_range);
   out.y.low = -0.5;
   out.y.high = static_cast<double>(rows.size()) - 0.5;

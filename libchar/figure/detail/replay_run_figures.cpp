@@ -58,8 +58,7 @@ FigureOptions with_readable_stretch(const ShownReplay& replay, FigureOptions opt
   const ReplayReport::Stretch& run = *replay.report->run;
   if (options.x_range || !hides_itself(of_input(run.inputs, replay).estimate)) return options;
   double fault_s = kNone;
-  for (const ReplayReport::Fault& fault : replay.report->faults)
-    fault_s = std::fmin(fault_s, fault.from_s);
+  for (const ReplayReport::Fault& fault : replay.report->faults) fault_s = std::fmin(fault_s, fault.from_s);
   for (const bool any : {false, true})
     for (const ReplayReport::Stretch& close : run.close_ups) {
       const double from = close.from_s, to = close.to_s;
@@ -86,8 +85,7 @@ void take_series(Extent& y, const FigureSeries& series, const FigureAxis& x) {
 }
 
 void refuse_without_run(const FigureSource& source, const ShownReplay& replay, const char* kind) {
-  if (!replay.report->run)
-    throw kind_refusal(source, kind).says("nothing was estimated over its run");
+  if (!replay.report->run) throw kind_refusal(source, kind).says("nothing was estimated over its run");
 }
 
 const FigureLook kReferenceLook{.ink = Ink::black, .dash = 0, .width = 1.3};
@@ -95,9 +93,7 @@ const FigureLook kEstimateLook{.ink = Ink::vermilion, .dash = 0, .width = 0.6};
 const FigureLook kSensorLook{.ink = Ink::sky, .dash = 0, .width = 0.5};
 
 /// A signal as all its samples would look.
-FigureSeries signal_series(const std::string& name,
-                           const Timeline& track,
-                           const ShownReplay& replay,
+FigureSeries signal_series(const std::string& name, const Timeline& track, const ShownReplay& replay,
                            const FigureLook& look) {
   FigureSeries out;
   out.name = name;
@@ -110,8 +106,8 @@ FigureSeries signal_series(const std::string& name,
 
 void add_best_sensor(Chart& figure, const Timeline& track, const ShownReplay& replay) {
   if (!track.empty())
-    figure.series.push_back(signal_series(
-        "best sensor " + replay.report->run->sensor_name, track, replay, kSensorLook));
+    figure.series.push_back(
+        signal_series("best sensor " + replay.report->run->sensor_name, track, replay, kSensorLook));
 }
 
 std::string name_of_input(const ShownReplay& replay) {
@@ -119,12 +115,8 @@ std::string name_of_input(const ShownReplay& replay) {
   return name.empty() ? "value" : name;
 }
 
-void set_value_axis(Chart& figure,
-                    const std::string& words,
-                    const std::string& unit,
-                    Extent y,
-                    const FigureOptions& options,
-                    double pad) {
+void set_value_axis(Chart& figure, const std::string& words, const std::string& unit, Extent y,
+                    const FigureOptions& options, double pad) {
   y.pad(pad);
   figure.y.title = axis_title(words, unit);
   set_ends(figure.y, y, options.y_range);
@@ -157,9 +149,7 @@ Chart error_figure(std::span<const FigureSource> sources, const FigureOptions& o
   refuse_without_run(sources[0], replay, "error");
   const ReplayReport::Stretch& run = run_shown(replay, options);
   const Timeline& error = of_input(run.inputs, replay).error;
-  if (error.empty())
-    throw kind_refusal(sources[0], "error")
-        .says("without a reference there is no error over the run");
+  if (error.empty()) throw kind_refusal(sources[0], "error").says("without a reference there is no error over the run");
   Chart out;
   set_time_axis(out, replay, options);
   add_run_marks(out, replay);
@@ -186,24 +176,17 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
     take_series(y, out.series.back(), out.x);
   }
   if (out.series.empty())
-    throw kind_refusal(sources[0], "window")
-        .says("no method has an error over time (there is no reference)");
+    throw kind_refusal(sources[0], "window").says("no method has an error over time (there is no reference)");
   if (above_zero(replay.optimum)) {
     y.take(replay.optimum);
-    out.series.push_back(line_series("optimum of this scene",
-                                     {out.x.low, out.x.high},
-                                     {replay.optimum, replay.optimum},
+    out.series.push_back(line_series("optimum of this scene", {out.x.low, out.x.high}, {replay.optimum, replay.optimum},
                                      {.ink = Ink::black, .dash = 2, .width = 0.7}));
   }
   out.y.log = true;
   const double window_s = replay.report->window_s;
-  set_value_axis(out,
-                 std::isfinite(window_s) ? "RMS error in windows of " + duration_text(window_s)
-                                         : "RMS error in a window",
-                 replay.unit,
-                 y,
-                 options,
-                 1.25);
+  set_value_axis(
+      out, std::isfinite(window_s) ? "RMS error in windows of " + duration_text(window_s) : "RMS error in a window",
+      replay.unit, y, options, 1.25);
   out.about = "RMS of the error in a moving window";
   return out;
 }
@@ -211,10 +194,8 @@ Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& 
 namespace {
 
 /// Which sensors have a line: those asked for, else those of the largest (smallest variances) values.
-std::vector<std::size_t> drawn_sensors(const ShownReplay& replay,
-                                       const FigureOptions& options,
-                                       const std::vector<double>& values,
-                                       bool smallest) {
+std::vector<std::size_t> drawn_sensors(const ShownReplay& replay, const FigureOptions& options,
+                                       const std::vector<double>& values, bool smallest) {
   std::vector<std::size_t> out;
   refuse_unmatched(options.channels, replay.sensors, replay.report->file);
   for (std::size_t i = 0; i < replay.sensors.size(); ++i)
@@ -224,33 +205,24 @@ std::vector<std::size_t> drawn_sensors(const ShownReplay& replay,
     const double v = i < values.size() ? std::fabs(values[i]) : kNone;
     return std::isfinite(v) ? (smallest ? -v : v) : -std::numeric_limits<double>::infinity();
   };
-  std::stable_sort(
-      out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
   out.resize(kMostSensors);
   std::sort(out.begin(), out.end());
   return out;
 }
 
-bool has_weights(const ReplayReport::Algorithm& algorithm) {
-  return !algorithm.weights.empty();
-}
-bool has_variances(const ReplayReport::Algorithm& algorithm) {
-  return !algorithm.variances.empty();
-}
+bool has_weights(const ReplayReport::Algorithm& algorithm) { return !algorithm.weights.empty(); }
+bool has_variances(const ReplayReport::Algorithm& algorithm) { return !algorithm.variances.empty(); }
 
-Chart sensors_over_time(std::span<const FigureSource> sources,
-                        const FigureOptions& options,
-                        bool variances) {
+Chart sensors_over_time(std::span<const FigureSource> sources, const FigureOptions& options, bool variances) {
   const char* kind = variances ? "variances" : "weights";
   const ShownReplay replay = shown_replay(sources[0], options);
-  const ReplayReport::Algorithm* tracked =
-      tracked_algorithm(replay, options, variances ? has_variances : has_weights);
+  const ReplayReport::Algorithm* tracked = tracked_algorithm(replay, options, variances ? has_variances : has_weights);
   if (tracked == nullptr || !(variances ? has_variances(*tracked) : has_weights(*tracked)))
     throw kind_refusal(sources[0], kind)
         .says(options.algorithm.empty() ? "no method has any" : options.algorithm + " has none");
   if (!variances && tracked->weights.size() > 1)
-    throw kind_refusal(sources[0], kind)
-        .says("of several inputs there is more than one weight a sensor");
+    throw kind_refusal(sources[0], kind).says("of several inputs there is more than one weight a sensor");
   const std::vector<double>& last = variances ? tracked->variances : tracked->weights[0];
   const Timeline& track = variances ? tracked->variance_track : tracked->weight_track;
   Chart out;
@@ -259,34 +231,25 @@ Chart sensors_over_time(std::span<const FigureSource> sources,
   Extent y(variances);
   for (const std::size_t i : drawn_sensors(replay, options, last, variances)) {
     if (!track.empty()) {
-      out.series.push_back(
-          track_series(replay.sensors[i], track, i, replay, variances, series_look(i)));
+      out.series.push_back(track_series(replay.sensors[i], track, i, replay, variances, series_look(i)));
     } else if (i < last.size()) {
-      out.series.push_back(line_series(
-          replay.sensors[i], {out.x.low, out.x.high}, {last[i], last[i]}, series_look(i)));
+      out.series.push_back(line_series(replay.sensors[i], {out.x.low, out.x.high}, {last[i], last[i]}, series_look(i)));
       out.series.back().look.marker = FigureMarker::none;
     }
     if (!out.series.empty()) take_series(y, out.series.back(), out.x);
   }
   out.y.log = variances;
   if (!variances) y.take(0.0);
-  const std::string unit =
-      variances && !replay.sensor_unit.empty() ? "(" + replay.sensor_unit + ")²" : "";
-  set_value_axis(out,
-                 fmt::format("{} of {}", variances ? "Variance" : "Weight", tracked->label),
-                 unit,
-                 y,
-                 options,
+  const std::string unit = variances && !replay.sensor_unit.empty() ? "(" + replay.sensor_unit + ")²" : "";
+  set_value_axis(out, fmt::format("{} of {}", variances ? "Variance" : "Weight", tracked->label), unit, y, options,
                  variances ? 1.4 : 0.05);
   out.about = fmt::format("{} of {} over the run", kind, tracked->label);
   return out;
 }
 
 std::string fault_note(const ReplayReport::Fault& fault, const std::string& answer) {
-  const bool valueless =
-      fault.kind == "stuck" || fault.kind == "dropout" || !std::isfinite(fault.value);
-  return fault.kind + (valueless ? "" : " " + number_text(fault.value, 3)) +
-         (answer.empty() ? "" : ", " + answer);
+  const bool valueless = fault.kind == "stuck" || fault.kind == "dropout" || !std::isfinite(fault.value);
+  return fault.kind + (valueless ? "" : " " + number_text(fault.value, 3)) + (answer.empty() ? "" : ", " + answer);
 }
 
 std::string answer_to(const ReplayReport::Algorithm* tracked, std::size_t fault) {
@@ -317,8 +280,7 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
   set_time_axis(out, replay, options);
   const std::vector<std::size_t> rows = drawn_sensors(replay, options, {}, false);
   const auto row_of = [&](const std::string& sensor) {
-    const auto at = std::find_if(
-        rows.begin(), rows.end(), [&](std::size_t i) { return replay.sensors[i] == sensor; });
+    const auto at = std::find_if(rows.begin(), rows.end(), [&](std::size_t i) { return replay.sensors[i] == sensor; });
     return static_cast<std::size_t>(at - rows.begin());
   };
   const auto add = [&](const ReplayReport::Fault& fault, FigureBar bar) {
@@ -329,23 +291,19 @@ Chart faults_figure(std::span<const FigureSource> sources, const FigureOptions& 
   };
   const std::vector<ReplayReport::Fault>& known = replay.report->faults;
   for (std::size_t k = 0; k < known.size(); ++k)
-    add(known[k],
-        {.name = "known to the scene",
-         .note = fault_note(known[k], answer_to(tracked, k)),
-         .ink = Ink::grey,
-         .broad = true});
-  for (const ReplayReport::Fault& found :
-       tracked != nullptr ? tracked->found : std::vector<ReplayReport::Fault>{}) {
+    add(known[k], {.name = "known to the scene",
+                   .note = fault_note(known[k], answer_to(tracked, k)),
+                   .ink = Ink::grey,
+                   .broad = true});
+  for (const ReplayReport::Fault& found : tracked != nullptr ? tracked->found : std::vector<ReplayReport::Fault>{}) {
     const bool noise = found.kind == "noise";
-    add(found,
-        {.name = fmt::format("{}, by {}", noise ? "re-weighted" : "out", tracked->label),
-         .note = found.kind,
-         .ink = Ink::blue,
-         .hollow = noise});
+    add(found, {.name = fmt::format("{}, by {}", noise ? "re-weighted" : "out", tracked->label),
+                .note = found.kind,
+                .ink = Ink::blue,
+                .hollow = noise});
   }
   if (out.bars.empty())
-    throw kind_refusal(sources[0], "faults")
-        .says("no fault is known to the scene, and none was found");
+    throw kind_refusal(sources[0], "faults").says("no fault is known to the scene, and none was found");
   for (const std::size_t i : rows) out.y.rows.push_back(replay.sensors[i]);
   out.y.low = -0.5;
   out.y.high = static_cast<double>(rows.size()) - 0.5;
@@ -375,8 +333,7 @@ Chart error_allan_figure(std::span<const FigureSource> sources, const FigureOpti
   x.pad(1.4);
   y.pad(1.5);
   out.x = {.title = "Averaging time τ [s]", .log = true, .rows = {}};
-  out.y = {
-      .title = axis_title("Allan deviation of the error", replay.unit), .log = true, .rows = {}};
+  out.y = {.title = axis_title("Allan deviation of the error", replay.unit), .log = true, .rows = {}};
   set_ends(out.x, x, options.x_range);
   set_ends(out.y, y, options.y_range);
   out.about = "Allan deviation of the error of each method";

@@ -20,18 +20,12 @@ double round_step(double least) {
   return 10 * power;
 }
 
-std::string minus_sign(const std::string& text) {
-  return text.starts_with('-') ? "−" + text.substr(1) : text;
-}
+std::string minus_sign(const std::string& text) { return text.starts_with('-') ? "−" + text.substr(1) : text; }
 
 /// Of a double no power of ten lies further out.
-int whole_power(double power) {
-  return clamped_whole(power, -400, 400);
-}
+int whole_power(double power) { return clamped_whole(power, -400, 400); }
 
-int power_below(double value) {
-  return whole_power(std::floor(std::log10(value) + 1e-9));
-}
+int power_below(double value) { return whole_power(std::floor(std::log10(value) + 1e-9)); }
 
 int digits_for_steps(double largest, double step) {
   if (!(largest > 0)) return 3;
@@ -66,11 +60,7 @@ std::vector<Tick> log_ticks(const FigureAxis& axis, double length, double apart)
       const double value = d * std::pow(10.0, e), at = std::log10(value);
       if (at < low - 1e-9 || at > high + 1e-9) continue;
       const bool decade = d == 1, worded = (decade && e % each == 0) || (few && (d == 2 || d == 5));
-      out.push_back({value,
-                     !worded  ? ""
-                     : decade ? decade_label(e, plain)
-                              : brief_text(value, 1),
-                     decade});
+      out.push_back({value, !worded ? "" : decade ? decade_label(e, plain) : brief_text(value, 1), decade});
     }
   return out;
 }
@@ -79,8 +69,7 @@ std::vector<Tick> log_ticks(const FigureAxis& axis, double length, double apart)
 
 double PageScale::at(double value) const {
   if (log && !(value > 0)) return kNone;
-  const double share =
-      log ? std::log10(value / low) / std::log10(high / low) : (value - low) / (high - low);
+  const double share = log ? std::log10(value / low) / std::log10(high / low) : (value - low) / (high - low);
   return from + (to - from) * share;
 }
 

@@ -51,10 +51,7 @@ Colour pale(Colour colour, double share);
 std::vector<double> dash_of(std::size_t number);
 
 /// A marker at a place; hollow ones are white inside.
-void add_marker(Sheet& sheet,
-                const FigureLook& look,
-                const std::vector<Place>& at,
-                bool hollow,
+void add_marker(Sheet& sheet, const FigureLook& look, const std::vector<Place>& at, bool hollow,
                 const std::string& tip = "");
 
 /// Stretches and bands; lines and markers of series; bars; whiskers. Fills `busy`.

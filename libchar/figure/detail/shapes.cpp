@@ -15,18 +15,12 @@ constexpr double kColumn = 0.25;
 // Beyond the frame, where lines are cut off.
 constexpr double kBeyond = 6;
 
-bool is_place(const Place& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y);
-}
+bool is_place(const Place& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
-Place place_of(const Sheet& sheet, double x, double y) {
-  return {sheet.x.at(x), sheet.y.at(y)};
-}
+Place place_of(const Sheet& sheet, double x, double y) { return {sheet.x.at(x), sheet.y.at(y)}; }
 
 /// A place inside the frame by the finest step that is seen.
-long cell_of(double coordinate) {
-  return std::lround(coordinate / kColumn);
-}
+long cell_of(double coordinate) { return std::lround(coordinate / kColumn); }
 
 /// Runs of points without gaps; of a column that many points share the first, lowest, highest and last.
 std::vector<std::vector<Place>> runs_of(const Sheet& sheet, const FigureSeries& s) {
@@ -57,8 +51,7 @@ std::vector<std::vector<Place>> runs_of(const Sheet& sheet, const FigureSeries& 
       out.emplace_back();
       open = true;
     }
-    if (!column.empty() && std::floor(p.x / kColumn) != std::floor(column[0].x / kColumn))
-      close_column();
+    if (!column.empty() && std::floor(p.x / kColumn) != std::floor(column[0].x / kColumn)) close_column();
     column.push_back(p);
   }
   close_column();
@@ -85,9 +78,7 @@ bool cut_to(const Box& box, Place& a, Place& b) {
   return true;
 }
 
-Box grown(const Box& box, double by) {
-  return {box.left - by, box.top - by, box.right + by, box.bottom + by};
-}
+Box grown(const Box& box, double by) { return {box.left - by, box.top - by, box.right + by, box.bottom + by}; }
 
 std::vector<std::vector<Place>> cut(const std::vector<std::vector<Place>>& runs, const Box& box) {
   std::vector<std::vector<Place>> out;
@@ -138,8 +129,7 @@ void draw_band(Sheet& sheet, const FigureSeries& s) {
       highs.emplace_back();
       open = true;
     }
-    if (!lows.back().empty() &&
-        std::floor(a.x / kColumn) == std::floor(lows.back().back().x / kColumn)) {
+    if (!lows.back().empty() && std::floor(a.x / kColumn) == std::floor(lows.back().back().x / kColumn)) {
       lows.back().back().y = std::max(lows.back().back().y, a.y);
       highs.back().back().y = std::min(highs.back().back().y, b.y);
       continue;
@@ -207,14 +197,11 @@ std::vector<Place> outline(FigureMarker marker, const Place& c, double r) {
       return {{c.x - a, c.y - a}, {c.x + a, c.y - a}, {c.x + a, c.y + a}, {c.x - a, c.y + a}};
     }
     case FigureMarker::triangle:
-      return {
-          {c.x, c.y - 1.15 * r}, {c.x + 1.1 * r, c.y + 0.8 * r}, {c.x - 1.1 * r, c.y + 0.8 * r}};
+      return {{c.x, c.y - 1.15 * r}, {c.x + 1.1 * r, c.y + 0.8 * r}, {c.x - 1.1 * r, c.y + 0.8 * r}};
     case FigureMarker::down:
-      return {
-          {c.x, c.y + 1.15 * r}, {c.x + 1.1 * r, c.y - 0.8 * r}, {c.x - 1.1 * r, c.y - 0.8 * r}};
+      return {{c.x, c.y + 1.15 * r}, {c.x + 1.1 * r, c.y - 0.8 * r}, {c.x - 1.1 * r, c.y - 0.8 * r}};
     case FigureMarker::diamond:
-      return {
-          {c.x, c.y - 1.2 * r}, {c.x + 1.2 * r, c.y}, {c.x, c.y + 1.2 * r}, {c.x - 1.2 * r, c.y}};
+      return {{c.x, c.y - 1.2 * r}, {c.x + 1.2 * r, c.y}, {c.x, c.y + 1.2 * r}, {c.x - 1.2 * r, c.y}};
     default:
       return {};
   }
@@ -222,10 +209,7 @@ std::vector<Place> outline(FigureMarker marker, const Place& c, double r) {
 
 }  // namespace
 
-void add_marker(Sheet& sheet,
-                const FigureLook& look,
-                const std::vector<Place>& at,
-                bool hollow,
+void add_marker(Sheet& sheet, const FigureLook& look, const std::vector<Place>& at, bool hollow,
                 const std::string& tip) {
   if (at.empty() || look.marker == FigureMarker::none) return;
   DrawnPath path;
@@ -307,8 +291,7 @@ void draw_bars(Sheet& sheet) {
       path.width = 0.8;
       path.fill = broad ? pale(path.stroke, 0.45) : bar.hollow ? Colour{1, 1, 1} : path.stroke;
       path.clipped = true;
-      path.lines = {
-          {{from, middle - half}, {to, middle - half}, {to, middle + half}, {from, middle + half}}};
+      path.lines = {{{from, middle - half}, {to, middle - half}, {to, middle + half}, {from, middle + half}}};
       sheet.drawing.add(std::move(path));
     }
 }

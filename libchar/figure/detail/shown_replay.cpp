@@ -26,9 +26,8 @@ std::size_t input_asked_for(const ReplayReport& report, const FigureOptions& opt
   std::vector<std::string> names;
   for (const InputResult& input : report.inputs) names.push_back(input.name);
   refuse_unmatched({options.input}, names, report.file);
-  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-    return matches(options.input, name);
-  });
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const std::string& name) { return matches(options.input, name); });
   return static_cast<std::size_t>(found - names.begin());
 }
 
@@ -54,8 +53,7 @@ ShownReplay shown_replay(const FigureSource& source, const FigureOptions& option
   const ReplayReport& report = *source.replay;
   ShownReplay out;
   out.report = &report;
-  if (report.inputs.empty())
-    throw input_error("E0982", report.file).says("the list of inputs is empty");
+  if (report.inputs.empty()) throw input_error("E0982", report.file).says("the list of inputs is empty");
   out.input = input_asked_for(report, options);
   out.unit = usual_figure_unit(report.inputs[out.input].unit);
   out.optimum = report.reference ? report.inputs[out.input].optimum_rmse : kNone;
@@ -64,8 +62,7 @@ ShownReplay shown_replay(const FigureSource& source, const FigureOptions& option
   out.end_s = report.end_s();
   set_time_unit(out);
   for (const std::string& label : report.ranked)
-    if (const ReplayReport::Algorithm* one = report.find(label); one != nullptr && one->ran)
-      out.ranked.push_back(one);
+    if (const ReplayReport::Algorithm* one = report.find(label); one != nullptr && one->ran) out.ranked.push_back(one);
   return out;
 }
 
@@ -80,19 +77,13 @@ void set_time_axis(Chart& figure, const ShownReplay& replay, const FigureOptions
 void add_run_marks(Chart& figure, const ShownReplay& replay) {
   for (const RunMark& mark : replay.report->marks) {
     const bool fault = mark.kind == "fault";
-    figure.stretches.push_back({mark.from_s / replay.time_unit_s,
-                                mark.to_s / replay.time_unit_s,
-                                fault ? "faults" : mark.label,
-                                fault ? Ink::orange : Ink::grey});
+    figure.stretches.push_back({mark.from_s / replay.time_unit_s, mark.to_s / replay.time_unit_s,
+                                fault ? "faults" : mark.label, fault ? Ink::orange : Ink::grey});
   }
 }
 
-FigureSeries track_series(const std::string& name,
-                          const Timeline& track,
-                          std::size_t series,
-                          const ShownReplay& replay,
-                          bool log,
-                          FigureLook look) {
+FigureSeries track_series(const std::string& name, const Timeline& track, std::size_t series, const ShownReplay& replay,
+                          bool log, FigureLook look) {
   FigureSeries out;
   out.name = name;
   out.look = look;
@@ -116,8 +107,7 @@ void refuse_unmatched_methods(const ShownReplay& replay, const FigureOptions& op
   refuse_unmatched(options.channels, labels_of(replay), replay.report->file);
 }
 
-std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& replay,
-                                                             const FigureOptions& options) {
+std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& replay, const FigureOptions& options) {
   std::vector<const ReplayReport::Algorithm*> out;
   if (!options.channels.empty()) {
     refuse_unmatched_methods(replay, options);
@@ -142,10 +132,8 @@ std::vector<const ReplayReport::Algorithm*> shown_algorithms(const ShownReplay& 
   return out;
 }
 
-const ReplayReport::Algorithm* tracked_algorithm(
-    const ShownReplay& replay,
-    const FigureOptions& options,
-    bool (*has)(const ReplayReport::Algorithm& algorithm)) {
+const ReplayReport::Algorithm* tracked_algorithm(const ShownReplay& replay, const FigureOptions& options,
+                                                 bool (*has)(const ReplayReport::Algorithm& algorithm)) {
   if (!options.algorithm.empty()) {
     if (const ReplayReport::Algorithm* one = replay.find(options.algorithm)) return one;
     const std::vector<std::string> labels = labels_of(replay);

@@ -24,13 +24,10 @@ std::string hex(const Colour& c) {
 }
 
 /// Of the frame that is drawn in: names in one page differ.
-std::string frame_name(const std::string& name) {
-  return name.empty() ? "frame" : "frame-" + name;
-}
+std::string frame_name(const std::string& name) { return name.empty() ? "frame" : "frame-" + name; }
 
 std::string tip_of(const DrawnPath& p, const std::string& name) {
-  return name.empty() || p.tip.empty() ? ""
-                                       : "<title>" + markup_entities(printable(p.tip)) + "</title>";
+  return name.empty() || p.tip.empty() ? "" : "<title>" + markup_entities(printable(p.tip)) + "</title>";
 }
 
 std::string looks(const DrawnPath& p, const std::string& name) {
@@ -54,12 +51,7 @@ std::string svg_path(const DrawnPath& p, const std::string& name) {
     std::string d;
     for (const std::vector<Place>& line : p.lines) {
       for (std::size_t i = 0; i < line.size(); ++i)
-        d += fmt::format("{}{} {}",
-                         i == 0   ? "M"
-                         : i == 1 ? "L"
-                                  : " ",
-                         number(line[i].x),
-                         number(line[i].y));
+        d += fmt::format("{}{} {}", i == 0 ? "M" : i == 1 ? "L" : " ", number(line[i].x), number(line[i].y));
       if (p.filled) d += "Z";
     }
     const std::string tip = tip_of(p, name);
@@ -69,39 +61,30 @@ std::string svg_path(const DrawnPath& p, const std::string& name) {
   if (p.circles.empty()) return out;
   out += fmt::format("<g{}>{}\n", looks(p, name), tip_of(p, name));
   for (const Place& c : p.circles)
-    out += fmt::format(
-        "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", number(c.x), number(c.y), number(p.radius));
+    out += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", number(c.x), number(c.y), number(p.radius));
   return out + "</g>\n";
 }
 
 std::string svg_text(const DrawnText& t) {
   constexpr const char* kAnchors[] = {"start", "middle", "end"};
   std::string out =
-      t.upright
-          ? fmt::format(
-                "<text transform=\"translate({} {}) rotate(-90)\"", number(t.at.x), number(t.at.y))
-          : fmt::format("<text x=\"{}\" y=\"{}\"", number(t.at.x), number(t.at.y));
+      t.upright ? fmt::format("<text transform=\"translate({} {}) rotate(-90)\"", number(t.at.x), number(t.at.y))
+                : fmt::format("<text x=\"{}\" y=\"{}\"", number(t.at.x), number(t.at.y));
   if (t.anchor != Anchor::start)
     out += fmt::format(" text-anchor=\"{}\"", kAnchors[static_cast<std::size_t>(t.anchor)]);
   out += fmt::format(" font-size=\"{}\"", number(t.size));
   if (t.bold) out += " font-weight=\"bold\"";
   if (t.colour != Colour{}) out += fmt::format(" fill=\"{}\"", hex(t.colour));
-  if (t.halo)
-    out +=
-        " stroke=\"#ffffff\" stroke-width=\"1.8\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
+  if (t.halo) out += " stroke=\"#ffffff\" stroke-width=\"1.8\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
   out += ">";
   bool raised = false;
   for (const TextRun& run : t.runs) {
     const std::string down =
-        raised != run.raised
-            ? fmt::format(" dy=\"{}\"", number((run.raised ? -1 : 1) * kRaisedBy * t.size))
-            : "";
+        raised != run.raised ? fmt::format(" dy=\"{}\"", number((run.raised ? -1 : 1) * kRaisedBy * t.size)) : "";
     raised = run.raised;
-    const std::string size =
-        run.raised ? fmt::format(" font-size=\"{}\"", number(kRaisedSize * t.size)) : "";
-    out += down.empty() && size.empty()
-               ? markup_entities(run.text)
-               : fmt::format("<tspan{}{}>{}</tspan>", down, size, markup_entities(run.text));
+    const std::string size = run.raised ? fmt::format(" font-size=\"{}\"", number(kRaisedSize * t.size)) : "";
+    out += down.empty() && size.empty() ? markup_entities(run.text)
+                                        : fmt::format("<tspan{}{}>{}</tspan>", down, size, markup_entities(run.text));
   }
   return out + "</text>\n";
 }
@@ -116,8 +99,7 @@ std::string svg_of(const Drawing& drawing, const std::string& name) {
   const std::string file = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}pt\" height=\"{}pt\"",
-      number(drawing.width),
-      number(drawing.height));
+      number(drawing.width), number(drawing.height));
   std::string out =
       (name.empty() ? file : "<svg") +
       fmt::format(
@@ -125,15 +107,8 @@ std::string svg_of(const Drawing& drawing, const std::string& name) {
           "role=\"img\" font-family=\"'{2}', Arial, Helvetica, sans-serif\">\n<title>{3}</title>\n"
           "<clipPath id=\"{8}\"><rect x=\"{4}\" y=\"{5}\" width=\"{6}\" "
           "height=\"{7}\"/></clipPath>\n",
-          number(drawing.width),
-          number(drawing.height),
-          kFigureFont,
-          markup_entities(about),
-          number(f.left),
-          number(f.top),
-          number(f.right - f.left),
-          number(f.bottom - f.top),
-          frame_name(name));
+          number(drawing.width), number(drawing.height), kFigureFont, markup_entities(about), number(f.left),
+          number(f.top), number(f.right - f.left), number(f.bottom - f.top), frame_name(name));
   for (const DrawnPiece& piece : drawing.pieces)
     out += piece.is_text ? svg_text(piece.text) : svg_path(piece.path, name);
   return out + "</svg>\n";

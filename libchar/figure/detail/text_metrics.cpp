@@ -37,33 +37,16 @@ struct Advance {
   char32_t character;
   std::uint16_t width;
 };
-constexpr Advance kOthers[] = {{U'–', 556},
-                               {U'—', 1000},
-                               {U'‘', 222},
-                               {U'’', 222},
-                               {U'“', 333},
-                               {U'”', 333},
-                               {U'•', 350},
-                               {U'…', 1000},
-                               {U'≤', 549},
-                               {U'≥', 549},
-                               {U'≈', 549},
-                               {U'√', 549},
-                               {U'∞', 713},
-                               {U'−', 584},
-                               {U'↑', 500},
-                               {U'↓', 500},
-                               {U'→', 1000},
-                               {U'←', 1000}};
+constexpr Advance kOthers[] = {{U'–', 556}, {U'—', 1000}, {U'‘', 222}, {U'’', 222}, {U'“', 333},  {U'”', 333},
+                               {U'•', 350}, {U'…', 1000}, {U'≤', 549}, {U'≥', 549}, {U'≈', 549},  {U'√', 549},
+                               {U'∞', 713}, {U'−', 584},  {U'↑', 500}, {U'↓', 500}, {U'→', 1000}, {U'←', 1000}};
 
 // Bold letters are wider; a figure has few of them.
 constexpr double kBold = 1.08;
 
 /// The character at `at`, which moves behind it. The text is valid UTF-8.
 char32_t next_character(std::string_view text, std::size_t& at) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned first = byte(at);
   const std::size_t length = first < 0x80U ? 1 : first < 0xE0U ? 2 : first < 0xF0U ? 3 : 4;
   char32_t out = length == 1 ? first : first & (0xFFU >> (length + 1));
@@ -84,17 +67,9 @@ double advance_of(char32_t c) {
 
 /// The digit or minus that a raised character stands for.
 std::optional<std::string_view> lowered(char32_t c) {
-  constexpr std::pair<char32_t, std::string_view> kRaised[] = {{U'⁰', "0"},
-                                                               {U'¹', "1"},
-                                                               {U'²', "2"},
-                                                               {U'³', "3"},
-                                                               {U'⁴', "4"},
-                                                               {U'⁵', "5"},
-                                                               {U'⁶', "6"},
-                                                               {U'⁷', "7"},
-                                                               {U'⁸', "8"},
-                                                               {U'⁹', "9"},
-                                                               {U'⁻', "−"}};
+  constexpr std::pair<char32_t, std::string_view> kRaised[] = {{U'⁰', "0"}, {U'¹', "1"}, {U'²', "2"}, {U'³', "3"},
+                                                               {U'⁴', "4"}, {U'⁵', "5"}, {U'⁶', "6"}, {U'⁷', "7"},
+                                                               {U'⁸', "8"}, {U'⁹', "9"}, {U'⁻', "−"}};
   for (const auto& [raised, plain] : kRaised)
     if (raised == c) return plain;
   return std::nullopt;
@@ -125,12 +100,8 @@ double text_width(const std::vector<TextRun>& runs, double size, bool bold) {
   return out * size * (bold ? kBold : 1) / 1000;
 }
 
-void Drawing::add(DrawnPath path) {
-  pieces.push_back({false, std::move(path), {}});
-}
+void Drawing::add(DrawnPath path) { pieces.push_back({false, std::move(path), {}}); }
 
-void Drawing::add(DrawnText text) {
-  pieces.push_back({true, {}, std::move(text)});
-}
+void Drawing::add(DrawnText text) { pieces.push_back({true, {}, std::move(text)}); }
 
 }  // namespace libchar

@@ -42,9 +42,7 @@ struct Solution {
   bool converged = false;
 };
 
-std::optional<Solution> solve(const AllanCurve& curve,
-                              const AllanCovariance& covariance,
-                              const Mixture& start) {
+std::optional<Solution> solve(const AllanCurve& curve, const AllanCovariance& covariance, const Mixture& start) {
   const TermSet terms = only_positive(start);
   const auto n = static_cast<Eigen::Index>(curve.points.size());
   Eigen::MatrixXd design = Eigen::MatrixXd::Zero(n, static_cast<int>(kTerms));
@@ -70,13 +68,11 @@ std::optional<Solution> solve(const AllanCurve& curve,
     Mixture right{};
     for (std::size_t i = 0; i < kTerms; ++i) right[i] = product[static_cast<Eigen::Index>(i)];
     Mixture next = nonnegative_minimum(gram, right, terms);
-    for (std::size_t i = 0; i < kTerms; ++i)
-      next[i] = step * next[i] + (1 - step) * solution.theta[i];
+    for (std::size_t i = 0; i < kTerms; ++i) next[i] = step * next[i] + (1 - step) * solution.theta[i];
     const auto vector = [](const Mixture& theta) {
       return Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(theta.data());
     };
-    const Eigen::VectorXd curve_now = design * vector(next),
-                          curve_before = design * vector(solution.theta);
+    const Eigen::VectorXd curve_now = design * vector(next), curve_before = design * vector(solution.theta);
     if (!(curve_now.minCoeff() > 0)) return std::nullopt;
     const double moved = ((curve_now - curve_before).array() / curve_now.array()).abs().maxCoeff();
     solution.theta = next;
@@ -94,8 +90,7 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
     const Coefficient& term = first.term[i];
     if (!term.value) continue;
     const double theta = solution.theta[i],
-                 sd_theta = std::sqrt(solution.covariance(static_cast<Eigen::Index>(i),
-                                                          static_cast<Eigen::Index>(i)));
+                 sd_theta = std::sqrt(solution.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
     const double scale = 2 * std::max(*term.value, std::sqrt(theta));
     second.value[i] = std::sqrt(theta);
     second.sd[i] = sd_theta / scale;
@@ -103,20 +98,15 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
     const double apart = std::abs(theta - first.theta[i]) / std::hypot(sd_theta, first_sd_theta);
     if (term.status != Status::detected || apart <= 3) continue;
     second.agrees = false;
-    second.sentence += fmt::format(
-        "{}the Allan curve gives {} for {}, {:.1f} combined standard deviations from {}",
-        second.sentence.empty() ? "" : "; ",
-        brief_text(*second.value[i], 4),
-        long_name(static_cast<Term>(i)),
-        apart,
-        brief_text(*term.value, 4));
+    second.sentence += fmt::format("{}the Allan curve gives {} for {}, {:.1f} combined standard deviations from {}",
+                                   second.sentence.empty() ? "" : "; ", brief_text(*second.value[i], 4),
+                                   long_name(static_cast<Term>(i)), apart, brief_text(*term.value, 4));
   }
   if (second.goodness.p < 1e-3) {
     // An opinion that does not describe the curve it was made from supports nothing.
     second.agrees = false;
     second.sentence += fmt::format("{}does not describe the Allan curve itself (p = {})",
-                                   second.sentence.empty() ? "" : "; ",
-                                   brief_text(second.goodness.p, 2));
+                                   second.sentence.empty() ? "" : "; ", brief_text(second.goodness.p, 2));
   } else if (second.agrees) {
     second.sentence = "agrees";
   }
@@ -126,21 +116,19 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
 
 }  // namespace
 
-std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
-                                            const NoiseFit& first,
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first,
                                             AllanCovarianceCache* cache) {
   const AllanCurve kept = usable(curve, first);
   const std::size_t terms = count_of(only_positive(first.theta));
-  if (!deviation_row(kept.type).is_allan() || terms == 0 || kept.points.size() < terms + 1)
-    return std::nullopt;
+  if (!deviation_row(kept.type).is_allan() || terms == 0 || kept.points.size() < terms + 1) return std::nullopt;
   AllanCovarianceCache own;
   const auto covariance = (cache != nullptr ? *cache : own).of(kept);
   const std::optional<Solution> solution = solve(kept, *covariance, first.theta);
   if (!solution) return std::nullopt;
   SecondOpinion second;
   second.goodness.chi2 = solution->chi2;
-  second.goodness.dof = static_cast<double>(kept.points.size()) -
-                        static_cast<double>(count_of(only_positive(solution->theta)));
+  second.goodness.dof =
+      static_cast<double>(kept.points.size()) - static_cast<double>(count_of(only_positive(solution->theta)));
   second.goodness.p = chi_square_tail(second.goodness.chi2, second.goodness.dof);
   compare(first, *solution, second);
   return second;

@@ -16,8 +16,7 @@ struct FitWorkspace {
 /// Generalised least squares of the Allan variances with the model's own covariance, on the terms
 /// of `first` that have a value; compared with `first`. Nothing when the curve has too few points.
 /// `cache` may be null.
-std::optional<SecondOpinion> second_opinion(const AllanCurve& curve,
-                                            const NoiseFit& first,
+std::optional<SecondOpinion> second_opinion(const AllanCurve& curve, const NoiseFit& first,
                                             AllanCovarianceCache* cache);
 
 }  // namespace libchar

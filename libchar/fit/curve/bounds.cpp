@@ -17,10 +17,7 @@ namespace {
 constexpr double kSingles = 24;
 constexpr double kPerOctave = 4;
 
-TermMatrix information_of(const Mixture& theta,
-                          double rate_hz,
-                          double samples,
-                          const TermSet& fitted) {
+TermMatrix information_of(const Mixture& theta, double rate_hz, double samples, const TermSet& fitted) {
   const double dt_s = 1 / rate_hz;
   const auto n = static_cast<std::uint64_t>(samples);
   TermMatrix information = TermMatrix::Zero();
@@ -50,9 +47,7 @@ TermMatrix information_of(const Mixture& theta,
   return information.selfadjointView<Eigen::Lower>();
 }
 
-std::array<std::optional<double>, kTerms> bound_of(const Mixture& theta,
-                                                   double rate_hz,
-                                                   double samples,
+std::array<std::optional<double>, kTerms> bound_of(const Mixture& theta, double rate_hz, double samples,
                                                    const TermSet& fitted) {
   std::array<std::optional<double>, kTerms> bound;
   bool any = false;
@@ -68,18 +63,16 @@ std::array<std::optional<double>, kTerms> bound_of(const Mixture& theta,
 
 }  // namespace
 
-std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta,
-                                                     double rate_hz,
-                                                     double samples,
+std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta, double rate_hz, double samples,
                                                      const TermSet& fitted) {
   return bound_of(theta, rate_hz, samples, fitted);
 }
 
-std::optional<double> seconds_for(
-    Term term, double relative_sd, const Mixture& theta, double rate_hz, const TermSet& fitted) {
+std::optional<double> seconds_for(Term term, double relative_sd, const Mixture& theta, double rate_hz,
+                                  const TermSet& fitted) {
   const auto excess = [&](double log_seconds) {
-    const auto bound = bound_of(
-        theta, rate_hz, std::exp(log_seconds) * rate_hz, fitted)[static_cast<std::size_t>(term)];
+    const auto bound =
+        bound_of(theta, rate_hz, std::exp(log_seconds) * rate_hz, fitted)[static_cast<std::size_t>(term)];
     return bound && std::isfinite(*bound) ? std::log(*bound / relative_sd) : 1e3;
   };
   double low = std::log(16 / rate_hz), high = std::log(1e15 / rate_hz);  // 16 .. 1e15 samples

@@ -46,35 +46,26 @@ constexpr double kDescribed =
     0.02;  ///< probability of the residuals from which on they are those of the stated scatter
 constexpr double kMisfitCurve = 1e-3;     ///< below which they are not
 constexpr std::size_t kMostPoints = 512;  ///< that are fitted one by one
-constexpr double kDigitised =
-    1e-6;  ///< relative scatter below which differences of fit mean nothing
+constexpr double kDigitised = 1e-6;       ///< relative scatter below which differences of fit mean nothing
 
 void check(const DigitisedCurve& curve) {
   if (curve.x.size() != curve.y.size())
-    throw input_error("E0803").says(
-        "the curve has {} abscissae but {} values", curve.x.size(), curve.y.size());
+    throw input_error("E0803").says("the curve has {} abscissae but {} values", curve.x.size(), curve.y.size());
   if (!curve.relative_sd.empty() && curve.relative_sd.size() != curve.x.size())
-    throw input_error("E0803").says(
-        "the curve needs as many relative standard deviations as points");
+    throw input_error("E0803").says("the curve needs as many relative standard deviations as points");
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (!(curve.x[i] > 0) || !std::isfinite(curve.x[i]))
       throw input_error("E0803")
           .says("point {} of the curve: the abscissa must be positive", i + 1)
           .got("{}", curve.x[i]);
     if (!(curve.y[i] > 0) || !std::isfinite(curve.y[i]))
-      throw input_error("E0803")
-          .says("point {} of the curve: the value must be positive", i + 1)
-          .got("{}", curve.y[i]);
+      throw input_error("E0803").says("point {} of the curve: the value must be positive", i + 1).got("{}", curve.y[i]);
     if (!curve.relative_sd.empty() && !(curve.relative_sd[i] > 0))
-      throw input_error("E0803").says(
-          "point {} of the curve: the standard deviation must be positive", i + 1);
+      throw input_error("E0803").says("point {} of the curve: the standard deviation must be positive", i + 1);
     if (i > 0 && !(curve.x[i] > curve.x[i - 1]))
-      throw input_error("E0803")
-          .says("point {} of the curve: the abscissae must ascend", i + 1)
-          .got("{}", curve.x[i]);
+      throw input_error("E0803").says("point {} of the curve: the abscissae must ascend", i + 1).got("{}", curve.x[i]);
   }
-  if (curve.rate_hz && !(*curve.rate_hz > 0))
-    throw input_error("E0803").says("the rate of a curve must be positive");
+  if (curve.rate_hz && !(*curve.rate_hz > 0)) throw input_error("E0803").says("the rate of a curve must be positive");
   if (curve.duration_s && !(*curve.duration_s > 0))
     throw input_error("E0803").says("the duration of a curve's record must be positive");
 }
@@ -122,7 +113,7 @@ struct Judge {
   double points = 0;       ///< points of the curve
   double independent = 0;  ///< fewer when neighbouring residuals go together
   double floor = 0;        ///< of the sum of squares
-  double scale = 1;  ///< variance of the whitened residuals, where it is known to be above one
+  double scale = 1;        ///< variance of the whitened residuals, where it is known to be above one
   double ratio(double without, double with) const {
     if (scatter != Scatter::estimated) return (without - with) / scale;
     return points * std::log((without + floor) / (with + floor));
@@ -144,10 +135,7 @@ struct CurveDecision {
   Mixture ratio{};
 };
 
-CurveDecision decide(const CurveProblem& problem,
-                     const TermSet& offered,
-                     double threshold,
-                     const Judge& judge) {
+CurveDecision decide(const CurveProblem& problem, const TermSet& offered, double threshold, const Judge& judge) {
   CurveDecision decision{offered, solve_curve_thoroughly(problem, offered), {}};
   const auto without = [&](std::size_t i) {
     TermSet less = decision.kept;
@@ -176,19 +164,13 @@ CurveDecision decide(const CurveProblem& problem,
 }
 
 /// Largest theta of a dropped term that the points allow (one-sided 95 %).
-double upper_limit(const CurveProblem& problem,
-                   const CurveDecision& decision,
-                   std::size_t term,
-                   const Judge& judge,
+double upper_limit(const CurveProblem& problem, const CurveDecision& decision, std::size_t term, const Judge& judge,
                    double rise = kOneSided95) {
-  const double level =
-      (problem.value / problem.unit.col(static_cast<Eigen::Index>(term))).minCoeff();
+  const double level = (problem.value / problem.unit.col(static_cast<Eigen::Index>(term))).minCoeff();
   const auto excess = [&](double theta) {
     Mixture start = decision.best.theta;
     start[term] = theta;
-    return judge.ratio(solve_curve(problem, decision.kept, &start).sum_of_squares,
-                       decision.best.sum_of_squares) -
-           rise;
+    return judge.ratio(solve_curve(problem, decision.kept, &start).sum_of_squares, decision.best.sum_of_squares) - rise;
   };
   double low = std::max(level * 1e-12, decision.best.theta[term]), high = std::max(level, 2 * low);
   for (int i = 0; i < 40 && excess(high) < 0; ++i) high *= 4;
@@ -203,14 +185,13 @@ void say_what_intervals_mean(const Judge& judge, const std::string& basis, Noise
   switch (judge.scatter) {
     case Scatter::stated:
       fit.findings.push_back(finding(
-          "curve_uncertainty",
-          "The intervals rest on the stated uncertainty of the points, taken as independent."));
+          "curve_uncertainty", "The intervals rest on the stated uncertainty of the points, taken as independent."));
       return;
     case Scatter::from_duration:
-      fit.findings.push_back(finding(
-          "curve_uncertainty",
-          "The intervals rest on the stated record length: the exact covariance of overlapping "
-          "Allan variances."));
+      fit.findings.push_back(
+          finding("curve_uncertainty",
+                  "The intervals rest on the stated record length: the exact covariance of overlapping "
+                  "Allan variances."));
       return;
     case Scatter::estimated:
       fit.findings.push_back(finding("curve_uncertainty",
@@ -235,9 +216,7 @@ struct CurveJudgement {
   TermMatrix covariance = TermMatrix::Zero();
 };
 
-CurveJudgement judged(const CurveProblem& problem,
-                      const CurveDecision& decision,
-                      const Judge& judge) {
+CurveJudgement judged(const CurveProblem& problem, const CurveDecision& decision, const Judge& judge) {
   CurveJudgement out{problem, decision, judge};
   const CurveSolution& best = decision.best;
   out.positive = only_positive(best.theta);
@@ -246,8 +225,7 @@ CurveJudgement judged(const CurveProblem& problem,
   const bool estimated = judge.scatter == Scatter::estimated;
   out.scale = estimated ? out.mean_square : std::max(1.0, out.mean_square);
   out.quantile = estimated ? student_quantile(0.975, out.free_points) : kNormal95;
-  out.covariance =
-      inverse_of(curve_information(problem, best.theta, out.positive), out.positive) * out.scale;
+  out.covariance = inverse_of(curve_information(problem, best.theta, out.positive), out.positive) * out.scale;
   return out;
 }
 
@@ -259,8 +237,7 @@ Interval profiled(const CurveJudgement& found, std::size_t term) {
   const auto excess = [&](double theta) {
     Mixture start = decision.best.theta;
     start[term] = theta;
-    return found.judge.ratio(solve_curve(found.problem, others, &start).sum_of_squares,
-                             decision.best.sum_of_squares) -
+    return found.judge.ratio(solve_curve(found.problem, others, &start).sum_of_squares, decision.best.sum_of_squares) -
            kTwoSided95;
   };
   CurveDecision without = decision;
@@ -275,10 +252,7 @@ Interval profiled(const CurveJudgement& found, std::size_t term) {
   return {std::sqrt(at), high};
 }
 
-void report_positive_term(const CurveJudgement& found,
-                          std::size_t i,
-                          double threshold,
-                          NoiseFit& fit) {
+void report_positive_term(const CurveJudgement& found, std::size_t i, double threshold, NoiseFit& fit) {
   const Judge& judge = found.judge;
   const Mixture& theta = found.decision.best.theta;
   Coefficient& term = fit.term[i];
@@ -298,14 +272,10 @@ void report_positive_term(const CurveJudgement& found,
   }
   for (std::size_t j = 0; j < kTerms; ++j)
     if (found.positive[j])
-      fit.covariance[i][j] =
-          found.covariance(c, static_cast<Eigen::Index>(j)) / (theta[i] * theta[j]);
+      fit.covariance[i][j] = found.covariance(c, static_cast<Eigen::Index>(j)) / (theta[i] * theta[j]);
 }
 
-void report_terms(const CurveJudgement& found,
-                  const TermSet& offered,
-                  double threshold,
-                  NoiseFit& fit) {
+void report_terms(const CurveJudgement& found, const TermSet& offered, double threshold, NoiseFit& fit) {
   const CurveSolution& best = found.decision.best;
   fit.theta = best.theta;
   fit.converged = best.converged;
@@ -331,30 +301,26 @@ void report_goodness(const CurveJudgement& found, const std::string& basis, Nois
   fit.goodness.p = estimated ? 1 : chi_square_tail(sum, found.free_points);
   say_what_intervals_mean(found.judge, basis, fit);
   if (!estimated && fit.goodness.p < 1e-3) {
-    fit.findings.push_back(finding(
-        "curve_scatter",
-        fmt::format("The points scatter {} times more about the model than their uncertainty "
-                    "says; the intervals are widened by that.",
-                    brief_text(std::sqrt(found.scale), 2))));
+    fit.findings.push_back(
+        finding("curve_scatter", fmt::format("The points scatter {} times more about the model than their uncertainty "
+                                             "says; the intervals are widened by that.",
+                                             brief_text(std::sqrt(found.scale), 2))));
   }
 }
 
 void report_residuals(const DigitisedCurve& curve, const CurveJudgement& found, NoiseFit& fit) {
   const CurveProblem& problem = found.problem;
   const Mixture& theta = found.decision.best.theta;
-  const Eigen::ArrayXd z = curve_residuals(problem, theta) /
-                           std::sqrt(std::max(found.scale, std::numeric_limits<double>::min()));
+  const Eigen::ArrayXd z =
+      curve_residuals(problem, theta) / std::sqrt(std::max(found.scale, std::numeric_limits<double>::min()));
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     double model = 0;
     for (std::size_t i = 0; i < kTerms; ++i)
       model += theta[i] > 0 ? theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
     const double measured = problem.value[j];
     const bool allan = curve.is_allan;
-    fit.residuals.push_back({curve.x[static_cast<std::size_t>(j)],
-                             allan ? std::sqrt(measured) : measured,
-                             allan ? std::sqrt(model) : model,
-                             0,
-                             z[j]});
+    fit.residuals.push_back({curve.x[static_cast<std::size_t>(j)], allan ? std::sqrt(measured) : measured,
+                             allan ? std::sqrt(model) : model, 0, z[j]});
   }
 }
 
@@ -362,19 +328,12 @@ Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-double points_of(const DigitisedCurve& curve) {
-  return std::accumulate(curve.group.begin(), curve.group.end(), 0.0);
-}
+double points_of(const DigitisedCurve& curve) { return std::accumulate(curve.group.begin(), curve.group.end(), 0.0); }
 
-NoiseFit fit_points(const DigitisedCurve& curve,
-                    const TermSet& offered,
-                    const FitOptions& options,
-                    double scale) {
+NoiseFit fit_points(const DigitisedCurve& curve, const TermSet& offered, const FitOptions& options, double scale) {
   if (curve.x.size() < count_of(offered)) {
     throw numeric_error("E0401")
-        .says("{} points of the curve are fewer than the {} noise terms to fit",
-              curve.x.size(),
-              count_of(offered))
+        .says("{} points of the curve are fewer than the {} noise terms to fit", curve.x.size(), count_of(offered))
         .hint("digitise more points");
   }
   CurveProblem problem = problem_of(curve);
@@ -390,8 +349,7 @@ NoiseFit fit_points(const DigitisedCurve& curve,
     judge.scatter = Scatter::from_duration;
     rough = weigh_by_duration(curve, *curve.duration_s, kReading, offered, problem);
   } else {
-    basis = curve.is_allan ? weigh_evenly(curve, offered, problem)
-                           : weigh_by_frequency(curve, offered, problem);
+    basis = curve.is_allan ? weigh_evenly(curve, offered, problem) : weigh_by_frequency(curve, offered, problem);
     rough = solve_curve_thoroughly(problem, offered);
     judge.independent = effective_points(curve_residuals(problem, rough.theta), count_of(offered));
     judge.floor = judge.points * kDigitised * kDigitised;
@@ -402,11 +360,8 @@ NoiseFit fit_points(const DigitisedCurve& curve,
   fit.duration_s = curve.duration_s.value_or(0);
   fit.samples = curve.x.size();
   fit.method = fmt::format(
-      "non-negative least squares on the logarithm of {} {}, {}",
-      curve.x.size(),
-      curve.group.empty()
-          ? "points"
-          : fmt::format("groups of neighbours among {:.0f} points", points_of(curve)),
+      "non-negative least squares on the logarithm of {} {}, {}", curve.x.size(),
+      curve.group.empty() ? "points" : fmt::format("groups of neighbours among {:.0f} points", points_of(curve)),
       curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");
   const CurveJudgement found = judged(problem, decision, judge);
   report_terms(found, offered, options.threshold, fit);
@@ -445,30 +400,19 @@ void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit
     for (std::size_t i = 0; i < kTerms; ++i)
       model += fit.theta[i] > 0 ? fit.theta[i] * problem.unit(j, static_cast<Eigen::Index>(i)) : 0;
     const double measured = problem.value[j];
-    outside.push_back({curve.x[at],
-                       curve.is_allan ? std::sqrt(measured) : measured,
-                       curve.is_allan ? std::sqrt(model) : model,
-                       0,
-                       0,
-                       false});
+    outside.push_back({curve.x[at], curve.is_allan ? std::sqrt(measured) : measured,
+                       curve.is_allan ? std::sqrt(model) : model, 0, 0, false});
   }
-  fit.residuals.insert(
-      curve.is_allan ? fit.residuals.begin() : fit.residuals.end(), outside.begin(), outside.end());
+  fit.residuals.insert(curve.is_allan ? fit.residuals.begin() : fit.residuals.end(), outside.begin(), outside.end());
   fit.band.whole = false;
   fit.band.top_hz = curve.is_allan ? 1 / (2 * edge) : edge;
-  fit.remedies.push_back(
-      {"band",
-       "the noise terms do not describe the whole curve within its uncertainty",
-       curve.is_allan
-           ? fmt::format("coefficients from averaging times of {} on, {} of {} points left out",
-                         duration_text(edge),
-                         left_out,
-                         curve.x.size())
-           : fmt::format("coefficients from below {} Hz, {} of {} points left out",
-                         brief_text(edge, 4),
-                         left_out,
-                         curve.x.size()),
-       left_out});
+  fit.remedies.push_back({"band", "the noise terms do not describe the whole curve within its uncertainty",
+                          curve.is_allan
+                              ? fmt::format("coefficients from averaging times of {} on, {} of {} points left out",
+                                            duration_text(edge), left_out, curve.x.size())
+                              : fmt::format("coefficients from below {} Hz, {} of {} points left out",
+                                            brief_text(edge, 4), left_out, curve.x.size()),
+                          left_out});
 }
 
 /// Does the fit still say something of each of the three terms that the other says something of?
@@ -484,8 +428,7 @@ std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) 
   std::size_t count = 0;
   while (left_out + count < n) {
     const double first = curve.is_allan ? curve.x[left_out] : curve.x[n - 1 - left_out];
-    const double at =
-        curve.is_allan ? curve.x[left_out + count] : curve.x[n - 1 - left_out - count];
+    const double at = curve.is_allan ? curve.x[left_out + count] : curve.x[n - 1 - left_out - count];
     if (std::max(first / at, at / first) > 1.9) break;
     ++count;
   }
@@ -497,8 +440,7 @@ std::size_t points_in_octave(const DigitisedCurve& curve, std::size_t left_out) 
 DigitisedCurve grouped(const DigitisedCurve& curve) {
   DigitisedCurve out = curve;
   for (auto* values : {&out.x, &out.y, &out.relative_sd}) values->clear();
-  const double width =
-      std::log(curve.x.back() / curve.x.front()) / static_cast<double>(kMostPoints - 1);
+  const double width = std::log(curve.x.back() / curve.x.front()) / static_cast<double>(kMostPoints - 1);
   const bool of_powers = !curve.is_allan && curve.relative_sd.empty();
   const double power = curve.root ? 2 : 1;
   for (std::size_t from = 0, to = 0; from < curve.x.size(); from = to) {
@@ -511,8 +453,7 @@ DigitisedCurve grouped(const DigitisedCurve& curve) {
       y += w * (of_powers ? std::pow(ratio, power) : std::log(ratio));
     }
     out.x.push_back(curve.x[from] * std::exp(x / weight));
-    out.y.push_back(curve.y[from] *
-                    (of_powers ? std::pow(y / weight, 1 / power) : std::exp(y / weight)));
+    out.y.push_back(curve.y[from] * (of_powers ? std::pow(y / weight, 1 / power) : std::exp(y / weight)));
     if (!curve.relative_sd.empty()) out.relative_sd.push_back(1 / std::sqrt(weight));
     out.group.push_back(static_cast<double>(to - from));
   }
@@ -544,8 +485,7 @@ void take_unit_back(double scale, bool is_allan, NoiseFit& fit) {
 }
 
 NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
-  if (curve.x.size() > kMostPoints && curve.group.empty())
-    return fit_in_range(grouped(curve), options);
+  if (curve.x.size() > kMostPoints && curve.group.empty()) return fit_in_range(grouped(curve), options);
   const TermSet offered = offered_to(curve, options);
   NoiseFit whole = fit_points(curve, offered, options, 1);
   // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length alone does not
@@ -554,12 +494,10 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
   const bool divisible = !curve.relative_sd.empty() || curve.rate_hz;
   if (!judged || whole.goodness.p >= kDescribed) return whole;
   const std::size_t points = curve.x.size(), fewest = fewest_points(points, offered);
-  for (std::size_t left_out = 1; divisible && points - left_out >= fewest && left_out < points;
-       ++left_out) {
+  for (std::size_t left_out = 1; divisible && points - left_out >= fewest && left_out < points; ++left_out) {
     NoiseFit part = fit_points(slow_part(curve, left_out), offered, options, 1);
     // White noise is seen at the fast end: a part that says nothing of it any more has left out more than a filter.
-    if (part.goodness.p < kDescribed || (whole[Term::white].value && !part[Term::white].value))
-      continue;
+    if (part.goodness.p < kDescribed || (whole[Term::white].value && !part[Term::white].value)) continue;
     // An octave more takes out the bias that "just passes" leaves.
     const std::size_t further = left_out + points_in_octave(curve, left_out);
     if (points - std::min(further, points) >= fewest) {
@@ -573,15 +511,14 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
     return part;
   }
   if (whole.goodness.p >= kMisfitCurve) return whole;
-  NoiseFit misfit =
-      fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
+  NoiseFit misfit = fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
   for (Coefficient& term : misfit.term)
     if (term.value) term.status = Status::misfit;
-  misfit.findings.push_back(finding(
-      "misfit",
-      "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
-      "no coefficient is borne out.",
-      "the noise terms do not describe the curve"));
+  misfit.findings.push_back(
+      finding("misfit",
+              "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
+              "no coefficient is borne out.",
+              "the noise terms do not describe the curve"));
   return misfit;
 }
 

@@ -14,8 +14,8 @@ namespace libchar {
 struct DigitisedCurve {
   bool is_allan = true;      ///< else a spectrum
   Sides sides = Sides::one;  ///< of a spectrum
-  bool root = true;       ///< values are deviations / root densities (else variances / densities)
-  std::vector<double> x;  ///< tau_s or frequency_hz, ascending
+  bool root = true;          ///< values are deviations / root densities (else variances / densities)
+  std::vector<double> x;     ///< tau_s or frequency_hz, ascending
   std::vector<double> y;
   std::vector<double> relative_sd;   ///< of the deviation, if the curve has it; empty = unknown
   std::optional<double> duration_s;  ///< of the record behind the curve, gives honest weights

@@ -24,8 +24,7 @@ std::string bare_name(std::string name) {
   return name;
 }
 
-std::optional<std::size_t> find(const std::vector<TextCell>& header,
-                                std::initializer_list<std::string_view> names) {
+std::optional<std::size_t> find(const std::vector<TextCell>& header, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names)
     for (std::size_t c = 0; c < header.size(); ++c)
       if (bare_name(header[c].text) == name) return c;
@@ -43,8 +42,8 @@ std::string unit_under_density(std::string unit) {
 }
 
 struct Columns {
-  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative,
-      absolute, low95, high95, model;
+  std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute, low95, high95,
+      model;
   bool percent = false;  // the relative error is written in percent
 };
 
@@ -68,27 +67,11 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
   c.low95 = find(header, {"low95"});
   c.high95 = find(header, {"high95"});
   c.model = find(header, {"model"});
-  c.relative = find(header,
-                    {"rel_err",
-                     "relative_error",
-                     "rel_error",
-                     "relative error",
-                     "relative_sd",
-                     "rel_sd",
-                     "relative_uncertainty",
-                     "rel_unc"});
+  c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd",
+                             "relative_uncertainty", "rel_unc"});
   c.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
-  c.absolute = find(header,
-                    {"error",
-                     "err",
-                     "sd",
-                     "std",
-                     "stderr",
-                     "standard_error",
-                     "standard error",
-                     "uncertainty",
-                     "deviation_sd",
-                     "dev_err"});
+  c.absolute = find(header, {"error", "err", "sd", "std", "stderr", "standard_error", "standard error", "uncertainty",
+                             "deviation_sd", "dev_err"});
   return c;
 }
 
@@ -107,17 +90,12 @@ class Reader {
       throw input_error("E0304", fmt::format("{}:{}:1", file_, row.line))
           .says("{} fields, {} expected", row.cells.size(), width_)
           .hint("each row has a value for each name of the header");
-    const auto text = [&](const std::optional<std::size_t>& column) {
-      return column ? row.cells[*column].text : "";
-    };
+    const auto text = [&](const std::optional<std::size_t>& column) { return column ? row.cells[*column].text : ""; };
     const std::string kind = text(columns_.kind);
-    if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan"))
-      return;
-    NamedCurve& target =
-        curve_of(columns_.channel ? text(columns_.channel) : "curve", text(columns_.unit), kind);
+    if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan")) return;
+    NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve", text(columns_.unit), kind);
     const bool by_root = columns_.root.has_value();
-    const double x = number(row, *columns_.x),
-                 y = number(row, by_root ? *columns_.root : *columns_.power);
+    const double x = number(row, *columns_.x), y = number(row, by_root ? *columns_.root : *columns_.power);
     if (x <= 0) return;  // the spectrum at zero frequency says nothing about noise
     target.curve.root = by_root;
     target.curve.x.push_back(x);
@@ -161,22 +139,18 @@ class Reader {
     const double of_root = columns_.root ? 1 : 0.5;
     const auto low = cell(columns_.low), high = cell(columns_.high);
     if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
-    if (const auto sd = cell(columns_.relative); sd && *sd > 0)
-      return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0) return of_root * *sd * (columns_.percent ? 0.01 : 1);
     if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
     return std::nullopt;
   }
 
-  void keep(std::vector<double>& values,
-            const TextRow& row,
-            const std::optional<std::size_t>& column) const {
+  void keep(std::vector<double>& values, const TextRow& row, const std::optional<std::size_t>& column) const {
     if (column) values.push_back(number_in(row.cells[*column], decimal_).value_or(kNone));
   }
 
   NamedCurve& curve_of(const std::string& name, const std::string& unit, const std::string& kind) {
-    const auto found = std::find_if(curves_.begin(), curves_.end(), [&](const NamedCurve& c) {
-      return c.name == name && c.kind == kind;
-    });
+    const auto found = std::find_if(curves_.begin(), curves_.end(),
+                                    [&](const NamedCurve& c) { return c.name == name && c.kind == kind; });
     if (found != curves_.end()) return *found;
     NamedCurve& added = curves_.emplace_back();
     added.name = name;
@@ -225,8 +199,7 @@ std::string curve_in_header(const std::string& path) {
     return "";
   }
   const std::vector<TextCell>& header = first.cells;
-  if (find(header, {"curve"}) && find(header, {"x"}) && find(header, {"value"}))
-    return "allan or psd";
+  if (find(header, {"curve"}) && find(header, {"x"}) && find(header, {"value"})) return "allan or psd";
   if (find(header, {"tau_s", "tau", "averaging_time"})) {
     const Columns c = columns_of(header, true);
     return c.root || c.power ? "allan" : "";
@@ -234,10 +207,9 @@ std::string curve_in_header(const std::string& path) {
   if (!find(header, {"frequency_hz", "frequency", "freq"})) return "";
   const Columns c = columns_of(header, false);
   // A column NAME[UNIT] for each channel, as psd prints them.
-  const bool wide = header.size() > 1 && header[0].text == "frequency_hz" &&
-                    std::all_of(header.begin() + 1, header.end(), [](const TextCell& cell) {
-                      return cell.text.ends_with(']');
-                    });
+  const bool wide =
+      header.size() > 1 && header[0].text == "frequency_hz" &&
+      std::all_of(header.begin() + 1, header.end(), [](const TextCell& cell) { return cell.text.ends_with(']'); });
   return c.root || c.power || wide ? "psd" : "";
 }
 

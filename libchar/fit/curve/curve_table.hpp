@@ -15,7 +15,7 @@ struct NamedCurve {
   DigitisedCurve curve;
   /// Of our own tables, for those who draw them; as long as the curve, or empty where there is no such column. NaN: an empty cell.
   std::vector<double> low68, high68, low95, high95, model;
-  std::string kind;  ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
+  std::string kind;        ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
   std::string value_unit;  ///< in the column `unit`, unchanged
 };
 

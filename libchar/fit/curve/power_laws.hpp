@@ -14,7 +14,7 @@ struct PowerLaw {
   int alpha = 0;
   std::string_view name;          ///< "white phase"
   std::string_view abbreviation;  ///< of Stable32: "WHPM"
-  Coefficient h;  ///< Hz^-(alpha + 1); status, 95 % interval or upper limit as the term's
+  Coefficient h;                  ///< Hz^-(alpha + 1); status, 95 % interval or upper limit as the term's
 };
 
 /// h_2 … h_-2 of a fit of a clock (FitOptions::clock); empty for any other.

@@ -37,12 +37,11 @@ double flicker_phase_theta(const NoiseFit& fit) {
 }
 
 double unshaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  const double terms = spectrum(fit.theta, frequency_hz, dt_s) +
-                       flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
+  const double terms =
+      spectrum(fit.theta, frequency_hz, dt_s) + flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
   if (!has_process(fit)) return terms;
   const double sigma = *fit.gauss_markov->sigma.value;
-  return terms +
-         sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
+  return terms + sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
 }
 
 double unshaped_variance(const NoiseFit& fit, double m, double dt_s) {
@@ -50,14 +49,11 @@ double unshaped_variance(const NoiseFit& fit, double m, double dt_s) {
          flicker_phase_theta(fit) * flicker_phase_allan_variance(m, dt_s);
 }
 
-bool has_shape(const NoiseFit& fit) {
-  return fit.bandwidth_hz || fit.shape.kind != NoiseShape::Kind::none;
-}
+bool has_shape(const NoiseFit& fit) { return fit.bandwidth_hz || fit.shape.kind != NoiseShape::Kind::none; }
 
 /// Lowest frequency that the shape touches.
 double shape_from_hz(const NoiseFit& fit, double dt_s) {
-  if (!fit.bandwidth_hz && fit.shape.kind == NoiseShape::Kind::measured)
-    return fit.shape.frequency_hz.front() / 2;
+  if (!fit.bandwidth_hz && fit.shape.kind == NoiseShape::Kind::measured) return fit.shape.frequency_hz.front() / 2;
   double f = 0.5 / dt_s;
   while (f > 1e-9 / dt_s && std::abs(ratio_at(fit, f / 2, dt_s) - 1) > kVisibleRatio) f /= 2;
   return f / 2;

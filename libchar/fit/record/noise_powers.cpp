@@ -20,8 +20,7 @@ namespace {
 /// Log bins as of the noise fit: single coefficients to 24, then eight an octave.
 std::vector<std::size_t> bin_edges(std::size_t n) {
   std::vector<std::size_t> edge;
-  for (std::size_t k = 0; k < n;
-       k = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * 1.0905)))
+  for (std::size_t k = 0; k < n; k = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * 1.0905)))
     edge.push_back(k);
   edge.push_back(n);
   return edge;
@@ -42,17 +41,15 @@ struct SeriesUnits {
   double step_s = 0;
   bool ends_free = false;
   bool of(const EventSeries& series) const {
-    return points == series.value.size() && per_point == series.per_point &&
-           step_s == series.step_s && ends_free == series.ends_free;
+    return points == series.value.size() && per_point == series.per_point && step_s == series.step_s &&
+           ends_free == series.ends_free;
   }
   std::array<std::vector<double>, kSeriesTerms.size()> power;  ///< k = 1..n-1 at [k-1]
   std::vector<std::size_t> edge;
   std::vector<PowerBin> bins;  ///< without energies
 };
 
-double rate_of(const EventSeries& series) {
-  return static_cast<double>(series.per_point) / series.step_s;
-}
+double rate_of(const EventSeries& series) { return static_cast<double>(series.per_point) / series.step_s; }
 
 SeriesUnits units_of(const EventSeries& series) {
   SeriesUnits units;
@@ -66,8 +63,7 @@ SeriesUnits units_of(const EventSeries& series) {
         if (series.ends_free)
           unit[static_cast<std::size_t>(Term::quantization)] =
               detail::quantization_without_ends(k, units.points, series.step_s);
-        for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
-          out[i] = unit[static_cast<std::size_t>(kSeriesTerms[i])];
+        for (std::size_t i = 0; i < kSeriesTerms.size(); ++i) out[i] = unit[static_cast<std::size_t>(kSeriesTerms[i])];
       });
   std::move(power.begin(), power.end(), units.power.begin());
   units.edge = bin_edges(units.points - 1);
@@ -75,8 +71,7 @@ SeriesUnits units_of(const EventSeries& series) {
     PowerBin bin;
     bin.dof = static_cast<double>(units.edge[b + 1] - units.edge[b]);
     for (std::size_t i = 0; i < kSeriesTerms.size(); ++i)
-      bin.unit[static_cast<std::size_t>(kSeriesTerms[i])] =
-          mean_of(units.power[i], units.edge[b], units.edge[b + 1]);
+      bin.unit[static_cast<std::size_t>(kSeriesTerms[i])] = mean_of(units.power[i], units.edge[b], units.edge[b + 1]);
     units.bins.push_back(bin);
   }
   return units;
@@ -89,8 +84,7 @@ std::vector<PowerBin> bins_of(const EventSeries& series, const SeriesUnits& unit
   std::vector<double> square(c.size());
   for (std::size_t k = 0; k < c.size(); ++k) square[k] = c[k] * c[k];
   std::vector<PowerBin> bins = units.bins;
-  for (std::size_t b = 0; b < bins.size(); ++b)
-    bins[b].energy = mean_of(square, units.edge[b], units.edge[b + 1]);
+  for (std::size_t b = 0; b < bins.size(); ++b) bins[b].energy = mean_of(square, units.edge[b], units.edge[b + 1]);
   return bins;
 }
 

@@ -41,13 +41,11 @@ Merged merged(std::span<const RunRecord> records) {
   std::vector<BinOfRun> all;
   Merged out;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    for (std::size_t j = 0; j < records[r].bins.size(); ++j)
-      all.push_back({&records[r].bins[j], r, j});
+    for (std::size_t j = 0; j < records[r].bins.size(); ++j) all.push_back({&records[r].bins[j], r, j});
     out.place.emplace_back(records[r].bins.size());
   }
   std::stable_sort(all.begin(), all.end(), [](const BinOfRun& a, const BinOfRun& b) {
-    return std::pair(a.bin->frequency_hz, a.bin->high_hz) <
-           std::pair(b.bin->frequency_hz, b.bin->high_hz);
+    return std::pair(a.bin->frequency_hz, a.bin->high_hz) < std::pair(b.bin->frequency_hz, b.bin->high_hz);
   });
   std::size_t first = 0;  // of those merged bins that stand at this frequency
   for (const BinOfRun& one : all) {
@@ -96,18 +94,14 @@ void without_bounds(NoiseFit& fit) {
     if (term.status != Status::detected || !(term.relative_sd > kWideAbove)) continue;
     term.status = Status::undetermined;
     fit.findings.push_back(
-        finding("too_short",
-                fmt::format("The runs are too few or too short for {}: it is known to {} (1 sd).",
-                            long_name(static_cast<Term>(t)),
-                            percent_text(term.relative_sd))));
+        finding("too_short", fmt::format("The runs are too few or too short for {}: it is known to {} (1 sd).",
+                                         long_name(static_cast<Term>(t)), percent_text(term.relative_sd))));
   }
 }
 
 }  // namespace
 
-PooledFit fit_pooled(std::span<const RunRecord> records,
-                     double rate_hz,
-                     const FitOptions& options) {
+PooledFit fit_pooled(std::span<const RunRecord> records, double rate_hz, const FitOptions& options) {
   if (records.empty()) throw usage_error("E0205").says("there is no run to fit");
   const Merged all = merged(records);
   std::uint64_t samples = 0;

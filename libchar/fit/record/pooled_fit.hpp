@@ -26,9 +26,7 @@ struct PooledFit {
 
 /// Sum of the records' log-likelihoods at its maximum. All records have one rate; at least one is needed. Throws as
 /// fit_power_bins.
-PooledFit fit_pooled(std::span<const RunRecord> records,
-                     double rate_hz,
-                     const FitOptions& options = {});
+PooledFit fit_pooled(std::span<const RunRecord> records, double rate_hz, const FitOptions& options = {});
 
 /// How much better coefficients of its own describe a run than those of all runs do, the shape held.
 struct RunRatios {

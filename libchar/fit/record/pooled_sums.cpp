@@ -6,8 +6,7 @@ namespace libchar::detail {
 
 void join(MeanPowers& powers, const MeanPowers& later) {
   join(powers.blocks, later.blocks);
-  for (std::size_t piece = 0; piece < powers.pieces.size(); ++piece)
-    join(powers.pieces[piece], later.pieces[piece]);
+  for (std::size_t piece = 0; piece < powers.pieces.size(); ++piece) join(powers.pieces[piece], later.pieces[piece]);
 }
 
 void write_state(const MeanPowers& powers, StateWriter& to) {
@@ -19,15 +18,13 @@ MeanPowers read_mean_powers(std::uint64_t per_mean, std::uint64_t block, StateRe
   MeanPowers powers;
   powers.blocks = read_pooled_sums(end_of_left(kMeansBlock, per_mean, block), from);
   for (std::size_t piece = 0; piece < powers.pieces.size(); ++piece)
-    powers.pieces[piece] =
-        read_pooled_sums(end_of_left(MeanPowers::piece_length(piece), per_mean, block), from);
+    powers.pieces[piece] = read_pooled_sums(end_of_left(MeanPowers::piece_length(piece), per_mean, block), from);
   return powers;
 }
 
 void add_squares(std::span<const double> coefficients, PooledSums& sums) {
   sums.power.resize(coefficients.size());
-  for (std::size_t k = 1; k < coefficients.size(); ++k)
-    sums.power[k] += coefficients[k] * coefficients[k];
+  for (std::size_t k = 1; k < coefficients.size(); ++k) sums.power[k] += coefficients[k] * coefficients[k];
   ++sums.transforms;
 }
 

@@ -64,17 +64,14 @@ class LocalFloor {
       std::size_t hi = std::min(mean.size(), lo + width);
       if (mean.size() - hi < 64) hi = mean.size();
       stretches_.push_back({lo, hi});
-      log_k_.push_back(
-          0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
+      log_k_.push_back(0.5 * std::log(static_cast<double>(lo + first) * static_cast<double>(hi - 1 + first)));
       lo = hi;
     }
   }
   /// Lines between two medians; the first and the last go on to the ends.
   std::size_t pieces() const { return std::max<std::size_t>(1, log_k_.size() - 1); }
   /// First coefficient of the piece after this one.
-  std::size_t end_of(std::size_t piece) const {
-    return static_cast<std::size_t>(std::exp(log_k_[piece + 1])) + 1;
-  }
+  std::size_t end_of(std::size_t piece) const { return static_cast<std::size_t>(std::exp(log_k_[piece + 1])) + 1; }
   double at(std::size_t piece, std::uint64_t k) {
     const std::size_t next = std::min(piece + 1, log_k_.size() - 1);
     const double low = log_floor(piece), high = log_floor(next);
@@ -114,8 +111,7 @@ class LocalFloor {
     if (stretch.known) return stretch.log_floor;
     part_.assign(mean_->begin() + static_cast<std::ptrdiff_t>(stretch.from),
                  mean_->begin() + static_cast<std::ptrdiff_t>(stretch.to));
-    stretch.log_floor =
-        std::log(std::max(median_in_place(part_, Middle::upper), 1e-300) / chi_median_);
+    stretch.log_floor = std::log(std::max(median_in_place(part_, Middle::upper), 1e-300) / chi_median_);
     stretch.known = true;
     count_work(WorkKind::floor_medians, 1);
     return stretch.log_floor;
@@ -144,9 +140,8 @@ double median_beside(const std::vector<double>& mean, std::size_t i, std::size_t
 
 /// Marks a line and what it leaks into.
 void clip_around(std::size_t i, double excess, std::size_t first, std::vector<char>& clipped) {
-  const double reach = std::min({std::sqrt(10 * excess),
-                                 static_cast<double>(first + i) / 4,
-                                 static_cast<double>(clipped.size()) / 32});
+  const double reach =
+      std::min({std::sqrt(10 * excess), static_cast<double>(first + i) / 4, static_cast<double>(clipped.size()) / 32});
   const auto distance = static_cast<std::size_t>(std::max(1.0, reach));
   const std::size_t from =
       std::max<std::size_t>(i < distance ? 0 : i - distance, first < kLowest ? kLowest - first : 0);
@@ -213,17 +208,13 @@ void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins
   for (const PooledPower::Cycle& cycle : power.cycles)
     out.cycles.push_back({cycle.place / (2 * static_cast<double>(power.length) * points_s),
                           cycle.amplitude / std::sqrt(static_cast<double>(power.spacing))});
-  std::sort(out.cycles.begin(),
-            out.cycles.end(),
-            [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) {
-              return a.frequency_hz < b.frequency_hz;
-            });
+  std::sort(out.cycles.begin(), out.cycles.end(),
+            [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) { return a.frequency_hz < b.frequency_hz; });
 }
 
 }  // namespace
 
-std::vector<PooledPower> whole_powers(std::span<const double> record,
-                                      const detail::EndNoise* ends) {
+std::vector<PooledPower> whole_powers(std::span<const double> record, const detail::EndNoise* ends) {
   std::vector<PooledPower> powers;
   if (record.size() >= kSmallestTransform && present_run(record) == record.size()) {
     powers.push_back(record_power(record, 1, 1, record.size(), ends));
@@ -232,16 +223,14 @@ std::vector<PooledPower> whole_powers(std::span<const double> record,
   std::vector<double> segment;
   std::uint64_t gap = 0, samples = 0;
   const auto end_segment = [&] {
-    if (segment.size() >= kSmallestTransform)
-      powers.push_back(record_power(segment, 1, 1, segment.size(), ends));
+    if (segment.size() >= kSmallestTransform) powers.push_back(record_power(segment, 1, 1, segment.size(), ends));
     segment.clear();
   };
   while (!record.empty()) {
     const std::size_t run = present_run(record);
     if (run > 0 && gap > std::max(kLongGap, samples / 100)) end_segment();
     gap = run > 0 ? 0 : gap + 1;
-    segment.insert(
-        segment.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(run));
+    segment.insert(segment.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(run));
     samples += run;
     record = record.subspan(std::max<std::size_t>(run, 1));
   }

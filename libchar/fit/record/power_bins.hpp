@@ -17,9 +17,9 @@ struct EndNoise;
 /// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood
 /// needs.
 struct PowerBin {
-  double frequency_hz = 0;  ///< centre
-  double energy = 0;        ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
-  double dof = 0;           ///< number of coefficients averaged
+  double frequency_hz = 0;            ///< centre
+  double energy = 0;                  ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
+  double dof = 0;                     ///< number of coefficients averaged
   std::array<double, kTerms> unit{};  ///< E[energy] for theta_term = 1
   double low_hz = 0, high_hz = 0;     ///< edges
   /// its coefficients first..end-1 of a transform of `length` means of `spacing` samples
@@ -63,8 +63,7 @@ struct ClippedBins {
 /// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up
 /// (concatenated), at a long gap a new record starts and likelihoods add. A record in leaves:
 /// powers_of (power_sums.hpp). `ends`: the ends of a record of this noise are taken out.
-std::vector<PooledPower> whole_powers(std::span<const double> record,
-                                      const detail::EndNoise* ends = nullptr);
+std::vector<PooledPower> whole_powers(std::span<const double> record, const detail::EndNoise* ends = nullptr);
 
 std::vector<PowerBin> power_bins(std::span<const PooledPower> powers, double rate_hz);
 /// The same of a record as a whole.

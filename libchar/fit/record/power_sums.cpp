@@ -48,17 +48,13 @@ namespace {
 constexpr std::uint64_t kSamplesAMean = PowerPart::kBlock / kMeansPerBlock;
 constexpr std::size_t kPieceLengths = std::tuple_size_v<decltype(PowerSums::pieces)>;
 
-std::uint64_t piece_length(std::size_t piece) {
-  return PowerPart::kBlock >> (piece + 1);
-}
+std::uint64_t piece_length(std::size_t piece) { return PowerPart::kBlock >> (piece + 1); }
 
 /// What events do to a record, on its clock.
 struct Shape {
   std::span<const Event> events;
   double rate_hz = 1;
-  double mean(double first, double count) const {
-    return event_mean(events, rate_hz, first, count);
-  }
+  double mean(double first, double count) const { return event_mean(events, rate_hz, first, count); }
 };
 
 /// A segment: runs between which gaps are closed up.
@@ -81,10 +77,7 @@ struct Segment {
  private:
   /// sqrt(p) (mean of p samples less `run.shift`), about the segment's shift and without the
   /// events.
-  void add_series(std::span<const double> values,
-                  std::uint64_t p,
-                  const PowerRun& run,
-                  const Shape& shape,
+  void add_series(std::span<const double> values, std::uint64_t p, const PowerRun& run, const Shape& shape,
                   std::vector<double>& to) const {
     const double root = std::sqrt(static_cast<double>(p)), moved = root * (run.shift - shift);
     const double stretch = static_cast<double>(run.rows) / static_cast<double>(run.samples);
@@ -101,23 +94,19 @@ struct Segment {
 void append_means(Segment segment, bool alone, std::vector<PooledPower>& out) {
   const std::vector<double>& means = segment.means;
   if (alone) return;
-  if (!segment.slow.empty())
-    return append_slow(means, std::move(segment.slow), kSamplesAMean, PowerPart::kBlock, out);
+  if (!segment.slow.empty()) return append_slow(means, std::move(segment.slow), kSamplesAMean, PowerPart::kBlock, out);
   if (means.size() < kSmallestTransform) return;
-  out.push_back(record_power(
-      means, kSamplesAMean, 1, end_of_left(means.size(), kSamplesAMean, PowerPart::kBlock)));
+  out.push_back(record_power(means, kSamplesAMean, 1, end_of_left(means.size(), kSamplesAMean, PowerPart::kBlock)));
 }
 
 /// Per transform, the energy of events over `count` blocks that follow each other: of `length`
 /// means of `p` samples, whose places are `stretch` times as far apart as what is present.
-std::vector<double> energy_of(
-    const Shape& shape, std::uint64_t count, std::size_t length, double p, double stretch) {
+std::vector<double> energy_of(const Shape& shape, std::uint64_t count, std::size_t length, double p, double stretch) {
   std::vector<double> energy(length, 0.0), values(length);
   Dct plan(length);
   const double block = static_cast<double>(length) * p * stretch;
-  const bool drifts = std::any_of(shape.events.begin(), shape.events.end(), [](const Event& e) {
-    return e.kind != EventKind::step;
-  });
+  const bool drifts =
+      std::any_of(shape.events.begin(), shape.events.end(), [](const Event& e) { return e.kind != EventKind::step; });
   const auto steps_in = [&](double first) {
     return std::any_of(shape.events.begin(), shape.events.end(), [&](const Event& e) {
       const double at = std::round(e.at_s * shape.rate_hz);
@@ -128,8 +117,7 @@ std::vector<double> energy_of(
     const double first = static_cast<double>(b) * block;
     if (!drifts && !steps_in(first)) continue;
     for (std::size_t t = 0; t < length; ++t)
-      values[t] =
-          std::sqrt(p) * shape.mean(first + static_cast<double>(t) * p * stretch, p * stretch);
+      values[t] = std::sqrt(p) * shape.mean(first + static_cast<double>(t) * p * stretch, p * stretch);
     const std::span<const double> c = plan.transform(values);
     for (std::size_t k = 0; k < length; ++k) energy[k] += c[k] * c[k];
   }
@@ -139,8 +127,7 @@ std::vector<double> energy_of(
 
 /// The energy of events in what was pooled of whole blocks.
 void add_energy(const Shape& shape, double p, double stretch, PooledPower& power) {
-  const std::vector<double> energy =
-      energy_of(shape, power.pooled, detail::in_memory(power.length), p, stretch);
+  const std::vector<double> energy = energy_of(shape, power.pooled, detail::in_memory(power.length), p, stretch);
   for (std::size_t i = 0; i < power.mean.size(); ++i)
     power.of_events.push_back(energy[detail::in_memory(power.first) + i]);
 }
@@ -183,8 +170,7 @@ void PowerPart::State::push(std::span<const double> values) {
     begin_run(values[0]);
     const std::size_t run_length =
         present_run(values.first(std::min<std::size_t>(values.size(), kBlock - pending.size())));
-    pending.insert(
-        pending.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(run_length));
+    pending.insert(pending.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(run_length));
     take_rows(run_length);
     values = values.subspan(run_length);
     if (pending.size() == kBlock) flush_block();
@@ -248,13 +234,10 @@ void PowerPart::State::end_run() {
   sums.runs.push_back(std::exchange(run, {}));
 }
 
-void PowerPart::push(std::span<const double> samples) {
-  state_->push(samples);
-}
+void PowerPart::push(std::span<const double> samples) { state_->push(samples); }
 
 bool PowerPart::take_block(std::span<const double> samples) {
-  if (samples.size() != kBlock || (!state_->pending.empty() && state_->gap <= kLongGap))
-    return false;
+  if (samples.size() != kBlock || (!state_->pending.empty() && state_->gap <= kLongGap)) return false;
   state_->begin_run(samples[0]);
   state_->take_rows(kBlock);
   state_->add_means(samples);
@@ -262,9 +245,7 @@ bool PowerPart::take_block(std::span<const double> samples) {
   return true;
 }
 
-void PowerPart::take_power(std::vector<double> power) {
-  join(state_->sums.blocks, {0, std::move(power)});
-}
+void PowerPart::take_power(std::vector<double> power) { join(state_->sums.blocks, {0, std::move(power)}); }
 
 PowerSums PowerPart::finish(bool last) {
   State& s = *state_;
@@ -279,8 +260,7 @@ PowerSums PowerPart::finish(bool last) {
 
 void join(PowerSums& sums, PowerSums later) {
   join(sums.blocks, later.blocks);
-  for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
-    join(sums.pieces[piece], later.pieces[piece]);
+  for (std::size_t piece = 0; piece < kPieceLengths; ++piece) join(sums.pieces[piece], later.pieces[piece]);
   join(sums.means, later.means);
   if (!sums.runs.empty() && sums.runs.back().samples == 0 && !later.runs.empty()) {
     later.runs.front().gap += sums.runs.back().gap;
@@ -288,8 +268,7 @@ void join(PowerSums& sums, PowerSums later) {
   }
   for (PowerRun& run : later.runs) run.at += sums.rows;
   sums.rows += later.rows;
-  sums.runs.insert(sums.runs.end(),
-                   std::make_move_iterator(later.runs.begin()),
+  sums.runs.insert(sums.runs.end(), std::make_move_iterator(later.runs.begin()),
                    std::make_move_iterator(later.runs.end()));
   if (!later.tail.empty()) sums.tail = std::move(later.tail);
 }
@@ -344,25 +323,21 @@ std::vector<PooledPower> powers_of(PowerSums sums, std::span<const Event> events
     samples += run.samples;
     segment.add(std::exchange(run, {}), shape);
   }
-  const double stretch =
-      samples > 0 ? static_cast<double>(sums.rows) / static_cast<double>(samples) : 1;
+  const double stretch = samples > 0 ? static_cast<double>(sums.rows) / static_cast<double>(samples) : 1;
   const std::uint64_t tail = sums.tail.size();
   const bool alone = tail == segment.samples;
   if (!events.empty())
     for (std::size_t t = 0; t < tail; ++t)
-      sums.tail[t] -= shape.mean(
-          static_cast<double>(sums.rows) - static_cast<double>(tail - t) * stretch, stretch);
+      sums.tail[t] -= shape.mean(static_cast<double>(sums.rows) - static_cast<double>(tail - t) * stretch, stretch);
   if (tail >= kSmallestTransform)
-    powers.push_back(
-        record_power(sums.tail, 1, alone ? 1 : first_kept(tail, PowerPart::kBlock), tail));
+    powers.push_back(record_power(sums.tail, 1, alone ? 1 : first_kept(tail, PowerPart::kBlock), tail));
   append_means(std::move(segment), alone, powers);
   const std::size_t before_blocks = powers.size();
   append_powers(sums.means, kSamplesAMean, powers);
   const auto append = [&](const PooledSums& pooled, std::uint64_t length) {
     append_pooled(pooled, length, 1, first_kept(length, PowerPart::kBlock), powers);
   };
-  for (std::size_t piece = 0; piece < kPieceLengths; ++piece)
-    append(sums.pieces[piece], piece_length(piece));
+  for (std::size_t piece = 0; piece < kPieceLengths; ++piece) append(sums.pieces[piece], piece_length(piece));
   append(sums.blocks, PowerPart::kBlock);
   if (!events.empty())
     for (std::size_t i = before_blocks; i < powers.size(); ++i)
@@ -373,9 +348,7 @@ std::vector<PooledPower> powers_of(PowerSums sums, std::span<const Event> events
 
 template <class Archive, class Runs>
 static void runs_layout(Archive& at, Runs& runs) {
-  at.list(runs, 56, [&](auto& run) {
-    at(run.gap, run.samples, run.shift, run.means, run.slow, run.at, run.rows);
-  });
+  at.list(runs, 56, [&](auto& run) { at(run.gap, run.samples, run.shift, run.means, run.slow, run.at, run.rows); });
 }
 
 void write_state(const PowerSums& sums, StateWriter& to) {

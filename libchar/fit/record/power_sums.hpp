@@ -72,9 +72,7 @@ void scale(PowerSums& sums, double factor);
 
 /// The powers of the record. `events` are taken out of the series of means sample by sample, and
 /// out of the powers of blocks by their energy.
-std::vector<PooledPower> powers_of(PowerSums sums,
-                                   std::span<const Event> events = {},
-                                   double rate_hz = 1);
+std::vector<PooledPower> powers_of(PowerSums sums, std::span<const Event> events = {}, double rate_hz = 1);
 
 void write_state(const PowerSums& sums, StateWriter& to);
 PowerSums read_power_sums(StateReader& from);

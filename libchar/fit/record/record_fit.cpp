@@ -51,18 +51,14 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
   if (wider > 1.05)
     fit.findings.push_back(finding(
-        "heavy_tails",
-        fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
-                    "{} instead of 3): the interval of N is {} times as wide for it.",
-                    brief_text(difference_kurtosis),
-                    brief_text(wider, 2))));
+        "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
+                                   "{} instead of 3): the interval of N is {} times as wide for it.",
+                                   brief_text(difference_kurtosis), brief_text(wider, 2))));
 }
 
 /// Outliers that are too small to be left out one by one are white noise to a spectrum: their
 /// variance is taken out of N².
-void take_out_outliers(const std::optional<OutlierVariance>& outliers,
-                       double rate_hz,
-                       NoiseFit& fit) {
+void take_out_outliers(const std::optional<OutlierVariance>& outliers, double rate_hz, NoiseFit& fit) {
   constexpr auto kWhite = static_cast<std::size_t>(Term::white);
   Coefficient& white = fit.term[kWhite];
   if (!outliers || !white.value) return;
@@ -79,12 +75,11 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers,
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
   const bool noticeable = 1 / share - 1 > kNoticeable * white.relative_sd;
   if (noticeable)
-    fit.findings.push_back(finding(
-        "outliers_in_n",
-        fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
-                    "the Gaussian core of the samples.",
-                    percent_text(1 / share - 1)),
-        "small outliers were taken out of N"));
+    fit.findings.push_back(finding("outliers_in_n",
+                                   fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
+                                               "the Gaussian core of the samples.",
+                                               percent_text(1 / share - 1)),
+                                   "small outliers were taken out of N"));
   white.value = core;
 }
 
@@ -96,13 +91,11 @@ double event_variance(std::span<const Event> events, double rate_hz, double samp
   double sum = 0;
   const double terms = std::max(1.0, samples - 2 * m + 1), tau_s = m / rate_hz;
   for (const Event& event : events) {
-    if (event.kind == EventKind::step)
-      sum += event.size * event.size * (2 * m * m + 1) / (6 * m * terms);
+    if (event.kind == EventKind::step) sum += event.size * event.size * (2 * m * m + 1) / (6 * m * terms);
     if (event.kind == EventKind::ramp) sum += 0.5 * std::pow(event.slope * tau_s, 2);
     if (event.kind == EventKind::warm_up) {
       const double fall = -std::expm1(-tau_s / event.tau_s);
-      sum += 0.25 * std::pow(event.size * event.tau_s / tau_s * fall * fall, 2) * event.tau_s *
-             rate_hz / samples;
+      sum += 0.25 * std::pow(event.size * event.tau_s / tau_s * fall * fall, 2) * event.tau_s * rate_hz / samples;
     }
   }
   return sum;
@@ -115,8 +108,8 @@ AllanCurve curve_without(const FittedSums& sums, std::span<const Event> events, 
   const std::uint64_t per_mean = sums.means.per_mean(), from = kMeansOfPoint * per_mean;
   std::erase_if(curve.points, [&](AllanPoint& point) {
     const double variance = point.deviation * point.deviation;
-    const double of_events = event_variance(
-        events, rate_hz, static_cast<double>(curve.samples), static_cast<double>(point.m));
+    const double of_events =
+        event_variance(events, rate_hz, static_cast<double>(curve.samples), static_cast<double>(point.m));
     if (point.m >= from || of_events > kMostOfEvents * variance) return true;
     point.deviation = std::sqrt(variance - of_events);
     return false;
@@ -151,16 +144,13 @@ RecordMeans means_of(const FittedSums& sums, double rate_hz, const FitOptions& o
 }
 
 bool has_step(std::span<const Event> events) {
-  return std::any_of(events.begin(), events.end(), [](const Event& event) {
-    return event.kind == EventKind::step;
-  });
+  return std::any_of(events.begin(), events.end(), [](const Event& event) { return event.kind == EventKind::step; });
 }
 
 void report_stationarity(NoiseFit& fit) {
   const Stationarity& found = fit.stationarity;
   if (found.steady) return;
-  Finding changed = finding(
-      "not_stationary", found.sentence, "the noise is not the same throughout the recording");
+  Finding changed = finding("not_stationary", found.sentence, "the noise is not the same throughout the recording");
   if (!found.noticeable) changed.severity = Severity::note;
   changed.where.time_s = {found.smallest_s, found.largest_s};
   fit.findings.push_back(std::move(changed));
@@ -169,9 +159,7 @@ void report_stationarity(NoiseFit& fit) {
 constexpr double kMostOfEnds = 0.01;  ///< share of the slowest coefficient
 
 /// What the terms make of a record, whether they describe it or not.
-detail::EndNoise end_noise(std::span<const PooledPower> powers,
-                           double rate_hz,
-                           const FitOptions& options) {
+detail::EndNoise end_noise(std::span<const PooledPower> powers, double rate_hz, const FitOptions& options) {
   std::vector<PowerBin> bins = power_bins(powers, rate_hz);
   if (options.clock) lend_flicker_phase(rate_hz, bins);
   const TermSet terms = {true, true, true, true, options.clock};
@@ -189,8 +177,7 @@ std::span<const double> longest_run(std::span<const double> record) {
 }
 
 /// Where phase noise is so strong that its ends are in the slow coefficients, these are without them.
-std::vector<PooledPower> powers_without_ends(std::span<const double> record,
-                                             double rate_hz,
+std::vector<PooledPower> powers_without_ends(std::span<const double> record, double rate_hz,
                                              const FitOptions& options) {
   constexpr std::size_t kFewest = 64;
   std::vector<PooledPower> powers = whole_powers(record);
@@ -203,9 +190,7 @@ std::vector<PooledPower> powers_without_ends(std::span<const double> record,
   return whole_powers(record, &noise);
 }
 
-std::vector<PooledPower> powers_without_ends(PowerSums sums,
-                                             std::span<const Event> events,
-                                             double rate_hz,
+std::vector<PooledPower> powers_without_ends(PowerSums sums, std::span<const Event> events, double rate_hz,
                                              const FitOptions& options) {
   std::vector<PooledPower> powers = powers_of(std::move(sums), events, rate_hz);
   const detail::EndNoise noise = end_noise(powers, rate_hz, options);
@@ -214,16 +199,11 @@ std::vector<PooledPower> powers_without_ends(PowerSums sums,
   return powers;
 }
 
-NoiseFit fit_whole(std::span<const double> record,
-                   double rate_hz,
-                   const AllanCurve* allan,
-                   const FitOptions& options,
-                   FitWorkspace* workspace,
-                   const RecordKnowledge& known) {
+NoiseFit fit_whole(std::span<const double> record, double rate_hz, const AllanCurve* allan, const FitOptions& options,
+                   FitWorkspace* workspace, const RecordKnowledge& known) {
   const DespikedRecord despiked =
       options.remedies ? without_spikes(record, options.difference_kurtosis) : DespikedRecord{};
-  std::span<const double> data =
-      despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
+  std::span<const double> data = despiked.samples.empty() ? record : std::span<const double>(despiked.samples);
   const EventSeries* series = despiked.samples.empty() ? known.series : nullptr;
   const RecordMeans means = without_means(data, rate_hz, options, known.temperature, series);
   if (!means.samples.empty()) data = means.samples;
@@ -240,14 +220,12 @@ NoiseFit fit_whole(std::span<const double> record,
   if (options.remedies && !complete) filled = bridged(data);
   const std::span<const double> present = filled.empty() ? data : std::span<const double>(filled);
   const std::vector<PooledPower> powers =
-      present.size() > kLeafSamples
-          ? powers_without_ends(record_sums(present, false).plain.bins, {}, rate_hz, options)
-          : powers_without_ends(present, rate_hz, options);
+      present.size() > kLeafSamples ? powers_without_ends(record_sums(present, false).plain.bins, {}, rate_hz, options)
+                                    : powers_without_ends(present, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
   if (!options.clock) {
     const bool counted = options.difference_kurtosis && as_recorded;
-    widen_for_tails(
-        counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
+    widen_for_tails(counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
   }
   take_out_outliers(despiked.answer.outliers, rate_hz, fit);
   report_means(means, options, fit);
@@ -261,10 +239,7 @@ NoiseFit fit_whole(std::span<const double> record,
 
 }  // namespace
 
-NoiseFit fit_sums(RecordSums sums,
-                  double rate_hz,
-                  const AllanCurve* allan,
-                  const FitOptions& options,
+NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, const FitOptions& options,
                   FitWorkspace* workspace) {
   const std::uint64_t samples = sums.plain.allan.samples - sums.plain.allan.missing;
   const SpikeAnswer answer = spikes_of(sums, samples, options);
@@ -275,12 +250,10 @@ NoiseFit fit_sums(RecordSums sums,
       means.events_taken ? std::span<const Event>(means.search.events) : std::span<const Event>();
   AllanCurve own;  // a curve of the spikes and steps is no opinion on what is left
   if (allan != nullptr && (cleaned || !events.empty())) {
-    own = events.empty() ? octave_curve(used.allan, 1 / rate_hz)
-                         : curve_without(used, events, rate_hz);
+    own = events.empty() ? octave_curve(used.allan, 1 / rate_hz) : curve_without(used, events, rate_hz);
     allan = &own;
   }
-  const std::vector<PooledPower> powers =
-      powers_without_ends(std::move(used.bins), events, rate_hz, options);
+  const std::vector<PooledPower> powers = powers_without_ends(std::move(used.bins), events, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
   // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
   // known.
@@ -296,12 +269,8 @@ NoiseFit fit_sums(RecordSums sums,
   return fit;
 }
 
-NoiseFit fit_record(std::span<const double> record,
-                    double rate_hz,
-                    const AllanCurve* allan,
-                    const FitOptions& options,
-                    FitWorkspace* workspace,
-                    const RecordKnowledge& known) {
+NoiseFit fit_record(std::span<const double> record, double rate_hz, const AllanCurve* allan, const FitOptions& options,
+                    FitWorkspace* workspace, const RecordKnowledge& known) {
   if (record.size() <= kLeafSamples || known.temperature != nullptr)
     return fit_whole(record, rate_hz, allan, options, workspace, known);
   FitOptions chosen = options;

@@ -84,14 +84,12 @@ AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
     join(nodes.back().sums, later.sums);
   };
   for (std::span<const double> rest = leaf; !rest.empty();) {
-    const std::span<const double> piece =
-        rest.first(std::min<std::size_t>(rest.size(), PieceVariances::kShortest));
+    const std::span<const double> piece = rest.first(std::min<std::size_t>(rest.size(), PieceVariances::kShortest));
     rest = rest.subspan(piece.size());
     AllanPyramid pyramid;
     pyramid.push(piece);
     nodes.push_back({piece.size(), std::move(pyramid).sums()});
-    if (piece.size() == PieceVariances::kShortest)
-      take_octaves(nodes.back().sums, piece.size(), pieces);
+    if (piece.size() == PieceVariances::kShortest) take_octaves(nodes.back().sums, piece.size(), pieces);
     while (nodes.size() > 1 && nodes[nodes.size() - 2].samples == nodes.back().samples &&
            std::has_single_bit(nodes.back().samples / PieceVariances::kShortest)) {
       join_last();
@@ -104,9 +102,7 @@ AllanSums sums_of_pieces(std::span<const double> leaf, PieceVariances& pieces) {
 
 }  // namespace
 
-std::uint64_t PieceVariances::length(std::size_t octave) const {
-  return std::max(shortest, kWindowsOfPiece << octave);
-}
+std::uint64_t PieceVariances::length(std::size_t octave) const { return std::max(shortest, kWindowsOfPiece << octave); }
 
 void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
   PieceVariances later = later_as_it_is;
@@ -114,15 +110,11 @@ void join(PieceVariances& pieces, const PieceVariances& later_as_it_is) {
   while (later.shortest < pieces.shortest) double_shortest(later);
   if (pieces.variance.size() < later.variance.size()) pieces.variance.resize(later.variance.size());
   for (std::size_t j = 0; j < later.variance.size(); ++j)
-    pieces.variance[j].insert(
-        pieces.variance[j].end(), later.variance[j].begin(), later.variance[j].end());
-  while (!pieces.variance.empty() && pieces.variance[0].size() > kMostPieces)
-    double_shortest(pieces);
+    pieces.variance[j].insert(pieces.variance[j].end(), later.variance[j].begin(), later.variance[j].end());
+  while (!pieces.variance.empty() && pieces.variance[0].size() > kMostPieces) double_shortest(pieces);
 }
 
-void write_state(const PieceVariances& pieces, StateWriter& to) {
-  pieces_layout(to, pieces);
-}
+void write_state(const PieceVariances& pieces, StateWriter& to) { pieces_layout(to, pieces); }
 
 namespace {
 
@@ -192,9 +184,7 @@ MeanMeter means_of_leaf(std::span<const double> leaf) {
   return means;
 }
 
-FittedSums fitted_sums(std::span<const double> leaf,
-                       const LeafKind& kind,
-                       const BlockTransforms& blocks,
+FittedSums fitted_sums(std::span<const double> leaf, const LeafKind& kind, const BlockTransforms& blocks,
                        PowerPart* shared) {
   FittedSums sums;
   PowerPart own;
@@ -235,8 +225,7 @@ RecordSums record_sums(std::span<const double> record, bool remedies) {
   RecordStage stage;
   LeafTree<RecordStage> tree(stage);
   for (std::uint64_t leaf = 0; !record.empty(); ++leaf) {
-    const std::span<const double> samples =
-        record.first(std::min<std::size_t>(record.size(), kLeafSamples));
+    const std::span<const double> samples = record.first(std::min<std::size_t>(record.size(), kLeafSamples));
     record = record.subspan(samples.size());
     const std::size_t missing = count_missing(samples);
     LeafKind kind{record.empty(), remedies, missing == 0};

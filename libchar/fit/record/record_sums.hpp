@@ -62,9 +62,7 @@ struct LeafKind {
 MeanMeter means_of_leaf(std::span<const double> leaf);
 /// `shared`: has seen the blocks of the leaf, which is whole, already. Else `blocks` transforms
 /// them: so they have the same bits whether a spectrum shares them or not.
-FittedSums fitted_sums(std::span<const double> leaf,
-                       const LeafKind& kind,
-                       const BlockTransforms& blocks,
+FittedSums fitted_sums(std::span<const double> leaf, const LeafKind& kind, const BlockTransforms& blocks,
                        PowerPart* shared = nullptr);
 /// Adds the part that follows directly.
 void join(RecordSums& sums, RecordSums later);

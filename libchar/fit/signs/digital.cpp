@@ -21,13 +21,9 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFewestAtRail = 8, kFewestRepeats = 64;
-constexpr double kMostAtRail =
-    0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
+constexpr double kMostAtRail = 0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
-DigitalSums::AtRail rail_of(std::span<const double> record,
-                            const ValueCensus& census,
-                            bool high,
-                            double present) {
+DigitalSums::AtRail rail_of(std::span<const double> record, const ValueCensus& census, bool high, double present) {
   const double at = high ? census.high : census.low, range = census.high - census.low;
   const auto count = static_cast<double>(high ? census.at_high : census.at_low);
   if (count < static_cast<double>(kFewestAtRail) || count > kMostAtRail * present) return {at, 0};
@@ -43,8 +39,7 @@ DigitalSums::AtRail rail_of(std::span<const double> record,
 
 double chance_of_repeat(double noise_over_step) {
   const double s = std::numbers::sqrt2 * noise_over_step;
-  return std::erf(1 / (s * std::numbers::sqrt2)) -
-         s * std::sqrt(2 / std::numbers::pi) * -std::expm1(-1 / (2 * s * s));
+  return std::erf(1 / (s * std::numbers::sqrt2)) - s * std::sqrt(2 / std::numbers::pi) * -std::expm1(-1 / (2 * s * s));
 }
 
 std::optional<Staircase> staircase(double repeats, double step) {
@@ -64,29 +59,23 @@ std::string with_unit(double value, std::string_view unit) {
 
 void describe_faults(DigitalFaults& faults, std::string_view unit) {
   for (const Rail& rail : faults.rails)
-    faults.findings.push_back(
-        finding("rail",
-                fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
-                            "comes out too small.",
-                            percent_text(rail.share),
-                            rail.high ? "largest" : "smallest",
-                            with_unit(rail.value, unit))));
+    faults.findings.push_back(finding(
+        "rail",
+        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
+                    "comes out too small.",
+                    percent_text(rail.share), rail.high ? "largest" : "smallest", with_unit(rail.value, unit))));
   if (faults.staircase)
     faults.findings.push_back(finding(
-        "staircase",
-        fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
-                    faults.staircase->bounded ? "at most " : "",
-                    with_unit(faults.staircase->noise, unit),
-                    with_unit(faults.staircase->step, unit),
-                    faults.staircase->bounded ? "what is measured is the rounding."
-                                              : "the rounding is part of what is measured.")));
+        "staircase", fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
+                                 faults.staircase->bounded ? "at most " : "", with_unit(faults.staircase->noise, unit),
+                                 with_unit(faults.staircase->step, unit),
+                                 faults.staircase->bounded ? "what is measured is the rounding."
+                                                           : "the rounding is part of what is measured.")));
 }
 
 }  // namespace
 
-DigitalSums digital_sums(std::span<const double> samples,
-                         const ValueCensus& census,
-                         std::uint64_t missing) {
+DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census, std::uint64_t missing) {
   DigitalSums sums;
   sums.present = static_cast<double>(samples.size() - missing);
   if (!(census.low < census.high)) return sums;
@@ -109,17 +98,11 @@ void join(DigitalSums& sums, const DigitalSums& later) {
 
 template <class Archive, class Sums>
 static void digital_layout(Archive& at, Sums& sums) {
-  at.group("the digital faults of a channel",
-           sums.present,
-           sums.low.value,
-           sums.low.count,
-           sums.high.value,
+  at.group("the digital faults of a channel", sums.present, sums.low.value, sums.low.count, sums.high.value,
            sums.high.count);
 }
 
-void write_state(const DigitalSums& sums, StateWriter& to) {
-  digital_layout(to, sums);
-}
+void write_state(const DigitalSums& sums, StateWriter& to) { digital_layout(to, sums); }
 
 DigitalSums read_digital_sums(StateReader& from) {
   DigitalSums sums;
@@ -127,11 +110,8 @@ DigitalSums read_digital_sums(StateReader& from) {
   return sums;
 }
 
-DigitalFaults find_digital_faults(const DigitalSums& sums,
-                                  const ValueCensus& census,
-                                  double rate_hz,
-                                  std::optional<double> step,
-                                  std::string_view unit) {
+DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& census, double rate_hz,
+                                  std::optional<double> step, std::string_view unit) {
   DigitalFaults faults;
   if (!(census.low < census.high)) return faults;
   if (census.held_times > 1) faults.held = {census.held_times, rate_hz / census.held_times};
@@ -157,8 +137,7 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
   const bool rounding = faults.staircase && faults.staircase->bounded;
   if (!rounding && !(clipped > kHarmless)) return;
   for (Coefficient& term : fit.term) {
-    if (term.status == Status::detected || term.status == Status::undetermined)
-      term.status = Status::misfit;
+    if (term.status == Status::detected || term.status == Status::undetermined) term.status = Status::misfit;
   }
   Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
   if (rounding && fit.rate_hz > 0) {
@@ -167,12 +146,11 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
     if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
     if (white.upper95) white.upper95 = std::max(*white.upper95, most);
   }
-  fit.findings.push_back(finding(
-      "digital_misfit",
-      fmt::format(
-          "No coefficient can be trusted, however well the curves agree: they are those of the "
-          "{}, not of the noise.",
-          rounding ? "converter's rounding" : "clipped samples")));
+  fit.findings.push_back(
+      finding("digital_misfit",
+              fmt::format("No coefficient can be trusted, however well the curves agree: they are those of the "
+                          "{}, not of the noise.",
+                          rounding ? "converter's rounding" : "clipped samples")));
 }
 
 }  // namespace libchar

@@ -60,9 +60,7 @@ struct DigitalSums {
 };
 
 /// `census` of the same samples, and how many of them are missing.
-DigitalSums digital_sums(std::span<const double> samples,
-                         const ValueCensus& census,
-                         std::uint64_t missing);
+DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census, std::uint64_t missing);
 /// Adds those of the leaf that follows.
 void join(DigitalSums& sums, const DigitalSums& later);
 void write_state(const DigitalSums& sums, StateWriter& to);
@@ -71,11 +69,8 @@ DigitalSums read_digital_sums(StateReader& from);
 /// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
 /// `census` of the record. No finding in a record of noise that is sampled and rounded finely,
 /// whatever its length.
-DigitalFaults find_digital_faults(const DigitalSums& sums,
-                                  const ValueCensus& census,
-                                  double rate_hz,
-                                  std::optional<double> step = {},
-                                  std::string_view unit = {});
+DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& census, double rate_hz,
+                                  std::optional<double> step = {}, std::string_view unit = {});
 
 /// Coefficients of a record that shows the converter's rounding (a staircase) or its rails instead
 /// of the noise are a misfit: their intervals reach to what the noise may be.

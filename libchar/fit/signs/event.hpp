@@ -23,13 +23,13 @@ struct Event {
   bool in_gap = false;  ///< step: while samples were missing
   /// step: after less before; warm-up: at the first sample; ramp: last sample less first
   double size = 0;
-  double sd = 0;         ///< of `size`
-  double from_s = 0;     ///< warm-up: the first sample that is present
-  double tau_s = 0;      ///< warm-up: time constant
-  Interval tau_ci95;     ///< upper end 0: the record sets none
-  double slope = 0;      ///< ramp: per s
-  double score = 0;      ///< |size| / sd, or the root of what 2 ln L gained where that is less
-  double threshold = 0;  ///< what noise alone passes as often as `false_alarm` says
+  double sd = 0;                           ///< of `size`
+  double from_s = 0;                       ///< warm-up: the first sample that is present
+  double tau_s = 0;                        ///< warm-up: time constant
+  Interval tau_ci95;                       ///< upper end 0: the record sets none
+  double slope = 0;                        ///< ramp: per s
+  double score = 0;                        ///< |size| / sd, or the root of what 2 ln L gained where that is less
+  double threshold = 0;                    ///< what noise alone passes as often as `false_alarm` says
   std::vector<EventKind> not_told_from{};  ///< kinds that explain the record nearly as well
 };
 

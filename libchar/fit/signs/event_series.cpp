@@ -24,10 +24,7 @@ bool transforms_fast(std::uint64_t n) {
 }
 
 /// Mean of at most `count` values that are present in turn, from `begin` on in steps of `step`.
-double mean_beside(const std::vector<double>& value,
-                   std::size_t begin,
-                   int step,
-                   std::size_t count) {
+double mean_beside(const std::vector<double>& value, std::size_t begin, int step, std::size_t count) {
   double sum = 0;
   std::size_t used = 0;
   const auto n = static_cast<std::ptrdiff_t>(value.size());
@@ -41,10 +38,7 @@ double mean_beside(const std::vector<double>& value,
 }
 
 /// The first and the last value are present.
-void bridge(std::vector<double>& value,
-            double start_s,
-            double step_s,
-            std::vector<Interval>& unseen) {
+void bridge(std::vector<double>& value, double start_s, double step_s, std::vector<Interval>& unseen) {
   std::vector<double> bridged = value;
   for (std::size_t t = 1; t < value.size(); ++t) {
     if (!std::isnan(value[t])) continue;
@@ -53,10 +47,8 @@ void bridge(std::vector<double>& value,
     const double before = mean_beside(value, t - 1, -1, end - t);
     const double after = mean_beside(value, end, 1, end - t);
     for (std::size_t i = t; i < end; ++i)
-      bridged[i] = before + (after - before) * static_cast<double>(i - t + 1) /
-                                static_cast<double>(end - t + 1);
-    unseen.push_back(
-        {start_s + static_cast<double>(t) * step_s, start_s + static_cast<double>(end) * step_s});
+      bridged[i] = before + (after - before) * static_cast<double>(i - t + 1) / static_cast<double>(end - t + 1);
+    unseen.push_back({start_s + static_cast<double>(t) * step_s, start_s + static_cast<double>(end) * step_s});
     t = end;
   }
   value = std::move(bridged);
@@ -67,8 +59,7 @@ std::span<const double> from_first_to_last(std::span<const double> record, doubl
   const auto first = std::find_if(record.begin(), record.end(), is_present);
   const auto last = std::find_if(record.rbegin(), record.rend(), is_present);
   start = static_cast<double>(first - record.begin());
-  return first == record.end() ? std::span<const double>()
-                               : std::span<const double>(first, last.base());
+  return first == record.end() ? std::span<const double>() : std::span<const double>(first, last.base());
 }
 
 }  // namespace
@@ -98,9 +89,7 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::siz
 std::vector<detail::Pause> detail::leave_out_pauses(EventSeries& series) {
   constexpr double kShare = 0.1;  // of the recorded values; shorter ones are bridged
   constexpr double kShortest = 16;
-  const auto point = [&](double at_s) {
-    return std::round((at_s - series.start_s) / series.step_s);
-  };
+  const auto point = [&](double at_s) { return std::round((at_s - series.start_s) / series.step_s); };
   double present = static_cast<double>(series.value.size());
   for (const Interval& gap : series.unseen_s) present -= point(gap.high) - point(gap.low);
   std::vector<Pause> pauses;
@@ -109,8 +98,7 @@ std::vector<detail::Pause> detail::leave_out_pauses(EventSeries& series) {
   joined.unseen_s.clear();
   double begin = 0, left_out = 0;
   const auto session_until = [&](double end) {
-    joined.value.insert(joined.value.end(),
-                        series.value.begin() + static_cast<std::ptrdiff_t>(begin),
+    joined.value.insert(joined.value.end(), series.value.begin() + static_cast<std::ptrdiff_t>(begin),
                         series.value.begin() + static_cast<std::ptrdiff_t>(end));
   };
   for (const Interval& gap : series.unseen_s) {

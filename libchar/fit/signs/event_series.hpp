@@ -16,8 +16,7 @@ struct EventSeries {
   double step_s = 0;                 ///< between values
   std::size_t per_point = 1;         ///< samples averaged in a value
   std::vector<Interval> unseen_s{};  ///< stretches that were missing, filled by straight lines
-  bool ends_free =
-      false;  ///< whatever phase noise puts into the first and the last value was taken out
+  bool ends_free = false;            ///< whatever phase noise puts into the first and the last value was taken out
 
   /// What noise puts into the orthonormal DCT-II of n values.
   struct Noise {
@@ -44,8 +43,6 @@ double with_pauses(std::span<const Pause> pauses, double at_s);
 }  // namespace detail
 
 /// At most `points` means over the whole record; NaN samples are left out of them.
-EventSeries event_series(std::span<const double> record,
-                         double rate_hz,
-                         std::size_t points = std::size_t{1} << 15U);
+EventSeries event_series(std::span<const double> record, double rate_hz, std::size_t points = std::size_t{1} << 15U);
 
 }  // namespace libchar

@@ -23,11 +23,9 @@
 namespace libchar {
 namespace {
 
-constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
-constexpr double kGate =
-    0.7;  ///< share of a threshold that a score must reach to be looked at again
-constexpr double kMostOfEnds =
-    1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
+constexpr double kNotTold = 6;        ///< of LR: odds of twenty to one
+constexpr double kGate = 0.7;         ///< share of a threshold that a score must reach to be looked at again
+constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
 constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %
@@ -96,8 +94,7 @@ void weigh(const Search& search, Hypothesis& now) {
 
 /// Shapes fitted by the weights at hand, noise fitted to what is left, shapes fitted again.
 void fit_both(const Search& search, std::vector<EventShape> shapes, Hypothesis& now) {
-  if (!shapes.empty() || now.weight.empty())
-    now.fit = regress(shapes, search.grid, search.coefficients, now.weight);
+  if (!shapes.empty() || now.weight.empty()) now.fit = regress(shapes, search.grid, search.coefficients, now.weight);
   weigh(search, now);
   now.fit = regress(std::move(shapes), search.grid, search.coefficients, now.weight);
   now.deviance = deviance_of(now.fit.rest, now.power);
@@ -110,10 +107,7 @@ struct Candidate {
 };
 
 /// A step beside which its neighbour wants a share is within the point between them.
-double place_within(double at,
-                    const Search& search,
-                    const Regression& beside,
-                    std::span<const double> weight) {
+double place_within(double at, const Search& search, const Regression& beside, std::span<const double> weight) {
   double best = at, best_gain = 0;
   for (const double low : {at - 1, at}) {
     std::vector<EventShape> shapes = beside.shape;
@@ -123,8 +117,7 @@ double place_within(double at,
     const Eigen::Index last = both.size.size() - 1;
     const double share = both.size(last) / (both.size(last) + both.size(last - 1));
     if (!(share > 0 && share < 1)) continue;
-    const double gain =
-        std::abs(both.size(last) + both.size(last - 1)) * std::min(share, 1 - share);
+    const double gain = std::abs(both.size(last) + both.size(last - 1)) * std::min(share, 1 - share);
     if (gain <= best_gain) continue;
     best_gain = gain;
     best = low + share;
@@ -138,8 +131,7 @@ void leave_out_borders(const Search& search, StepScan& scan) {
   for (const EventShape& offset : search.offset) {
     const auto at = static_cast<std::size_t>(offset.at);
     const std::size_t from = at - std::min(at, search.margin);
-    for (std::size_t t = from; t < std::min(scan.score.size(), at + search.margin + 1); ++t)
-      scan.score[t] = 0;
+    for (std::size_t t = from; t < std::min(scan.score.size(), at + search.margin + 1); ++t) scan.score[t] = 0;
   }
   scan.best = 0;
   for (std::size_t t = 0; t < scan.score.size(); ++t)
@@ -147,9 +139,7 @@ void leave_out_borders(const Search& search, StepScan& scan) {
 }
 
 /// The best step: between two points, or in a stretch that was missing.
-Candidate best_step(const Search& search,
-                    const Regression& beside,
-                    std::span<const double> weight) {
+Candidate best_step(const Search& search, const Regression& beside, std::span<const double> weight) {
   StepScan scan = scan_steps(beside, weight, search.grid.points, search.margin);
   leave_out_borders(search, scan);
   Candidate best{{EventKind::step, static_cast<double>(scan.best)},
@@ -169,15 +159,11 @@ Candidate best_step(const Search& search,
   return best;
 }
 
-Candidate best_of(EventKind kind,
-                  const Search& search,
-                  const Regression& beside,
-                  std::span<const double> weight) {
+Candidate best_of(EventKind kind, const Search& search, const Regression& beside, std::span<const double> weight) {
   const double alpha = search.options.false_alarm;
   if (kind == EventKind::step) return best_step(search, beside, weight);
   if (kind == EventKind::ramp)
-    return {
-        {kind}, ramp_score(beside, search.grid, weight).value(), rough_threshold({}, alpha / 4)};
+    return {{kind}, ramp_score(beside, search.grid, weight).value(), rough_threshold({}, alpha / 4)};
   const WarmUpScan scan = scan_warm_ups(beside, search.grid, weight);
   return {{kind, 0, 0, refined_tau(scan, beside, search.grid, weight)},
           scan.score[scan.best],
@@ -193,9 +179,8 @@ struct Trial {
 };
 
 bool has(const Hypothesis& now, EventKind kind) {
-  return std::any_of(now.fit.shape.begin(), now.fit.shape.end(), [&](const EventShape& shape) {
-    return shape.kind == kind;
-  });
+  return std::any_of(now.fit.shape.begin(), now.fit.shape.end(),
+                     [&](const EventShape& shape) { return shape.kind == kind; });
 }
 
 /// Beside a straight line a warm-up has another time constant: alone it had to bend for both.
@@ -216,14 +201,12 @@ Trial try_candidate(const Search& search, const Hypothesis& now, Candidate candi
   shapes.push_back(candidate.shape);
   if (candidate.shape.kind == EventKind::ramp) place_warm_up(search, shapes, trial.with);
   fit_both(search, shapes, trial.with);
-  const Regression others =
-      regress(now.fit.shape, search.grid, search.coefficients, trial.with.weight);
+  const Regression others = regress(now.fit.shape, search.grid, search.coefficients, trial.with.weight);
   trial.candidate = best_of(candidate.shape.kind, search, others, trial.with.weight);
   shapes.back() = trial.candidate.shape;
   fit_both(search, shapes, trial.with);
   // What the refitted noise alone would gain is no event.
-  const double score =
-      trial.with.fit.size(trial.with.fit.size.size() - 1) / trial.with.fit.sd(shapes.size() - 1);
+  const double score = trial.with.fit.size(trial.with.fit.size.size() - 1) / trial.with.fit.sd(shapes.size() - 1);
   trial.gain = std::min(now.deviance - trial.with.deviance, score * score);
   return trial;
 }
@@ -245,15 +228,12 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now) {
     if (!bends_another && std::abs(candidate.score) < kGate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
   }
-  const auto best =
-      std::max_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
-        return a.worth() < b.worth();
-      });
+  const auto best = std::max_element(trials.begin(), trials.end(),
+                                     [](const Trial& a, const Trial& b) { return a.worth() < b.worth(); });
   if (best == trials.end() || best->worth() <= 0) return std::nullopt;
   std::vector<EventKind> not_told;
   for (const Trial& other : trials)
-    if (&other != &*best && other.worth() > best->worth() - kNotTold)
-      not_told.push_back(other.candidate.shape.kind);
+    if (&other != &*best && other.worth() > best->worth() - kNotTold) not_told.push_back(other.candidate.shape.kind);
   best->with.threshold.push_back(best->candidate.threshold);
   best->with.gained.push_back(best->gain);
   best->with.not_told.push_back(std::move(not_told));
@@ -303,10 +283,7 @@ void drop_weak(const Search& search, Hypothesis& now) {
   }
 }
 
-Interval step_interval(const Search& search,
-                       const Regression& others,
-                       const Hypothesis& now,
-                       const EventShape& step) {
+Interval step_interval(const Search& search, const Regression& others, const Hypothesis& now, const EventShape& step) {
   // It is not known where in a missing stretch, or in a mean, it was.
   if (step.bridged > 0) return {step.at, step.at + step.bridged};
   const StepScan scan = scan_steps(others, now.weight, search.grid.points, search.margin);
@@ -315,10 +292,7 @@ Interval step_interval(const Search& search,
   return {std::min(place.low - within, step.at), std::max(place.high + within, step.at)};
 }
 
-void bound_tau(const Search& search,
-               const Regression& others,
-               const Hypothesis& now,
-               Event& event) {
+void bound_tau(const Search& search, const Regression& others, const Hypothesis& now, Event& event) {
   const double step_s = search.series.step_s;
   const WarmUpScan scan = scan_warm_ups(others, search.grid, now.weight);
   const double limit = std::pow(std::abs(scan.score[scan.best]), 2) - kTauDrop;
@@ -328,8 +302,7 @@ void bound_tau(const Search& search,
   std::size_t low = scan.best, high = scan.best;
   while (low > 0 && in(low)) --low;
   while (high + 1 < scan.tau.size() && in(high)) ++high;
-  event.tau_ci95 = {scan.tau[low] * step_s,
-                    high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
+  event.tau_ci95 = {scan.tau[low] * step_s, high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
 }
 
 /// Standard deviations of the sizes. Of a warm-up the time constant is not known either: a second
@@ -348,8 +321,7 @@ std::vector<double> sds_of(const Search& search, const Hypothesis& now) {
   for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
     double variance = fit.covariance(j, j);
-    if (shapes[i].kind == EventKind::warm_up)
-      variance += fit.covariance(other, other) + 2 * fit.covariance(j, other);
+    if (shapes[i].kind == EventKind::warm_up) variance += fit.covariance(other, other) + 2 * fit.covariance(j, other);
     sd.push_back(std::sqrt(std::max(variance, now.fit.covariance(j, j))));
   }
   return sd;
@@ -364,9 +336,7 @@ std::vector<EventShape> gaps_of(const EventSeries& series) {
     if (from > 0 && to < static_cast<double>(series.value.size()) && to - from >= 2)
       gaps.push_back({EventKind::step, from, to - from});
   }
-  std::sort(gaps.begin(), gaps.end(), [](const EventShape& a, const EventShape& b) {
-    return a.bridged > b.bridged;
-  });
+  std::sort(gaps.begin(), gaps.end(), [](const EventShape& a, const EventShape& b) { return a.bridged > b.bridged; });
   if (gaps.size() > 16) gaps.resize(16);
   return gaps;
 }
@@ -383,14 +353,12 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i, doubl
   event.not_told_from = now.not_told[i];
   std::vector<EventShape> others = now.fit.shape;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-  const Regression beside =
-      regress(std::move(others), search.grid, search.coefficients, now.weight);
+  const Regression beside = regress(std::move(others), search.grid, search.coefficients, now.weight);
   if (shape.kind == EventKind::step) {
     const Interval place = step_interval(search, beside, now, shape);
     const double start_s = search.series.start_s;
     event.at_s = search.instant(start_s + (shape.bridged > 0 ? place.high : shape.at) * step_s);
-    event.at_ci95 = {search.instant(start_s + place.low * step_s),
-                     search.instant(start_s + place.high * step_s)};
+    event.at_ci95 = {search.instant(start_s + place.low * step_s), search.instant(start_s + place.high * step_s)};
     event.in_gap = shape.bridged > 0;
   }
   if (shape.kind == EventKind::warm_up) {
@@ -399,10 +367,8 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i, doubl
     bound_tau(search, beside, now, event);
   }
   if (shape.kind == EventKind::ramp) {
-    const double samples =
-        static_cast<double>(search.grid.points) * static_cast<double>(search.grid.per_point);
-    event.slope =
-        event.size / ((samples - 1) * step_s / static_cast<double>(search.grid.per_point));
+    const double samples = static_cast<double>(search.grid.points) * static_cast<double>(search.grid.per_point);
+    event.slope = event.size / ((samples - 1) * step_s / static_cast<double>(search.grid.per_point));
   }
   return event;
 }
@@ -411,8 +377,7 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i, doubl
 /// changes of sign count as one.
 int further_steps(const Search& search, const Hypothesis& now) {
   const StepScan scan = scan_steps(now.fit, now.weight, search.grid.points, search.margin);
-  const double limit =
-      rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery);
+  const double limit = rough_threshold(scan.distance, search.options.false_alarm / 2, StepScan::kEvery);
   int places = 0;
   double last = 0;
   for (const double score : scan.score) {
@@ -423,9 +388,7 @@ int further_steps(const Search& search, const Hypothesis& now) {
   return places;
 }
 
-Interval longest_without_steps(const std::vector<Event>& events,
-                               double start_s,
-                               double duration_s) {
+Interval longest_without_steps(const std::vector<Event>& events, double start_s, double duration_s) {
   std::vector<double> at = {start_s, start_s + duration_s};
   for (const Event& event : events)
     if (event.kind == EventKind::step) at.push_back(event.at_s);
@@ -437,40 +400,30 @@ Interval longest_without_steps(const std::vector<Event>& events,
 }
 
 /// What many steps are.
-void judge_many(const Search& search,
-                const Hypothesis& now,
-                std::string_view unit,
-                EventSearch& found) {
+void judge_many(const Search& search, const Hypothesis& now, std::string_view unit, EventSearch& found) {
   if (!found.more && found.events.size() < 6) return;
   const double duration_s = static_cast<double>(search.grid.points) * search.series.step_s;
-  found.telegraph =
-      telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
+  found.telegraph = telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
   if (found.telegraph) {
     const Telegraph& telegraph = *found.telegraph;
-    found.findings.push_back(finding(
-        "events_left_in",
-        fmt::format(
-            "The record jumps between two levels about {}{}{} apart, {} times at least: random "
-            "telegraph noise. What is said of "
-            "slow noise is about these jumps.",
-            number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
-            unit.empty() ? "" : " ",
-            unit,
-            telegraph.jumps)));
+    found.findings.push_back(
+        finding("events_left_in",
+                fmt::format("The record jumps between two levels about {}{}{} apart, {} times at least: random "
+                            "telegraph noise. What is said of "
+                            "slow noise is about these jumps.",
+                            number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
+                            unit.empty() ? "" : " ", unit, telegraph.jumps)));
   } else if (found.more) {
-    const Interval quiet = longest_without_steps(
-        found.events,
-        search.series.start_s,
-        search.instant(search.series.start_s + duration_s) - search.series.start_s);
-    Finding many = finding("events_left_in",
-                           fmt::format("There are more than {} steps and drifts: the record is no "
-                                       "noise with a few of them, but "
-                                       "handled, moved, or shaken by what happens around it; they "
-                                       "stay in. The longest stretch "
-                                       "without a step that was found is from {} to {} s.",
-                                       search.options.most,
-                                       place_text(quiet.low),
-                                       place_text(quiet.high)));
+    const Interval quiet =
+        longest_without_steps(found.events, search.series.start_s,
+                              search.instant(search.series.start_s + duration_s) - search.series.start_s);
+    Finding many =
+        finding("events_left_in", fmt::format("There are more than {} steps and drifts: the record is no "
+                                              "noise with a few of them, but "
+                                              "handled, moved, or shaken by what happens around it; they "
+                                              "stay in. The longest stretch "
+                                              "without a step that was found is from {} to {} s.",
+                                              search.options.most, place_text(quiet.low), place_text(quiet.high)));
     many.help.push_back({"Use the longest stretch without a step.",
                          {{"from_s", place_text(quiet.low)}, {"to_s", place_text(quiet.high)}}});
     found.findings.push_back(std::move(many));
@@ -487,26 +440,17 @@ void free_ends(Search& search) {
 
 }  // namespace
 
-EventSearch find_events(const EventSeries& whole,
-                        const NoisePowers& powers,
-                        const EventOptions& asked,
+EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, const EventOptions& asked,
                         std::string_view unit) {
   EventSeries series = whole;
   const std::vector<detail::Pause> pauses = detail::leave_out_pauses(series);
   EventOptions options = asked;
-  options.ramp =
-      options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
+  options.ramp = options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
   const std::size_t n = series.value.size();
   Dct dct(n);
   const std::span<const double> c = dct.transform(series.value);
-  Search search{series,
-                powers,
-                options,
-                {n, series.per_point},
-                std::max<std::size_t>(8, n / 500),
-                {},
-                gaps_of(series),
-                pauses};
+  Search search{series, powers,          options, {n, series.per_point}, std::max<std::size_t>(8, n / 500),
+                {},     gaps_of(series), pauses};
   search.coefficients.assign(c.begin() + 1, c.end());
 
   Hypothesis now;
@@ -538,8 +482,7 @@ EventSearch find_events(const EventSeries& whole,
     found.events.push_back(event_of(search, now, i, sd[i]));
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
     if (found.events.back().kind == EventKind::step)
-      found.findings.back().where.time_s.push_back(
-          {found.events.back().at_s, found.events.back().at_s});
+      found.findings.back().where.time_s.push_back({found.events.back().at_s, found.events.back().at_s});
     found.spent += now.fit.shape[i].kind == EventKind::ramp ? 1 : 2;
   }
   judge_many(search, now, unit, found);

@@ -16,7 +16,7 @@ namespace libchar {
 
 struct EventOptions {
   double false_alarm = 0.003;  ///< of a record that is noise, over all kinds and places
-  int most = 8;  ///< events looked for; where there are more, something else is the matter
+  int most = 8;                ///< events looked for; where there are more, something else is the matter
   bool steps = true, warm_up = true, ramp = true;
 };
 
@@ -29,8 +29,7 @@ struct Telegraph {
 
 struct EventSearch {
   std::vector<Event> events;  ///< in the order in which they were found
-  std::vector<double>
-      power;  ///< the noise they were found against: E c_k^2 of the series without them
+  std::vector<double> power;  ///< the noise they were found against: E c_k^2 of the series without them
   std::optional<Telegraph> telegraph;
   int spent = 0;                  ///< degrees of freedom that the events took from the noise
   bool more = false;              ///< stopped at `most` with more to find
@@ -38,9 +37,7 @@ struct EventSearch {
 };
 
 /// Searches a series; at least 64 values, Error(numeric) below.
-EventSearch find_events(const EventSeries& series,
-                        const NoisePowers& powers,
-                        const EventOptions& options = {},
+EventSearch find_events(const EventSeries& series, const NoisePowers& powers, const EventOptions& options = {},
                         std::string_view unit = {});
 
 }  // namespace libchar

@@ -28,17 +28,13 @@ constexpr std::size_t kFewestValues = 2048, kShortestBlock = 32, kMostBlocks = 5
 constexpr double kAgree = 0.35;  ///< standard deviation of a logarithm: sampling gives .1 to .2
 constexpr double kFactor = 2;    ///< by which motion is louder than rest
 constexpr double kSpreads = 6;
-constexpr double kLasting =
-    0.1;  ///< share of a record from which on a louder stretch may be a change
-constexpr double kLoudest = 4;  ///< factor up to which it is
-constexpr double kSlower =
-    1.3;  ///< and its slow differences by no more than this beyond the fast ones
+constexpr double kLasting = 0.1;   ///< share of a record from which on a louder stretch may be a change
+constexpr double kLoudest = 4;     ///< factor up to which it is
+constexpr double kSlower = 1.3;    ///< and its slow differences by no more than this beyond the fast ones
 constexpr double kFaintest = 1e4;  ///< quieter by more than this: a link that hung, filled gaps
-constexpr double kRepeats =
-    0.3;  ///< share of repeated values: a staircase, whose steps come and go
+constexpr double kRepeats = 0.3;   ///< share of repeated values: a staircase, whose steps come and go
 constexpr std::size_t kFewestBlocks = 64;
-constexpr double kHarmless =
-    1.01;  ///< motion that adds less to the scatter stays inside most intervals
+constexpr double kHarmless = 1.01;  ///< motion that adds less to the scatter stays inside most intervals
 
 /// Logarithms of the activities, a block each.
 struct Activity {
@@ -65,8 +61,7 @@ std::vector<double> differences(std::span<const double> value, std::size_t width
 
 /// Their mean but for the two largest, which a step takes.
 double mean_of_most(std::span<const double> difference) {
-  double largest = std::max(difference[0], difference[1]),
-         second = std::min(difference[0], difference[1]), sum = 0;
+  double largest = std::max(difference[0], difference[1]), second = std::min(difference[0], difference[1]), sum = 0;
   for (const double d : difference.subspan(2)) {
     sum += std::min(d, second);  // which of the two is no longer among the largest
     second = std::clamp(d, second, largest);
@@ -76,10 +71,7 @@ double mean_of_most(std::span<const double> difference) {
 }
 
 /// `blocks` blocks around the one that begins at `from`.
-std::span<const double> around(std::span<const double> value,
-                               std::size_t from,
-                               std::size_t block,
-                               std::size_t blocks) {
+std::span<const double> around(std::span<const double> value, std::size_t from, std::size_t block, std::size_t blocks) {
   const std::size_t before = std::min(from, block * blocks / 2);
   const std::size_t to = std::min(value.size(), from - before + block * blocks);
   return value.subspan(to - block * blocks, block * blocks);
@@ -123,17 +115,14 @@ Agreeing shortest_half(const std::vector<double>& sorted, double share, double w
   Agreeing best{0, std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i + count < sorted.size(); ++i) {
     const double width = sorted[i + count] - sorted[i];
-    if (width / width_of_normal < best.spread)
-      best = {0.5 * (sorted[i + count] + sorted[i]), width / width_of_normal};
+    if (width / width_of_normal < best.spread) best = {0.5 * (sorted[i + count] + sorted[i]), width / width_of_normal};
   }
   return best;
 }
 
 /// Where less than half of a record is still: the quietest sixteen blocks in turn that agree and are no `filled` ones, if they are
 /// quieter than most by a factor.
-std::optional<Agreeing> quiet_window(std::span<const double> values,
-                                     const std::vector<char>& filled,
-                                     double median,
+std::optional<Agreeing> quiet_window(std::span<const double> values, const std::vector<char>& filled, double median,
                                      double factor) {
   constexpr std::ptrdiff_t kWindow = 16;
   constexpr double kSteady = 0.2;
@@ -146,16 +135,14 @@ std::optional<Agreeing> quiet_window(std::span<const double> values,
       sum += a - median;
       squares += (a - median) * (a - median);
     }
-    const double mean = sum / kWindow,
-                 spread = std::sqrt(std::max(0.0, squares / kWindow - mean * mean));
+    const double mean = sum / kWindow, spread = std::sqrt(std::max(0.0, squares / kWindow - mean * mean));
     if (spread > kSteady || mean > -std::log(factor)) continue;
     if (!quietest || median + mean < quietest->centre) quietest = {median + mean, spread};
   }
   return quietest;
 }
 
-std::optional<Agreeing> agreeing(const std::vector<double>& values,
-                                 const std::vector<char>& filled,
+std::optional<Agreeing> agreeing(const std::vector<double>& values, const std::vector<char>& filled,
                                  const std::vector<char>& unseen) {
   std::vector<double> sorted;
   for (std::size_t b = 0; b < values.size(); ++b)
@@ -182,8 +169,7 @@ std::vector<char> louder(const std::vector<double>& values, const Agreeing& rest
   for (int round = 0; round < kBeside; ++round) {
     const std::vector<char> before = out;
     for (std::size_t b = 0; b < out.size(); ++b) {
-      const bool beside =
-          (b > 0 && before[b - 1] != 0) || (b + 1 < out.size() && before[b + 1] != 0);
+      const bool beside = (b > 0 && before[b - 1] != 0) || (b + 1 < out.size() && before[b + 1] != 0);
       if (beside && above(b, far / 2)) out[b] = 1;
     }
   }
@@ -210,8 +196,7 @@ std::vector<Run> runs_of(const std::vector<char>& in, char which) {
 /// A stretch that is louder by a little and steadily so, and not the slower the louder: noise that grows does so at
 /// every width, a hand moves the means of many values most.
 bool lasting(const Activity& activity, const Run& run, const std::vector<double>& centre) {
-  if (static_cast<double>(run.length()) < kLasting * static_cast<double>(activity.fine.size()))
-    return false;
+  if (static_cast<double>(run.length()) < kLasting * static_cast<double>(activity.fine.size())) return false;
   double fine = 0;
   for (std::size_t a = 0; a < centre.size(); ++a) {
     const std::vector<double>& logs = a == 0 ? activity.fine : activity.coarse[a - 1];
@@ -246,9 +231,7 @@ void tidy(const Activity& activity, const std::vector<double>& centre, std::vect
 std::vector<char> filled_blocks(const Activity& activity) {
   std::vector<char> filled(activity.fine.size());
   for (std::size_t b = 0; b < filled.size(); ++b)
-    filled[b] =
-        activity.unseen[b] != 0 || activity.coarse[0][b] > activity.fine[b] + std::log(kFactor) ? 1
-                                                                                                : 0;
+    filled[b] = activity.unseen[b] != 0 || activity.coarse[0][b] > activity.fine[b] + std::log(kFactor) ? 1 : 0;
   return filled;
 }
 
@@ -271,9 +254,7 @@ std::optional<std::vector<char>> moving_blocks(const Activity& activity) {
 }
 
 /// Steps and drifts of the logarithms of what does not move.
-std::vector<StrengthChange> changes_of(const Activity& activity,
-                                       const std::vector<char>& moving,
-                                       double start_s,
+std::vector<StrengthChange> changes_of(const Activity& activity, const std::vector<char>& moving, double start_s,
                                        double block_s) {
   // Without scatter there is nothing to judge a change by: a counter, a signal from a formula.
   std::vector<double> sorted = activity.fine;
@@ -283,39 +264,33 @@ std::vector<StrengthChange> changes_of(const Activity& activity,
   std::vector<char> left_out = moving;
   for (std::size_t b = 0; b < left_out.size(); ++b) left_out[b] |= activity.unseen[b];
   for (const Run& run : runs_of(left_out, 1)) {
-    const double before =
-        run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % left_out.size()];
+    const double before = run.from > 0 ? activity.fine[run.from - 1] : activity.fine[run.to % left_out.size()];
     const double after = run.to < left_out.size() ? activity.fine[run.to] : before;
     for (std::size_t b = run.from; b < run.to; ++b)
-      logarithms.value[b] = before + (after - before) * static_cast<double>(b - run.from + 1) /
-                                         static_cast<double>(run.length() + 1);
-    logarithms.unseen_s.push_back({start_s + static_cast<double>(run.from) * block_s,
-                                   start_s + static_cast<double>(run.to) * block_s});
+      logarithms.value[b] =
+          before + (after - before) * static_cast<double>(b - run.from + 1) / static_cast<double>(run.length() + 1);
+    logarithms.unseen_s.push_back(
+        {start_s + static_cast<double>(run.from) * block_s, start_s + static_cast<double>(run.to) * block_s});
   }
   std::vector<StrengthChange> changes;
   for (const Event& event : find_events(logarithms, fitted_powers()).events)
-    changes.push_back(
-        {event.kind,
-         event.at_s,
-         {event.at_ci95.low - block_s, event.at_ci95.high + block_s},
-         std::exp(event.size),
-         {std::exp(event.size - kNormal95 * event.sd), std::exp(event.size + kNormal95 * event.sd)},
-         event.score,
-         event.threshold});
+    changes.push_back({event.kind,
+                       event.at_s,
+                       {event.at_ci95.low - block_s, event.at_ci95.high + block_s},
+                       std::exp(event.size),
+                       {std::exp(event.size - kNormal95 * event.sd), std::exp(event.size + kNormal95 * event.sd)},
+                       event.score,
+                       event.threshold});
   return changes;
 }
 
 std::string change_sentence(const StrengthChange& change) {
-  const std::string factor = fmt::format("{} times as strong ({} to {})",
-                                         number_text(change.factor, 3),
-                                         number_text(change.factor_ci95.low, 3),
-                                         number_text(change.factor_ci95.high, 3));
+  const std::string factor =
+      fmt::format("{} times as strong ({} to {})", number_text(change.factor, 3),
+                  number_text(change.factor_ci95.low, 3), number_text(change.factor_ci95.high, 3));
   if (change.kind == EventKind::step)
-    return fmt::format("The noise is {} from {} s on (between {} and {} s).",
-                       factor,
-                       place_text(change.at_s),
-                       place_text(change.at_ci95.low),
-                       place_text(change.at_ci95.high));
+    return fmt::format("The noise is {} from {} s on (between {} and {} s).", factor, place_text(change.at_s),
+                       place_text(change.at_ci95.low), place_text(change.at_ci95.high));
   if (change.kind == EventKind::ramp)
     return fmt::format("The noise changes little by little: at the end it is {}.", factor);
   return fmt::format("The noise settles: at the beginning it is {}.", factor);
@@ -323,31 +298,26 @@ std::string change_sentence(const StrengthChange& change) {
 
 void describe(Motion& motion, double duration_s) {
   if (motion.whole) {
-    motion.findings.push_back(finding(
-        "moves_throughout",
-        "What is recorded changes throughout (motion, where the sensor is an inertial one): it is "
-        "a signal and no noise."));
+    motion.findings.push_back(
+        finding("moves_throughout",
+                "What is recorded changes throughout (motion, where the sensor is an inertial one): it is "
+                "a signal and no noise."));
     return;
   }
   if (!motion.moving_s.empty()) {
     double moving = 0;
     for (const Interval& stretch : motion.moving_s) moving += stretch.high - stretch.low;
     const std::size_t count = motion.moving_s.size();
-    Finding moved = finding(
-        "motion",
-        fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
-                    "{} to {} s; the longest "
-                    "still stretch is {} to {} s.",
-                    motion.moving_s.size(),
-                    motion.moving_s.size() == 1 ? "" : "es",
-                    duration_text(moving),
-                    duration_text(duration_s),
-                    place_text(motion.moving_s[0].low),
-                    place_text(motion.moving_s[0].high),
-                    place_text(motion.still_s ? motion.still_s->low : 0),
-                    place_text(motion.still_s ? motion.still_s->high : 0)),
-        fmt::format("moved or shaken in {}",
-                    count == 1 ? "a stretch" : fmt::format("{} stretches", count)));
+    Finding moved =
+        finding("motion",
+                fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
+                            "{} to {} s; the longest "
+                            "still stretch is {} to {} s.",
+                            motion.moving_s.size(), motion.moving_s.size() == 1 ? "" : "es", duration_text(moving),
+                            duration_text(duration_s), place_text(motion.moving_s[0].low),
+                            place_text(motion.moving_s[0].high), place_text(motion.still_s ? motion.still_s->low : 0),
+                            place_text(motion.still_s ? motion.still_s->high : 0)),
+                fmt::format("moved or shaken in {}", count == 1 ? "a stretch" : fmt::format("{} stretches", count)));
     moved.count = count;
     moved.where.time_s = motion.moving_s;
     if (motion.louder > kHarmless) {
@@ -359,14 +329,11 @@ void describe(Motion& motion, double duration_s) {
   }
   if (motion.changes.empty()) return;
   const StrengthChange& first = motion.changes[0];
-  Finding changed =
-      finding("strength_change",
-              "",
-              motion.changes.size() == 1
-                  ? fmt::format("the noise is {} times as strong from {} s on",
-                                brief_text(first.factor),
-                                place_text(first.at_s))
-                  : fmt::format("the noise changes its strength {} times", motion.changes.size()));
+  Finding changed = finding("strength_change", "",
+                            motion.changes.size() == 1
+                                ? fmt::format("the noise is {} times as strong from {} s on", brief_text(first.factor),
+                                              place_text(first.at_s))
+                                : fmt::format("the noise changes its strength {} times", motion.changes.size()));
   for (const StrengthChange& change : motion.changes) {
     changed.sentence += (changed.sentence.empty() ? "" : " ") + change_sentence(change);
     changed.where.time_s.push_back(change.at_ci95);
@@ -394,8 +361,7 @@ std::vector<char> unseen_blocks(const EventSeries& series, std::size_t blocks, d
 /// What motion adds to the scatter of all blocks, by what the still ones have.
 double louder_by_motion(const Activity& activity, const std::vector<char>& moving) {
   double most = 1;
-  for (const std::vector<double>* logs :
-       {&activity.fine, &activity.coarse[0], &activity.coarse[1]}) {
+  for (const std::vector<double>* logs : {&activity.fine, &activity.coarse[0], &activity.coarse[1]}) {
     double all = 0, still = 0, count = 0;
     for (std::size_t b = 0; b < moving.size(); ++b) {
       const double power = std::exp(2 * (*logs)[b]);
@@ -411,9 +377,7 @@ double louder_by_motion(const Activity& activity, const std::vector<char>& movin
 }
 
 /// Where the noise is stronger than where it is weakest, between its steps.
-std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes,
-                                     double from_s,
-                                     double to_s) {
+std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes, double from_s, double to_s) {
   struct Piece {
     Interval at_s;
     double level = 0, half = 0;  ///< logarithms, against the first piece
@@ -422,13 +386,11 @@ std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes,
   std::vector<const StrengthChange*> steps;
   for (const StrengthChange& change : changes)
     if (change.kind == EventKind::step) steps.push_back(&change);
-  std::sort(
-      steps.begin(), steps.end(), [](const auto* a, const auto* b) { return a->at_s < b->at_s; });
+  std::sort(steps.begin(), steps.end(), [](const auto* a, const auto* b) { return a->at_s < b->at_s; });
   for (const StrengthChange* step : steps) {
     const Piece& before = pieces.back();
     const double half = std::log(step->factor_ci95.high / step->factor);
-    const Piece after = {
-        {step->at_s, to_s}, before.level + std::log(step->factor), std::hypot(before.half, half)};
+    const Piece after = {{step->at_s, to_s}, before.level + std::log(step->factor), std::hypot(before.half, half)};
     pieces.back().at_s.high = step->at_s;
     pieces.push_back(after);
   }
@@ -439,11 +401,9 @@ std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes,
       base = &piece;
   std::vector<Interval> louder;
   for (std::size_t i = 0; base != nullptr && i < pieces.size(); ++i) {
-    const double half =
-        std::sqrt(std::abs(pieces[i].half * pieces[i].half - base->half * base->half));
+    const double half = std::sqrt(std::abs(pieces[i].half * pieces[i].half - base->half * base->half));
     if (pieces[i].level - base->level <= half) continue;
-    louder.push_back({i == 0 ? from_s : steps[i - 1]->at_ci95.low,
-                      i == steps.size() ? to_s : steps[i]->at_ci95.high});
+    louder.push_back({i == 0 ? from_s : steps[i - 1]->at_ci95.low, i == steps.size() ? to_s : steps[i]->at_ci95.high});
   }
   return louder;
 }
@@ -451,9 +411,7 @@ std::vector<Interval> louder_between(const std::vector<StrengthChange>& changes,
 }  // namespace
 
 Interval detail::longest_between(std::vector<Interval> restless, const Interval& all_s) {
-  std::sort(restless.begin(), restless.end(), [](const Interval& a, const Interval& b) {
-    return a.low < b.low;
-  });
+  std::sort(restless.begin(), restless.end(), [](const Interval& a, const Interval& b) { return a.low < b.low; });
   Interval best{all_s.low, all_s.low};
   double from = all_s.low;
   const auto offer = [&](double to) {
@@ -470,8 +428,7 @@ Interval detail::longest_between(std::vector<Interval> restless, const Interval&
 Motion find_motion(const EventSeries& series) {
   Motion motion;
   const double duration_s = static_cast<double>(series.value.size()) * series.step_s;
-  if (series.value.size() < kFewestValues || share_of_repeats(series.value) > kRepeats)
-    return motion;
+  if (series.value.size() < kFewestValues || share_of_repeats(series.value) > kRepeats) return motion;
   motion.tested = true;
   Activity activity = activity_of(series.value);
   const double block_s = static_cast<double>(activity.block) * series.step_s;

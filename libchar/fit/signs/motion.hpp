@@ -15,8 +15,8 @@ namespace libchar {
 
 /// The noise is stronger or weaker from some instant on.
 struct StrengthChange {
-  EventKind kind = EventKind::
-      step;  ///< step: at once; ramp, warm-up: little by little, over the record or from its beginning
+  EventKind kind =
+      EventKind::step;  ///< step: at once; ramp, warm-up: little by little, over the record or from its beginning
   double at_s = 0;
   Interval at_ci95;
   double factor =
@@ -26,16 +26,14 @@ struct StrengthChange {
 };
 
 struct Motion {
-  bool tested =
-      false;  ///< no: too short (2048 values are needed), or most values repeat the one before
+  bool tested = false;              ///< no: too short (2048 values are needed), or most values repeat the one before
   bool whole = false;               ///< in motion throughout: no stretch to compare with
   std::vector<Interval> moving_s;   ///< stretches of motion or handling
   std::optional<Interval> still_s;  ///< the longest stretch without, and not louder than others
   /// The standard deviation of differences (the largest of three widths) over that of the still stretches alone.
   double louder = 1;
   std::vector<StrengthChange> changes;  ///< of what is left
-  std::vector<Interval>
-      louder_s;  ///< between their steps: stretches stronger than the weakest tenth
+  std::vector<Interval> louder_s;       ///< between their steps: stretches stronger than the weakest tenth
   std::vector<Finding> findings;
 };
 

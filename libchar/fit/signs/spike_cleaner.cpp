@@ -108,8 +108,7 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
     return SpikeVerdict::too_many;
   if (count.steps > count.spikes) return SpikeVerdict::heavy_tails;  // a signal that jumps
   const auto events = static_cast<double>(count.spikes + count.shoulder);
-  if (chi_square_tail(2 * kTail * count.log_size, 2 * events) < kTailAlarm)
-    return SpikeVerdict::spikes;
+  if (chi_square_tail(2 * kTail * count.log_size, 2 * events) < kTailAlarm) return SpikeVerdict::spikes;
   return binomial_cdf(static_cast<double>(count.shoulder), events, kTailShoulder) < kShoulderAlarm
              ? SpikeVerdict::spikes
              : SpikeVerdict::heavy_tails;
@@ -206,8 +205,7 @@ std::optional<OutlierVariance> outlier_variance(const CoreSums& sums) {
   const double root = std::sqrt(sums.count);
   if (!(std::log(sums.all / sums.far) > kSure * kAll / root)) return std::nullopt;
   if (std::abs(std::log(sums.near / sums.far)) > kSure * kCore / root + kFlat) return std::nullopt;
-  return OutlierVariance{(sums.all - sums.far) / sums.count / 2,
-                         kAll * sums.far / sums.count / 2 / root};
+  return OutlierVariance{(sums.all - sums.far) / sums.count / 2, kAll * sums.far / sums.count / 2 / root};
 }
 
 }  // namespace libchar::detail
@@ -225,8 +223,7 @@ std::string spike_sentence(const SpikeCount& count) {
       return fmt::format(
           "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a "
           "signal that jumps: not taken for spikes, and kept.",
-          count.left_out,
-          count.left_out == 1 ? "" : "s");
+          count.left_out, count.left_out == 1 ? "" : "s");
     default:
       return "";
   }
@@ -321,8 +318,7 @@ bool SpikeCleaner::look_for_run(std::int64_t t, bool last) {
   double size = std::abs(at(t) - good_);
   if (!to_the_end) size = std::min(size, std::abs(at(until) - at(until - 1)));
   size /= scale_.step;
-  if (until == t + 1 && residual(t) > 0 && scale_.residual > 0)
-    size = residual(t) / scale_.residual;
+  if (until == t + 1 && residual(t) > 0 && scale_.residual > 0) size = residual(t) / scale_.residual;
   if (!(size > kSpikeLimit)) return false;
   for (std::int64_t i = t + 1; i < until; ++i) count_.samples += std::isfinite(at(i));
   found(t, until, size);
@@ -333,8 +329,7 @@ bool SpikeCleaner::look_for_run(std::int64_t t, bool last) {
 void SpikeCleaner::look_alone(std::int64_t t) {
   if (!(scale_.residual > 0)) return;
   const double e = residual(t);
-  if (!(e > kSpikeShoulder * scale_.residual) || residual(t - 1) >= e || residual(t + 1) > e)
-    return;
+  if (!(e > kSpikeShoulder * scale_.residual) || residual(t - 1) >= e || residual(t + 1) > e) return;
   // Beside a step or a run one neighbour is as near as the other is far.
   const double up = at(t) - at(t - 1), down = at(t) - at(t + 1);
   if (!(up * down > 0) || std::min(std::abs(up), std::abs(down)) < 0.5 * e) return;
@@ -359,8 +354,7 @@ void SpikeCleaner::decide(std::int64_t now) {
     event.decided = true;
     std::int64_t others = 0;
     for (const Event& other : events_)
-      if (&other != &event && other.end > event.first - kSpikeReach &&
-          other.first < event.end + kSpikeReach)
+      if (&other != &event && other.end > event.first - kSpikeReach && other.first < event.end + kSpikeReach)
         others += other.end - other.first;
     const bool beyond = event.size > kSpikeLimit;
     if (others > kMostOthers) {

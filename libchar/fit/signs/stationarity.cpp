@@ -114,8 +114,7 @@ std::optional<OctaveTest> test_pieces(const Tested& record, std::uint64_t m) {
       variance += deviation * deviation / kPiecesEach;
     }
     test.deviation.push_back(std::sqrt(variance));
-    for (const double value : y)
-      within += (value - test.log_variance[s]) * (value - test.log_variance[s]);
+    for (const double value : y) within += (value - test.log_variance[s]) * (value - test.log_variance[s]);
     mean += test.log_variance[s] / kStretches;
   }
   double between = 0;
@@ -131,9 +130,7 @@ std::optional<OctaveTest> test_pieces(const Tested& record, std::uint64_t m) {
   return test;
 }
 
-std::optional<OctaveTest> test_stretches(const Curves& stretches,
-                                         std::uint64_t m,
-                                         double inflation) {
+std::optional<OctaveTest> test_stretches(const Curves& stretches, std::uint64_t m, double inflation) {
   OctaveTest test;
   test.spread.stretches = stretches.size();
   std::vector<double> variances;
@@ -178,18 +175,14 @@ void add_dof(std::vector<AllanCurve>& curves, const NoiseFit& fit) {
     if (curve.missing > 0 || whole == nullptr)
       add_fit_intervals(curve, fit);
     else
-      for (std::size_t i = 0; i < curve.points.size(); ++i)
-        curve.points[i].edf = whole->points[i].edf;
+      for (std::size_t i = 0; i < curve.points.size(); ++i) curve.points[i].edf = whole->points[i].edf;
     if (curve.missing == 0) whole = &curve;
   }
 }
 
 /// Curves of the stretches from a record's means of r samples, at the averaging factors of the
 /// record.
-Curves coarse_curves(std::span<const double> means,
-                     std::size_t stretches,
-                     std::uint64_t r,
-                     double dt_s,
+Curves coarse_curves(std::span<const double> means, std::size_t stretches, std::uint64_t r, double dt_s,
                      const NoiseFit& fit) {
   Curves curves = curves_of(means, stretches, dt_s * static_cast<double>(r));
   for (AllanCurve& curve : curves) {
@@ -219,20 +212,17 @@ std::vector<OctaveTest> octaves_of(const Tested& record, const NoiseFit& fit) {
   };
   std::uint64_t m = 1;
   for (; m * kWindows <= record.samples / kPieces; m *= 2) keep(test_pieces(record, m));
-  const double inflation =
-      tests.empty() ? 1 : excess_scatter(record, tests.back().within, m / 2, fit);
+  const double inflation = tests.empty() ? 1 : excess_scatter(record, tests.back().within, m / 2, fit);
   if (inflation > kTooHeavy) return tests;
   // From eight means on a pyramid's terms start often enough.
   std::vector<double> means(record.means.begin(), record.means.end());
   std::uint64_t r = record.per_mean;
-  for (const auto& [parts, windows] :
-       {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
+  for (const auto& [parts, windows] : {std::pair{kStretches, kWindows}, std::pair{kFewStretches, kFewWindows}}) {
     const std::uint64_t before = r;
     r = std::max(before, m / 8);
     if (r > before) means = means_of(means, detail::in_memory(r / before));
     const Curves stretches = coarse_curves(means, parts, r, record.dt_s, fit);
-    for (; m * windows <= record.samples / parts; m *= 2)
-      keep(test_stretches(stretches, m, inflation));
+    for (; m * windows <= record.samples / parts; m *= 2) keep(test_stretches(stretches, m, inflation));
   }
   return tests;
 }
@@ -269,17 +259,10 @@ std::string sentence_of(const Stationarity& found, double limit) {
       "chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. "
       "Another recording may differ as "
       "much.",
-      duration_text(found.clearest_tau_s),
-      duration_text(found.stretch_s),
-      number_text(100 * there, 2),
-      number_text(found.smallest, 3),
-      place_text(found.smallest_s.low),
-      place_text(found.smallest_s.high),
-      number_text(found.largest, 3),
-      place_text(found.largest_s.low),
-      place_text(found.largest_s.high),
-      last > first ? fmt::format("; so it does at other averaging times between {} and {}",
-                                 duration_text(first),
+      duration_text(found.clearest_tau_s), duration_text(found.stretch_s), number_text(100 * there, 2),
+      number_text(found.smallest, 3), place_text(found.smallest_s.low), place_text(found.smallest_s.high),
+      number_text(found.largest, 3), place_text(found.largest_s.low), place_text(found.largest_s.high),
+      last > first ? fmt::format("; so it does at other averaging times between {} and {}", duration_text(first),
                                  duration_text(last))
                    : "");
 }
@@ -287,8 +270,7 @@ std::string sentence_of(const Stationarity& found, double limit) {
 Stationarity test(const Tested& record, const NoiseFit& fit) {
   Stationarity out;
   const double size = static_cast<double>(record.samples);
-  if (record.samples < kShortest || static_cast<double>(fit.samples) < (1 - kMostMissing) * size)
-    return out;
+  if (record.samples < kShortest || static_cast<double>(fit.samples) < (1 - kMostMissing) * size) return out;
   std::vector<OctaveTest> tests;
   try {
     tests = octaves_of(record, fit);
@@ -315,11 +297,7 @@ Stationarity test(const Tested& record, const NoiseFit& fit) {
 }
 
 /// Without what drifts put there; NaN where a step is in the piece.
-double without_events(double variance,
-                      std::span<const Event> events,
-                      double first,
-                      double length,
-                      double m,
+double without_events(double variance, std::span<const Event> events, double first, double length, double m,
                       double rate_hz) {
   std::vector<Event> drifts;
   for (const Event& event : events) {
@@ -328,8 +306,7 @@ double without_events(double variance,
     if (event.kind != EventKind::step) drifts.push_back(event);
   }
   const double middle = first + 0.5 * length;
-  const double d =
-      event_mean(drifts, rate_hz, middle, m) - event_mean(drifts, rate_hz, middle - m, m);
+  const double d = event_mean(drifts, rate_hz, middle, m) - event_mean(drifts, rate_hz, middle - m, m);
   const double left = variance - 0.5 * d * d;
   return left > 0 ? left : kNoMean;
 }
@@ -346,9 +323,7 @@ void fill_missing(std::vector<double>& variance) {
 
 }  // namespace
 
-Stationarity test_stationarity(std::span<const double> record,
-                               double rate_hz,
-                               const NoiseFit& fit) {
+Stationarity test_stationarity(std::span<const double> record, double rate_hz, const NoiseFit& fit) {
   if (record.size() < kShortest) return {};
   Tested tested{record.size(), 1 / rate_hz, {}, {}, record, 1};
   std::optional<Curves> curves;
@@ -366,9 +341,7 @@ Stationarity test_stationarity(std::span<const double> record,
   return test(tested, fit);
 }
 
-Stationarity test_stationarity(const FittedSums& sums,
-                               std::span<const Event> events,
-                               double rate_hz,
+Stationarity test_stationarity(const FittedSums& sums, std::span<const Event> events, double rate_hz,
                                const NoiseFit& fit) {
   std::vector<double> means = sums.means.means();
   const auto per_mean = static_cast<double>(sums.means.per_mean());
@@ -389,12 +362,8 @@ Stationarity test_stationarity(const FittedSums& sums,
     if (together == 0) return std::vector<double>();
     const auto length = static_cast<double>(sums.pieces.length(octave));
     for (std::size_t i = 0; i < each.size() && !events.empty(); ++i)
-      each[i] = without_events(each[i],
-                               events,
-                               static_cast<double>(i) * length,
-                               length,
-                               static_cast<double>(m),
-                               rate_hz);
+      each[i] =
+          without_events(each[i], events, static_cast<double>(i) * length, length, static_cast<double>(m), rate_hz);
     std::vector<double> variance;
     for (std::size_t i = 0; i < kPieces; ++i)
       variance.push_back(mean_present(std::span(each).subspan(i * together, together)));
@@ -411,10 +380,8 @@ Stationarity test_stationarity(const FittedSums& sums,
 StretchSpread detail::spread_at(const Stationarity& stationarity, double tau_s) {
   if (stationarity.steady) return {};
   const auto away = [&](const StretchSpread& s) { return std::abs(std::log(s.tau_s / tau_s)); };
-  return *std::min_element(
-      stationarity.spread.begin(),
-      stationarity.spread.end(),
-      [&](const StretchSpread& a, const StretchSpread& b) { return away(a) < away(b); });
+  return *std::min_element(stationarity.spread.begin(), stationarity.spread.end(),
+                           [&](const StretchSpread& a, const StretchSpread& b) { return away(a) < away(b); });
 }
 
 double spread_reach(const Stationarity& stationarity, double tau_s) {

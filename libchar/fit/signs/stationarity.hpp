@@ -45,9 +45,7 @@ struct Stationarity {
 /// what the degrees of freedom of long averaging times are computed with.
 Stationarity test_stationarity(std::span<const double> record, double rate_hz, const NoiseFit& fit);
 /// The same of sums over its leaves. `events`: that were taken out of it before `fit`.
-Stationarity test_stationarity(const FittedSums& sums,
-                               std::span<const Event> events,
-                               double rate_hz,
+Stationarity test_stationarity(const FittedSums& sums, std::span<const Event> events, double rate_hz,
                                const NoiseFit& fit);
 
 namespace detail {

@@ -47,8 +47,7 @@ using TemperatureColumns = std::array<std::vector<double>, kTemperatureOrders>;
 struct TemperatureFit {
   Eigen::VectorXd size;
   Eigen::MatrixXd covariance;
-  double gain =
-      0;  ///< sum of weighted squares that they explain: chi-square of `order` degrees of freedom by chance
+  double gain = 0;  ///< sum of weighted squares that they explain: chi-square of `order` degrees of freedom by chance
 };
 
 constexpr std::uint64_t kFewestTemperatures = 8;
@@ -64,8 +63,7 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
       longest_at = before + 1;
     }
     for (std::ptrdiff_t i = before + 1; i < t; ++i) {
-      const double low = before < 0 ? value[static_cast<std::size_t>(t)]
-                                    : value[static_cast<std::size_t>(before)],
+      const double low = before < 0 ? value[static_cast<std::size_t>(t)] : value[static_cast<std::size_t>(before)],
                    high = t == n ? low : value[static_cast<std::size_t>(t)];
       const double share = static_cast<double>(i - before) / static_cast<double>(t - before);
       value[static_cast<std::size_t>(i)] = low + (high - low) * share;
@@ -74,8 +72,7 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
   }
   if (longest * 10 > n)
     throw numeric_error("E0703")
-        .says("the temperature {} is missing for {} from {} s on, more than a tenth of the record",
-              name,
+        .says("the temperature {} is missing for {} from {} s on, more than a tenth of the record", name,
               duration_text(static_cast<double>(longest) * step_s),
               place_text(static_cast<double>(longest_at) * step_s))
         .hint("read the stretch where it is present with `from_s` and `to_s`");
@@ -83,9 +80,7 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
 
 /// Means over the samples that the points of `series` are means of; missing ones bridged. Throws Error(numeric) as
 /// `find_temperature_effect` says.
-TemperatureSeries temperature_series(const TemperatureRecord& temperature,
-                                     const EventSeries& series,
-                                     double rate_hz) {
+TemperatureSeries temperature_series(const TemperatureRecord& temperature, const EventSeries& series, double rate_hz) {
   TemperatureSeries out;
   const auto first = static_cast<std::size_t>(std::llround(series.start_s * rate_hz));
   std::uint64_t present = 0;
@@ -105,15 +100,11 @@ TemperatureSeries temperature_series(const TemperatureRecord& temperature,
   }
   if (present < kFewestTemperatures)
     throw numeric_error("E0703").says(
-        "the temperature {} has {} values where the channel has samples; at least {} are needed",
-        temperature.name,
-        present,
-        kFewestTemperatures);
+        "the temperature {} has {} values where the channel has samples; at least {} are needed", temperature.name,
+        present, kFewestTemperatures);
   if (!(out.range.low < out.range.high))
-    throw numeric_error("E0703").says(
-        "the temperature {} is constant, {} throughout: what it does cannot be seen",
-        temperature.name,
-        brief_text(out.range.low, 6));
+    throw numeric_error("E0703").says("the temperature {} is constant, {} throughout: what it does cannot be seen",
+                                      temperature.name, brief_text(out.range.low, 6));
   bridge_temperature(out.value, temperature.name, series.step_s);
   for (const double value : out.value) out.mean += (value - out.range.low);
   out.mean = out.range.low + out.mean / static_cast<double>(out.value.size());
@@ -150,8 +141,7 @@ TemperatureColumns temperature_columns(const TemperatureSeries& temperature, dou
   return columns;
 }
 
-TemperatureFit fit_temperature(std::span<const std::vector<double>> columns,
-                               std::span<const double> coefficients,
+TemperatureFit fit_temperature(std::span<const std::vector<double>> columns, std::span<const double> coefficients,
                                std::span<const double> weight) {
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd normal(count, count);
@@ -160,8 +150,7 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns,
     const std::vector<double>& x = columns[static_cast<std::size_t>(i)];
     right(i) = weighted_product(weight, x, coefficients);
     for (Eigen::Index j = 0; j <= i; ++j)
-      normal(i, j) = normal(j, i) =
-          weighted_product(weight, x, columns[static_cast<std::size_t>(j)]);
+      normal(i, j) = normal(j, i) = weighted_product(weight, x, columns[static_cast<std::size_t>(j)]);
   }
   const Eigen::VectorXd scale = normal.diagonal().array().rsqrt();
   Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
@@ -177,11 +166,9 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns,
 /// P(the largest gain over lags >= the largest of `gains`) of a record that temperature does not move; `gains` along the lags.
 double chance_of_gain(double gain, std::span<const double> gains, int order) {
   double variation = 0;
-  for (std::size_t i = 1; i < gains.size(); ++i)
-    variation += std::abs(std::sqrt(gains[i]) - std::sqrt(gains[i - 1]));
+  for (std::size_t i = 1; i < gains.size(); ++i) variation += std::abs(std::sqrt(gains[i]) - std::sqrt(gains[i - 1]));
   const double half = 0.5 * order;
-  const double rate =
-      std::exp((half - 0.5) * std::log(gain) - gain / 2 - half * std::log(2.0) - std::lgamma(half));
+  const double rate = std::exp((half - 0.5) * std::log(gain) - gain / 2 - half * std::log(2.0) - std::lgamma(half));
   return gain > 0 ? std::min(1.0, chi_square_tail(gain, order) + variation * rate) : 1;
 }
 
@@ -220,9 +207,7 @@ NoiseBeside noise_beside(const EventSeries& left) {
 }
 
 /// What the temperature does at each point of the series.
-std::vector<double> effect_at_points(const TemperatureSeries& temperature,
-                                     double lag,
-                                     const Eigen::VectorXd& size) {
+std::vector<double> effect_at_points(const TemperatureSeries& temperature, double lag, const Eigen::VectorXd& size) {
   std::vector<double> value = lagged(temperature.value, lag);
   double mean = 0;
   for (double& x : value) {
@@ -235,9 +220,7 @@ std::vector<double> effect_at_points(const TemperatureSeries& temperature,
   return value;
 }
 
-EventSeries series_without(const TemperatureSearch& search,
-                           double lag,
-                           const Eigen::VectorXd& size) {
+EventSeries series_without(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size) {
   EventSeries left = search.series;
   const std::vector<double> effect = effect_at_points(search.temperature, lag, size);
   for (std::size_t i = 0; i < effect.size(); ++i) left.value[i] -= effect[i];
@@ -254,9 +237,8 @@ struct LagScan {
 LagScan scan_lags(const TemperatureSearch& search, int order, const NoiseBeside& noise) {
   LagScan scan;
   for (const TemperatureColumns& columns : search.columns) {
-    scan.fit.push_back(fit_temperature(std::span(columns).first(static_cast<std::size_t>(order)),
-                                       search.coefficients,
-                                       noise.weight));
+    scan.fit.push_back(
+        fit_temperature(std::span(columns).first(static_cast<std::size_t>(order)), search.coefficients, noise.weight));
     scan.gain.push_back(scan.fit.back().gain);
     if (scan.gain.back() > scan.gain[scan.best]) scan.best = scan.gain.size() - 1;
   }
@@ -294,8 +276,7 @@ std::optional<TemperatureTrial> best_order(const TemperatureSearch& search, doub
     TemperatureTrial trial = try_order(search, order, without);
     p = std::min(p, trial.p * static_cast<double>(kTemperatureOrders));
     const bool passes = trial.p * static_cast<double>(kTemperatureOrders) < kFalseAlarm;
-    const bool gains = !best || trial.gain - best->gain >
-                                    chi_square_upper_quantile(kFalseAlarm, order - best->order);
+    const bool gains = !best || trial.gain - best->gain > chi_square_upper_quantile(kFalseAlarm, order - best->order);
     if (passes && gains) best = std::move(trial);
   }
   return best;
@@ -305,12 +286,10 @@ std::optional<TemperatureTrial> best_order(const TemperatureSearch& search, doub
 double refined_lag(const TemperatureSearch& search, const TemperatureTrial& trial) {
   const std::size_t best = trial.scan.best;
   const auto order = static_cast<std::size_t>(trial.order);
-  double low = search.lag[best > 0 ? best - 1 : 0],
-         high = search.lag[std::min(best + 1, search.lag.size() - 1)];
+  double low = search.lag[best > 0 ? best - 1 : 0], high = search.lag[std::min(best + 1, search.lag.size() - 1)];
   const auto gain = [&](double lag) {
     const TemperatureColumns columns = temperature_columns(search.temperature, lag);
-    return fit_temperature(std::span(columns).first(order), search.coefficients, trial.noise.weight)
-        .gain;
+    return fit_temperature(std::span(columns).first(order), search.coefficients, trial.noise.weight).gain;
   };
   for (int i = 0; i < 8; ++i) {
     const double third = (high - low) / 3;
@@ -324,47 +303,37 @@ double refined_lag(const TemperatureSearch& search, const TemperatureTrial& tria
 }
 
 /// x_k' C x_k / E c_k^2 of the columns and of the change with the lag: degrees of freedom that each coefficient has lost.
-std::vector<double> leverage_of(const TemperatureSearch& search,
-                                double lag,
-                                const Eigen::VectorXd& size,
+std::vector<double> leverage_of(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size,
                                 std::span<const double> weight) {
   const TemperatureColumns at = temperature_columns(search.temperature, lag);
   std::vector<std::vector<double>> columns(at.begin(), at.begin() + size.size());
   if (lag > 0) {
     constexpr double kApart = 1.05;
-    const std::vector<double> more =
-        transformed(effect_at_points(search.temperature, lag * kApart, size));
-    std::vector<double> change =
-        transformed(effect_at_points(search.temperature, lag / kApart, size));
+    const std::vector<double> more = transformed(effect_at_points(search.temperature, lag * kApart, size));
+    std::vector<double> change = transformed(effect_at_points(search.temperature, lag / kApart, size));
     for (std::size_t k = 0; k < change.size(); ++k) change[k] -= more[k];
     columns.push_back(std::move(change));
   }
-  const Eigen::MatrixXd covariance =
-      fit_temperature(columns, search.coefficients, weight).covariance;
+  const Eigen::MatrixXd covariance = fit_temperature(columns, search.coefficients, weight).covariance;
   std::vector<double> leverage(search.coefficients.size());
   Eigen::VectorXd row(static_cast<Eigen::Index>(columns.size()));
   for (std::size_t k = 0; k < leverage.size(); ++k) {
-    for (std::size_t j = 0; j < columns.size(); ++j)
-      row(static_cast<Eigen::Index>(j)) = columns[j][k];
+    for (std::size_t j = 0; j < columns.size(); ++j) row(static_cast<Eigen::Index>(j)) = columns[j][k];
     leverage[k] = std::clamp(row.dot(covariance * row) * weight[k], 0.0, 1.0);
   }
   return leverage;
 }
 
 /// The noise beside an effect whose degrees of freedom are counted: what the columns took from a coefficient is missing in the rest.
-NoiseBeside noise_beside_counted(const TemperatureSearch& search,
-                                 double lag,
-                                 const Eigen::VectorXd& size,
+NoiseBeside noise_beside_counted(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size,
                                  std::span<const double> weight) {
   constexpr double kMostTaken = 0.9;
   EventSeries left = series_without(search, lag, size);
-  const std::vector<double> taken = leverage_of(search, lag, size, weight),
-                            rest = transformed(left.value);
+  const std::vector<double> taken = leverage_of(search, lag, size, weight), rest = transformed(left.value);
   CosineSums back(left.value.size());
   const std::span<double> c = back.input();
   c[0] = 0;
-  for (std::size_t k = 0; k < rest.size(); ++k)
-    c[k + 1] = rest[k] / std::sqrt(1 - std::min(taken[k], kMostTaken));
+  for (std::size_t k = 0; k < rest.size(); ++k) c[k + 1] = rest[k] / std::sqrt(1 - std::min(taken[k], kMostTaken));
   const std::span<const double> value = back.transform();
   left.value.assign(value.begin(), value.end());
   return noise_beside(left);
@@ -382,10 +351,7 @@ double effective_coefficients(const std::vector<double>& column, std::span<const
 }
 
 /// Lags of the profile likelihood's interval, and that of the first coefficient over them.
-void bound_effect(const TemperatureSearch& search,
-                  const LagScan& scan,
-                  double drop,
-                  TemperatureEffect& effect) {
+void bound_effect(const TemperatureSearch& search, const LagScan& scan, double drop, TemperatureEffect& effect) {
   const double most = scan.gain[scan.best];
   const double step_s = search.series.step_s;
   effect.lag_ci95 = {search.lag.back() * step_s, 0};
@@ -403,13 +369,10 @@ void bound_effect(const TemperatureSearch& search,
     effect.ci95.low = std::min(effect.ci95.low, fit.size(0) - half);
     effect.ci95.high = std::max(effect.ci95.high, fit.size(0) + half);
   }
-  effect.ci95 = {effect.ci95.low / search.temperature.scale,
-                 effect.ci95.high / search.temperature.scale};
+  effect.ci95 = {effect.ci95.low / search.temperature.scale, effect.ci95.high / search.temperature.scale};
 }
 
-void describe_effect(const TemperatureSearch& search,
-                     const TemperatureTrial& trial,
-                     TemperatureEffect& effect) {
+void describe_effect(const TemperatureSearch& search, const TemperatureTrial& trial, TemperatureEffect& effect) {
   const double lag = refined_lag(search, trial), scale = search.temperature.scale;
   const TemperatureColumns columns = temperature_columns(search.temperature, lag);
   const auto used = std::span(columns).first(static_cast<std::size_t>(trial.order));
@@ -441,18 +404,15 @@ void check_temperature(const TemperatureRecord& temperature, double rate_hz) {
   temperature_series(temperature, every, rate_hz);
 }
 
-TemperatureEffect find_temperature_effect(std::span<const double> record,
-                                          double rate_hz,
+TemperatureEffect find_temperature_effect(std::span<const double> record, double rate_hz,
                                           const TemperatureRecord& temperature) {
   const EventSeries series = event_series(record, rate_hz);
   TemperatureSearch search{series, temperature_series(temperature, series, rate_hz), {}, {}, {}};
   search.coefficients = transformed(series.value);
   const double n = static_cast<double>(series.value.size());
   search.lag.push_back(0);
-  for (double lag = std::max(1.0, n / kShortestLag); lag <= n / kLongestLag; lag *= kLagStep)
-    search.lag.push_back(lag);
-  for (const double lag : search.lag)
-    search.columns.push_back(temperature_columns(search.temperature, lag));
+  for (double lag = std::max(1.0, n / kShortestLag); lag <= n / kLongestLag; lag *= kLagStep) search.lag.push_back(lag);
+  for (const double lag : search.lag) search.columns.push_back(temperature_columns(search.temperature, lag));
 
   TemperatureEffect effect;
   effect.channel = temperature.name;
@@ -466,14 +426,11 @@ TemperatureEffect find_temperature_effect(std::span<const double> record,
   return effect;
 }
 
-void add_temperature_effect(const TemperatureEffect& effect,
-                            double sign,
-                            std::span<double> record) {
+void add_temperature_effect(const TemperatureEffect& effect, double sign, std::span<double> record) {
   if (effect.value.empty()) return;
   const double last = static_cast<double>(effect.value.size() - 1);
   for (std::size_t t = 0; t < record.size(); ++t) {
-    const double at =
-        std::clamp((static_cast<double>(t) - effect.first) / effect.per_point, 0.0, last);
+    const double at = std::clamp((static_cast<double>(t) - effect.first) / effect.per_point, 0.0, last);
     const auto i = static_cast<std::size_t>(std::min(std::floor(at), std::max(0.0, last - 1)));
     const double share = at - static_cast<double>(i);
     const double next = effect.value[std::min(i + 1, effect.value.size() - 1)];
@@ -486,33 +443,20 @@ std::string temperature_sentence(const TemperatureEffect& effect, std::string_vi
     return fmt::format(
         "It does not move with temperature ({}, {} to {} {}) beyond chance (p = {}): "
         "nothing was taken out.",
-        effect.channel,
-        number_text(effect.range.low, 4),
-        number_text(effect.range.high, 4),
-        effect.unit,
+        effect.channel, number_text(effect.range.low, 4), number_text(effect.range.high, 4), effect.unit,
         number_text(effect.p, 2));
   const double relative = effect.sd / std::max(std::abs(effect.coefficient[0]), 1e-300);
   std::string lag = "no lag";
   if (effect.lag_s > 0)
-    lag = fmt::format(
-        "a lag of {} ({} to {})",
-        duration_text(effect.lag_s),
-        duration_text(effect.lag_ci95.low),
-        effect.lag_ci95.high > 0 ? duration_text(effect.lag_ci95.high) : std::string("any length"));
+    lag = fmt::format("a lag of {} ({} to {})", duration_text(effect.lag_s), duration_text(effect.lag_ci95.low),
+                      effect.lag_ci95.high > 0 ? duration_text(effect.lag_ci95.high) : std::string("any length"));
   std::string text = fmt::format(
       "It moves with temperature ({}) by {} [{}, {}] {}/{} at {} {}, with {} and order {}; this "
       "was "
       "taken out before the noise was fitted.",
-      effect.channel,
-      number_text(effect.coefficient[0], digits_for(relative)),
-      number_text(effect.ci95.low, digits_for(relative)),
-      number_text(effect.ci95.high, digits_for(relative)),
-      unit.empty() ? "U" : unit,
-      "K",
-      number_text(effect.mean, 4),
-      effect.unit,
-      lag,
-      effect.order);
+      effect.channel, number_text(effect.coefficient[0], digits_for(relative)),
+      number_text(effect.ci95.low, digits_for(relative)), number_text(effect.ci95.high, digits_for(relative)),
+      unit.empty() ? "U" : unit, "K", number_text(effect.mean, 4), effect.unit, lag, effect.order);
   if (effect.like_drift)
     text +=
         " A straight drift or a warm-up explains the record nearly as well: the record cannot tell "

@@ -40,7 +40,7 @@ struct TemperatureEffect {
   double gain = 0;    ///< 2 ln L that it brings
   double rms = 0;     ///< of what was taken out
   bool like_drift =
-      false;  ///< a straight drift or a warm-up explains the record nearly as well: the record cannot tell
+      false;             ///< a straight drift or a warm-up explains the record nearly as well: the record cannot tell
   Coefficients without;  ///< of the noise when temperature is left in
 
   /// The removed effect, about its mean: point i is at sample first + i * per_point.
@@ -55,8 +55,7 @@ void check_temperature(const TemperatureRecord& temperature, double rate_hz);
 
 /// Tested at 1 %: where temperature moves the record by no more than chance, `order` is 0. Throws as `check_temperature` does, of the
 /// stretch where the record has samples.
-TemperatureEffect find_temperature_effect(std::span<const double> record,
-                                          double rate_hz,
+TemperatureEffect find_temperature_effect(std::span<const double> record, double rate_hz,
                                           const TemperatureRecord& temperature);
 
 /// Takes it out of a record at its full rate (sign -1), or puts it in (+1).

@@ -28,13 +28,10 @@ constexpr std::size_t kMostSeen = std::size_t{1} << 16U;
 std::optional<std::string> log_as_seen(const std::string& log) {
   struct stat status {};
   if (::stat(log.c_str(), &status) != 0) return std::nullopt;
-  return fmt::format(
-      "{}\n{} {}.{:09}\n", log, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+  return fmt::format("{}\n{} {}.{:09}\n", log, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
-bool needs_log_seen(const FleetUnit& unit) {
-  return unit.stated || unit.kind == UnitKind::stretch;
-}
+bool needs_log_seen(const FleetUnit& unit) { return unit.stated || unit.kind == UnitKind::stretch; }
 
 void write_log_seen(const fs::path& folder, const std::string& seen) {
   write_whole_file((folder / kSeenFile).string(), seen, true);
@@ -57,13 +54,9 @@ namespace fs = std::filesystem;
 
 std::string absolute_path(const std::string& named, const fs::path& folder) {
   if (named.empty()) return "";
-  return (fs::path(named).is_absolute() ? fs::path(named) : folder / named)
-      .lexically_normal()
-      .string();
+  return (fs::path(named).is_absolute() ? fs::path(named) : folder / named).lexically_normal().string();
 }
 
-fs::path folder_of_file(const std::string& path) {
-  return fs::absolute(path).parent_path();
-}
+fs::path folder_of_file(const std::string& path) { return fs::absolute(path).parent_path(); }
 
 }  // namespace libchar

@@ -30,8 +30,7 @@ constexpr std::size_t kMostRecord = std::size_t{64} << 20U;
 /// ".working-ID-PLACE-PROCESS-NUMBER"
 std::string working_name(const std::string& id) {
   static std::atomic<int> number{0};
-  return fmt::format(
-      "{}{}-{}-{}-{}", kWorking, id, detail::place_of_process(), ::getpid(), number++);
+  return fmt::format("{}{}-{}-{}-{}", kWorking, id, detail::place_of_process(), ::getpid(), number++);
 }
 
 /// Of a worker of this place that is no more.
@@ -62,8 +61,7 @@ bool same_log(const fs::path& mine, const fs::path& published) {
   constexpr std::size_t kMost = std::size_t{1} << 16U;
   if (!fs::exists(mine / kSeenFile)) return true;
   return fs::exists(published / kSeenFile) &&
-         file_text((mine / kSeenFile).string(), kMost) ==
-             file_text((published / kSeenFile).string(), kMost);
+         file_text((mine / kSeenFile).string(), kMost) == file_text((published / kSeenFile).string(), kMost);
 }
 
 [[noreturn]] void damaged(const fs::path& file, const std::string& why) {
@@ -83,14 +81,13 @@ std::string checked_text(const fs::path& file, std::size_t most) {
   return text;
 }
 
-std::vector<std::string> folders_of_results(
-    const fs::path& fleet, const std::function<bool(const std::string& name)>& wanted) {
+std::vector<std::string> folders_of_results(const fs::path& fleet,
+                                            const std::function<bool(const std::string& name)>& wanted) {
   std::vector<std::string> out;
   std::error_code ignored;
   for (const auto& group : fs::directory_iterator(fleet / "results", ignored))
     for (const auto& entry : fs::directory_iterator(group.path(), ignored))
-      if (std::string name = entry.path().filename().string(); wanted(name))
-        out.push_back(std::move(name));
+      if (std::string name = entry.path().filename().string(); wanted(name)) out.push_back(std::move(name));
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -98,8 +95,7 @@ std::vector<std::string> folders_of_results(
 }  // namespace
 
 void refuse_unwritable(const fs::path& path, int number) {
-  throw output_error("E0790", path.string())
-      .says("cannot be written: " + std::generic_category().message(number));
+  throw output_error("E0790", path.string()).says("cannot be written: " + std::generic_category().message(number));
 }
 
 void make_fleet_folder(const fs::path& folder) {
@@ -108,9 +104,7 @@ void make_fleet_folder(const fs::path& folder) {
   if (error) refuse_unwritable(folder, error.value());
 }
 
-std::string result_folder(const std::string& id) {
-  return id.substr(0, 2) + "/" + id;
-}
+std::string result_folder(const std::string& id) { return id.substr(0, 2) + "/" + id; }
 
 ResultFolder::ResultFolder(const fs::path& fleet, const std::string& id) : fleet_(fleet), id_(id) {
   const fs::path parent = (fleet / "results" / result_folder(id)).parent_path();
@@ -135,12 +129,9 @@ bool ResultFolder::publish() {
       return true;
     }
     if (errno != EEXIST && errno != ENOTEMPTY) refuse_unwritable(final_name, errno);
-    if (has_result(fleet_, id_, fs::exists(path_ / state_file(0))) && same_log(path_, final_name))
-      return false;
-    const fs::path aside =
-        final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
-    if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT)
-      refuse_unwritable(final_name, errno);
+    if (has_result(fleet_, id_, fs::exists(path_ / state_file(0))) && same_log(path_, final_name)) return false;
+    const fs::path aside = final_name.parent_path() / (std::string(kDamaged) + working_name(id_).substr(1));
+    if (::rename(final_name.c_str(), aside.c_str()) != 0 && errno != ENOENT) refuse_unwritable(final_name, errno);
   }
   return false;
 }
@@ -157,9 +148,7 @@ std::optional<DeviceRecord> stored_record(const fs::path& fleet, const std::stri
   return parse_device_record(checked_text(file, kMostRecord), file.string());
 }
 
-std::string state_file(std::size_t channel) {
-  return fmt::format("state-{}.bin", channel + 1);
-}
+std::string state_file(std::size_t channel) { return fmt::format("state-{}.bin", channel + 1); }
 
 std::vector<std::string> stored_states(const fs::path& fleet, const std::string& id) {
   const fs::path folder = fleet / "results" / result_folder(id);
@@ -186,8 +175,7 @@ std::vector<std::string> published(const fs::path& fleet) {
 }
 
 std::vector<std::string> unpublished(const fs::path& fleet) {
-  return folders_of_results(fleet,
-                            [](const std::string& name) { return name.starts_with(kWorking); });
+  return folders_of_results(fleet, [](const std::string& name) { return name.starts_with(kWorking); });
 }
 
 }  // namespace libchar

@@ -45,8 +45,7 @@ class ResultFolder {
 void write_record(const std::filesystem::path& folder, const DeviceRecord& record);
 
 /// Nothing where there is no result. Throws Error(input) for one that is damaged, by name.
-std::optional<DeviceRecord> stored_record(const std::filesystem::path& fleet,
-                                          const std::string& id);
+std::optional<DeviceRecord> stored_record(const std::filesystem::path& fleet, const std::string& id);
 
 /// The file with the partial state of a channel (from 0) of a stretch, in the folder of its result.
 std::string state_file(std::size_t channel);

@@ -18,9 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 Recording white_record(std::size_t samples) {
   Recording recording;
@@ -100,9 +98,7 @@ double binary_byte_seconds() {
   return 1.5 * seconds_since(start) / static_cast<double>(bytes.size());
 }
 
-bool is_text(const std::string& format) {
-  return format == "csv";
-}
+bool is_text(const std::string& format) { return format == "csv"; }
 
 }  // namespace
 
@@ -118,12 +114,11 @@ CostModel measured_cost() {
 }
 
 UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
-  constexpr double kReports = 0.004;  // s a channel: page, tables, model, and the disk
-  constexpr double kProgram = 64e6;   // bytes: program and libraries
+  constexpr double kReports = 0.004;                 // s a channel: page, tables, model, and the disk
+  constexpr double kProgram = 64e6;                  // bytes: program and libraries
   constexpr double kStageBytes = 30e6, kAtOnce = 8;  // of a channel of many leaves, in one pass
-  constexpr double kStretchBytes =
-      70e6;  // of the channels of a pass, or of a state and the tree that it comes to
-  constexpr double kTimesKept = 4;  // the record, its transform, what is written of it
+  constexpr double kStretchBytes = 70e6;  // of the channels of a pass, or of a state and the tree that it comes to
+  constexpr double kTimesKept = 4;        // the record, its transform, what is written of it
   const double chosen = unit.options->reading.channels.empty()
                             ? static_cast<double>(head.channels.size())
                             : static_cast<double>(unit.options->reading.channels.size());
@@ -135,13 +130,11 @@ UnitCost CostModel::of(const FleetUnit& unit, const LogInfo& head) const {
   }
   UnitCost out;
   const double samples = unit.kind == UnitKind::join ? 0 : rows * chosen;
-  out.seconds = fixed_s * chosen + sample_s * samples +
-                bytes * (is_text(head.format) ? text_byte_s : binary_byte_s) +
+  out.seconds = fixed_s * chosen + sample_s * samples + bytes * (is_text(head.format) ? text_byte_s : binary_byte_s) +
                 (unit.reports && unit.kind != UnitKind::stretch ? kReports * chosen : 0);
   const double kept = 8 * rows * (chosen + kTimesKept);
-  const double all = what_needs_all_samples(*unit.options).empty()
-                         ? 0
-                         : 1.5 * static_cast<double>(unit.options->memory_bytes);
+  const double all =
+      what_needs_all_samples(*unit.options).empty() ? 0 : 1.5 * static_cast<double>(unit.options->memory_bytes);
   const double limit = all + kStageBytes * std::min(chosen, kAtOnce);
   const double needed = unit.kind == UnitKind::log ? std::min(kept, limit) : kStretchBytes;
   out.memory_bytes = static_cast<std::uint64_t>(kProgram + needed);

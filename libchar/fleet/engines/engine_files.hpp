@@ -6,16 +6,13 @@
 namespace libchar {
 
 /// Two job arrays, the second (joins) behind the first; a job that fails is put into the queue again.
-std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs,
-                                    const std::filesystem::path& folder,
+std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                     const JobOptions& options);
 /// A rule with the jobs as its wildcards; a job is done when its file jobs/NAME.done is there.
-std::vector<OutputFile> snakemake_files(const std::vector<FleetJob>& jobs,
-                                        const std::filesystem::path& folder,
+std::vector<OutputFile> snakemake_files(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                         const JobOptions& options);
 /// A list of commands, and the call of parallel with a log of the jobs that are done.
-std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
-                                       const std::filesystem::path& folder,
+std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                        const JobOptions& options);
 
 /// `options.program` as a shell takes it: the path of a program that is there is one word, whatever

@@ -22,10 +22,8 @@ const std::vector<Engine>& engines() {
 JobLimits limits_of(const FleetJob& job, const JobOptions& options) {
   constexpr double kStart_s = 60;      // a node that loads the program over a network
   constexpr double kMoreMemory = 1.5;  // a plan is no measurement
-  return {
-      static_cast<std::uint64_t>(
-          std::ceil(kMoreMemory * static_cast<double>(job.cost.memory_bytes) / 1e6)),
-      static_cast<std::uint64_t>(std::ceil((kStart_s + options.slower * job.cost.seconds) / 60))};
+  return {static_cast<std::uint64_t>(std::ceil(kMoreMemory * static_cast<double>(job.cost.memory_bytes) / 1e6)),
+          static_cast<std::uint64_t>(std::ceil((kStart_s + options.slower * job.cost.seconds) / 60))};
 }
 
 JobLimits limits_of(const std::vector<FleetJob>& jobs, const JobOptions& options) {
@@ -42,12 +40,10 @@ namespace fs = std::filesystem;
 
 std::string command_of(const JobOptions& options) {
   const std::string& program = options.program;
-  const bool one_line = std::none_of(
-      program.begin(), program.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
+  const bool one_line =
+      std::none_of(program.begin(), program.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
   if (program.find_first_not_of(" \t") == std::string::npos || !one_line)
-    throw usage_error("E0205", "`program`")
-        .says("expected a program or a command of one line")
-        .got(program);
+    throw usage_error("E0205", "`program`").says("expected a program or a command of one line").got(program);
   std::error_code ignored;
   // Without a slash a shell seeks it in its PATH, not here.
   const bool path = program.find('/') != std::string::npos;
@@ -56,13 +52,11 @@ std::string command_of(const JobOptions& options) {
 }
 
 std::string run_job(const JobOptions& options, const std::string& job) {
-  return fmt::format(
-      "{} fleet run --quiet --threads 1 $(cat \"jobs/{}.txt\")\n", command_of(options), job);
+  return fmt::format("{} fleet run --quiet --threads 1 $(cat \"jobs/{}.txt\")\n", command_of(options), job);
 }
 
 OutputFile job_script(const fs::path& file, const JobOptions& options) {
-  return {file.string(),
-          "#!/bin/sh\n# Runs the units of one job, by its name.\n" + run_job(options, "$1")};
+  return {file.string(), "#!/bin/sh\n# Runs the units of one job, by its name.\n" + run_job(options, "$1")};
 }
 
 }  // namespace libchar

@@ -9,17 +9,13 @@ constexpr const char* kParallelJob = "fleet.parallel.job.sh";
 
 std::string call(const std::string& list, const JobOptions& options) {
   return fmt::format("parallel --wd \"$PWD\" --jobs {} --retries {} {} \"$@\" sh {} < {}\n",
-                     options.at_once > 0 ? std::to_string(options.at_once) : "100%",
-                     options.retries + 1,
-                     "--memfree 64M",
-                     kParallelJob,
-                     list);
+                     options.at_once > 0 ? std::to_string(options.at_once) : "100%", options.retries + 1,
+                     "--memfree 64M", kParallelJob, list);
 }
 
 }  // namespace
 
-std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs,
-                                       const std::filesystem::path& folder,
+std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                        const JobOptions& options) {
   std::string first, joins;
   for (const FleetJob& job : jobs) (job.after.empty() ? first : joins) += job.name + "\n";

@@ -43,33 +43,23 @@ if [ "$code" -ne 0 ] && [ "$code" -ne 3 ] && [ "${{SLURM_RESTART_COUNT:-0}}" -lt
 fi
 exit "$code"
 )",
-      options.retries,
-      run_job(options, "$job"));
+      options.retries, run_job(options, "$job"));
 }
 
 /// "id=$(sbatch …)" of an array, behind those in `after`.
-std::string submit(const Array& array,
-                   const std::string& list,
-                   const JobOptions& options,
-                   bool after) {
-  const std::string limit =
-      options.at_once > 0 ? fmt::format("%{}", options.at_once) : std::string();
+std::string submit(const Array& array, const std::string& list, const JobOptions& options, bool after) {
+  const std::string limit = options.at_once > 0 ? fmt::format("%{}", options.at_once) : std::string();
   return fmt::format(
       "ids=\"$ids:$(sbatch --parsable --job-name=fleet --array=1-{}{} --mem={}M --time={} "
       "--requeue {}"
       "--output=jobs/%A_%a.log \"$@\" fleet.slurm.element.sh {})\"\n",
-      array.names.size(),
-      limit,
-      array.limits.memory_mb,
-      array.limits.minutes,
-      after ? "--dependency=\"afterany$before\" " : "",
-      list);
+      array.names.size(), limit, array.limits.memory_mb, array.limits.minutes,
+      after ? "--dependency=\"afterany$before\" " : "", list);
 }
 
 }  // namespace
 
-std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs,
-                                    const fs::path& folder,
+std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs, const fs::path& folder,
                                     const JobOptions& options) {
   std::vector<FleetJob> first, joins;
   for (const FleetJob& job : jobs) (job.after.empty() ? first : joins).push_back(job);
@@ -81,8 +71,7 @@ std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs,
   const auto add = [&](const std::vector<FleetJob>& some, bool after) {
     for (const Array& array : arrays_of(some, options)) {
       const std::string list = fmt::format("jobs/array-{}.txt", ++number);
-      files.push_back(
-          {(folder / list).string(), fmt::format("{}\n", fmt::join(array.names, "\n"))});
+      files.push_back({(folder / list).string(), fmt::format("{}\n", fmt::join(array.names, "\n"))});
       script += submit(array, list, options, after);
     }
   };

@@ -30,8 +30,7 @@ Estimate InverseVariance::step(const Sample& y) const {
 Mean::Mean(const Array& array) : levels_(array.noise_levels), channels_(array.channels) {
   const double n = static_cast<double>(channels_);
   variance_ = levels_.size() == channels_ ? levels_.sum() / (n * n) : std::nan("");
-  if (!array.one_common_input())
-    general_ = std::make_unique<GeneralMean>(array.h(), Eigen::VectorXd::Ones(channels_));
+  if (!array.one_common_input()) general_ = std::make_unique<GeneralMean>(array.h(), Eigen::VectorXd::Ones(channels_));
 }
 
 Estimate Mean::step(const Sample& y) const {
@@ -52,8 +51,7 @@ Estimate Mean::unweighted(const Sample& y) const {
   }
   if (i < channels_) a += v[i] - base;
   const double sum = a + b;
-  if (std::abs(sum) <= kLargestSample)
-    return Estimate::scalar(base + sum / static_cast<double>(channels_), variance_);
+  if (std::abs(sum) <= kLargestSample) return Estimate::scalar(base + sum / static_cast<double>(channels_), variance_);
   return of_present(y);
 }
 

@@ -23,9 +23,7 @@ struct InverseVariance {
       .needs = {.noise_levels = true, .observation_matrix = true, .accepts_missing = true}};
   explicit InverseVariance(const Array& array);
   Estimate step(const Sample& y) const;
-  Eigen::MatrixXd weights() const {
-    return general_ ? general_->weights() : Eigen::MatrixXd(weights_);
-  }
+  Eigen::MatrixXd weights() const { return general_ ? general_->weights() : Eigen::MatrixXd(weights_); }
   Eigen::VectorXd variances() const { return levels_; }
 
  private:
@@ -38,12 +36,11 @@ struct InverseVariance {
 // that differ, ordinary least squares: X = (H'H)^-1 H' y.
 
 struct Mean {
-  static constexpr Description description{
-      .name = "mean",
-      .title = "Mean (ordinary least squares for several inputs)",
-      .source = "[RV 3.4]",
-      .complexity = "O(n r)",
-      .needs = {.observation_matrix = true, .accepts_missing = true}};
+  static constexpr Description description{.name = "mean",
+                                           .title = "Mean (ordinary least squares for several inputs)",
+                                           .source = "[RV 3.4]",
+                                           .complexity = "O(n r)",
+                                           .needs = {.observation_matrix = true, .accepts_missing = true}};
   explicit Mean(const Array& array);
   Estimate step(const Sample& y) const;
   Eigen::MatrixXd weights() const;

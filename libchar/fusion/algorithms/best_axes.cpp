@@ -17,9 +17,7 @@ constexpr double kSingular = 1e-9;  // a pivot relative to its row
 constexpr int kMostSweeps = 64;
 constexpr double kBetter = 1 - 1e-12;
 
-bool counts(double mean_square) {
-  return mean_square > 0 && std::isfinite(mean_square);
-}
+bool counts(double mean_square) { return mean_square > 0 && std::isfinite(mean_square); }
 
 /// A^-1 by Gauss and Jordan with pivots among the rows; false: singular.
 bool inverted(Square a, Square& out) {
@@ -47,8 +45,7 @@ bool inverted(Square a, Square& out) {
 
 class Choice {
  public:
-  Choice(const Eigen::MatrixXd& h, const Eigen::VectorXd& mean_squares)
-      : h_(h), d_(mean_squares), r_(h.cols()) {}
+  Choice(const Eigen::MatrixXd& h, const Eigen::VectorXd& mean_squares) : h_(h), d_(mean_squares), r_(h.cols()) {}
 
   ChosenAxes best() {
     ChosenAxes out;
@@ -62,8 +59,7 @@ class Choice {
     out.determined = solve(out.inverse);
     for (Index j = 0; j < r_; ++j) {
       out.variance[j] = 0;
-      for (Index k = 0; k < r_; ++k)
-        out.variance[j] += out.inverse(j, k) * out.inverse(j, k) * d_[channel(k)];
+      for (Index k = 0; k < r_; ++k) out.variance[j] += out.inverse(j, k) * out.inverse(j, k) * d_[channel(k)];
     }
     return out;
   }
@@ -165,8 +161,7 @@ void BestAxes::learn(const Sample& y, const Sample& truth) {
 }
 
 void BestAxes::finish_learning() {
-  for (Eigen::Index i = 0; i < squares_.size(); ++i)
-    squares_[i] = counts_[i] > 0 ? squares_[i] / counts_[i] : -1;
+  for (Eigen::Index i = 0; i < squares_.size(); ++i) squares_[i] = counts_[i] > 0 ? squares_[i] / counts_[i] : -1;
   // A channel without any error is as good as one of a thousand millionth of the largest.
   const double least = 1e-18 * squares_.maxCoeff();
   for (double& square : squares_)
@@ -177,9 +172,7 @@ void BestAxes::finish_learning() {
         "best-axes: no channels with samples in the learning window determine the inputs");
 }
 
-void BestAxes::choose_all() {
-  now_ = all_ = choose_axes(h_, squares_);
-}
+void BestAxes::choose_all() { now_ = all_ = choose_axes(h_, squares_); }
 
 Estimate BestAxes::step(const Sample& y) {
   bool same = true, whole = true;

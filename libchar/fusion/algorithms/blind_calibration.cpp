@@ -47,10 +47,8 @@ Estimate BlindCalibration::step(const Sample& y) {
   const Eigen::Index n = y.size();
   const double base = solved_ ? centre_ : y[0] - origin_;
   double x = 0;
-  for (Eigen::Index i = 0; i < n; ++i)
-    x += inverse_gain_[i] * ((y[i] - origin_) - (solved_ ? solved_mean_[i] : base));
-  return Estimate::scalar(origin_ + (base + x / static_cast<double>(n)),
-                          std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index i = 0; i < n; ++i) x += inverse_gain_[i] * ((y[i] - origin_) - (solved_ ? solved_mean_[i] : base));
+  return Estimate::scalar(origin_ + (base + x / static_cast<double>(n)), std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Welford's update of mean and products.
@@ -94,8 +92,7 @@ bool BlindCalibration::solve_gram() {
       conditions_(i, j) = projector * squares_(std::max(i, j), std::min(i, j)) / scale;
     }
   for (Eigen::Index i = 0; i < n; ++i)
-    conditions_(i, n) = conditions_(n, i) =
-        gauge_ == 0 ? 1 / static_cast<double>(n) : (i == gauge_ - 1 ? 1.0 : 0.0);
+    conditions_(i, n) = conditions_(n, i) = gauge_ == 0 ? 1 / static_cast<double>(n) : (i == gauge_ - 1 ? 1.0 : 0.0);
   elimination_.compute(conditions_);
   if (!elimination_.isInvertible()) return false;
   // P A Q = L U by hand, since Eigen's solve() asks the heap for its intermediate vector.
@@ -104,8 +101,7 @@ bool BlindCalibration::solve_gram() {
   elimination_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(solution_);
   elimination_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
   for (Eigen::Index k = 0; k <= n; ++k)
-    if (const Eigen::Index i = elimination_.permutationQ().indices()[k]; i < n)
-      inverse_gain_[i] = solution_[k];
+    if (const Eigen::Index i = elimination_.permutationQ().indices()[k]; i < n) inverse_gain_[i] = solution_[k];
   return true;
 }
 
@@ -121,19 +117,14 @@ void BlindCalibration::set_offsets() {
   double gains = 0, means = 0;
   for (const double inverse : inverse_gain_) gains += 1 / inverse;
   for (const double mean : mean_) means += origin_ + mean;
-  for (Eigen::Index i = 0; i < mean_.size(); ++i)
-    offset_[i] = (origin_ + mean_[i]) - means / gains / inverse_gain_[i];
+  for (Eigen::Index i = 0; i < mean_.size(); ++i) offset_[i] = (origin_ + mean_[i]) - means / gains / inverse_gain_[i];
 }
 
 void BlindCalibration::remarks(Findings& warnings) const {
   if (!solved_)
-    warnings.add(
-        "not_calibrated",
-        "blind-calibration found no common movement of the channels: it was the plain mean");
+    warnings.add("not_calibrated", "blind-calibration found no common movement of the channels: it was the plain mean");
   if (!noise_removal_ && mean_.size() < 3)
-    warnings.add(
-        "noise_bias",
-        "blind-calibration of two channels without noise levels takes their noise for gain");
+    warnings.add("noise_bias", "blind-calibration of two channels without noise levels takes their noise for gain");
 }
 
 BlindCalibrationPublished::BlindCalibrationPublished(const Array& array, const Settings& settings)
@@ -153,8 +144,7 @@ Estimate BlindCalibrationPublished::step(const Sample& y) {
   double x = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double ratio = reference / (y[i] - mean_[i]);
-    if (i != reference_ && std::isfinite(ratio))
-      inverse_gain_[i] = gamma_ * inverse_gain_[i] + (1 - gamma_) * ratio;
+    if (i != reference_ && std::isfinite(ratio)) inverse_gain_[i] = gamma_ * inverse_gain_[i] + (1 - gamma_) * ratio;
     offset_[i] = mean_[i] - centre;
     x += inverse_gain_[i] * (y[i] - offset_[i]);
   }

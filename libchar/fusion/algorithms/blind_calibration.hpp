@@ -29,27 +29,14 @@
 namespace libchar::fusion {
 
 struct BlindCalibration {
-  static constexpr Description description{
-      .name = "blind-calibration",
-      .title = "Blind calibration, then the mean",
-      .source = "[RV 3.5]; Balzano & Nowak 2007",
-      .complexity = "O(n^2)",
-      .needs = {.min_channels = 2, .max_channels = kMostPaired}};
+  static constexpr Description description{.name = "blind-calibration",
+                                           .title = "Blind calibration, then the mean",
+                                           .source = "[RV 3.5]; Balzano & Nowak 2007",
+                                           .complexity = "O(n^2)",
+                                           .needs = {.min_channels = 2, .max_channels = kMostPaired}};
   static constexpr std::array options{
-      Option{"gauge",
-             "",
-             0,
-             0,
-             1e6,
-             "0: mean of the inverse gains is one; k: channel k (from 1) has gain one",
-             true},
-      Option{"noise_removal",
-             "",
-             1,
-             0,
-             1,
-             "1: the noise is taken off the diagonal of the covariance",
-             true}};
+      Option{"gauge", "", 0, 0, 1e6, "0: mean of the inverse gains is one; k: channel k (from 1) has gain one", true},
+      Option{"noise_removal", "", 1, 0, 1, "1: the noise is taken off the diagonal of the covariance", true}};
   BlindCalibration(const Array& array, const Settings& settings);
   static double cost_ns(const Array& array, const Settings&) {
     const auto n = static_cast<double>(array.channels);
@@ -57,9 +44,7 @@ struct BlindCalibration {
   }
   Estimate step(const Sample& y);
   /// Of the samples as they come: a_i / n.
-  Eigen::MatrixXd weights() const {
-    return inverse_gain_ / static_cast<double>(inverse_gain_.size());
-  }
+  Eigen::MatrixXd weights() const { return inverse_gain_ / static_cast<double>(inverse_gain_.size()); }
   void remarks(Findings& warnings) const;
   /// Solves for what has been seen so far (`step` does so now and then).
   void solve();
@@ -96,19 +81,11 @@ struct BlindCalibrationPublished {
                                            .needs = {.min_channels = 2},
                                            .as_published = true};
   static constexpr std::array options{
-      Option{"reference_channel",
-             "",
-             1,
-             1,
-             1e6,
-             "channel whose gain is taken for one, counted from 1",
-             true},
+      Option{"reference_channel", "", 1, 1, 1e6, "channel whose gain is taken for one, counted from 1", true},
       Option{"gamma", "", 0.999999, 0, 1, "smoothing of the solutions of single instants"}};
   BlindCalibrationPublished(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
-  Eigen::MatrixXd weights() const {
-    return inverse_gain_ / static_cast<double>(inverse_gain_.size());
-  }
+  Eigen::MatrixXd weights() const { return inverse_gain_ / static_cast<double>(inverse_gain_.size()); }
   const Eigen::VectorXd& inverse_gain() const { return inverse_gain_; }
   const Eigen::VectorXd& offset() const { return offset_; }
 

@@ -155,18 +155,14 @@ Estimate BlindGls::step(const Sample& y) {
     information += weight_[i] * gain_[i];
   }
   if (!(information > 0)) return Estimate::none(1);
-  return Estimate::scalar(moments_.origin() + (base + sum / information),
-                          solved_ ? 1 / information : std::nan(""));
+  return Estimate::scalar(moments_.origin() + (base + sum / information), solved_ ? 1 / information : std::nan(""));
 }
 
-Eigen::MatrixXd BlindGls::weights() const {
-  return weight_ / weight_.dot(gain_);
-}
+Eigen::MatrixXd BlindGls::weights() const { return weight_ / weight_.dot(gain_); }
 
 void BlindGls::remarks(Findings& warnings) const {
   if (!solved_)
-    warnings.add("not_calibrated",
-                 "blind-gls found no common movement of the channels: it was the plain mean");
+    warnings.add("not_calibrated", "blind-gls found no common movement of the channels: it was the plain mean");
 }
 
 }  // namespace libchar::fusion

@@ -56,14 +56,8 @@ struct BlindGls {
       .source = "Lawley & Maxwell 1971; Aitken 1936",
       .complexity = "O(n^2)",
       .needs = {.min_channels = 3, .max_channels = kMostPaired, .accepts_missing = true}};
-  static constexpr std::array options{
-      Option{"gauge",
-             "",
-             1,
-             0,
-             1e6,
-             "k: channel k (from 1) has gain one; 0: the mean of the inverse gains is one",
-             true}};
+  static constexpr std::array options{Option{
+      "gauge", "", 1, 0, 1e6, "k: channel k (from 1) has gain one; 0: the mean of the inverse gains is one", true}};
   BlindGls(const Array& array, const Settings& settings);
   static double cost_ns(const Array& array, const Settings&) {
     const auto n = static_cast<double>(array.channels);

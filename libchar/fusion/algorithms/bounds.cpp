@@ -26,10 +26,8 @@ void BestSensor::learn(const Sample& y, const Sample& truth) {
 void BestSensor::finish_learning() {
   // From sums to mean squares; a channel that was never there comes last.
   for (Eigen::Index i = 0; i < squares_.size(); ++i)
-    squares_[i] =
-        counts_[i] > 0 ? squares_[i] / counts_[i] : std::numeric_limits<double>::infinity();
-  std::stable_sort(
-      order_.begin(), order_.end(), [this](int a, int b) { return squares_[a] < squares_[b]; });
+    squares_[i] = counts_[i] > 0 ? squares_[i] / counts_[i] : std::numeric_limits<double>::infinity();
+  std::stable_sort(order_.begin(), order_.end(), [this](int a, int b) { return squares_[a] < squares_[b]; });
 }
 
 Estimate BestSensor::step(const Sample& y) const {
@@ -83,8 +81,6 @@ Estimate SectionedLeastSquares::step(const Sample& y) {
   return means_[running_].step(y);
 }
 
-Eigen::MatrixXd SectionedLeastSquares::weights() const {
-  return means_[running_].learnt().weights;
-}
+Eigen::MatrixXd SectionedLeastSquares::weights() const { return means_[running_].learnt().weights; }
 
 }  // namespace libchar::fusion

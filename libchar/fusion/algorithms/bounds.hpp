@@ -13,13 +13,12 @@
 namespace libchar::fusion {
 
 struct BestSensor {
-  static constexpr Description description{
-      .name = "best-sensor",
-      .title = "Best single channel (bound)",
-      .source = "[RV 3.11]",
-      .complexity = "O(1)",
-      .needs = {.reference_throughout = true, .accepts_missing = true},
-      .learning_complexity = "O(n)"};
+  static constexpr Description description{.name = "best-sensor",
+                                           .title = "Best single channel (bound)",
+                                           .source = "[RV 3.11]",
+                                           .complexity = "O(1)",
+                                           .needs = {.reference_throughout = true, .accepts_missing = true},
+                                           .learning_complexity = "O(n)"};
   explicit BestSensor(const Array& array);
   void learn(const Sample& y, const Sample& truth);
   void finish_learning();
@@ -42,8 +41,7 @@ struct OptimalWeights : ReferenceWeightedMean {
   static constexpr std::array options{
       Option{"calibrate", "", 0, 0, 1, "1: gain and bias of each channel are learnt first", true}};
   OptimalWeights(const Array& array, const Settings& settings)
-      : ReferenceWeightedMean(
-            {settings["calibrate"] != 0, true, false}, array.channels, description.name) {}
+      : ReferenceWeightedMean({settings["calibrate"] != 0, true, false}, array.channels, description.name) {}
 };
 
 /// Learns on instants 0, 1, … of the run and runs on the same: the k-th instant learnt or skipped

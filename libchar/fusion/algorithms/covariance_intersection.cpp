@@ -38,9 +38,8 @@ CovarianceIntersection::CovarianceIntersection(const Array& array, const Setting
   const double least = levels_.minCoeff();
   order_.resize(static_cast<std::size_t>(n));
   std::iota(order_.begin(), order_.end(), Eigen::Index{0});
-  std::stable_sort(order_.begin(), order_.end(), [this](Eigen::Index a, Eigen::Index b) {
-    return levels_[a] < levels_[b];
-  });
+  std::stable_sort(order_.begin(), order_.end(),
+                   [this](Eigen::Index a, Eigen::Index b) { return levels_[a] < levels_[b]; });
   if (settings["fast"] != 0) {
     shares_ = (least / levels_.array()).matrix();
     order_.clear();

@@ -10,9 +10,7 @@
 namespace libchar::fusion {
 namespace {
 
-std::size_t whole(const Settings& settings, std::string_view name) {
-  return static_cast<std::size_t>(settings[name]);
-}
+std::size_t whole(const Settings& settings, std::string_view name) { return static_cast<std::size_t>(settings[name]); }
 
 /// The spread of z stands for the prediction's error until this many errors are known.
 constexpr double kPriorErrors = 30;
@@ -21,9 +19,7 @@ constexpr double kLeastShare = 1e-6;
 
 }  // namespace
 
-KalmanTakensFilter::KalmanTakensFilter(const Array& array,
-                                       const Settings& settings,
-                                       bool from_reference)
+KalmanTakensFilter::KalmanTakensFilter(const Array& array, const Settings& settings, bool from_reference)
     : levels_(array.noise_levels),
       weights_(levels_.minCoeff() * levels_.cwiseInverse()),
       dimension_(whole(settings, "dimension")),
@@ -43,8 +39,7 @@ KalmanTakensFilter::KalmanTakensFilter(const Array& array,
 void KalmanTakensFilter::append(double value) {
   const std::size_t most = dictionary_ + dimension_ + theiler_;
   if (last_ == series_.size()) {
-    std::copy(
-        series_.begin() + static_cast<std::ptrdiff_t>(first_), series_.end(), series_.begin());
+    std::copy(series_.begin() + static_cast<std::ptrdiff_t>(first_), series_.end(), series_.begin());
     last_ -= first_;
     first_ = 0;
   }
@@ -103,8 +98,7 @@ std::size_t KalmanTakensFilter::learnt_stretches() const {
 
 /// NaN while the past is too short: a few stretches would always find the same neighbours.
 double KalmanTakensFilter::predict() {
-  const std::size_t length = last_ - first_,
-                    behind = dimension_ + (from_reference_ ? 0 : theiler_ - 1);
+  const std::size_t length = last_ - first_, behind = dimension_ + (from_reference_ ? 0 : theiler_ - 1);
   if (heard_ < dimension_ || length <= behind) return std::nan("");
   const std::size_t starts = std::min(length - behind, dictionary_);
   if (!from_reference_ && starts < std::min(2 * neighbours_, dictionary_)) return std::nan("");
@@ -163,11 +157,9 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
 void KalmanTakensFilter::remark(std::string_view name, Findings& warnings) const {
   const double fused = 1 / levels_.cwiseInverse().sum(), q = process_variance();
   if (given_q_ > 0 || !(error_weight_ > kPriorErrors) || !(q < fused)) return;
-  warnings.add(
-      "input_repeats",
-      std::string(name) +
-          " predicts the input from its past better than the sensors measure it: the input "
-          "repeats itself or stands still; one that does not would not be estimated as well");
+  warnings.add("input_repeats", std::string(name) +
+                                    " predicts the input from its past better than the sensors measure it: the input "
+                                    "repeats itself or stands still; one that does not would not be estimated as well");
 }
 
 void KalmanTakensTaught::finish_learning() {

@@ -20,25 +20,14 @@ inline constexpr std::array kKalmanTakensOptions{
     Option{"dimension", "samples", 6, 1, 64, "d: instants that the past is compared over", true},
     Option{"neighbours", "", 20, 1, 256, "M: stretches that predict", true},
     Option{"dictionary", "", 1000, 20, 1e6, "stretches that are kept; the oldest give way", true},
-    Option{"theiler",
-           "samples",
-           6,
-           1,
-           1e6,
-           "a stretch that ends nearer to now than this predicts nothing: it is the same event",
-           true},
-    Option{"process_variance",
-           "U^2",
-           0,
-           0,
-           1e300,
-           "Q of the prediction; 0: estimated from its errors"},
+    Option{"theiler", "samples", 6, 1, 1e6,
+           "a stretch that ends nearer to now than this predicts nothing: it is the same event", true},
+    Option{"process_variance", "U^2", 0, 0, 1e300, "Q of the prediction; 0: estimated from its errors"},
     Option{"memory", "samples", 1000, 10, 1e9, "over which the errors tell Q"}};
 
 /// Of a step: the search is nearly all of it.
 inline double kalman_takens_cost_ns(const Settings& settings, std::string_view stretches) {
-  return 500 + settings[stretches] * (0.3 + 0.15 * settings["dimension"]) +
-         30 * settings["neighbours"];
+  return 500 + settings[stretches] * (0.3 + 0.15 * settings["dimension"]) + 30 * settings["neighbours"];
 }
 
 /// What both algorithms share: a series to look in and a Kalman update.
@@ -76,12 +65,11 @@ class KalmanTakensFilter {
 };
 
 struct KalmanTakens {
-  static constexpr Description description{
-      .name = "kalman-takens",
-      .title = "Kalman-Takens on the channels' own past",
-      .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
-      .complexity = "O(n + d m), m stretches kept",
-      .needs = {.noise_levels = true, .accepts_missing = true}};
+  static constexpr Description description{.name = "kalman-takens",
+                                           .title = "Kalman-Takens on the channels' own past",
+                                           .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
+                                           .complexity = "O(n + d m), m stretches kept",
+                                           .needs = {.noise_levels = true, .accepts_missing = true}};
   static constexpr std::array options = kKalmanTakensOptions;
   KalmanTakens(const Array& array, const Settings& settings) : filter_(array, settings, false) {}
   static double cost_ns(const Array&, const Settings& settings) {
@@ -95,16 +83,14 @@ struct KalmanTakens {
 };
 
 struct KalmanTakensTaught {
-  static constexpr Description description{
-      .name = "kalman-takens-taught",
-      .title = "Kalman-Takens on the reference of the learning window",
-      .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
-      .complexity = "O(n + d m), m stretches kept",
-      .needs = {.reference = true, .noise_levels = true, .accepts_missing = true},
-      .learning_complexity = "O(1)"};
+  static constexpr Description description{.name = "kalman-takens-taught",
+                                           .title = "Kalman-Takens on the reference of the learning window",
+                                           .source = "[RV 3.8]; Hamilton, Berry, Sauer 2016",
+                                           .complexity = "O(n + d m), m stretches kept",
+                                           .needs = {.reference = true, .noise_levels = true, .accepts_missing = true},
+                                           .learning_complexity = "O(1)"};
   static constexpr std::array options = kKalmanTakensOptions;
-  KalmanTakensTaught(const Array& array, const Settings& settings)
-      : filter_(array, settings, true) {}
+  KalmanTakensTaught(const Array& array, const Settings& settings) : filter_(array, settings, true) {}
   void learn(const Sample&, const Sample& truth) { filter_.learn(truth[0]); }
   /// No stretch of the past reaches over a gap.
   void skip(const Sample&) { filter_.learn(std::nan("")); }

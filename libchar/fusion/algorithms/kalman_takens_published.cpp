@@ -25,8 +25,7 @@ Estimate KalmanTakensPublished::step(const Sample& y) {
   if (dictionary_.size() < training_) {
     dictionary_.push_back(average);
     if (dictionary_.size() == training_)
-      recent_.assign(dictionary_.end() - static_cast<std::ptrdiff_t>(dimension_),
-                     dictionary_.end());
+      recent_.assign(dictionary_.end() - static_cast<std::ptrdiff_t>(dimension_), dictionary_.end());
     x_ = average;
     const double n = static_cast<double>(y.size());
     return Estimate::scalar(average, levels_.sum() / (n * n));

@@ -26,26 +26,14 @@ struct KalmanTakensPublished {
   static constexpr std::array options{
       Option{"dimension", "samples", 6, 1, 64, "d: instants that the past is compared over", true},
       Option{"neighbours", "", 20, 1, 256, "M: stretches that predict", true},
-      Option{"training",
-             "samples",
-             1000,
-             2,
-             1e6,
-             "instants at the start whose averages are the dictionary",
-             true},
+      Option{"training", "samples", 1000, 2, 1e6, "instants at the start whose averages are the dictionary", true},
       Option{"process_variance", "U^2", 0.01, 0, 1e300, "Q of the prediction"},
       Option{"start_variance", "U^2", 0.001, 0, 1e300, "P after the training"},
-      Option{"noise_scale",
-             "",
-             1,
-             1e-12,
-             1e12,
+      Option{"noise_scale", "", 1, 1e-12, 1e12,
              "R over the noise variance; 1/623 is the spectral density that the listing takes"}};
 
   KalmanTakensPublished(const Array& array, const Settings& settings);
-  static double cost_ns(const Array&, const Settings& settings) {
-    return kalman_takens_cost_ns(settings, "training");
-  }
+  static double cost_ns(const Array&, const Settings& settings) { return kalman_takens_cost_ns(settings, "training"); }
   Estimate step(const Sample& y);
 
  private:

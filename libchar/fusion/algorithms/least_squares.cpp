@@ -12,8 +12,7 @@
 
 namespace libchar::fusion {
 
-Triangle::Triangle(Eigen::Index width)
-    : upper_(Eigen::MatrixXd::Zero(width, width)), pending_(3 * width + 8, width) {}
+Triangle::Triangle(Eigen::Index width) : upper_(Eigen::MatrixXd::Zero(width, width)), pending_(3 * width + 8, width) {}
 
 void Triangle::add(const Eigen::VectorXd& row) {
   pending_.row(filled_++) = row.transpose();
@@ -47,9 +46,7 @@ double rounding_of_rows(std::int64_t rows) {
 /// argmin |A w - b| from the triangle of rows [A b]: columns scaled to length one, then QR with
 /// pivoting; the shortest w where several do as well. Columns count as dependent when less than
 /// `rounding` of them is left beside the others; `dependent` receives their number.
-Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper,
-                             Eigen::Index unknowns,
-                             double rounding,
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& upper, Eigen::Index unknowns, double rounding,
                              Eigen::Index& dependent) {
   Eigen::VectorXd length = upper.leftCols(unknowns).colwise().norm().transpose();
   for (double& l : length)
@@ -65,8 +62,7 @@ constexpr double kSignificant = 4;
 
 }  // namespace
 
-WeightLearner::WeightLearner(Eigen::Index channels)
-    : n_(channels), triangle_(channels + 2), row_(channels + 2) {}
+WeightLearner::WeightLearner(Eigen::Index channels) : n_(channels), triangle_(channels + 2), row_(channels + 2) {}
 
 void WeightLearner::add(const Sample& y, double x) {
   for (Eigen::Index i = 0; i < n_; ++i)
@@ -80,8 +76,7 @@ void WeightLearner::add(const Sample& y, double x) {
 
 /// Errors of the corrected channels as combinations of the triangle's columns: e_i = (d_i - alpha -
 /// beta x) / a, d = y - x.
-Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
-                                         LearntWeights& learnt) const {
+Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper, LearntWeights& learnt) const {
   Eigen::MatrixXd a(upper.rows(), 2);
   a << upper.col(0), upper.col(n_ + 1);
   const double moves = a.col(1).tail(a.rows() - 1).norm();
@@ -90,8 +85,7 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
         .says("the reference does not move in the learning window: no gain can be learnt")
         .hint("set calibrate to 0, or learn elsewhere");
   const Eigen::Vector2d length = a.colwise().norm().transpose();
-  const Eigen::MatrixXd lines =
-      least_squares(a * length.cwiseInverse().asDiagonal(), upper.middleCols(1, n_));
+  const Eigen::MatrixXd lines = least_squares(a * length.cwiseInverse().asDiagonal(), upper.middleCols(1, n_));
   const double mean_x = origin_ + upper(0, n_ + 1) / upper(0, 0);
   Eigen::MatrixXd error(upper.rows(), n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
@@ -100,8 +94,7 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
     error.col(i) = d - a * line;
     const double gain = 1 + line[1];
     const double deviation =
-        error.col(i).norm() /
-        std::sqrt(std::max<double>(1, static_cast<double>(triangle_.rows()) - 2)) / moves;
+        error.col(i).norm() / std::sqrt(std::max<double>(1, static_cast<double>(triangle_.rows()) - 2)) / moves;
     if (!(std::abs(gain) > kSignificant * deviation) || std::abs(gain) < 1e-9) {
       learnt.without_signal.push_back(static_cast<int>(i));
       continue;
@@ -116,49 +109,37 @@ Eigen::MatrixXd WeightLearner::calibrate(const Eigen::MatrixXd& upper,
 }
 
 /// Lengths of a corrected channel's columns: what its rounding is relative to.
-Eigen::VectorXd WeightLearner::column_lengths(const Eigen::MatrixXd& upper,
-                                              const LearntWeights& learnt) const {
+Eigen::VectorXd WeightLearner::column_lengths(const Eigen::MatrixXd& upper, const LearntWeights& learnt) const {
   const double truth = upper.col(n_ + 1).norm();
   Eigen::VectorXd out(n_);
-  for (Eigen::Index i = 0; i < n_; ++i)
-    out[i] = upper.col(1 + i).norm() + std::abs(learnt.gain[i] - 1) * truth;
+  for (Eigen::Index i = 0; i < n_; ++i) out[i] = upper.col(1 + i).norm() + std::abs(learnt.gain[i] - 1) * truth;
   return out;
 }
 
 /// Channels that follow the reference and are no copies of others.
-std::vector<Eigen::Index> WeightLearner::originals(const Eigen::MatrixXd& error,
-                                                   const Eigen::VectorXd& truth,
+std::vector<Eigen::Index> WeightLearner::originals(const Eigen::MatrixXd& error, const Eigen::VectorXd& truth,
                                                    LearntWeights& learnt) const {
   std::vector<Eigen::Index> used;
   for (Eigen::Index i = 0; i < n_; ++i)
-    if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) ==
-        learnt.without_signal.end())
+    if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) == learnt.without_signal.end())
       used.push_back(i);
-  if (used.empty())
-    throw numeric_error("E0856").says("no channel follows the reference in the learning window");
+  if (used.empty()) throw numeric_error("E0856").says("no channel follows the reference in the learning window");
   const Eigen::MatrixXd own = error(Eigen::all, used);
-  for (const auto& [copy, original] :
-       copies_of(own, own.colwise() + truth, rounding_of_rows(triangle_.rows())))
+  for (const auto& [copy, original] : copies_of(own, own.colwise() + truth, rounding_of_rows(triangle_.rows())))
     learnt.copies.emplace_back(static_cast<int>(used[static_cast<std::size_t>(copy)]),
                                static_cast<int>(used[static_cast<std::size_t>(original)]));
   std::erase_if(used, [&](Eigen::Index i) {
-    return std::any_of(learnt.copies.begin(), learnt.copies.end(), [i](const auto& pair) {
-      return pair.first == i;
-    });
+    return std::any_of(learnt.copies.begin(), learnt.copies.end(), [i](const auto& pair) { return pair.first == i; });
   });
   return used;
 }
 
 /// Unknowns: weights (with sum w = 1 all but that of the last channel, by differences to it), then
 /// the constant. `lengths` of the channels used.
-void WeightLearner::solve(const LeastSquaresForm& form,
-                          const Rows& rows,
-                          const std::vector<Eigen::Index>& used,
-                          const Eigen::VectorXd& lengths,
-                          LearntWeights& learnt) const {
+void WeightLearner::solve(const LeastSquaresForm& form, const Rows& rows, const std::vector<Eigen::Index>& used,
+                          const Eigen::VectorXd& lengths, LearntWeights& learnt) const {
   const auto m = static_cast<Eigen::Index>(used.size());
-  const Eigen::Index weights = form.sum_to_one ? m - 1 : m,
-                     unknowns = weights + (form.constant ? 1 : 0);
+  const Eigen::Index weights = form.sum_to_one ? m - 1 : m, unknowns = weights + (form.constant ? 1 : 0);
   Eigen::MatrixXd problem(rows.error.rows(), unknowns + 1);
   const Eigen::VectorXd last = rows.error.col(m - 1);
   if (form.sum_to_one)
@@ -181,33 +162,28 @@ void WeightLearner::solve(const LeastSquaresForm& form,
   }
   Eigen::VectorXd solution(unknowns);
   if (unknowns > 0) solution = solve_scaled(problem, unknowns, rounding, learnt.dependent);
-  for (Eigen::Index k = 0; k < weights; ++k)
-    learnt.weights[used[static_cast<std::size_t>(k)]] = solution[k];
+  for (Eigen::Index k = 0; k < weights; ++k) learnt.weights[used[static_cast<std::size_t>(k)]] = solution[k];
   if (form.sum_to_one) learnt.weights[used.back()] = 1 - learnt.weights.sum();
   if (form.constant) learnt.constant = solution[weights];
   const double left = (problem.leftCols(unknowns) * solution - problem.col(unknowns)).squaredNorm();
-  learnt.variance =
-      left / static_cast<double>(std::max<std::int64_t>(1, triangle_.rows() - unknowns));
+  learnt.variance = left / static_cast<double>(std::max<std::int64_t>(1, triangle_.rows() - unknowns));
 }
 
 /// Sum one, from the errors alone: shrunk towards independent errors, or without negative weights.
-void WeightLearner::solve_regularized(const LeastSquaresForm& form,
-                                      const Eigen::MatrixXd& error,
-                                      const std::vector<Eigen::Index>& used,
-                                      const Eigen::VectorXd& lengths,
+void WeightLearner::solve_regularized(const LeastSquaresForm& form, const Eigen::MatrixXd& error,
+                                      const std::vector<Eigen::Index>& used, const Eigen::VectorXd& lengths,
                                       LearntWeights& learnt) const {
   if (form.non_negative) {
     learnt.weights(used) = non_negative_weights(error);
   } else {
-    const double share =
-        form.shrinkage < 0 ? estimated_shrinkage(error, triangle_.rows()) : form.shrinkage;
+    const double share = form.shrinkage < 0 ? estimated_shrinkage(error, triangle_.rows()) : form.shrinkage;
     const Rows rows{shrunk(error, share), {}, {}};
     solve({.sum_to_one = true}, rows, used, std::sqrt(1 - share) * lengths, learnt);
   }
   const Eigen::VectorXd weights = learnt.weights(used);
-  learnt.variance = (error * weights).squaredNorm() /
-                    static_cast<double>(std::max<std::int64_t>(
-                        1, triangle_.rows() - static_cast<std::int64_t>(used.size()) + 1));
+  learnt.variance =
+      (error * weights).squaredNorm() /
+      static_cast<double>(std::max<std::int64_t>(1, triangle_.rows() - static_cast<std::int64_t>(used.size()) + 1));
 }
 
 LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
@@ -218,11 +194,10 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
   if (!enough())
     throw numeric_error("E0856")
         .says("the learning window has " + std::to_string(triangle_.rows()) +
-              " instants in which every channel has a sample; " + std::to_string(n_ + 2) +
-              " are needed for " + std::to_string(n_) + " channels")
+              " instants in which every channel has a sample; " + std::to_string(n_ + 2) + " are needed for " +
+              std::to_string(n_) + " channels")
         .hint("a longer window, or fewer channels");
-  const Eigen::MatrixXd error =
-      form.calibrate ? calibrate(upper, learnt) : Eigen::MatrixXd(upper.middleCols(1, n_));
+  const Eigen::MatrixXd error = form.calibrate ? calibrate(upper, learnt) : Eigen::MatrixXd(upper.middleCols(1, n_));
   const Eigen::VectorXd truth = upper.col(n_ + 1) + origin_ * upper.col(0);
   const std::vector<Eigen::Index> used = originals(error, truth, learnt);
   const Eigen::MatrixXd own = error(Eigen::all, used);
@@ -261,8 +236,7 @@ void LearntMean::exchange(LearntExchange& with, Eigen::Index channels) {
   with.number("constant", learnt.constant);
   with.number("variance", learnt.variance);
   if (!with.taking_in()) return;
-  if ((learnt.gain.array() == 0).any())
-    throw input_error("E0866").says("learnt.gains: a gain of zero");
+  if ((learnt.gain.array() == 0).any()) throw input_error("E0866").says("learnt.gains: a gain of zero");
   take(learnt);
 }
 
@@ -294,18 +268,14 @@ Estimate LearntMean::of_present(const Sample& y) const {
 
 void remark_on(const LearntWeights& learnt, std::string_view name, Findings& warnings) {
   for (const int i : learnt.without_signal)
-    warnings.add("channel_without_signal",
-                 std::string(name) + " left out a channel that does not follow the reference",
+    warnings.add("channel_without_signal", std::string(name) + " left out a channel that does not follow the reference",
                  "channel " + std::to_string(i + 1));
   for (const auto& [copy, original] : learnt.copies)
-    warnings.add(
-        "duplicate_channels",
-        std::string(name) + " found a channel that is a copy of another; they share a weight",
-        "channel " + std::to_string(copy + 1) + " of channel " + std::to_string(original + 1));
+    warnings.add("duplicate_channels",
+                 std::string(name) + " found a channel that is a copy of another; they share a weight",
+                 "channel " + std::to_string(copy + 1) + " of channel " + std::to_string(original + 1));
   if (learnt.dependent > 0)
-    warnings.add("dependent_channels",
-                 std::string(name) + " found channels that are combinations of others",
-                 {},
+    warnings.add("dependent_channels", std::string(name) + " found channels that are combinations of others", {},
                  static_cast<std::uint64_t>(learnt.dependent));
 }
 

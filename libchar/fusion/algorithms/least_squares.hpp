@@ -81,18 +81,12 @@ class WeightLearner {
   };
   Eigen::MatrixXd calibrate(const Eigen::MatrixXd& upper, LearntWeights& learnt) const;
   Eigen::VectorXd column_lengths(const Eigen::MatrixXd& upper, const LearntWeights& learnt) const;
-  std::vector<Eigen::Index> originals(const Eigen::MatrixXd& error,
-                                      const Eigen::VectorXd& truth,
+  std::vector<Eigen::Index> originals(const Eigen::MatrixXd& error, const Eigen::VectorXd& truth,
                                       LearntWeights& learnt) const;
-  void solve(const LeastSquaresForm& form,
-             const Rows& rows,
-             const std::vector<Eigen::Index>& used,
-             const Eigen::VectorXd& lengths,
-             LearntWeights& learnt) const;
-  void solve_regularized(const LeastSquaresForm& form,
-                         const Eigen::MatrixXd& error,
-                         const std::vector<Eigen::Index>& used,
-                         const Eigen::VectorXd& lengths,
+  void solve(const LeastSquaresForm& form, const Rows& rows, const std::vector<Eigen::Index>& used,
+             const Eigen::VectorXd& lengths, LearntWeights& learnt) const;
+  void solve_regularized(const LeastSquaresForm& form, const Eigen::MatrixXd& error,
+                         const std::vector<Eigen::Index>& used, const Eigen::VectorXd& lengths,
                          LearntWeights& learnt) const;
   Eigen::Index n_;
   double origin_ = 0;  // of the reference: its first value
@@ -143,33 +137,26 @@ struct LeastSquaresOf : ReferenceWeightedMean {
                                 .learning_samples = 2,
                                 .reference = true,
                                 .accepts_missing = true};
-  static constexpr Description description =
-      kPublished ? Description{.name = "least-squares-published",
-                               .title = "Least squares as published: weights free",
-                               .source = "[RV 3.6]",
-                               .complexity = "O(n)",
-                               .needs = kNeeds,
-                               .learning_complexity = "O(n^2)",
-                               .as_published = true}
-                 : Description{.name = "least-squares",
-                               .title = "Least squares, weights sum to one",
-                               .source = "[RV 3.6]",
-                               .complexity = "O(n)",
-                               .needs = kNeeds,
-                               .learning_complexity = "O(n^2)"};
+  static constexpr Description description = kPublished
+                                                 ? Description{.name = "least-squares-published",
+                                                               .title = "Least squares as published: weights free",
+                                                               .source = "[RV 3.6]",
+                                                               .complexity = "O(n)",
+                                                               .needs = kNeeds,
+                                                               .learning_complexity = "O(n^2)",
+                                                               .as_published = true}
+                                                 : Description{.name = "least-squares",
+                                                               .title = "Least squares, weights sum to one",
+                                                               .source = "[RV 3.6]",
+                                                               .complexity = "O(n)",
+                                                               .needs = kNeeds,
+                                                               .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true},
-      Option{"constant",
-             "",
-             0,
-             0,
-             1,
-             "1: the weighted sum has a constant besides (uncalibrated channels)",
-             true}};
+      Option{"constant", "", 0, 0, 1, "1: the weighted sum has a constant besides (uncalibrated channels)", true}};
 
   LeastSquaresOf(const Array& array, const Settings& settings)
-      : ReferenceWeightedMean({settings["calibrate"] != 0, !kPublished, settings["constant"] != 0},
-                              array.channels,
+      : ReferenceWeightedMean({settings["calibrate"] != 0, !kPublished, settings["constant"] != 0}, array.channels,
                               description.name) {}
 };
 
@@ -197,8 +184,8 @@ struct RegularizedLeastSquares : ReferenceWeightedMean {
                                  .complexity = "O(n)",
                                  .needs = kNeeds,
                                  .learning_complexity = "O(n^2)"};
-  static constexpr Option kCalibrate{
-      "calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true};
+  static constexpr Option kCalibrate{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first",
+                                     true};
   static constexpr Option kShrinkage{"shrinkage",
                                      "",
                                      0.1,

@@ -24,9 +24,7 @@ constexpr double kRounding = 1e4;
 constexpr double kPoorlyKnownVariance = 0.5;
 
 /// A second moment can only be judged by variances that are known clearly better than itself.
-bool shorter(double fault_gamma, double gamma) {
-  return 1 - fault_gamma >= 5 * (1 - gamma);
-}
+bool shorter(double fault_gamma, double gamma) { return 1 - fault_gamma >= 5 * (1 - gamma); }
 
 }  // namespace
 
@@ -36,34 +34,27 @@ Minque::Minque(const Array& array, const Settings& settings)
       asked_(settings["fault_detection"] == 2),
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
       // The variances must have settled before they can accuse a channel.
-      armed_from_(std::max<std::int64_t>(
-          array.fault_free_samples,
-          static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+      armed_from_(std::max<std::int64_t>(array.fault_free_samples,
+                                         static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
       inputs_(array.inputs()),
       present_(static_cast<std::size_t>(array.channels)),
       m_(static_cast<int>(array.channels)) {
   std::iota(present_.begin(), present_.end(), 0);
   if (settings["fault_detection"] == 1)
-    detector_.emplace(array,
-                      FaultDetectorOptions{settings["false_alarm_s"],
-                                           static_cast<std::int64_t>(settings["recovery_window"])});
+    detector_.emplace(
+        array, FaultDetectorOptions{settings["false_alarm_s"], static_cast<std::int64_t>(settings["recovery_window"])});
   if (!array.one_common_input()) general_.emplace(array.observation_matrix, reweighting(settings));
 }
 
-Estimate Minque::step(const Sample& y) {
-  return general_ ? step_with(*general_, y) : step_with(scalar_, y);
-}
+Estimate Minque::step(const Sample& y) { return general_ ? step_with(*general_, y) : step_with(scalar_, y); }
 
 template <class Variances>
 Estimate Minque::step_with(Variances& variances, const Sample& y) {
   if (detector_) detect(variances, y);
   // Where the last instant was complete, this one is taken to be, and looked at when it shows that
   // it is not.
-  if (!all_in_use() || !variances.started() || (detector_ && detector_->set_changed()))
-    use_present(y);
-  const auto fuse = [&] {
-    return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan("");
-  };
+  if (!all_in_use() || !variances.started() || (detector_ && detector_->set_changed())) use_present(y);
+  const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan(""); };
   // Written so that NaN fails.
   const auto good = [](double x) { return std::abs(x) <= kLargestSample; };
   double x = fuse();
@@ -99,15 +90,12 @@ void Minque::detect(Variances& variances, const Sample& y) {
   }
 }
 
-bool Minque::all_in_use() const {
-  return m_ == static_cast<int>(present_.size()) && count_out() == 0;
-}
+bool Minque::all_in_use() const { return m_ == static_cast<int>(present_.size()) && count_out() == 0; }
 
 void Minque::use_present(const Sample& y) {
   m_ = 0;
   for (int i = 0; i < static_cast<int>(y.size()); ++i)
-    if (usable(y[i]) && !out(static_cast<std::size_t>(i)))
-      present_[static_cast<std::size_t>(m_++)] = i;
+    if (usable(y[i]) && !out(static_cast<std::size_t>(i))) present_[static_cast<std::size_t>(m_++)] = i;
 }
 
 /// Takes out the worst channel, if one is beyond its threshold.
@@ -117,8 +105,7 @@ bool Minque::found_fault(const Variances& variances) {
   const double least = kRounding * variances.rounding();
   const double* const expected = variances.residual_variances();
   const int* const all = present_.data();
-  if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_)
-    return false;
+  if (!watch_.beyond(variances.residuals(), expected, least, all, m_) || now_ < armed_from_) return false;
   const int where = watch_.worst(all, m_);
   for (int k = 0; k < m_; ++k) watch_.forget(static_cast<std::size_t>(in_use(k)));
   watch_.take_out(static_cast<std::size_t>(where), now_);
@@ -156,9 +143,7 @@ void Minque::remarks(Findings& warnings) const {
                    names);
 }
 
-Eigen::MatrixXd Minque::weights() const {
-  return general_ ? general_->weights() : scalar_.weights();
-}
+Eigen::MatrixXd Minque::weights() const { return general_ ? general_->weights() : scalar_.weights(); }
 
 Eigen::VectorXd Minque::variances() const {
   const std::vector<double>& v = general_ ? general_->variances() : scalar_.variances();

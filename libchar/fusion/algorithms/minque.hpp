@@ -28,70 +28,27 @@ struct Minque {
                                            .withstands = 2};
   static constexpr std::array options{
       Option{"gamma", "", 0.999, 0.5, 0.9999999, "memory of the variances: 1/(1 - gamma) instants"},
-      Option{"damping",
-             "",
-             10,
-             0,
-             1e6,
-             "ridge on the information of ln v, in units of 1 - gamma; 0: none"},
-      Option{"floor",
-             "",
-             1e-4,
-             0,
-             1,
-             "smallest variance relative to the fused variance of the other channels"},
+      Option{"damping", "", 10, 0, 1e6, "ridge on the information of ln v, in units of 1 - gamma; 0: none"},
+      Option{"floor", "", 1e-4, 0, 1, "smallest variance relative to the fused variance of the other channels"},
       Option{"floor_largest", "", 0, 0, 1, "smallest variance relative to the largest one"},
-      Option{"start_variance",
-             "U^2",
-             0,
-             0,
-             1e300,
-             "of every channel at the start; 0: from the first instants"},
-      Option{"fault_detection",
-             "",
-             1,
-             0,
-             2,
+      Option{"start_variance", "U^2", 0, 0, 1e300, "of every channel at the start; 0: from the first instants"},
+      Option{"fault_detection", "", 1, 0, 2,
              "1: channels that fail are taken out or re-weighted, by cumulative sums; 2: by the "
              "second "
              "moment; 0: neither",
              true},
-      Option{
-          "false_alarm_s",
-          "s",
-          1e5,
-          1,
-          1e15,
-          "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 "
-          "samples)"},
-      Option{"recovery_window",
-             "samples",
-             0,
-             0,
-             1e9,
+      Option{"false_alarm_s", "s", 1e5, 1, 1e15,
+             "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 "
+             "samples)"},
+      Option{"recovery_window", "samples", 0, 0, 1e9,
              "own samples that must agree with the others before a channel comes in again (0: 200, "
              "or those of 2 s "
              "where they are fewer) (detection 1)",
              true},
-      Option{"fault_gamma",
-             "",
-             0.99,
-             0.5,
-             0.999999,
-             "memory of the second moment that shows a fault (detection 2)"},
-      Option{"fault_threshold",
-             "",
-             2,
-             1,
-             1e6,
-             "of that moment relative to the channel's own variance (detection 2)"},
-      Option{"recovery_samples",
-             "samples",
-             1000,
-             1,
-             1e12,
-             "instants below the threshold before a channel comes in again (detection 2)",
-             true}};
+      Option{"fault_gamma", "", 0.99, 0.5, 0.999999, "memory of the second moment that shows a fault (detection 2)"},
+      Option{"fault_threshold", "", 2, 1, 1e6, "of that moment relative to the channel's own variance (detection 2)"},
+      Option{"recovery_samples", "samples", 1000, 1, 1e12,
+             "instants below the threshold before a channel comes in again (detection 2)", true}};
 
   Minque(const Array& array, const Settings& settings);
   static double cost_ns(const Array& array, const Settings&) {
@@ -106,9 +63,7 @@ struct Minque {
   const FaultLog& faults() const { return detector_ ? detector_->log() : watch_.log(); }
   void remarks(Findings& warnings) const;
   /// Of one channel, without a trip to the heap.
-  double noise_variance(std::size_t i) const {
-    return general_ ? general_->variance(i) : scalar_.variance(i);
-  }
+  double noise_variance(std::size_t i) const { return general_ ? general_->variance(i) : scalar_.variance(i); }
   bool leaves_out(std::size_t i) const { return out(i); }
 
  private:

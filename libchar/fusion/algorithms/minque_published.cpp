@@ -198,8 +198,7 @@ void MinquePublished::judge(const Sample& y) {
 /// a simple mean.
 double MinquePublished::weigh() {
   bool positive = m_ >= 3;
-  for (int k = 0; k < m_; ++k)
-    positive = positive && variances_[in_use_[static_cast<std::size_t>(k)]] > 0;
+  for (int k = 0; k < m_; ++k) positive = positive && variances_[in_use_[static_cast<std::size_t>(k)]] > 0;
   weights_.setZero();
   double sum = 0;
   for (int k = 0; k < m_; ++k) {
@@ -218,11 +217,9 @@ void MinquePublished::remarks(Findings& warnings) const {
                  "minque-published looks for no faults: its thresholds need a stretch that is "
                  "known to hold none");
   if (plain_means_ > 0)
-    warnings.add(
-        "negative_variance",
-        "minque-published used the simple mean where an estimated variance was not above zero",
-        {},
-        static_cast<std::uint64_t>(plain_means_));
+    warnings.add("negative_variance",
+                 "minque-published used the simple mean where an estimated variance was not above zero", {},
+                 static_cast<std::uint64_t>(plain_means_));
 }
 
 }  // namespace libchar::fusion

@@ -15,8 +15,7 @@ constexpr int kPatience = 200, kAway = 50;
 TanhNetwork shape_of(std::size_t n, const Settings& settings) {
   const std::size_t inputs = 1 + n + static_cast<std::size_t>(settings["past"]);
   const auto most = (static_cast<std::size_t>(settings["most_weights"]) - 1) / (inputs + 2);
-  return {inputs,
-          std::min(static_cast<std::size_t>(settings["neurons"]), std::max<std::size_t>(most, 1))};
+  return {inputs, std::min(static_cast<std::size_t>(settings["neurons"]), std::max<std::size_t>(most, 1))};
 }
 
 }  // namespace
@@ -24,10 +23,8 @@ TanhNetwork shape_of(std::size_t n, const Settings& settings) {
 NeuralSimplex::NeuralSimplex(const Array& array, const Settings& settings)
     : n_(static_cast<std::size_t>(array.channels)),
       shape_(shape_of(n_, settings)),
-      plan_{static_cast<std::size_t>(settings["past"]),
-            static_cast<std::size_t>(settings["most_samples"]),
-            static_cast<std::size_t>(settings["starts"]),
-            static_cast<std::uint64_t>(settings["seed"]),
+      plan_{static_cast<std::size_t>(settings["past"]), static_cast<std::size_t>(settings["most_samples"]),
+            static_cast<std::size_t>(settings["starts"]), static_cast<std::uint64_t>(settings["seed"]),
             settings["retraining"] == 1},
       baseline_(array, Settings(Minque::options)),
       past_(n_, plan_.lags),
@@ -58,8 +55,7 @@ void NeuralSimplex::shift(const Sample& y) {
   if (!origin_)
     for (const double sample : y)
       if (usable(sample) && !origin_) origin_ = sample;
-  for (std::size_t i = 0; i < n_; ++i)
-    y_[i] = y[static_cast<Eigen::Index>(i)] - origin_.value_or(0);
+  for (std::size_t i = 0; i < n_; ++i) y_[i] = y[static_cast<Eigen::Index>(i)] - origin_.value_or(0);
 }
 
 void NeuralSimplex::note_left_out(const Minque& baseline) {
@@ -147,8 +143,7 @@ Lead NeuralSimplex::choose(const Estimate& baseline, Estimate& out) {
 }
 
 void NeuralSimplex::watch_network(bool good) {
-  for (std::size_t i = 0; i < n_; ++i)
-    absent_[i] = usable(y_[i]) ? 0 : std::min(absent_[i] + 1, kAway);
+  for (std::size_t i = 0; i < n_; ++i) absent_[i] = usable(y_[i]) ? 0 : std::min(absent_[i] + 1, kAway);
   run_.bad = good ? 0 : std::min(run_.bad + 1, kPatience);
   if (learning_.teaching && plan_.retraining) teach();
 }
@@ -210,19 +205,16 @@ void NeuralSimplex::remarks(Findings& warnings) const {
   baseline_.remarks(warnings);
   const std::int64_t led = run_.now - run_.led[0];
   if (run_.now > 0 && led > 0)
-    warnings.add("network_led",
-                 "neural-simplex: a network led in " +
-                     brief_text(100 * static_cast<double>(led) / static_cast<double>(run_.now), 2) +
-                     " % of the run, " + std::to_string(log_.events().size() + log_.dropped()) +
-                     " hand-overs");
+    warnings.add("network_led", "neural-simplex: a network led in " +
+                                    brief_text(100 * static_cast<double>(led) / static_cast<double>(run_.now), 2) +
+                                    " % of the run, " + std::to_string(log_.events().size() + log_.dropped()) +
+                                    " hand-overs");
   if (learning_.taught && !network_.right && learning_.teaching)
     warnings.add(
         "network_not_better",
         "neural-simplex gives its baseline: on what it had not learnt, its network's error "
         "was " +
-            brief_text(std::sqrt(learning_.teaching->network_square() /
-                                 learning_.teaching->baseline_square()),
-                       3) +
+            brief_text(std::sqrt(learning_.teaching->network_square() / learning_.teaching->baseline_square()), 3) +
             " times that of the baseline");
 }
 

@@ -55,9 +55,7 @@ void Perceptron::put_in_order() {
   if (seen_ == kept_) return;
   std::vector<std::size_t> order(kept_);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
-    return when_[a] < when_[b];
-  });
+  std::sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) { return when_[a] < when_[b]; });
   const auto width = static_cast<std::ptrdiff_t>(network_.inputs) + 1;
   std::vector<double> sorted;
   sorted.reserve(window_.size());
@@ -108,8 +106,7 @@ void Perceptron::finish_learning() {
         .hint("learn where the input moves");
   const TrainingRows training_rows{window_.data(), training};
   const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};
-  Training best = train(
-      network_, training_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
+  Training best = train(network_, training_rows, rest, {.starts = starts_, .iterations = iterations_, .seed = seed_});
   if (best.parameters.empty())
     throw numeric_error("E0861")
         .says("no training of the perceptron gave finite numbers")
@@ -136,8 +133,7 @@ void Perceptron::exchange(LearntExchange& with) {
   with.number("target_deviation", target_.deviation);
   with.number("variance", variance_);
   for (std::size_t i = 0; i < n; ++i)
-    scales_[i] = {means[i],
-                  deviations[i] > 0 ? deviations[i] : std::numeric_limits<double>::infinity()};
+    scales_[i] = {means[i], deviations[i] > 0 ? deviations[i] : std::numeric_limits<double>::infinity()};
 }
 
 Estimate Perceptron::step(const Sample& y) {
@@ -150,10 +146,10 @@ Estimate Perceptron::step(const Sample& y) {
 
 void Perceptron::remarks(Findings& warnings) const {
   if (network_.hidden < asked_)
-    warnings.add("perceptron_fewer_neurons",
-                 "the perceptron has " + std::to_string(network_.hidden) + " neurons instead of " +
-                     std::to_string(asked_) + ": most_weights allows no more for " +
-                     std::to_string(network_.inputs) + " channels");
+    warnings.add("perceptron_fewer_neurons", "the perceptron has " + std::to_string(network_.hidden) +
+                                                 " neurons instead of " + std::to_string(asked_) +
+                                                 ": most_weights allows no more for " +
+                                                 std::to_string(network_.inputs) + " channels");
 }
 
 }  // namespace libchar::fusion

@@ -17,44 +17,23 @@
 namespace libchar::fusion {
 
 struct Perceptron {
-  static constexpr Description description{
-      .name = "perceptron",
-      .title = "Perceptron: a tanh network trained in the learning window",
-      .source = "[RV 3.7]",
-      .complexity = "O(n h), h hidden neurons",
-      .needs = {.learning_samples = 100, .reference = true},
-      .learning_complexity = "O((n h)^2) an iteration"};
+  static constexpr Description description{.name = "perceptron",
+                                           .title = "Perceptron: a tanh network trained in the learning window",
+                                           .source = "[RV 3.7]",
+                                           .complexity = "O(n h), h hidden neurons",
+                                           .needs = {.learning_samples = 100, .reference = true},
+                                           .learning_complexity = "O((n h)^2) an iteration"};
   static constexpr std::array options{
       Option{"neurons", "", 10, 1, 64, "h: hidden neurons; 3 to 30 make sense", true},
       Option{"starts", "", 3, 1, 100, "trainings from different random weights", true},
-      Option{"seed",
-             "",
-             1,
-             0,
-             9007199254740992.0,
-             "of the random weights and of the choice of samples",
-             true},
-      Option{"held_out",
-             "",
-             0.2,
-             0.05,
-             0.5,
+      Option{"seed", "", 1, 0, 9007199254740992.0, "of the random weights and of the choice of samples", true},
+      Option{"held_out", "", 0.2, 0.05, 0.5,
              "last share of the learning window: it stops the training and chooses the start"},
       Option{"iterations", "", 100, 1, 10000, "at most, a start", true},
-      Option{"most_samples",
-             "samples",
-             10000,
-             100,
-             1e7,
-             "kept for training: of a longer window as many at random, each as likely",
-             true},
-      Option{"most_weights",
-             "",
-             300,
-             10,
-             1e5,
-             "of the network; wide arrays get fewer neurons, as time grows with the square",
-             true}};
+      Option{"most_samples", "samples", 10000, 100, 1e7,
+             "kept for training: of a longer window as many at random, each as likely", true},
+      Option{"most_weights", "", 300, 10, 1e5,
+             "of the network; wide arrays get fewer neurons, as time grows with the square", true}};
 
   Perceptron(const Array& array, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);

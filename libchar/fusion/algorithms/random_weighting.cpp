@@ -14,8 +14,7 @@ RandomWeighting::RandomWeighting(const Array& array, const Settings& settings)
     : floor_(settings["floor"]),
       squares_(Eigen::VectorXd::Zero(array.channels)),
       variances_(squares_),
-      weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {
-}
+      weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {}
 
 Estimate RandomWeighting::step(const Sample& y) {
   const Eigen::Index n = squares_.size();
@@ -32,8 +31,7 @@ Estimate RandomWeighting::step(const Sample& y) {
   }
   instants_ += 1;
   if (!(total > 0)) return Estimate::scalar(base + mean, 0);
-  const double shared = total / (channels * (channels - 1)),
-               scale = channels / ((channels - 2) * instants_);
+  const double shared = total / (channels * (channels - 1)), scale = channels / ((channels - 2) * instants_);
   double largest = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     variances_[i] = scale * (squares_[i] - shared);

@@ -24,8 +24,7 @@ struct RandomWeighting {
                                            .source = "[RV 3.9]; Grubbs 1948",
                                            .complexity = "O(n)",
                                            .needs = {.min_channels = 3, .more_than_inputs = 2}};
-  static constexpr std::array options{
-      Option{"floor", "", 1e-6, 0, 1, "smallest variance relative to the largest one"}};
+  static constexpr std::array options{Option{"floor", "", 1e-6, 0, 1, "smallest variance relative to the largest one"}};
   RandomWeighting(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const { return weights_; }
@@ -45,20 +44,8 @@ struct RandomWeightingPublished {
                                            .needs = {.min_channels = 2},
                                            .as_published = true};
   static constexpr std::array options{
-      Option{"reference_channel",
-             "",
-             1,
-             1,
-             1e6,
-             "channel that the others are compared with, counted from 1",
-             true},
-      Option{"second_channel",
-             "",
-             2,
-             1,
-             1e6,
-             "channel that the reference channel itself is compared with",
-             true}};
+      Option{"reference_channel", "", 1, 1, 1e6, "channel that the others are compared with, counted from 1", true},
+      Option{"second_channel", "", 2, 1, 1e6, "channel that the reference channel itself is compared with", true}};
   RandomWeightingPublished(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const { return weights_; }

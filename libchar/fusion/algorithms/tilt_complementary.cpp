@@ -30,9 +30,7 @@ double ComplementaryFilter::step(const TiltSample& sample) {
 
 TiltComplementary::TiltComplementary(const Array& array, const Settings& settings)
     : channels_(*array.tilt),
-      filter_(lambda_of(settings, 1 / array.rate_hz),
-              1 / array.rate_hz,
-              settings["start_at_zero"] == 1,
+      filter_(lambda_of(settings, 1 / array.rate_hz), 1 / array.rate_hz, settings["start_at_zero"] == 1,
               settings["start_s"]) {}
 
 }  // namespace libchar::fusion

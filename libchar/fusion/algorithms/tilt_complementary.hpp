@@ -37,18 +37,10 @@ struct TiltComplementary {
                                            .needs = kTiltNeeds};
   static constexpr std::array options{
       Option{"time_constant", "s", 1, 0, 1e9, "tau: gravity is believed beyond it"},
-      Option{"lambda",
-             "",
-             -1,
-             -1,
-             1,
-             "share of the gyroscope at a step; below zero: from the time constant"},
-      kStartAtZero,
-      kStart};
+      Option{"lambda", "", -1, -1, 1, "share of the gyroscope at a step; below zero: from the time constant"},
+      kStartAtZero, kStart};
   TiltComplementary(const Array& array, const Settings& settings);
-  Estimate step(const Sample& y) {
-    return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan(""));
-  }
+  Estimate step(const Sample& y) { return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan("")); }
 
  private:
   TiltChannels channels_;
@@ -64,11 +56,8 @@ struct TiltGyroscope {
                                            .needs = kTiltNeeds};
   static constexpr std::array options{kStartAtZero, kStart};
   TiltGyroscope(const Array& array, const Settings& settings)
-      : channels_(*array.tilt),
-        filter_(1, 1 / array.rate_hz, settings["start_at_zero"] == 1, settings["start_s"]) {}
-  Estimate step(const Sample& y) {
-    return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan(""));
-  }
+      : channels_(*array.tilt), filter_(1, 1 / array.rate_hz, settings["start_at_zero"] == 1, settings["start_s"]) {}
+  Estimate step(const Sample& y) { return Estimate::scalar(filter_.step(tilt_sample(channels_, y)), std::nan("")); }
 
  private:
   TiltChannels channels_;
@@ -77,16 +66,13 @@ struct TiltGyroscope {
 
 /// Baseline: the angle of gravity, nothing remembered; no estimate where a sample is missing.
 struct TiltAccelerometer {
-  static constexpr Description description{
-      .name = "tilt-accelerometer",
-      .title = "Tilt: angle of gravity",
-      .source = "[RV 2.7]",
-      .complexity = "O(1)",
-      .needs = {.min_channels = 3, .accepts_missing = true, .tilt = true}};
+  static constexpr Description description{.name = "tilt-accelerometer",
+                                           .title = "Tilt: angle of gravity",
+                                           .source = "[RV 2.7]",
+                                           .complexity = "O(1)",
+                                           .needs = {.min_channels = 3, .accepts_missing = true, .tilt = true}};
   explicit TiltAccelerometer(const Array& array) : channels_(*array.tilt) {}
-  Estimate step(const Sample& y) const {
-    return Estimate::scalar(tilt_sample(channels_, y).angle, std::nan(""));
-  }
+  Estimate step(const Sample& y) const { return Estimate::scalar(tilt_sample(channels_, y).angle, std::nan("")); }
 
  private:
   TiltChannels channels_;

@@ -4,10 +4,7 @@
 
 namespace libchar::fusion {
 
-TiltKalmanFilter::TiltKalmanFilter(const TiltNoise& noise,
-                                   double dt,
-                                   double start_bias_variance,
-                                   bool at_zero)
+TiltKalmanFilter::TiltKalmanFilter(const TiltNoise& noise, double dt, double start_bias_variance, bool at_zero)
     : dt_(dt),
       q_angle_(noise.angle * dt),
       q_bias_(noise.bias * dt),
@@ -75,9 +72,7 @@ double TiltKalmanFilter::step(const TiltSample& sample) {
 
 TiltKalman::TiltKalman(const Array& array, const Settings& settings)
     : channels_(*array.tilt),
-      filter_({settings["angle_noise"], settings["bias_noise"], settings["gravity_variance"]},
-              1 / array.rate_hz,
-              settings["start_bias_variance"],
-              settings["start_at_zero"] == 1) {}
+      filter_({settings["angle_noise"], settings["bias_noise"], settings["gravity_variance"]}, 1 / array.rate_hz,
+              settings["start_bias_variance"], settings["start_at_zero"] == 1) {}
 
 }  // namespace libchar::fusion

@@ -58,24 +58,10 @@ struct TiltKalman {
                                            .needs = kTiltNeeds};
   static constexpr std::array options{
       Option{"angle_noise", "rad^2/s", TiltNoise{}.angle, 0, 1e12, "white noise of the rate"},
-      Option{"bias_noise",
-             "(rad/s)^2/s",
-             TiltNoise{}.bias,
-             0,
-             1e12,
-             "growth of the variance of the gyroscope's bias"},
-      Option{"gravity_variance",
-             "rad^2",
-             TiltNoise{}.gravity,
-             1e-200,
-             1e200,
+      Option{"bias_noise", "(rad/s)^2/s", TiltNoise{}.bias, 0, 1e12, "growth of the variance of the gyroscope's bias"},
+      Option{"gravity_variance", "rad^2", TiltNoise{}.gravity, 1e-200, 1e200,
              "of the angle of gravity, accelerations of the body included"},
-      Option{"start_bias_variance",
-             "(rad/s)^2",
-             1e-4,
-             0,
-             1e12,
-             "of the gyroscope's bias before the first instant"},
+      Option{"start_bias_variance", "(rad/s)^2", 1e-4, 0, 1e12, "of the gyroscope's bias before the first instant"},
       kStartAtZero};
   TiltKalman(const Array& array, const Settings& settings);
   Estimate step(const Sample& y) {

@@ -132,10 +132,9 @@ Estimate TiltKalmanTuned::step(const Sample& y) {
 
 void TiltKalmanTuned::remarks(Findings& warnings) const {
   if (filter_)
-    warnings.add("tilt_tuned",
-                 "angle_noise " + brief_text(noise_.angle) + " rad^2/s, bias_noise " +
-                     brief_text(noise_.bias) + " (rad/s)^2/s, gravity_variance " +
-                     brief_text(noise_.gravity) + " rad^2");
+    warnings.add("tilt_tuned", "angle_noise " + brief_text(noise_.angle) + " rad^2/s, bias_noise " +
+                                   brief_text(noise_.bias) + " (rad/s)^2/s, gravity_variance " +
+                                   brief_text(noise_.gravity) + " rad^2");
 }
 
 }  // namespace libchar::fusion

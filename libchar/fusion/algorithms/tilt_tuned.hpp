@@ -14,12 +14,8 @@
 
 namespace libchar::fusion {
 
-inline constexpr Needs kTiltTunedNeeds{.min_channels = 3,
-                                       .learning_samples = 200,
-                                       .reference = true,
-                                       .accepts_missing = true,
-                                       .rate = true,
-                                       .tilt = true};
+inline constexpr Needs kTiltTunedNeeds{
+    .min_channels = 3, .learning_samples = 200, .reference = true, .accepts_missing = true, .rate = true, .tilt = true};
 
 /// The learning window, at most kMost instants of it. An instant without a truth (NaN) is not
 /// judged, but the filters run through it.
@@ -39,18 +35,14 @@ class TiltWindow {
 };
 
 struct TiltComplementaryTuned {
-  static constexpr Description description{
-      .name = "tilt-complementary-tuned",
-      .title = "Tilt: complementary filter, time constant learnt",
-      .source = "[RV 2.5]",
-      .complexity = "O(1)",
-      .needs = kTiltTunedNeeds,
-      .learning_complexity = "about 50 runs of the filter"};
-  explicit TiltComplementaryTuned(const Array& array)
-      : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
-  void learn(const Sample& y, const Sample& truth) {
-    window_.add(tilt_sample(channels_, y), truth[0]);
-  }
+  static constexpr Description description{.name = "tilt-complementary-tuned",
+                                           .title = "Tilt: complementary filter, time constant learnt",
+                                           .source = "[RV 2.5]",
+                                           .complexity = "O(1)",
+                                           .needs = kTiltTunedNeeds,
+                                           .learning_complexity = "about 50 runs of the filter"};
+  explicit TiltComplementaryTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
+  void learn(const Sample& y, const Sample& truth) { window_.add(tilt_sample(channels_, y), truth[0]); }
   void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
   void exchange(LearntExchange& with);
@@ -72,9 +64,7 @@ struct TiltKalmanTuned {
                                            .needs = kTiltTunedNeeds,
                                            .learning_complexity = "about 150 runs of the filter"};
   explicit TiltKalmanTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
-  void learn(const Sample& y, const Sample& truth) {
-    window_.add(tilt_sample(channels_, y), truth[0]);
-  }
+  void learn(const Sample& y, const Sample& truth) { window_.add(tilt_sample(channels_, y), truth[0]); }
   void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
   void finish_learning();
   void exchange(LearntExchange& with);

@@ -6,14 +6,11 @@ namespace libchar::fusion {
 
 VirtualSensor::VirtualSensor(const Array& array, const Settings& settings)
     : filter_(std::make_unique<BiasFilter>(
-          array,
-          settings["slowest_s"],
-          static_cast<Eigen::Index>(settings["most_states"]),
-          InputModel{settings["input_deviation"], settings["input_corner_hz"]},
-          looks_ahead(settings))) {
+          array, settings["slowest_s"], static_cast<Eigen::Index>(settings["most_states"]),
+          InputModel{settings["input_deviation"], settings["input_corner_hz"]}, looks_ahead(settings))) {
   if (looks_ahead(settings))
-    smoother_ = std::make_unique<BiasSmoother>(
-        std::move(filter_), array.channels, array.inputs(), 1e6 * settings["most_mb"]);
+    smoother_ =
+        std::make_unique<BiasSmoother>(std::move(filter_), array.channels, array.inputs(), 1e6 * settings["most_mb"]);
 }
 
 void VirtualSensor::finish_learning() {
@@ -22,10 +19,9 @@ void VirtualSensor::finish_learning() {
 
 void VirtualSensor::remarks(Findings& warnings) const {
   if (filter().states().size() == 0)
-    warnings.add(
-        "no_drift",
-        "virtual-sensor found no drift in the sensors' models that shows above their white "
-        "noise: its weights stand still");
+    warnings.add("no_drift",
+                 "virtual-sensor found no drift in the sensors' models that shows above their white "
+                 "noise: its weights stand still");
   if (smoother_)
     warnings.add("looks_ahead",
                  "virtual-sensor with smoothed=1 estimates each instant from the whole run, what "

@@ -29,37 +29,23 @@
 namespace libchar::fusion {
 
 struct VirtualSensor {
-  static constexpr Description description{
-      .name = "virtual-sensor",
-      .title = "Virtual sensor: Kalman filter of the sensors' drifts, any input",
-      .source = "Bayard & Ploen 2003; Xue et al. 2012",
-      .complexity = "O(n s), s states of drift",
-      .needs = {.max_channels = kMostPaired,
-                .more_than_inputs = 1,
-                .noise_models = true,
-                .observation_matrix = true,
-                .accepts_missing = true,
-                .rate = true}};
+  static constexpr Description description{.name = "virtual-sensor",
+                                           .title = "Virtual sensor: Kalman filter of the sensors' drifts, any input",
+                                           .source = "Bayard & Ploen 2003; Xue et al. 2012",
+                                           .complexity = "O(n s), s states of drift",
+                                           .needs = {.max_channels = kMostPaired,
+                                                     .more_than_inputs = 1,
+                                                     .noise_models = true,
+                                                     .observation_matrix = true,
+                                                     .accepts_missing = true,
+                                                     .rate = true}};
   static constexpr std::array options{
       Option{"slowest_s", "s", 1e4, 1, 1e9, "no process that makes up flicker is slower"},
       Option{"most_states", "", 100, 1, 2000, "of all drifts; more are refused", true},
-      Option{"input_deviation",
-             "U",
-             0,
-             0,
-             1e100,
+      Option{"input_deviation", "U", 0, 0, 1e100,
              "of the input about zero, for a model of it; 0: nothing is assumed of the input"},
-      Option{"input_corner_hz",
-             "Hz",
-             1,
-             1e-9,
-             1e9,
-             "of that model: double pole of the input's spectrum"},
-      Option{"smoothed",
-             "",
-             0,
-             0,
-             1,
+      Option{"input_corner_hz", "Hz", 1, 1e-9, 1e9, "of that model: double pole of the input's spectrum"},
+      Option{"smoothed", "", 0, 0, 1,
              "1: each estimate from the whole run, what comes after it as well (a smoother, for "
              "logs); "
              "0: from what came before (a filter)",
@@ -67,8 +53,7 @@ struct VirtualSensor {
       Option{"most_mb", "MB", 1000, 1, 1e9, "of the run that the smoother keeps; more is refused"}};
   VirtualSensor(const Array& array, const Settings& settings);
   static double cost_ns(const Array& array, const Settings& settings) {
-    return (looks_ahead(settings) ? 40.0 : 10.0) *
-           static_cast<double>(array.channels * array.inputs());
+    return (looks_ahead(settings) ? 40.0 : 10.0) * static_cast<double>(array.channels * array.inputs());
   }
   static bool looks_ahead(const Settings& settings) { return settings["smoothed"] == 1; }
   void look(const Sample& y) { smoother_->look(y); }

@@ -49,8 +49,7 @@ void drop_wild_of(Eigen::Ref<Eigen::VectorXd> samples, const Eigen::VectorXd& mi
   const double offset = median_in_place(deviations);
   for (double& d : deviations) d = std::abs(d - offset);
   const std::size_t kept = deviations.size() - std::max<std::size_t>(3, deviations.size() / 100);
-  std::nth_element(
-      deviations.begin(), deviations.begin() + static_cast<std::ptrdiff_t>(kept), deviations.end());
+  std::nth_element(deviations.begin(), deviations.begin() + static_cast<std::ptrdiff_t>(kept), deviations.end());
   double sum = 0;
   for (std::size_t k = 0; k < kept; ++k) sum += deviations[k] * deviations[k];
   const double most = kWildTimes * std::sqrt(sum / static_cast<double>(kept));
@@ -76,8 +75,7 @@ void drop_wild(Eigen::Ref<Eigen::MatrixXd> samples) {
         if (std::isfinite(samples(from + t, i))) values.push_back(samples(from + t, i));
       middle(t) = values.empty() ? 0 : median_in_place(values);
     }
-    for (Eigen::Index i = 0; i < samples.cols(); ++i)
-      drop_wild_of(samples.col(i).segment(from, size), middle);
+    for (Eigen::Index i = 0; i < samples.cols(); ++i) drop_wild_of(samples.col(i).segment(from, size), middle);
   }
 }
 

@@ -21,14 +21,8 @@ using FourBits = std::int64_t __attribute__((vector_size(32)));
 /// (the last one may be shorter), and the smallest of each class: starts as many apart as there are
 /// classes, a multiple of the groups' size. Lanes are separate starts, so wider registers give the
 /// same bits.
-LIBCHAR_LANES void cityblock_lanes(const double* series,
-                                   std::size_t starts,
-                                   const double* query,
-                                   std::size_t dimension,
-                                   double* distances,
-                                   double* smallest,
-                                   double* of_class,
-                                   std::size_t classes) {
+LIBCHAR_LANES void cityblock_lanes(const double* series, std::size_t starts, const double* query, std::size_t dimension,
+                                   double* distances, double* smallest, double* of_class, std::size_t classes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::int64_t kNoSign = std::numeric_limits<std::int64_t>::max();
   const FourBits no_sign = {kNoSign, kNoSign, kNoSign, kNoSign};
@@ -121,22 +115,12 @@ DelaySearch::DelaySearch(std::size_t dimension, std::size_t neighbours, std::siz
   assert(dimension > 0 && neighbours > 0);
 }
 
-std::span<const Neighbour> DelaySearch::nearest(const double* series,
-                                                std::size_t starts,
-                                                const double* query) {
+std::span<const Neighbour> DelaySearch::nearest(const double* series, std::size_t starts, const double* query) {
   assert(starts <= distances_.size());
-  cityblock(series,
-            starts,
-            query,
-            dimension_,
-            distances_.data(),
-            smallest_.data(),
-            of_class_.data(),
-            of_class_.size());
+  cityblock(series, starts, query, dimension_, distances_.data(), smallest_.data(), of_class_.data(), of_class_.size());
   // As many classes as neighbours have one at or below it; what is near comes one after the other,
   // so hardly two in a class.
-  const double limit =
-      limit_for(of_class_.data(), of_class_.size(), static_cast<std::int64_t>(neighbours_));
+  const double limit = limit_for(of_class_.data(), of_class_.size(), static_cast<std::int64_t>(neighbours_));
   const std::size_t count = take_within(limit, starts);
   if (count > kSortedByRank)
     sort_by_distance(count);
@@ -164,8 +148,7 @@ std::size_t DelaySearch::take_within(double limit, std::size_t starts) {
 void DelaySearch::sort_by_distance(std::size_t count) {
   const auto end = within_.begin() + static_cast<std::ptrdiff_t>(count);
   std::sort(within_.begin(), end, [this](std::ptrdiff_t a, std::ptrdiff_t b) {
-    const double da = distances_[static_cast<std::size_t>(a)],
-                 db = distances_[static_cast<std::size_t>(b)];
+    const double da = distances_[static_cast<std::size_t>(a)], db = distances_[static_cast<std::size_t>(b)];
     return da < db || (da == db && a < b);
   });
   for (std::size_t k = 0; k < std::min(count, neighbours_); ++k)
@@ -186,12 +169,10 @@ void DelaySearch::rank_by_distance(std::size_t count) {
 
 double prediction(std::span<const Neighbour> found, const double* series, std::size_t dimension) {
   if (found.empty()) return std::nan("");
-  const auto after = [&](const Neighbour& n) {
-    return series[n.start + static_cast<std::ptrdiff_t>(dimension)];
-  };
+  const auto after = [&](const Neighbour& n) { return series[n.start + static_cast<std::ptrdiff_t>(dimension)]; };
   // Below a rounding of the values themselves, distances say nothing.
-  const double floor = std::max(std::numeric_limits<double>::epsilon() * std::abs(after(found[0])),
-                                std::numeric_limits<double>::min());
+  const double floor =
+      std::max(std::numeric_limits<double>::epsilon() * std::abs(after(found[0])), std::numeric_limits<double>::min());
   const double base = after(found[0]);
   const double nearest = std::max(found[0].distance, floor);
   double sum = 0, weights = 0;

@@ -36,42 +36,32 @@ Refusal no_form(const CChoice& choice, const std::string& why) {
 }
 
 /// Numbers of a learnt list; the file was checked when it was read by `fuse`, here by its length alone.
-const std::vector<double>& learnt_list(const CChoice& choice,
-                                       std::string_view name,
-                                       std::size_t wanted) {
+const std::vector<double>& learnt_list(const CChoice& choice, std::string_view name, std::size_t wanted) {
   for (const LearntNumbers& numbers : *choice.learnt)
     if (numbers.name == name && numbers.values.size() == wanted) return numbers.values;
-  throw input_error("E0866").says(
-      "learnt.{}: is missing, or not {} numbers as this array has", name, wanted);
+  throw input_error("E0866").says("learnt.{}: is missing, or not {} numbers as this array has", name, wanted);
 }
 
-double learnt_number(const CChoice& choice, std::string_view name) {
-  return learnt_list(choice, name, 1)[0];
-}
+double learnt_number(const CChoice& choice, std::string_view name) { return learnt_list(choice, name, 1)[0]; }
 
-std::string replaced(std::string text,
-                     const std::vector<std::pair<std::string_view, std::string>>& with) {
+std::string replaced(std::string text, const std::vector<std::pair<std::string_view, std::string>>& with) {
   for (const auto& [from, to] : with)
-    for (std::size_t at = text.find(from); at != std::string::npos;
-         at = text.find(from, at + to.size()))
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);
   return text;
 }
 
 class Maker {
  public:
-  explicit Maker(const CChoice& choice)
-      : choice_(choice), n_(static_cast<std::size_t>(choice.array->channels)) {}
+  explicit Maker(const CChoice& choice) : choice_(choice), n_(static_cast<std::size_t>(choice.array->channels)) {}
 
   CForm make() {
-    if (std::find(kInC.begin(), kInC.end(), choice_.algorithm) == kInC.end())
-      throw no_form(choice_, "");
+    if (std::find(kInC.begin(), kInC.end(), choice_.algorithm) == kInC.end()) throw no_form(choice_, "");
     if (!choice_.array->tilt && !choice_.array->one_common_input())
       throw no_form(choice_, " for sensors that see several inputs, or one unlike each other");
     const Settings& settings = *choice_.settings;
     for (const Option& option : settings.table())
-      if (option.name == "fault_detection" && choice_.algorithm != "minque" &&
-          settings["fault_detection"] != 0)
+      if (option.name == "fault_detection" && choice_.algorithm != "minque" && settings["fault_detection"] != 0)
         throw no_form(choice_, " with fault detection in front of it");
     if (choice_.algorithm == "mean") return weighted(true);
     if (choice_.algorithm == "inverse-variance") return weighted(false);
@@ -110,8 +100,7 @@ CForm Maker::weighted(bool alike) {
   const Eigen::VectorXd& levels = choice_.array->noise_levels;
   const auto n = static_cast<double>(n_);
   std::vector<double> weights(n_, 1 / n), variances(n_, -1);
-  if (levels.size() == choice_.array->channels)
-    std::copy(levels.begin(), levels.end(), variances.begin());
+  if (levels.size() == choice_.array->channels) std::copy(levels.begin(), levels.end(), variances.begin());
   double variance = variances[0] > 0 ? levels.sum() / (n * n) : -1;
   if (!alike) {
     const double smallest = levels.minCoeff();
@@ -120,9 +109,8 @@ CForm Maker::weighted(bool alike) {
     variance = smallest / w.sum();
   }
   CForm out;
-  out.functions =
-      (alike ? "" : table("weight", weights)) + (alike ? table("level", variances) : "") +
-      replaced(std::string(alike ? kMeanInC : kWeightedInC), {{"VARIANCE", number(variance)}});
+  out.functions = (alike ? "" : table("weight", weights)) + (alike ? table("level", variances) : "") +
+                  replaced(std::string(alike ? kMeanInC : kWeightedInC), {{"VARIANCE", number(variance)}});
   out.cost.sums = alike ? 2 * n : 3 * n;
   out.cost.divisions = 1;
   return out;
@@ -145,14 +133,13 @@ CForm Maker::least_squares() {
   const bool plain = std::all_of(gain.begin(), gain.end(), [](double g) { return g == 1; });
   if (plain && std::abs(total - 1) < 1e-12) total = 1;
   CForm out;
-  out.functions = table("direct", direct) + table("gain", gain) + table("bias", bias) +
-                  table("weight", weight) +
-                  replaced(std::string(kLeastSquaresInC),
-                           {{"TOTAL", number(total)},
-                            {"SHIFT", number(learnt_number(choice_, "constant") - shift)},
-                            {"CONSTANT", number(learnt_number(choice_, "constant"))},
-                            {"ALL", number(all)},
-                            {"VARIANCE", number(learnt_number(choice_, "variance"))}});
+  out.functions =
+      table("direct", direct) + table("gain", gain) + table("bias", bias) + table("weight", weight) +
+      replaced(std::string(kLeastSquaresInC), {{"TOTAL", number(total)},
+                                               {"SHIFT", number(learnt_number(choice_, "constant") - shift)},
+                                               {"CONSTANT", number(learnt_number(choice_, "constant"))},
+                                               {"ALL", number(all)},
+                                               {"VARIANCE", number(learnt_number(choice_, "variance"))}});
   out.cost.sums = 3 * static_cast<double>(n_) + 3;
   return out;
 }
@@ -168,30 +155,28 @@ CForm Maker::minque() {
     out.notes.emplace_back(
         "faults are found by the second moment (minque.fault_detection = 2), not by cumulative "
         "sums, which have no form in C");
-  const double armed = std::max(static_cast<double>(choice_.array->fault_free_samples),
-                                std::ceil(1 / (1 - s["gamma"])));
+  const double armed =
+      std::max(static_cast<double>(choice_.array->fault_free_samples), std::ceil(1 / (1 - s["gamma"])));
   const double start = s["start_variance"];
   out.state = std::string(kMinqueStateInC);
-  out.start = replaced(std::string(kMinqueStartInC),
-                       {{"STARTED", start > 0 ? "1" : "0"},
-                        {"START", number(start > 0 ? start : 1)},
-                        {"LASTING", number(1 - s["gamma"])}});
+  out.start = replaced(std::string(kMinqueStartInC), {{"STARTED", start > 0 ? "1" : "0"},
+                                                      {"START", number(start > 0 ? start : 1)},
+                                                      {"LASTING", number(1 - s["gamma"])}});
   out.functions =
-      replaced(std::string(kMinqueInC),
-               {{"FORGETS", start > 0 ? "1" : "0"},
-                {"LASTING", number(1 - s["gamma"])},
-                {"DAMPING", number(s["damping"])},
-                {"NOISE_OF_ROUNDING", number(1e4)},
-                {"LEAST_RATIO", number(1e-26)},
-                {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
-                {"FLOOR", number(s["floor"])},
-                {"TINY", number(choice_.single ? 1e-36 : 1e-280)},
-                {"SMALLEST_SHARE", number(choice_.single ? 1e-6 : 1e-12)},
-                {"WATCHES", watches ? "1" : "0"},
-                {"FAULT_GAIN", number(1 - s["fault_gamma"])},
-                {"THRESHOLD", number(s["fault_threshold"])},
-                {"RECOVERY", fmt::format("{:.0f}u", std::min(s["recovery_samples"], 4e9))},
-                {"ARMED", fmt::format("{:.0f}u", std::min(armed, 4e9))}});
+      replaced(std::string(kMinqueInC), {{"FORGETS", start > 0 ? "1" : "0"},
+                                         {"LASTING", number(1 - s["gamma"])},
+                                         {"DAMPING", number(s["damping"])},
+                                         {"NOISE_OF_ROUNDING", number(1e4)},
+                                         {"LEAST_RATIO", number(1e-26)},
+                                         {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
+                                         {"FLOOR", number(s["floor"])},
+                                         {"TINY", number(choice_.single ? 1e-36 : 1e-280)},
+                                         {"SMALLEST_SHARE", number(choice_.single ? 1e-6 : 1e-12)},
+                                         {"WATCHES", watches ? "1" : "0"},
+                                         {"FAULT_GAIN", number(1 - s["fault_gamma"])},
+                                         {"THRESHOLD", number(s["fault_threshold"])},
+                                         {"RECOVERY", fmt::format("{:.0f}u", std::min(s["recovery_samples"], 4e9))},
+                                         {"ARMED", fmt::format("{:.0f}u", std::min(armed, 4e9))}});
   out.reals = 8 * n_ + 16 * n_ + 6;
   out.words = 3 * n_ + 9;
   out.bytes = n_;
@@ -217,8 +202,7 @@ std::string Maker::epochs(BiasFilter& filter, const Eigen::VectorXd& samples) co
     }
     instant = filter.epoch_at(low) < k ? high : low;
     since += fmt::format("{}{:.0f}u", k == 0 ? "" : ", ", std::min(instant, 4294967295.0));
-    variances.push_back(
-        filter.gain_in(k, Sample(samples.data(), samples.size())).input_variance[0]);
+    variances.push_back(filter.gain_in(k, Sample(samples.data(), samples.size())).input_variance[0]);
   }
   return since + "};\n" + table("variance_of", variances);
 }
@@ -227,19 +211,13 @@ CForm Maker::virtual_sensor() {
   const Settings& s = *choice_.settings;
   if (s["smoothed"] == 1) throw no_form(choice_, " as a smoother, which sees the whole run");
   if (s["input_deviation"] > 0) throw no_form(choice_, " with a model of the input");
-  BiasFilter filter(*choice_.array,
-                    s["slowest_s"],
-                    static_cast<Eigen::Index>(s["most_states"]),
-                    InputModel{},
-                    true);
+  BiasFilter filter(*choice_.array, s["slowest_s"], static_cast<Eigen::Index>(s["most_states"]), InputModel{}, true);
   const Eigen::VectorXd whole = Eigen::VectorXd::Zero(choice_.array->channels);
   const BiasGain& gain = filter.gain_in(filter.epoch_at(1e300), Sample(whole.data(), whole.size()));
   const auto states = static_cast<std::size_t>(filter.states().size());
   std::vector<double> weights, gains, poles;
-  std::string channel =
-      fmt::format("static const unsigned char channel[{}] = {{", std::max<std::size_t>(states, 1));
-  for (std::size_t i = 0; i < n_; ++i)
-    weights.push_back(gain.weights(0, static_cast<Eigen::Index>(i)));
+  std::string channel = fmt::format("static const unsigned char channel[{}] = {{", std::max<std::size_t>(states, 1));
+  for (std::size_t i = 0; i < n_; ++i) weights.push_back(gain.weights(0, static_cast<Eigen::Index>(i)));
   for (std::size_t k = 0; k < states; ++k) {
     for (std::size_t i = 0; i < n_; ++i)
       gains.push_back(gain.gain(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)));
@@ -252,14 +230,12 @@ CForm Maker::virtual_sensor() {
     channel += "0";
   }
   CForm out;
-  out.state = fmt::format("  fusion_real drift[{}]; /* of the sensors */\n  uint32_t now, epoch;\n",
-                          poles.size());
-  out.functions = epochs(filter, whole) + table("weight", weights) + table("gain", gains) +
-                  table("pole", poles) + channel + "};\n" +
-                  replaced(std::string(kVirtualInC),
-                           {{"STATES", std::to_string(poles.size())},
-                            {"EPOCHS", std::to_string(filter.epoch_at(1e300) + 1)},
-                            {"NEARLY_ONE", number(1 - 1e-6)}});
+  out.state = fmt::format("  fusion_real drift[{}]; /* of the sensors */\n  uint32_t now, epoch;\n", poles.size());
+  out.functions = epochs(filter, whole) + table("weight", weights) + table("gain", gains) + table("pole", poles) +
+                  channel + "};\n" +
+                  replaced(std::string(kVirtualInC), {{"STATES", std::to_string(poles.size())},
+                                                      {"EPOCHS", std::to_string(filter.epoch_at(1e300) + 1)},
+                                                      {"NEARLY_ONE", number(1 - 1e-6)}});
   out.reals = poles.size();
   out.words = 2;
   const auto n = static_cast<double>(n_), m = static_cast<double>(poles.size());
@@ -273,22 +249,19 @@ CForm Maker::virtual_sensor() {
 CForm Maker::perceptron() {
   const Settings& s = *choice_.settings;
   const auto most = (static_cast<std::size_t>(s["most_weights"]) - 1) / (n_ + 2);
-  const std::size_t hidden =
-      std::min(static_cast<std::size_t>(s["neurons"]), std::max<std::size_t>(most, 1));
+  const std::size_t hidden = std::min(static_cast<std::size_t>(s["neurons"]), std::max<std::size_t>(most, 1));
   const std::vector<double>& p = learnt_list(choice_, "parameters", hidden * (n_ + 2) + 1);
   std::vector<double> inverse = learnt_list(choice_, "deviations", n_);
   CForm out;
   out.functions =
       table("mean", learnt_list(choice_, "means", n_)) + table("deviation", inverse) +
-      table("input_weight", p.data(), hidden * n_) +
-      table("input_bias", p.data() + hidden * n_, hidden) +
+      table("input_weight", p.data(), hidden * n_) + table("input_bias", p.data() + hidden * n_, hidden) +
       table("output_weight", p.data() + hidden * (n_ + 1), hidden) +
-      replaced(std::string(kPerceptronInC),
-               {{"HIDDEN", std::to_string(hidden)},
-                {"OUTPUT_BIAS", number(p.back())},
-                {"TARGET_MEAN", number(learnt_number(choice_, "target_mean"))},
-                {"TARGET_DEVIATION", number(learnt_number(choice_, "target_deviation"))},
-                {"VARIANCE", number(learnt_number(choice_, "variance"))}});
+      replaced(std::string(kPerceptronInC), {{"HIDDEN", std::to_string(hidden)},
+                                             {"OUTPUT_BIAS", number(p.back())},
+                                             {"TARGET_MEAN", number(learnt_number(choice_, "target_mean"))},
+                                             {"TARGET_DEVIATION", number(learnt_number(choice_, "target_deviation"))},
+                                             {"VARIANCE", number(learnt_number(choice_, "variance"))}});
   const auto n = static_cast<double>(n_), h = static_cast<double>(hidden);
   out.cost.sums = n + 2 * n * h + 3 * h + 2;
   out.cost.divisions = n;
@@ -315,14 +288,13 @@ CForm Maker::tilt() {
   out.state = "  fusion_real angle, rate, heard, steps;\n  unsigned char known;\n";
   out.start = at_zero ? "  s->known = 1;\n" : "";
   out.functions =
-      replaced(std::string(kTiltInC),
-               {{"GYROSCOPE", std::to_string(choice_.array->tilt->gyroscope)},
-                {"ACCELEROMETER_X", std::to_string(choice_.array->tilt->accelerometer_x)},
-                {"ACCELEROMETER_Z", std::to_string(choice_.array->tilt->accelerometer_z)},
-                {"START", number(at_zero ? 0 : std::floor(start_s / dt + 1e-6))},
-                {"LAMBDA", number(lambda)},
-                {"DT", number(dt)},
-                {"PI", number(std::numbers::pi)}});
+      replaced(std::string(kTiltInC), {{"GYROSCOPE", std::to_string(choice_.array->tilt->gyroscope)},
+                                       {"ACCELEROMETER_X", std::to_string(choice_.array->tilt->accelerometer_x)},
+                                       {"ACCELEROMETER_Z", std::to_string(choice_.array->tilt->accelerometer_z)},
+                                       {"START", number(at_zero ? 0 : std::floor(start_s / dt + 1e-6))},
+                                       {"LAMBDA", number(lambda)},
+                                       {"DT", number(dt)},
+                                       {"PI", number(std::numbers::pi)}});
   out.reals = 4;
   out.bytes = 1;
   out.cost.sums = 16;
@@ -341,12 +313,8 @@ std::string c_number(double value, bool single) {
   return value < 0 ? "(" + out + ")" : out;
 }
 
-std::vector<std::string_view> algorithms_in_c() {
-  return {kInC.begin(), kInC.end()};
-}
+std::vector<std::string_view> algorithms_in_c() { return {kInC.begin(), kInC.end()}; }
 
-CForm c_form(const CChoice& choice) {
-  return Maker(choice).make();
-}
+CForm c_form(const CChoice& choice) { return Maker(choice).make(); }
 
 }  // namespace libchar::fusion

@@ -55,8 +55,7 @@ class ArrayTables final : public TopicReader {
 
   FirstValues first_values(std::size_t topic, std::size_t field) override {
     const TableField& at = plan_.tables[topic].fields[field];
-    const auto rows = static_cast<std::size_t>(
-        std::min<std::uint64_t>(kFirstRows, plan_.tables[topic].topic.rows));
+    const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(kFirstRows, plan_.tables[topic].topic.rows));
     FirstValues first;
     first.integers = at.integer;
     for (const double x : read_front(at, rows))
@@ -64,16 +63,12 @@ class ArrayTables final : public TopicReader {
     return first;
   }
 
-  void select(std::size_t topic,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time,
+  void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
               StampUnit unit) override {
     const ArrayTable& table = plan_.tables[topic];
     table_ = &table;
     std::map<std::size_t, std::vector<std::uint64_t>> columns;
-    const auto want = [&](std::size_t i) {
-      columns[table.fields[i].array].push_back(table.fields[i].column);
-    };
+    const auto want = [&](std::size_t i) { columns[table.fields[i].array].push_back(table.fields[i].column); };
     for (const std::size_t i : fields) want(i);
     if (time) want(*time);
     std::uint64_t widest = 1;
@@ -95,23 +90,18 @@ class ArrayTables final : public TopicReader {
 
   bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
     const std::uint64_t left = table_->topic.rows - row_;
-    const auto rows =
-        static_cast<std::size_t>(std::min({static_cast<std::uint64_t>(most), most_, left}));
+    const auto rows = static_cast<std::size_t>(std::min({static_cast<std::uint64_t>(most), most_, left}));
     block.rows = rows;
     if (rows == 0) return false;
     for (OpenArray& array : open_) array.cursor->next(rows, array.pieces);
     for (std::size_t i = 0; i < readings_.size(); ++i) {
       const OpenArray& array = open_[readings_[i].array];
       block.columns[i].resize(rows);
-      const std::uint64_t rounded = read_numbers(first_of(array, readings_[i]),
-                                                 array.pieces[readings_[i].piece].stride,
-                                                 readings_[i].field.number,
-                                                 block.columns[i]);
+      const std::uint64_t rounded = read_numbers(first_of(array, readings_[i]), array.pieces[readings_[i].piece].stride,
+                                                 readings_[i].field.number, block.columns[i]);
       if (rounded > 0)
-        warnings.add("rounded_integer",
-                     "64-bit integers above 2^53 do not fit a double and were rounded",
-                     fmt::format("{} from row {}", printable(names_[i]), row_),
-                     rounded);
+        warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
+                     fmt::format("{} from row {}", printable(names_[i]), row_), rounded);
     }
     if (time_) read_times(block);
     row_ += rows;
@@ -123,21 +113,17 @@ class ArrayTables final : public TopicReader {
     Reading reading{field, 0, 0};
     while (open_[reading.array].array != field.array) ++reading.array;
     const auto& columns = open_[reading.array].columns;
-    reading.piece = static_cast<std::size_t>(
-        std::lower_bound(columns.begin(), columns.end(), field.column) - columns.begin());
+    reading.piece =
+        static_cast<std::size_t>(std::lower_bound(columns.begin(), columns.end(), field.column) - columns.begin());
     return reading;
   }
 
   void read_times(RowBlock& block) const {
     const OpenArray& array = open_[time_->array];
     block.time_ns.resize(block.rows);
-    read_stamps(first_of(array, *time_),
-                array.pieces[time_->piece].stride,
-                {time_->field.number, 1, -unit_.zero, unit_.ns},
-                block.time_ns,
-                [this](std::size_t i) {
-                  return fmt::format(
-                      "{} (row {}, field {})", path_, row_ + i, printable(time_name_));
+    read_stamps(first_of(array, *time_), array.pieces[time_->piece].stride,
+                {time_->field.number, 1, -unit_.zero, unit_.ns}, block.time_ns, [this](std::size_t i) {
+                  return fmt::format("{} (row {}, field {})", path_, row_ + i, printable(time_name_));
                 });
   }
 
@@ -176,8 +162,7 @@ class ArrayTables final : public TopicReader {
 
 }  // namespace
 
-std::unique_ptr<TopicReader> array_tables(std::unique_ptr<ArrayContainer> container,
-                                          const std::string& path) {
+std::unique_ptr<TopicReader> array_tables(std::unique_ptr<ArrayContainer> container, const std::string& path) {
   return std::make_unique<ArrayTables>(std::move(container), path);
 }
 

@@ -13,8 +13,7 @@
 namespace libchar {
 
 /// The tables of a container as topics. Throws Error(input) when two arrays have one name (E0307).
-std::unique_ptr<TopicReader> array_tables(std::unique_ptr<ArrayContainer> container,
-                                          const std::string& path);
+std::unique_ptr<TopicReader> array_tables(std::unique_ptr<ArrayContainer> container, const std::string& path);
 
 /// A HDF5 file as a container: the formats hdf5 and matlab (version 7.3) open it. `kind` stands in the dialect
 /// ("HDF5"). Throws Error(input): E0465 for what cannot be read, E0467 when the library is not built in.

@@ -40,8 +40,7 @@ void confine() {
 }
 
 [[noreturn]] void refuse_child(const char* what) {
-  throw input_error("E0465").says(
-      "no process can be started to read it in: {}: {}", what, std::strerror(errno));
+  throw input_error("E0465").says("no process can be started to read it in: {}: {}", what, std::strerror(errno));
 }
 
 bool read_all(int descriptor, std::span<std::byte> to) {
@@ -92,8 +91,7 @@ struct ChildProcess::State {
   [[noreturn]] void gone(const char* otherwise);
 };
 
-ChildProcess::ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path),
-                           const std::string& path)
+ChildProcess::ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path), const std::string& path)
     : state_(detail::hidden<State>()) {
   int to_child[2], to_parent[2];
   if (::pipe2(to_child, O_CLOEXEC) != 0) refuse_child("pipe");

@@ -33,8 +33,7 @@ struct ChildGone {
 class ChildProcess {
  public:
   /// `make` runs in the child.
-  ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path),
-               const std::string& path);
+  ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path), const std::string& path);
   /// Throw ChildGone.
   void ask(std::span<const std::byte> question);
   void answer(std::span<std::byte> to);

@@ -26,10 +26,8 @@ class Hdf5File final : public ArrayContainer {
   Hdf5File(const std::string& path, std::string kind)
       : file_(path), kind_(std::move(kind)), child_(answering_hdf5, path) {
     const std::string bytes = next_answer(path, kMostListing);
-    if (!decode(bytes, listing_))
-      throw input_error("E0465", path).says("its listing makes no sense");
-    if (!listing_.refusal.empty())
-      throw input_error("E0465", path).says(listing_.refusal).hint("copy the file again");
+    if (!decode(bytes, listing_)) throw input_error("E0465", path).says("its listing makes no sense");
+    if (!listing_.refusal.empty()) throw input_error("E0465", path).says(listing_.refusal).hint("copy the file again");
   }
 
   const std::vector<LogArray>& arrays() const override { return listing_.arrays; }
@@ -37,26 +35,20 @@ class Hdf5File final : public ArrayContainer {
   std::uint64_t bytes_read() const override { return std::min(consumed_, file_.size()); }
 
   std::vector<std::string> dialect() const override {
-    std::vector<std::string> words = {
-        fmt::format("{}, {}", kind_, plural(listing_.arrays.size(), "array"))};
+    std::vector<std::string> words = {fmt::format("{}, {}", kind_, plural(listing_.arrays.size(), "array"))};
     for (std::size_t i = 0; i < std::min<std::size_t>(listing_.left_out.size(), 4); ++i)
       words.push_back("left out: " + printable(listing_.left_out[i]));
     return words;
   }
 
-  std::unique_ptr<ArrayCursor> open(std::size_t array,
-                                    const ArrayRows& rows,
+  std::unique_ptr<ArrayCursor> open(std::size_t array, const ArrayRows& rows,
                                     const std::vector<std::uint64_t>& columns) override;
 
   /// The elements that answer a question.
   std::vector<std::byte> elements(const Hdf5Question& question, std::uint64_t expected) {
     const LogArray& array = listing_.arrays[detail::in_memory(question.array)];
-    const std::string where = fmt::format("{}, {}{}{} (row {})",
-                                          file_.path(),
-                                          printable(array.group),
-                                          array.group.empty() ? "" : "/",
-                                          printable(array.name),
-                                          question.row);
+    const std::string where = fmt::format("{}, {}{}{} (row {})", file_.path(), printable(array.group),
+                                          array.group.empty() ? "" : "/", printable(array.name), question.row);
     try {
       child_.ask(std::as_bytes(std::span(&question, 1)));
     } catch (const ChildGone& gone) {
@@ -79,8 +71,7 @@ class Hdf5File final : public ArrayContainer {
         throw input_error("E0465", where)
             .says("the HDF5 library cannot read it: it is cut or damaged")
             .hint("copy the file again");
-      if (size > most)
-        throw input_error("E0465", where).says("the HDF5 library says too much of it");
+      if (size > most) throw input_error("E0465", where).says("the HDF5 library says too much of it");
       std::string bytes(static_cast<std::size_t>(size), '\0');
       child_.answer(std::as_writable_bytes(std::span(bytes)));
       return bytes;
@@ -98,27 +89,22 @@ class Hdf5File final : public ArrayContainer {
 
 class Hdf5Cursor final : public ArrayCursor {
  public:
-  Hdf5Cursor(Hdf5File& file,
-             std::size_t array,
-             const ArrayRows& rows,
-             std::vector<std::uint64_t> columns)
+  Hdf5Cursor(Hdf5File& file, std::size_t array, const ArrayRows& rows, std::vector<std::uint64_t> columns)
       : file_(file), array_(array), rows_(rows), columns_(std::move(columns)) {
     blocks_.resize(rows_.planar ? columns_.size() : 1);
   }
 
   void next(std::size_t rows, std::vector<ArrayPiece>& pieces) override {
-    const auto element =
-        static_cast<std::size_t>(file_.arrays()[detail::in_memory(array_)].element_bytes);
+    const auto element = static_cast<std::size_t>(file_.arrays()[detail::in_memory(array_)].element_bytes);
     pieces.clear();
     Hdf5Question question{array_, row_, rows, 0, rows_.planar ? 1U : 0U};
     if (!rows_.planar) blocks_[0] = file_.elements(question, rows * rows_.columns * element);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       question.column = columns_[i];
       if (rows_.planar) blocks_[i] = file_.elements(question, rows * element);
-      pieces.push_back(rows_.planar
-                           ? ArrayPiece{blocks_[i].data(), element}
-                           : ArrayPiece{blocks_[0].data() + columns_[i] * element,
-                                        static_cast<std::size_t>(rows_.columns) * element});
+      pieces.push_back(rows_.planar ? ArrayPiece{blocks_[i].data(), element}
+                                    : ArrayPiece{blocks_[0].data() + columns_[i] * element,
+                                                 static_cast<std::size_t>(rows_.columns) * element});
     }
     row_ += rows;
   }
@@ -131,8 +117,7 @@ class Hdf5Cursor final : public ArrayCursor {
   std::vector<std::vector<std::byte>> blocks_;
 };
 
-std::unique_ptr<ArrayCursor> Hdf5File::open(std::size_t array,
-                                            const ArrayRows& rows,
+std::unique_ptr<ArrayCursor> Hdf5File::open(std::size_t array, const ArrayRows& rows,
                                             const std::vector<std::uint64_t>& columns) {
   return std::make_unique<Hdf5Cursor>(*this, array, rows, columns);
 }

@@ -132,8 +132,7 @@ LogArray decode_array(Decoder& from) {
   array.why_not = from.text();
   array.element_bytes = from.number();
   array.first_fastest = from.number() != 0;
-  for (std::uint64_t n = from.count(); n > 0 && from.good(); --n)
-    array.shape.push_back(from.number());
+  for (std::uint64_t n = from.count(); n > 0 && from.good(); --n) array.shape.push_back(from.number());
   for (std::uint64_t n = from.count(); n > 0 && from.good(); --n) {
     ElementField field;
     field.name = from.text();
@@ -154,9 +153,7 @@ bool holds(const LogArray& array) {
   if (!array.why_not.empty()) return true;
   for (const ElementField& field : array.fields) {
     const std::uint64_t bytes = field.count * size_of(field.number.type);
-    if (field.count == 0 || field.byte > array.element_bytes ||
-        bytes > array.element_bytes - field.byte)
-      return false;
+    if (field.count == 0 || field.byte > array.element_bytes || bytes > array.element_bytes - field.byte) return false;
   }
   return !array.fields.empty() && array.element_bytes <= (1U << 20U);
 }

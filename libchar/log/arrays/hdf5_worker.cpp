@@ -43,9 +43,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-Handle type_handle(hid_t id) {
-  return {id, H5Tclose};
-}
+Handle type_handle(hid_t id) { return {id, H5Tclose}; }
 
 /// How a dataset is read, once it was found sound.
 struct Reader {
@@ -189,8 +187,7 @@ hid_t record_type(hid_t type, LogArray& array) {
     array.fields.push_back(std::move(field));
   }
   if (array.fields.empty() || array.element_bytes > kMaxMemberBytes) {
-    array.why_not = array.fields.empty() ? "is a record without a number"
-                                         : "has records of more than a megabyte";
+    array.why_not = array.fields.empty() ? "is a record without a number" : "has records of more than a megabyte";
     return -1;
   }
   const hid_t memory = H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(array.element_bytes));
@@ -216,17 +213,15 @@ hid_t memory_type(hid_t type, LogArray& array) {
 // What would read other files, run other code or take memory without bound; "" when nothing does.
 std::string why_not_stored_so(hid_t plist, std::uint64_t element_bytes) {
   const H5D_layout_t layout = H5Pget_layout(plist);
-  if (layout == H5D_VIRTUAL)
-    return "is a virtual dataset, whose parts in other files are never read";
+  if (layout == H5D_VIRTUAL) return "is a virtual dataset, whose parts in other files are never read";
   if (H5Pget_external_count(plist) != 0) return "is stored in another file, which is never read";
   for (int i = 0; i < H5Pget_nfilters(plist); ++i) {
     char name[64] = "";
     unsigned flags = 0, config = 0;
     std::size_t values = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(
-        plist, static_cast<unsigned>(i), &flags, &values, nullptr, sizeof name, name, &config);
-    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE &&
-        filter != H5Z_FILTER_FLETCHER32)
+    const H5Z_filter_t filter =
+        H5Pget_filter2(plist, static_cast<unsigned>(i), &flags, &values, nullptr, sizeof name, name, &config);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE && filter != H5Z_FILTER_FLETCHER32)
       return fmt::format("is packed by filter {} {}; deflate and shuffle are read", filter, name);
   }
   if (layout != H5D_CHUNKED) return "";
@@ -250,9 +245,9 @@ hid_t access_of(hid_t plist, std::uint64_t element_bytes, const std::vector<hsiz
     const auto k = static_cast<std::size_t>(d);
     if (shape[k] <= 1024) across *= (shape[k] + chunk[d] - 1) / std::max<hsize_t>(chunk[d], 1);
   }
-  const std::uint64_t wanted = std::min(
-      std::max<std::uint64_t>(2 * bytes * std::min<std::uint64_t>(across, 4096), 1U << 20U),
-      std::max<std::uint64_t>(2 * bytes, 64U << 20U));
+  const std::uint64_t wanted =
+      std::min(std::max<std::uint64_t>(2 * bytes * std::min<std::uint64_t>(across, 4096), 1U << 20U),
+               std::max<std::uint64_t>(2 * bytes, 64U << 20U));
   H5Pset_chunk_cache(access, 10007, static_cast<std::size_t>(wanted), 0.75);
   return access;
 }
@@ -294,11 +289,9 @@ herr_t collect_number(hid_t object, const char* name, const H5A_info_t*, void* t
   const Handle type = type_handle(H5Aget_type(attribute));
   const Handle space(H5Aget_space(attribute), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type);
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space) != 1)
-    return 0;
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space) != 1) return 0;
   double value = 0;
-  if (H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
-    collected->said->push_back({collected->group, name, value});
+  if (H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0) collected->said->push_back({collected->group, name, value});
   return 0;
 }
 
@@ -310,14 +303,13 @@ void collect_numbers(hid_t object, const std::string& group, std::vector<SaidNum
 // MATLAB's datasets say what they are, and have the first dimension last.
 std::string why_not_matlab(hid_t dataset, const std::string& kind) {
   if (H5Aexists(dataset, "MATLAB_object_decode") > 0)
-    return fmt::format(
-        "is an object ({}); save its numbers, e.g. t = seconds(tt.Time); x = tt.Variables;", kind);
+    return fmt::format("is an object ({}); save its numbers, e.g. t = seconds(tt.Time); x = tt.Variables;", kind);
   if (kind == "char") return "is text";
   if (kind == "logical") return "holds truth values";
   if (kind == "cell") return "is a cell array; save its contents as arrays";
   if (H5Aexists(dataset, "MATLAB_empty") > 0) return "is empty";
-  static const std::set<std::string> numbers = {
-      "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"};
+  static const std::set<std::string> numbers = {"double", "single", "int8",   "uint8", "int16",
+                                                "uint16", "int32",  "uint32", "int64", "uint64"};
   return numbers.contains(kind) ? "" : fmt::format("is of class {}", kind);
 }
 
@@ -351,17 +343,12 @@ class Worker {
     std::vector<std::byte> out(static_cast<std::size_t>(bytes));
     const Handle file_space(H5Dget_space(reader.dataset), H5Sclose);
     if (!start.empty() &&
-        H5Sselect_hyperslab(
-            file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
+        H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
       return {};
     const Handle memory_space(
-        start.empty() ? H5Scopy(file_space)
-                      : H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+        start.empty() ? H5Scopy(file_space) : H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
         H5Sclose);
-    if (H5Dread(
-            reader.dataset, reader.memory_type, memory_space, file_space, H5P_DEFAULT, out.data()) <
-        0)
-      return {};
+    if (H5Dread(reader.dataset, reader.memory_type, memory_space, file_space, H5P_DEFAULT, out.data()) < 0) return {};
     return out;
   }
 
@@ -385,18 +372,14 @@ class Worker {
     return visit->worker->add_link(group, name, *link, *visit);
   }
 
-  herr_t add_link(hid_t group,
-                  const std::string& name,
-                  const H5L_info_t& link,
-                  const Visit& visit) {
+  herr_t add_link(hid_t group, const std::string& name, const H5L_info_t& link, const Visit& visit) {
     const std::string path = visit.group.empty() ? name : visit.group + "/" + name;
     if (++objects_ > kMaxObjects || name.size() > 1024 || path.size() > 4096) return 1;
     if (visit.group.empty() && name.starts_with('#')) return 0;  // MATLAB's own
     if (link.type != H5L_TYPE_HARD) {
-      listing.left_out.push_back(path +
-                                 (link.type == H5L_TYPE_SOFT
-                                      ? " is a soft link"
-                                      : " is a link to another file, which is never followed"));
+      listing.left_out.push_back(path + (link.type == H5L_TYPE_SOFT
+                                             ? " is a soft link"
+                                             : " is a link to another file, which is never followed"));
       return 0;
     }
     H5O_info_t about;
@@ -412,14 +395,10 @@ class Worker {
     return 0;
   }
 
-  void add_group(hid_t parent,
-                 const std::string& name,
-                 const std::string& path,
-                 std::size_t depth) {
+  void add_group(hid_t parent, const std::string& name, const std::string& path, std::size_t depth) {
     const Handle group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group) return listing.left_out.push_back(path + " is damaged");
-    if (H5Aexists(group, "MATLAB_sparse") > 0)
-      return listing.left_out.push_back(path + " is sparse");
+    if (H5Aexists(group, "MATLAB_sparse") > 0) return listing.left_out.push_back(path + " is sparse");
     if (depth < kMaxDepth) walk(group, path, depth + 1);
   }
 
@@ -453,8 +432,7 @@ class Worker {
     if (rank > 0) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
     Handle memory = type_handle(memory_type(type, array));
     if (!memory) return no(array.why_not.empty() ? "is of a type that is not read" : array.why_not);
-    if (std::string why = why_not_stored_so(plist, array.element_bytes); !why.empty())
-      return no(std::move(why));
+    if (std::string why = why_not_stored_so(plist, array.element_bytes); !why.empty()) return no(std::move(why));
     describe(first, matlab, shape, array);
     const Handle access(access_of(plist, array.element_bytes, shape), H5Pclose);
     Handle dataset(H5Dopen2(parent, array.name.c_str(), access), H5Dclose);
@@ -463,10 +441,7 @@ class Worker {
         Reader{std::move(dataset), std::move(memory), std::move(shape), array.element_bytes});
   }
 
-  static void describe(hid_t dataset,
-                       const std::string& matlab,
-                       const std::vector<hsize_t>& shape,
-                       LogArray& array) {
+  static void describe(hid_t dataset, const std::string& matlab, const std::vector<hsize_t>& shape, LogArray& array) {
     array.shape.assign(shape.begin(), shape.end());
     if (!matlab.empty()) {
       std::reverse(array.shape.begin(), array.shape.end());
@@ -482,9 +457,7 @@ class Worker {
   }
 
   // Rows run along the first dimension that is longer than 1, or the last one (planar).
-  static bool select(const Hdf5Question& q,
-                     std::vector<hsize_t>& start,
-                     std::vector<hsize_t>& count) {
+  static bool select(const Hdf5Question& q, std::vector<hsize_t>& start, std::vector<hsize_t>& count) {
     std::vector<std::size_t> longer;
     for (std::size_t d = 0; d < count.size(); ++d)
       if (count[d] != 1) longer.push_back(d);
@@ -543,13 +516,9 @@ class AnsweringHdf5 final : public Answering {
 
 }  // namespace
 
-bool hdf5_is_here() {
-  return true;
-}
+bool hdf5_is_here() { return true; }
 
-std::unique_ptr<Answering> answering_hdf5(const std::string& path) {
-  return std::make_unique<AnsweringHdf5>(path);
-}
+std::unique_ptr<Answering> answering_hdf5(const std::string& path) { return std::make_unique<AnsweringHdf5>(path); }
 
 }  // namespace libchar
 
@@ -557,9 +526,7 @@ std::unique_ptr<Answering> answering_hdf5(const std::string& path) {
 
 namespace libchar {
 
-bool hdf5_is_here() {
-  return false;
-}
+bool hdf5_is_here() { return false; }
 
 std::unique_ptr<Answering> answering_hdf5(const std::string&) {
   return nullptr;  // who asks has asked hdf5_is_here()

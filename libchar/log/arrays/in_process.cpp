@@ -11,8 +11,7 @@ struct ChildProcess::State {
   std::size_t read = 0;
 };
 
-ChildProcess::ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path),
-                           const std::string& path)
+ChildProcess::ChildProcess(std::unique_ptr<Answering> (*make)(const std::string& path), const std::string& path)
     : state_(detail::hidden<State>()) {
   state_->parser = make(path);
   state_->said = state_->parser->begin();

@@ -36,13 +36,11 @@ struct LogArray {
   std::string name;
   std::vector<ElementField> fields;  ///< one of plain numbers, several of a record
   std::uint64_t element_bytes = 0;
-  std::vector<std::uint64_t> shape;  ///< () is a single number
-  bool first_fastest =
-      false;  ///< Fortran order: neighbours along the first dimension stand side by side
-  std::vector<SaidNumber> said;  ///< numbers beside it (attributes), one of which may be a rate
-  std::string why_not;  ///< why it holds no numbers that can be read ("is text"); "" when it does
-  std::vector<std::string>
-      left_out;  ///< fields of a record that hold none, in words ("label is text")
+  std::vector<std::uint64_t> shape;   ///< () is a single number
+  bool first_fastest = false;         ///< Fortran order: neighbours along the first dimension stand side by side
+  std::vector<SaidNumber> said;       ///< numbers beside it (attributes), one of which may be a rate
+  std::string why_not;                ///< why it holds no numbers that can be read ("is text"); "" when it does
+  std::vector<std::string> left_out;  ///< fields of a record that hold none, in words ("label is text")
 };
 
 /// How the elements of an array are rows and columns.
@@ -76,8 +74,7 @@ class ArrayContainer {
   /// What was understood of the file, in words.
   virtual std::vector<std::string> dialect() const = 0;
   /// `columns` rise; the container outlives the cursor. Throws Error(input) for what is found broken.
-  virtual std::unique_ptr<ArrayCursor> open(std::size_t array,
-                                            const ArrayRows& rows,
+  virtual std::unique_ptr<ArrayCursor> open(std::size_t array, const ArrayRows& rows,
                                             const std::vector<std::uint64_t>& columns) = 0;
   /// Bytes of the file consumed so far, for progress.
   virtual std::uint64_t bytes_read() const = 0;

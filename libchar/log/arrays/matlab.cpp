@@ -25,8 +25,7 @@ namespace {
 // where elements are compressed, and without trust in any length.
 
 constexpr std::size_t kHeaderBytes = 128, kMaxStructDepth = 16, kMaxMatrices = 100000;
-constexpr std::uint64_t kMaxSmallElement = 1U
-                                           << 20U;  // dimensions, names: whatever is held in memory
+constexpr std::uint64_t kMaxSmallElement = 1U << 20U;  // dimensions, names: whatever is held in memory
 
 // Data types of elements.
 enum : std::uint32_t { kInt8 = 1, kMatrix = 14, kCompressed = 15 };
@@ -74,10 +73,7 @@ std::optional<NumberType> number_type_of(std::uint32_t type) {
 class Source {
  public:
   Source(const BinaryFile& file, PackedStretch stretch, bool big_endian)
-      : file_(file),
-        stretch_(stretch),
-        bytes_(file, stretch, "compressed element"),
-        big_endian_(big_endian) {}
+      : file_(file), stretch_(stretch), bytes_(file, stretch, "compressed element"), big_endian_(big_endian) {}
 
   std::uint64_t position() const { return bytes_.position(); }
   const PackedStretch& stretch() const { return stretch_; }
@@ -97,12 +93,9 @@ class Source {
     return value;
   }
   [[noreturn]] void refuse(std::string what) const {
-    throw input_error(
-        "E0464",
-        fmt::format("{} (byte {})",
-                    file_.path(),
-                    stretch_.first_byte +
-                        (stretch_.packing == Packing::stored ? position() : std::uint64_t{0})))
+    throw input_error("E0464", fmt::format("{} (byte {})", file_.path(),
+                                           stretch_.first_byte +
+                                               (stretch_.packing == Packing::stored ? position() : std::uint64_t{0})))
         .says(std::move(what))
         .hint("save it again, or copy it again");
   }
@@ -174,8 +167,7 @@ MatrixHead read_head(Source& from, std::uint64_t end) {
   }
   tag = read_tag(from, end);
   const std::string extents = read_small(from, tag, end);
-  if (extents.size() % 4 != 0 || extents.size() > 128)
-    from.refuse("has an array of a senseless shape");
+  if (extents.size() % 4 != 0 || extents.size() > 128) from.refuse("has an array of a senseless shape");
   for (std::size_t at = 0; at < extents.size(); at += 4) {
     const std::uint32_t extent = from.u32_of(extents, at);
     if (extent > 0x7FFFFFFFU) from.refuse("has an array with a negative dimension");
@@ -201,9 +193,7 @@ std::string why_not_class(const MatrixHead& head) {
       break;
   }
   if (head.kind == kOpaque)
-    return fmt::format(
-        "is an object ({}); save its numbers, e.g. t = seconds(tt.Time); x = tt.Variables;",
-        head.type);
+    return fmt::format("is an object ({}); save its numbers, e.g. t = seconds(tt.Time); x = tt.Variables;", head.type);
   if (head.kind > kUint64) return "is a function";
   if (head.kind < kDouble) return "is of an unknown class";
   if ((head.flags & kLogicalFlag) != 0) return "holds truth values";
@@ -224,9 +214,7 @@ class Matlab5File final : public ArrayContainer {
     const std::string head = file_.head(kHeaderBytes);
     if (head.size() < kHeaderBytes)
       throw input_error("E0464", file_.path())
-          .says("ends at byte {}, inside the {} bytes of a MATLAB file's header",
-                head.size(),
-                kHeaderBytes)
+          .says("ends at byte {}, inside the {} bytes of a MATLAB file's header", head.size(), kHeaderBytes)
           .hint("copy it again");
     if (head.substr(126) != "IM" && head.substr(126) != "MI")
       throw input_error("E0464", file_.path())
@@ -251,13 +239,10 @@ class Matlab5File final : public ArrayContainer {
   const std::vector<LogArray>& arrays() const override { return arrays_; }
   std::uint64_t bytes_read() const override { return std::min(consumed_, file_.size()); }
   std::vector<std::string> dialect() const override {
-    return {fmt::format("MATLAB 5{}, {}{}",
-                        compressed_ ? ", compressed" : "",
-                        plural(arrays_.size(), "array"),
+    return {fmt::format("MATLAB 5{}, {}{}", compressed_ ? ", compressed" : "", plural(arrays_.size(), "array"),
                         big_endian_ ? ", big endian" : "")};
   }
-  std::unique_ptr<ArrayCursor> open(std::size_t array,
-                                    const ArrayRows& rows,
+  std::unique_ptr<ArrayCursor> open(std::size_t array, const ArrayRows& rows,
                                     const std::vector<std::uint64_t>& columns) override {
     return open_packed_array(file_, places_[array], rows, columns, consumed_);
   }
@@ -266,8 +251,7 @@ class Matlab5File final : public ArrayContainer {
   // How long it is unpacked stands in the tag within; no more than that is read.
   void add_compressed(std::uint64_t first_byte, std::uint64_t packed) {
     compressed_ = true;
-    const std::uint64_t most =
-        packed > (~std::uint64_t{0}) / kDeflateRatio ? packed : packed * kDeflateRatio;
+    const std::uint64_t most = packed > (~std::uint64_t{0}) / kDeflateRatio ? packed : packed * kDeflateRatio;
     Source inner(file_, {first_byte, packed, most, Packing::zlib}, big_endian_);
     const Tag tag = read_tag(inner, most);
     if (tag.type == kMatrix) add_matrix(inner, inner.position() + tag.bytes, "", 0);
@@ -282,10 +266,7 @@ class Matlab5File final : public ArrayContainer {
     places_.emplace_back();
   }
 
-  void add_matrix(Source& from,
-                  std::uint64_t end,
-                  const std::string& group,
-                  std::size_t depth,
+  void add_matrix(Source& from, std::uint64_t end, const std::string& group, std::size_t depth,
                   const std::string& called = "") {
     if (++matrices_ > kMaxMatrices) from.refuse("holds more than 100000 arrays");
     if (end == from.position()) return leave_out(group, called, "is empty");
@@ -293,23 +274,18 @@ class Matlab5File final : public ArrayContainer {
     if (!called.empty()) head.name = called;
     if (head.name.empty()) return;  // MATLAB's own, behind its objects
     if (head.kind == kStruct) return add_struct(from, end, head, group, depth);
-    if (std::string why = why_not_class(head); !why.empty())
-      return leave_out(group, head.name, std::move(why));
+    if (std::string why = why_not_class(head); !why.empty()) return leave_out(group, head.name, std::move(why));
     add_numbers(from, end, head, group);
   }
 
-  void add_numbers(Source& from,
-                   std::uint64_t end,
-                   const MatrixHead& head,
-                   const std::string& group) {
+  void add_numbers(Source& from, std::uint64_t end, const MatrixHead& head, const std::string& group) {
     const Tag tag = read_tag(from, end);
     const auto number = number_type_of(tag.type);
     const std::uint64_t count = elements_of(head);
     if (!number) from.refuse(fmt::format("has an array of type {}, which is no number", tag.type));
     if (count > tag.bytes || count * size_of(*number) != tag.bytes)
-      from.refuse(fmt::format("has an array {} whose shape does not fit its {} bytes",
-                              printable(head.name),
-                              tag.bytes));
+      from.refuse(
+          fmt::format("has an array {} whose shape does not fit its {} bytes", printable(head.name), tag.bytes));
     LogArray array;
     array.group = group;
     array.name = head.name;
@@ -319,11 +295,7 @@ class Matlab5File final : public ArrayContainer {
     const bool real = head.kind == kDouble || head.kind == kDouble + 1;
     array.fields.push_back({"", "", {*number, from.big_endian()}, 0, 1, false, real});
     array.element_bytes = size_of(*number);
-    places_.push_back({from.stretch(),
-                       printable(head.name),
-                       from.position(),
-                       array.element_bytes,
-                       std::nullopt,
+    places_.push_back({from.stretch(), printable(head.name), from.position(), array.element_bytes, std::nullopt,
                        from.stretch().packing != Packing::stored && group.empty()});
     // Nothing behind the elements is looked at again.
     places_.back().stretch.bytes = from.position() + tag.bytes;
@@ -331,10 +303,7 @@ class Matlab5File final : public ArrayContainer {
   }
 
   // Fields of all elements of a struct array in turn: the name of each once, then one matrix a field.
-  void add_struct(Source& from,
-                  std::uint64_t end,
-                  const MatrixHead& head,
-                  const std::string& group,
+  void add_struct(Source& from, std::uint64_t end, const MatrixHead& head, const std::string& group,
                   std::size_t depth) {
     const std::string path = group.empty() ? head.name : group + "/" + head.name;
     Tag tag = read_tag(from, end);
@@ -353,10 +322,7 @@ class Matlab5File final : public ArrayContainer {
         if (tag.type != kMatrix) from.refuse("has a struct with a field that is no array");
         const std::uint64_t field_end = from.position() + tag.bytes;
         const std::string_view field(names.data() + f * each, each);
-        add_matrix(from,
-                   field_end,
-                   elements == 1 ? path : fmt::format("{}_{}", path, e),
-                   depth + 1,
+        add_matrix(from, field_end, elements == 1 ? path : fmt::format("{}_{}", path, e), depth + 1,
                    std::string(field.substr(0, field.find('\0'))));
         from.skip(field_end - from.position());
         skip_padding(from, tag, end);
@@ -383,8 +349,7 @@ bool is_matlab_73(std::string_view first_bytes) {
 }
 
 bool certain_matlab(std::string_view first_bytes) {
-  return first_bytes.starts_with("MATLAB 5.0 MAT-file") ||
-         first_bytes.starts_with("MATLAB 7.3 MAT-file");
+  return first_bytes.starts_with("MATLAB 5.0 MAT-file") || first_bytes.starts_with("MATLAB 7.3 MAT-file");
 }
 
 std::unique_ptr<TopicReader> open_matlab(const std::string& path, const ReadOptions&) {

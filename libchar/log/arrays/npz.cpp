@@ -33,9 +33,7 @@ std::pair<std::string, std::string> group_and_name(std::string path) {
 }
 
 // What an array is that a sentence refuses, and what makes the archive as a whole unreadable.
-bool only_this_array(const std::string& code) {
-  return code == "E0404" || code == "E0408" || code == "E0409";
-}
+bool only_this_array(const std::string& code) { return code == "E0404" || code == "E0408" || code == "E0409"; }
 
 class NpzFile final : public ArrayContainer {
  public:
@@ -48,15 +46,13 @@ class NpzFile final : public ArrayContainer {
   std::uint64_t bytes_read() const override { return std::min(consumed_, file_.size()); }
 
   std::vector<std::string> dialect() const override {
-    return {fmt::format("ZIP archive of {}, {}",
-                        plural(arrays_.size(), "array"),
+    return {fmt::format("ZIP archive of {}, {}", plural(arrays_.size(), "array"),
                         packings_.size() == 2           ? "some compressed"
                         : packings_.contains("deflate") ? "compressed"
                                                         : "not compressed")};
   }
 
-  std::unique_ptr<ArrayCursor> open(std::size_t array,
-                                    const ArrayRows& rows,
+  std::unique_ptr<ArrayCursor> open(std::size_t array, const ArrayRows& rows,
                                     const std::vector<std::uint64_t>& columns) override {
     return open_packed_array(file_, members_[array], rows, columns, consumed_);
   }
@@ -65,8 +61,8 @@ class NpzFile final : public ArrayContainer {
   void add_member(const ZipMember& member) {
     const bool array = member.name.ends_with(kArraySuffix);
     LogArray seen;
-    std::tie(seen.group, seen.name) = group_and_name(
-        array ? member.name.substr(0, member.name.size() - kArraySuffix.size()) : member.name);
+    std::tie(seen.group, seen.name) =
+        group_and_name(array ? member.name.substr(0, member.name.size() - kArraySuffix.size()) : member.name);
     PackedArray packed{member.stretch, printable(member.name), 0, 0, member.crc, false};
     if (!array)
       seen.why_not = "is no .npy array";
@@ -74,16 +70,14 @@ class NpzFile final : public ArrayContainer {
       seen.why_not = member.why_not;
     else
       read_header(seen, packed);
-    if (seen.why_not.empty())
-      packings_.insert(member.stretch.packing == Packing::stored ? "stored" : "deflate");
+    if (seen.why_not.empty()) packings_.insert(member.stretch.packing == Packing::stored ? "stored" : "deflate");
     arrays_.push_back(std::move(seen));
     members_.push_back(std::move(packed));
   }
 
   void read_header(LogArray& seen, PackedArray& packed) {
-    std::string front(
-        static_cast<std::size_t>(std::min<std::uint64_t>(packed.stretch.bytes, 12 + kMaxNpyHeader)),
-        '\0');
+    std::string front(static_cast<std::size_t>(std::min<std::uint64_t>(packed.stretch.bytes, 12 + kMaxNpyHeader)),
+                      '\0');
     PackedBytes(file_, packed.stretch, packed.name).read(std::as_writable_bytes(std::span(front)));
     const std::string where = fmt::format("{}, {}", file_.path(), packed.name);
     NpyHeader header;
@@ -95,8 +89,7 @@ class NpzFile final : public ArrayContainer {
       return;
     }
     for (const NpyField& field : header.fields)
-      seen.fields.push_back(
-          {field.name, "", field.number, field.byte, field.count, field.array, false});
+      seen.fields.push_back({field.name, "", field.number, field.byte, field.count, field.array, false});
     seen.element_bytes = packed.element_bytes = header.item_bytes;
     seen.shape = header.shape;
     seen.first_fastest = header.fortran_order;
@@ -104,18 +97,14 @@ class NpzFile final : public ArrayContainer {
     check_size(header, packed, where);
   }
 
-  static void check_size(const NpyHeader& header,
-                         const PackedArray& packed,
-                         const std::string& where) {
+  static void check_size(const NpyHeader& header, const PackedArray& packed, const std::string& where) {
     std::uint64_t bytes = header.item_bytes;
     bool fits = true;
-    for (const std::uint64_t extent : header.shape)
-      fits = fits && !__builtin_mul_overflow(bytes, extent, &bytes);
+    for (const std::uint64_t extent : header.shape) fits = fits && !__builtin_mul_overflow(bytes, extent, &bytes);
     // A dimension of 0 hides what is senseless beside it, and the array is left out.
     if (fits && bytes <= packed.stretch.bytes - header.data_byte) return;
     throw input_error("E0410", where)
-        .says("is truncated: its shape needs more than the {} bytes there are",
-              packed.stretch.bytes - header.data_byte)
+        .says("is truncated: its shape needs more than the {} bytes there are", packed.stretch.bytes - header.data_byte)
         .hint("copy it again");
   }
 
@@ -133,9 +122,7 @@ std::unique_ptr<TopicReader> open_npz(const std::string& path, const ReadOptions
 // A ZIP archive whose first member is an array; spreadsheets are ZIP archives too.
 bool certain_npz(std::string_view first_bytes) {
   if (!first_bytes.starts_with("PK\x03\x04") || first_bytes.size() < 30) return false;
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::size_t>(static_cast<unsigned char>(first_bytes[i]));
-  };
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(first_bytes[i])); };
   return first_bytes.substr(30, byte(26) + 256 * byte(27)).ends_with(kArraySuffix);
 }
 

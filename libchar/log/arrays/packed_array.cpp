@@ -15,20 +15,15 @@
 namespace libchar {
 
 void PackedBytes::refuse(std::string what) const {
-  throw input_error("E0462",
-                    fmt::format("{}, {} (byte {})",
-                                file_.path(),
-                                name_,
-                                stretch_.first_byte + std::min(packed_, stretch_.packed_bytes)))
+  throw input_error("E0462", fmt::format("{}, {} (byte {})", file_.path(), name_,
+                                         stretch_.first_byte + std::min(packed_, stretch_.packed_bytes)))
       .says(std::move(what))
       .hint("copy the file again");
 }
 
 #if LIBCHAR_HAVE_ZLIB
 
-bool zlib_is_here() {
-  return true;
-}
+bool zlib_is_here() { return true; }
 
 namespace {
 constexpr std::size_t kPackedPiece = std::size_t{1} << 16U;
@@ -39,8 +34,7 @@ struct PackedBytes::Inflater {
   bool ended = false;
   std::vector<std::byte> in = std::vector<std::byte>(kPackedPiece);
   explicit Inflater(Packing packing) {
-    if (::inflateInit2(&stream, packing == Packing::zlib ? MAX_WBITS : -MAX_WBITS) != Z_OK)
-      throw std::bad_alloc();
+    if (::inflateInit2(&stream, packing == Packing::zlib ? MAX_WBITS : -MAX_WBITS) != Z_OK) throw std::bad_alloc();
   }
   ~Inflater() { ::inflateEnd(&stream); }
   Inflater(const Inflater&) = delete;
@@ -60,8 +54,8 @@ bool PackedBytes::inflate_into(std::span<std::byte> to, bool may_end) {
     if (inflater_->ended && may_end) return false;
     if (inflater_->ended) refuse("ends before its data do");
     if (z.avail_in == 0) {
-      const auto n = static_cast<std::size_t>(
-          std::min<std::uint64_t>(inflater_->in.size(), stretch_.packed_bytes - packed_));
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(inflater_->in.size(), stretch_.packed_bytes - packed_));
       if (n == 0) refuse("ends before its data do");
       file_.read(stretch_.first_byte + packed_, std::span(inflater_->in).first(n));
       packed_ += n;
@@ -72,8 +66,7 @@ bool PackedBytes::inflate_into(std::span<std::byte> to, bool may_end) {
     inflater_->ended = status == Z_STREAM_END;
     if (status == Z_MEM_ERROR) throw std::bad_alloc();
     if (status != Z_OK && status != Z_STREAM_END)
-      refuse(fmt::format("compressed data are broken ({})",
-                         z.msg != nullptr ? z.msg : "no deflate stream"));
+      refuse(fmt::format("compressed data are broken ({})", z.msg != nullptr ? z.msg : "no deflate stream"));
   }
   return true;
 }
@@ -87,9 +80,7 @@ void PackedBytes::drain() {
 
 #else  // without zlib
 
-bool zlib_is_here() {
-  return false;
-}
+bool zlib_is_here() { return false; }
 
 struct PackedBytes::Inflater {};
 
@@ -101,9 +92,7 @@ PackedBytes::PackedBytes(const BinaryFile& file, PackedStretch stretch, std::str
       .hint("install zlib1g-dev and build again, or save it without compression");
 }
 
-bool PackedBytes::inflate_into(std::span<std::byte>, bool) {
-  return false;
-}
+bool PackedBytes::inflate_into(std::span<std::byte>, bool) { return false; }
 
 void PackedBytes::drain() {}
 
@@ -156,8 +145,7 @@ void check_crc(const BinaryFile& file, const PackedArray& array, std::uint32_t f
 void read_out(PackedBytes& bytes, std::uint64_t end) {
   std::vector<std::byte> piece(1U << 16U);
   while (bytes.position() < end) {
-    const auto n =
-        static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - bytes.position()));
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - bytes.position()));
     bytes.read(std::span(piece).first(n));
   }
 }
@@ -165,11 +153,8 @@ void read_out(PackedBytes& bytes, std::uint64_t end) {
 // Row after row: one pass over the bytes.
 class InterleavedCursor final : public ArrayCursor {
  public:
-  InterleavedCursor(const BinaryFile& file,
-                    const PackedArray& array,
-                    const ArrayRows& rows,
-                    const std::vector<std::uint64_t>& columns,
-                    std::uint64_t& consumed)
+  InterleavedCursor(const BinaryFile& file, const PackedArray& array, const ArrayRows& rows,
+                    const std::vector<std::uint64_t>& columns, std::uint64_t& consumed)
       : file_(file),
         array_(array),
         rows_(rows),
@@ -211,15 +196,9 @@ class InterleavedCursor final : public ArrayCursor {
 // Column after column: one pass over the bytes in front of each.
 class PlanarCursor final : public ArrayCursor {
  public:
-  PlanarCursor(const BinaryFile& file,
-               const PackedArray& array,
-               const ArrayRows& rows,
-               const std::vector<std::uint64_t>& columns,
-               std::uint64_t& consumed)
-      : rows_(rows.rows),
-        to_the_end_(array.to_the_end),
-        element_bytes_(array.element_bytes),
-        consumed_(consumed) {
+  PlanarCursor(const BinaryFile& file, const PackedArray& array, const ArrayRows& rows,
+               const std::vector<std::uint64_t>& columns, std::uint64_t& consumed)
+      : rows_(rows.rows), to_the_end_(array.to_the_end), element_bytes_(array.element_bytes), consumed_(consumed) {
     if (array.crc && zlib_is_here()) {
       PackedBytes all(file, array.stretch, array.name);
       read_out(all, array.stretch.bytes);
@@ -259,11 +238,8 @@ class PlanarCursor final : public ArrayCursor {
 
 }  // namespace
 
-std::unique_ptr<ArrayCursor> open_packed_array(const BinaryFile& file,
-                                               const PackedArray& array,
-                                               const ArrayRows& rows,
-                                               const std::vector<std::uint64_t>& columns,
-                                               std::uint64_t& consumed) {
+std::unique_ptr<ArrayCursor> open_packed_array(const BinaryFile& file, const PackedArray& array, const ArrayRows& rows,
+                                               const std::vector<std::uint64_t>& columns, std::uint64_t& consumed) {
   if (rows.planar) return std::make_unique<PlanarCursor>(file, array, rows, columns, consumed);
   return std::make_unique<InterleavedCursor>(file, array, rows, columns, consumed);
 }

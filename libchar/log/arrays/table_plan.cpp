@@ -23,9 +23,7 @@ constexpr std::uint64_t kTurnedRatio = 32;
 // A table without stamps that is this many times shorter than the longest one holds constants or a calibration.
 constexpr std::uint64_t kMinorTable = 4;
 
-std::string path_of(const LogArray& array) {
-  return array.group.empty() ? array.name : array.group + "/" + array.name;
-}
+std::string path_of(const LogArray& array) { return array.group.empty() ? array.name : array.group + "/" + array.name; }
 
 // "a/b" → "a" → ""; nothing above the top.
 bool go_up(std::string& group) {
@@ -66,9 +64,8 @@ std::string not_a_column(const LogArray& array) {
 
 bool says_time(const LogArray& array, const ArrayRows& rows) {
   if (!is_record(array)) return rows.columns == 1 && called_time(array.name);
-  return std::any_of(array.fields.begin(), array.fields.end(), [](const ElementField& field) {
-    return field.count == 1 && called_time(field.name);
-  });
+  return std::any_of(array.fields.begin(), array.fields.end(),
+                     [](const ElementField& field) { return field.count == 1 && called_time(field.name); });
 }
 
 std::string plain_word(std::string_view name) {
@@ -98,16 +95,9 @@ double rate_said(const std::string& name, double value) {
                                             "imuratehz",
                                             "datarate",
                                             "updaterate"};
-  static constexpr std::array kStepWords = {"dt",
-                                            "ts",
-                                            "sampletime",
-                                            "sampleinterval",
-                                            "samplinginterval",
-                                            "sampleperiod",
-                                            "samplingperiod",
-                                            "deltat",
-                                            "dts",
-                                            "timestep"};
+  static constexpr std::array kStepWords = {
+      "dt",     "ts",  "sampletime", "sampleinterval", "samplinginterval", "sampleperiod", "samplingperiod",
+      "deltat", "dts", "timestep"};
   const std::string word = plain_word(name);
   const auto among = [&](const auto& words) {
     return std::any_of(words.begin(), words.end(), [&](const char* w) { return word == w; });
@@ -118,28 +108,24 @@ double rate_said(const std::string& name, double value) {
 
 class Planner {
  public:
-  Planner(const ArrayContainer& container,
-          const std::function<double(std::size_t)>& single,
-          const std::string& file)
+  Planner(const ArrayContainer& container, const std::function<double(std::size_t)>& single, const std::string& file)
       : arrays_(container.arrays()), file_(file) {
     plan_.rows.resize(arrays_.size());
     refuse_doubles();
-    for (const SaidNumber& number : container.said())
-      add_single(number.group, number.name, number.value);
+    for (const SaidNumber& number : container.said()) add_single(number.group, number.name, number.value);
     for (std::size_t i = 0; i < arrays_.size(); ++i) look_at(i, single);
     turn_arrays();
     for (const std::size_t i : columns_) times_.emplace(group_key(i), false);
     for (const std::size_t i : columns_)
-      if (says_time(arrays_[i], plan_.rows[i]) && !is_record(arrays_[i]))
-        times_[group_key(i)] = true;
+      if (says_time(arrays_[i], plan_.rows[i]) && !is_record(arrays_[i])) times_[group_key(i)] = true;
   }
 
   TablePlan finish() {
     std::vector<std::pair<Key, std::vector<std::size_t>>> tables;
     for (const std::size_t i : columns_) {
       const Key key = table_of(i);
-      const auto known = std::find_if(
-          tables.begin(), tables.end(), [&](const auto& table) { return table.first == key; });
+      const auto known =
+          std::find_if(tables.begin(), tables.end(), [&](const auto& table) { return table.first == key; });
       if (known == tables.end())
         tables.push_back({key, {i}});
       else
@@ -147,9 +133,8 @@ class Planner {
     }
     for (const auto& [key, members] : tables) add_table(key, members, tables.size());
     mark_sensors();
-    std::stable_sort(plan_.tables.begin(), plan_.tables.end(), [](const auto& a, const auto& b) {
-      return a.topic.rows > b.topic.rows;
-    });
+    std::stable_sort(plan_.tables.begin(), plan_.tables.end(),
+                     [](const auto& a, const auto& b) { return a.topic.rows > b.topic.rows; });
     say_left_out();
     return std::move(plan_);
   }
@@ -225,8 +210,7 @@ class Planner {
       const std::vector<std::uint64_t> shape = squeezed(arrays_[i]);
       if (shape.size() != 2 || !is_turned(arrays_[i], shape[0], shape[1])) continue;
       turned_.push_back(i);
-      turned.push_back(
-          fmt::format("{} ({} × {})", printable(path_of(arrays_[i])), shape[0], shape[1]));
+      turned.push_back(fmt::format("{} ({} × {})", printable(path_of(arrays_[i])), shape[0], shape[1]));
     }
     for (const std::size_t i : turned_) {
       ArrayRows& rows = plan_.rows[i];
@@ -257,14 +241,11 @@ class Planner {
   }
 
   // A field that is no time stands for a table that has no better name.
-  std::string name_of_table(const Key& key,
-                            const std::vector<std::size_t>& members,
-                            std::size_t tables) const {
+  std::string name_of_table(const Key& key, const std::vector<std::size_t>& members, std::size_t tables) const {
     if (key.alone != 0) return path_of(arrays_[key.alone - 1]);
     if (tables == 1 && key.home.empty() && members.size() > 1) return "arrays";
     bool only = !key.home.empty();  // the only length of its group?
-    for (const std::size_t i : columns_)
-      only = only && (!(arrays_[i].group == key.home) || table_of(i) == key);
+    for (const std::size_t i : columns_) only = only && (!(arrays_[i].group == key.home) || table_of(i) == key);
     if (only) return key.home;
     for (const std::size_t i : members)
       if (!says_time(arrays_[i], plan_.rows[i])) return path_of(arrays_[i]);
@@ -294,8 +275,7 @@ class Planner {
     std::uint64_t numbers = 0;
     for (const ElementField& field : array.fields) numbers += field.count;
     if (table.fields.size() + rows.columns * numbers > kMaxColumns) {
-      left_out_.emplace_back(
-          i, fmt::format("would be more than {} columns with the others", kMaxColumns));
+      left_out_.emplace_back(i, fmt::format("would be more than {} columns with the others", kMaxColumns));
       return;
     }
     std::string base = path_of(array);
@@ -306,25 +286,16 @@ class Planner {
     }
   }
 
-  void add_field(std::size_t i,
-                 std::uint64_t column,
-                 const ElementField& field,
-                 const std::string& column_name,
-                 bool alone,
-                 ArrayTable& table) {
+  void add_field(std::size_t i, std::uint64_t column, const ElementField& field, const std::string& column_name,
+                 bool alone, ArrayTable& table) {
     for (std::uint64_t k = 0; k < field.count; ++k) {
-      std::string name = field.name.empty() ? column_name
-                         : alone            ? field.name
-                                            : column_name + "." + field.name;
+      std::string name = field.name.empty() ? column_name : alone ? field.name : column_name + "." + field.name;
       std::string unit =
-          !field.unit.empty()
-              ? field.unit
-              : name_and_unit(field.name.empty() ? arrays_[i].name : field.name).second;
+          !field.unit.empty() ? field.unit : name_and_unit(field.name.empty() ? arrays_[i].name : field.name).second;
       if (field.array) name += fmt::format("_{}", k);
       const bool integer = !is_float(field.number.type) && !field.real;
       table.topic.fields.push_back({std::move(name), std::move(unit), integer});
-      table.fields.push_back(
-          {i, column, field.byte + k * size_of(field.number.type), field.number, integer});
+      table.fields.push_back({i, column, field.byte + k * size_of(field.number.type), field.number, integer});
     }
   }
 
@@ -333,8 +304,7 @@ class Planner {
     std::vector<std::pair<std::string, double>> found;
     for (const std::size_t i : members)
       for (const SaidNumber& number : arrays_[i].said)
-        if (const double hz = rate_said(number.name, number.value); hz > 0)
-          found.emplace_back(number.name, hz);
+        if (const double hz = rate_said(number.name, number.value); hz > 0) found.emplace_back(number.name, hz);
     std::string group = key.home;
     do {
       if (!found.empty()) break;
@@ -344,11 +314,8 @@ class Planner {
     if (found.empty()) return 0;
     for (const auto& [name, hz] : found) {
       if (std::abs(hz / found[0].second - 1) < 1e-6) continue;
-      say(fmt::format("{} says {} Hz and {} {} Hz: neither is used",
-                      printable(found[0].first),
-                      shortest(found[0].second),
-                      printable(name),
-                      shortest(hz)));
+      say(fmt::format("{} says {} Hz and {} {} Hz: neither is used", printable(found[0].first),
+                      shortest(found[0].second), printable(name), shortest(hz)));
       return 0;
     }
     say(fmt::format("{} says {} Hz", printable(found[0].first), shortest(found[0].second)));
@@ -365,13 +332,10 @@ class Planner {
     std::uint64_t longest = 0;
     for (const ArrayTable& table : plan_.tables) longest = std::max(longest, table.topic.rows);
     const auto stamped = [](const ArrayTable& table) {
-      return std::any_of(table.topic.fields.begin(),
-                         table.topic.fields.end(),
+      return std::any_of(table.topic.fields.begin(), table.topic.fields.end(),
                          [](const Channel& f) { return called_time(f.name); });
     };
-    const auto any = [&](const ArrayTable& table) {
-      return table.topic.rows >= longest / kMinorTable;
-    };
+    const auto any = [&](const ArrayTable& table) { return table.topic.rows >= longest / kMinorTable; };
     const auto rated = [&](const ArrayTable& table) { return table.rate_hz > 0 && any(table); };
     const auto mark = [&](auto has) {
       bool found = false;
@@ -392,8 +356,7 @@ class Planner {
       const std::string name = path_of(arrays_[i]);
       if (words.size() < 4) words.push_back(fmt::format("{} {}", printable(name), why));
     }
-    if (left_out_.size() > words.size())
-      words.push_back(fmt::format("and {} more", left_out_.size() - words.size()));
+    if (left_out_.size() > words.size()) words.push_back(fmt::format("and {} more", left_out_.size() - words.size()));
     plan_.said.push_back(fmt::format("left out: {}", fmt::join(words, "; ")));
     if (!plan_.tables.empty()) return;
     for (const auto& [i, why] : left_out_) {
@@ -410,14 +373,12 @@ class Planner {
   TablePlan plan_;
   std::vector<std::size_t> columns_, turned_;  // arrays with rows; of these, those that are turned
   std::vector<std::pair<std::size_t, std::string>> left_out_;
-  std::map<std::pair<std::string, std::uint64_t>, bool>
-      times_;  // has a group stamps for this many rows?
+  std::map<std::pair<std::string, std::uint64_t>, bool> times_;  // has a group stamps for this many rows?
 };
 
 }  // namespace
 
-TablePlan plan_tables(const ArrayContainer& container,
-                      const std::function<double(std::size_t array)>& single,
+TablePlan plan_tables(const ArrayContainer& container, const std::function<double(std::size_t array)>& single,
                       const std::string& file) {
   return Planner(container, single, file).finish();
 }

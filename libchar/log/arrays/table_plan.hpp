@@ -33,8 +33,7 @@ struct TablePlan {
 };
 
 /// `single` gives the number that array i of one element holds. Throws Error(input) E0307 for two arrays of one name.
-TablePlan plan_tables(const ArrayContainer& container,
-                      const std::function<double(std::size_t array)>& single,
+TablePlan plan_tables(const ArrayContainer& container, const std::function<double(std::size_t array)>& single,
                       const std::string& file);
 
 }  // namespace libchar

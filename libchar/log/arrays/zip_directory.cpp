@@ -12,14 +12,12 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kEndBytes = 22, kLocatorBytes = 20, kEnd64Bytes = 56, kEntryBytes = 46,
-                      kLocalBytes = 30;
+constexpr std::size_t kEndBytes = 22, kLocatorBytes = 20, kEnd64Bytes = 56, kEntryBytes = 46, kLocalBytes = 30;
 constexpr std::uint64_t kMaxMembers = 100000, kMaxDirectoryBytes = 64U << 20U;
 constexpr std::size_t kMaxMemberName = 1024;
 
 Refusal zip_refusal(const BinaryFile& file, std::uint64_t byte) {
-  return input_error("E0460", fmt::format("{} (byte {})", file.path(), byte))
-      .hint("copy it again, or write it again");
+  return input_error("E0460", fmt::format("{} (byte {})", file.path(), byte)).hint("copy it again, or write it again");
 }
 
 Refusal member_refusal(const BinaryFile& file, const std::string& name) {
@@ -32,8 +30,7 @@ class Bytes {
   Bytes(std::string_view bytes) : bytes_(bytes) {}
   std::uint64_t number(std::size_t at, std::size_t size) const {
     std::uint64_t value = 0;
-    for (std::size_t i = size; i-- > 0;)
-      value = value << 8U | static_cast<unsigned char>(bytes_[at + i]);
+    for (std::size_t i = size; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes_[at + i]);
     return value;
   }
   std::uint64_t u16(std::size_t at) const { return number(at, 2); }
@@ -76,17 +73,14 @@ std::optional<Directory> find_directory64(const BinaryFile& file, std::uint64_t 
   if (at > end || end - at < kEnd64Bytes)
     throw zip_refusal(file, end - kLocatorBytes).says("points to a directory outside of itself");
   const std::string record = text_at(file, at, kEnd64Bytes);
-  if (!record.starts_with("PK\x06\x06"))
-    throw zip_refusal(file, at).says("has a broken end record");
+  if (!record.starts_with("PK\x06\x06")) throw zip_refusal(file, at).says("has a broken end record");
   const Bytes bytes(record);
   return Directory{bytes.u64(48), bytes.u64(40), bytes.u64(32)};
 }
 
 Directory find_directory(const BinaryFile& file) {
-  if (!file.head(2).starts_with("PK"))
-    throw zip_refusal(file, 0).says("does not begin like a ZIP archive");
-  if (file.size() < kEndBytes)
-    throw zip_refusal(file, file.size()).says("is too short for a ZIP archive");
+  if (!file.head(2).starts_with("PK")) throw zip_refusal(file, 0).says("does not begin like a ZIP archive");
+  if (file.size() < kEndBytes) throw zip_refusal(file, file.size()).says("is too short for a ZIP archive");
   const std::uint64_t end = find_end(file);
   const std::string record = text_at(file, end, kEndBytes);
   const Bytes bytes(record);
@@ -97,17 +91,13 @@ Directory find_directory(const BinaryFile& file) {
   if (directory.first_byte > end || directory.bytes > end - directory.first_byte)
     throw zip_refusal(file, end).says("has a directory that does not fit into it");
   if (directory.members > kMaxMembers || directory.bytes > kMaxDirectoryBytes)
-    throw zip_refusal(file, end).says(
-        "has {} members, more than the limit of {}", directory.members, kMaxMembers);
+    throw zip_refusal(file, end).says("has {} members, more than the limit of {}", directory.members, kMaxMembers);
   return directory;
 }
 
 // Sizes and offset that do not fit 32 bits stand in the extra field 1, in this order, those only
 // that are 0xFFFFFFFF in the entry.
-bool widen(const Bytes& extra,
-           std::size_t begin,
-           std::size_t end,
-           std::initializer_list<std::uint64_t*> values) {
+bool widen(const Bytes& extra, std::size_t begin, std::size_t end, std::initializer_list<std::uint64_t*> values) {
   for (std::size_t at = begin; at + 4 <= end;) {
     const std::uint64_t id = extra.u16(at), size = extra.u16(at + 2);
     std::size_t value = at + 4;
@@ -122,8 +112,7 @@ bool widen(const Bytes& extra,
     }
     return true;
   }
-  return std::none_of(
-      values.begin(), values.end(), [](const std::uint64_t* v) { return *v == 0xFFFFFFFF; });
+  return std::none_of(values.begin(), values.end(), [](const std::uint64_t* v) { return *v == 0xFFFFFFFF; });
 }
 
 Packing packing_of(std::uint64_t method, std::uint64_t flags, std::string& why_not) {
@@ -140,39 +129,30 @@ std::uint64_t data_of(const BinaryFile& file, const ZipMember& member, std::uint
     throw zip_refusal(file, local).says("has a member that begins behind its end");
   const std::string header = text_at(file, local, kLocalBytes);
   if (!header.starts_with(kLocalMagic))
-    throw zip_refusal(file, local)
-        .says("has no member {} where its directory says", printable(member.name));
+    throw zip_refusal(file, local).says("has no member {} where its directory says", printable(member.name));
   const std::uint64_t data = local + kLocalBytes + Bytes(header).u16(26) + Bytes(header).u16(28);
   if (data > file.size() || member.stretch.packed_bytes > file.size() - data)
-    throw zip_refusal(file, local)
-        .says("has a member {} that ends behind its end", printable(member.name));
+    throw zip_refusal(file, local).says("has a member {} that ends behind its end", printable(member.name));
   return data;
 }
 
 void check_ratio(const BinaryFile& file, const ZipMember& member) {
   const PackedStretch& s = member.stretch;
   if (s.packing == Packing::stored && s.bytes != s.packed_bytes)
-    throw member_refusal(file, member.name)
-        .says("is stored in {} bytes and said to have {}", s.packed_bytes, s.bytes);
+    throw member_refusal(file, member.name).says("is stored in {} bytes and said to have {}", s.packed_bytes, s.bytes);
   if (s.bytes / kDeflateRatio > s.packed_bytes)
     throw member_refusal(file, member.name)
-        .says("is said to unpack {} bytes into {}: deflate reaches a ratio of {} at most",
-              s.packed_bytes,
-              s.bytes,
+        .says("is said to unpack {} bytes into {}: deflate reaches a ratio of {} at most", s.packed_bytes, s.bytes,
               kDeflateRatio);
 }
 
-ZipMember read_entry(const BinaryFile& file,
-                     std::string_view text,
-                     std::size_t at,
-                     std::uint64_t byte,
+ZipMember read_entry(const BinaryFile& file, std::string_view text, std::size_t at, std::uint64_t byte,
                      std::size_t* end) {
   const Bytes bytes(text);
   if (at + kEntryBytes > text.size() || text.substr(at, 4) != "PK\x01\x02")
     throw zip_refusal(file, byte + at).says("has a broken directory");
   const std::uint64_t name_bytes = bytes.u16(at + 28), extra_bytes = bytes.u16(at + 30);
-  const std::size_t name_at = at + kEntryBytes,
-                    extra_at = name_at + static_cast<std::size_t>(name_bytes),
+  const std::size_t name_at = at + kEntryBytes, extra_at = name_at + static_cast<std::size_t>(name_bytes),
                     extra_end = extra_at + static_cast<std::size_t>(extra_bytes);
   *end = extra_end + static_cast<std::size_t>(bytes.u16(at + 32));
   if (*end > text.size()) throw zip_refusal(file, byte + at).says("has a broken directory");
@@ -184,10 +164,7 @@ ZipMember read_entry(const BinaryFile& file,
   member.stretch.packed_bytes = bytes.u32(at + 20);
   member.stretch.bytes = bytes.u32(at + 24);
   std::uint64_t local = bytes.u32(at + 42);
-  if (!widen(bytes,
-             extra_at,
-             extra_end,
-             {&member.stretch.bytes, &member.stretch.packed_bytes, &local}))
+  if (!widen(bytes, extra_at, extra_end, {&member.stretch.bytes, &member.stretch.packed_bytes, &local}))
     throw zip_refusal(file, byte + at).says("has a member whose size is not said");
   member.stretch.packing = packing_of(bytes.u16(at + 10), bytes.u16(at + 8), member.why_not);
   member.stretch.first_byte = data_of(file, member, local);
@@ -200,12 +177,10 @@ void refuse_overlap(const BinaryFile& file, const std::vector<ZipMember>& member
   std::vector<const ZipMember*> sorted;
   for (const ZipMember& member : members)
     if (member.stretch.packed_bytes > 0) sorted.push_back(&member);
-  std::sort(sorted.begin(), sorted.end(), [](const ZipMember* a, const ZipMember* b) {
-    return a->stretch.first_byte < b->stretch.first_byte;
-  });
+  std::sort(sorted.begin(), sorted.end(),
+            [](const ZipMember* a, const ZipMember* b) { return a->stretch.first_byte < b->stretch.first_byte; });
   for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i - 1]->stretch.first_byte + sorted[i - 1]->stretch.packed_bytes >
-        sorted[i]->stretch.first_byte)
+    if (sorted[i - 1]->stretch.first_byte + sorted[i - 1]->stretch.packed_bytes > sorted[i]->stretch.first_byte)
       throw member_refusal(file, sorted[i]->name).says("overlaps another member of the archive");
 }
 

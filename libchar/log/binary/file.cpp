@@ -22,11 +22,8 @@ namespace libchar {
 std::string wrong_start(std::string_view found, std::string_view mark, std::string_view what) {
   if (found.empty()) return fmt::format("is empty, {} was expected", what);
   if (found.size() < mark.size() && mark.starts_with(found))
-    return fmt::format(
-        "ends at byte {}, inside the {} bytes that mark {}: no whole message or array is there",
-        found.size(),
-        mark.size(),
-        what);
+    return fmt::format("ends at byte {}, inside the {} bytes that mark {}: no whole message or array is there",
+                       found.size(), mark.size(), what);
   return fmt::format("does not begin like {}", what);
 }
 
@@ -51,8 +48,7 @@ std::string FileHash::digest_of_files() const {
   std::vector<std::byte> piece(std::size_t{1} << 20U);
   for (const BinaryFile* file : files_)
     for (std::uint64_t at = 0; at < file->size() && !stop_;) {
-      const auto n =
-          static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file->size() - at));
+      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), file->size() - at));
       file->read(at, std::span(piece).first(n));
       sha.update({reinterpret_cast<const char*>(piece.data()), n});
       at += n;
@@ -63,8 +59,7 @@ std::string FileHash::digest_of_files() const {
 const std::byte* FileWindow::load(std::uint64_t byte, std::size_t count) {
   if (byte > file_->size() || count > file_->size() - byte) return nullptr;
   const std::uint64_t front = std::min<std::uint64_t>(byte, kept_);
-  const std::uint64_t wanted =
-      std::min<std::uint64_t>(file_->size() - byte, std::max(block_, count));
+  const std::uint64_t wanted = std::min<std::uint64_t>(file_->size() - byte, std::max(block_, count));
   // Emptied first: after a failed read no bytes stand here that are not the file's.
   bytes_.clear();
   std::vector<std::byte> fresh(static_cast<std::size_t>(front + wanted));
@@ -85,8 +80,7 @@ BinaryFile::BinaryFile(std::string path) : path_(std::move(path)) {
         .says("is not a regular file; binary formats need one")
         .hint("copy it to a file first");
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor_ < 0)
-    throw input_error("E0101", path_).says("cannot be opened: {}", std::strerror(errno));
+  if (descriptor_ < 0) throw input_error("E0101", path_).says("cannot be opened: {}", std::strerror(errno));
   size_ = static_cast<std::uint64_t>(status.st_size);
   ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
 }
@@ -97,8 +91,7 @@ BinaryFile::~BinaryFile() {
 
 void BinaryFile::read(std::uint64_t offset, std::span<std::byte> to) const {
   for (std::size_t done = 0; done < to.size();) {
-    const ssize_t n =
-        ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
+    const ssize_t n = ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
       throw input_error("E0101", fmt::format("{} (byte {})", path_, offset + done))

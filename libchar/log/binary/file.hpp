@@ -47,8 +47,7 @@ class FileHash {
   /// The file outlives this. Nothing is hashed unless `wanted`.
   FileHash(const BinaryFile& file, bool wanted) : files_({&file}), wanted_(wanted) {}
   /// Of several files as if they were one.
-  FileHash(std::vector<const BinaryFile*> files, bool wanted)
-      : files_(std::move(files)), wanted_(wanted) {}
+  FileHash(std::vector<const BinaryFile*> files, bool wanted) : files_(std::move(files)), wanted_(wanted) {}
   /// An abandoned reading does not finish the hash of a large file.
   ~FileHash();
   FileHash(const FileHash&) = delete;

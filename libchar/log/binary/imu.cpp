@@ -51,15 +51,10 @@ const Preset& find_preset(const std::string& path, const std::string& wanted) {
     throw usage_error("E0468", path)
         .says("has no header, and which instrument wrote it must be told")
         .hint("`preset` one of " + all);
-  throw usage_error("E0468", path)
-      .says("no preset of .imu files")
-      .got(wanted)
-      .hint("use one of " + all);
+  throw usage_error("E0468", path).says("no preset of .imu files").got(wanted).hint("use one of " + all);
 }
 
-std::uint64_t record_bytes(NumberType type) {
-  return sizeof(double) + 6 * size_of(type);
-}
+std::uint64_t record_bytes(NumberType type) { return sizeof(double) + 6 * size_of(type); }
 
 double stamp_of(const BinaryFile& file, std::uint64_t row, NumberType type) {
   std::array<std::byte, sizeof(double)> bytes{};
@@ -88,8 +83,7 @@ bool times_rise(const BinaryFile& file, NumberType type) {
 [[noreturn]] void refuse_times(const BinaryFile& file, const Preset& preset) {
   const NumberType other = preset.type == NumberType::i32 ? NumberType::f64 : NumberType::i32;
   throw input_error("E0469", file.path())
-      .says("does not fit the preset: in records of {} bytes its times do not rise",
-            record_bytes(preset.type))
+      .says("does not fit the preset: in records of {} bytes its times do not rise", record_bytes(preset.type))
       .got(std::string(preset.name))
       .hint(times_rise(file, other) ? "they rise as those of " + preset_names(other, false)
                                     : "is it a .imu file of increments?");
@@ -106,8 +100,7 @@ double rate_of(const BinaryFile& file, const Preset& preset) {
 }
 
 BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate) {
-  static constexpr std::array<const char*, 6> kNames = {
-      "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  static constexpr std::array<const char*, 6> kNames = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
   BinaryLayout layout;
   const std::uint64_t record = record_bytes(preset.type);
   layout.rows = file.size() / record;
@@ -123,10 +116,8 @@ BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate
                               rate * (c < 3 ? preset.gyro_rad : preset.accel_m_s),
                               0});
   if (const std::uint64_t rest = file.size() % record; rest > 0)
-    layout.warnings.add("trailing_bytes",
-                        "bytes behind the last whole record were left out",
-                        fmt::format("byte {}", layout.data_bytes),
-                        rest);
+    layout.warnings.add("trailing_bytes", "bytes behind the last whole record were left out",
+                        fmt::format("byte {}", layout.data_bytes), rest);
   return layout;
 }
 
@@ -139,14 +130,12 @@ std::unique_ptr<RowSource> open_imu(const std::string& path, const ReadOptions& 
   BinaryLayout layout = layout_of(*file, preset, rate);
   LogInfo info;
   info.format = "imu";
-  info.dialect = {fmt::format(
-      "preset {}, increments of {} times {} a second", preset.name, name_of(preset.type), rate)};
+  info.dialect = {
+      fmt::format("preset {}, increments of {} times {} a second", preset.name, name_of(preset.type), rate)};
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
-bool sniff_imu(const std::string& path, std::string_view) {
-  return path.ends_with(".imu");
-}
+bool sniff_imu(const std::string& path, std::string_view) { return path.ends_with(".imu"); }
 
 }  // namespace
 

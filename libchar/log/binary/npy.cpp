@@ -16,16 +16,14 @@ std::uint64_t product(std::uint64_t a, std::uint64_t b, const std::string& file)
   std::uint64_t result = 0;
   // Half of the range is left for sums with offsets.
   if (__builtin_mul_overflow(a, b, &result) || result > (std::uint64_t{1} << 62U))
-    throw input_error("E0408", file + " (field shape)")
-        .says("the shape times the size of a value overflows");
+    throw input_error("E0408", file + " (field shape)").says("the shape times the size of a value overflows");
   return result;
 }
 
 std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   const std::string where = file + " (field shape)";
   const std::size_t dimensions = header.shape.size();
-  if (dimensions == 0)
-    throw input_error("E0408", where).says("is a single number (0-dimensional), not a log");
+  if (dimensions == 0) throw input_error("E0408", where).says("is a single number (0-dimensional), not a log");
   if (header.structured && dimensions != 1)
     throw input_error("E0408", where).says("a structured array must have one dimension");
   if (header.structured) return 1;
@@ -40,27 +38,18 @@ std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   return columns;
 }
 
-void check_size(const NpyHeader& header,
-                std::uint64_t values,
-                std::uint64_t needed,
-                std::uint64_t file_bytes,
-                const std::string& file,
-                Findings& warnings) {
+void check_size(const NpyHeader& header, std::uint64_t values, std::uint64_t needed, std::uint64_t file_bytes,
+                const std::string& file, Findings& warnings) {
   const std::uint64_t present = file_bytes - header.data_byte;
   if (present < needed) {
     const std::uint64_t item = header.item_bytes;
     throw input_error("E0410", fmt::format("{} (byte {})", file, file_bytes))
-        .says("is truncated: {} of {} {} present",
-              present / item,
-              values,
-              header.structured ? "records" : "values")
+        .says("is truncated: {} of {} {} present", present / item, values, header.structured ? "records" : "values")
         .hint("copy it again, or cut the shape to what is there");
   }
   if (present > needed)
-    warnings.add("trailing_bytes",
-                 "bytes behind the array were left out",
-                 fmt::format("byte {}", header.data_byte + needed),
-                 present - needed);
+    warnings.add("trailing_bytes", "bytes behind the array were left out",
+                 fmt::format("byte {}", header.data_byte + needed), present - needed);
 }
 
 // Columns of a structured array: field by field, a sub-array as NAME_0, NAME_1…
@@ -97,8 +86,7 @@ void add_plain_columns(const NpyHeader& header, std::uint64_t columns, BinaryLay
     BinaryColumn column;
     column.name = fmt::format("c{}", c);
     column.number = header.fields[0].number;
-    column.first_byte = header.data_byte +
-                        item * (layout.column_major ? fortran_place(header, c) * layout.rows : c);
+    column.first_byte = header.data_byte + item * (layout.column_major ? fortran_place(header, c) * layout.rows : c);
     column.stride = layout.column_major ? item : item * columns;
     layout.columns.push_back(std::move(column));
   }
@@ -106,17 +94,10 @@ void add_plain_columns(const NpyHeader& header, std::uint64_t columns, BinaryLay
 
 std::string describe(const NpyHeader& header, std::uint64_t columns) {
   if (header.structured)
-    return fmt::format(
-        "structured array of {} records of {} bytes", header.shape[0], header.item_bytes);
+    return fmt::format("structured array of {} records of {} bytes", header.shape[0], header.item_bytes);
   const NumberFormat number = header.fields[0].number;
-  const std::string order = size_of(number.type) == 1 ? ""
-                            : number.big_endian       ? ", big endian"
-                                                      : ", little endian";
-  return fmt::format("{} × {} array of {}{}{}",
-                     header.shape[0],
-                     columns,
-                     name_of(number.type),
-                     order,
+  const std::string order = size_of(number.type) == 1 ? "" : number.big_endian ? ", big endian" : ", little endian";
+  return fmt::format("{} × {} array of {}{}{}", header.shape[0], columns, name_of(number.type), order,
                      header.fortran_order ? ", Fortran order" : "");
 }
 
@@ -137,18 +118,14 @@ std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& 
   if (!header.structured && columns > 64 && layout.rows <= 64)
     layout.warnings.add(
         "looks_transposed",
-        fmt::format("{} rows × {} columns: are rows and channels exchanged? save array.T",
-                    layout.rows,
-                    columns));
+        fmt::format("{} rows × {} columns: are rows and channels exchanged? save array.T", layout.rows, columns));
   LogInfo info;
   info.format = "npy";
   info.dialect = {fmt::format(".npy version {}", header.major), describe(header, columns)};
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
-bool sniff_npy(const std::string&, std::string_view first_bytes) {
-  return first_bytes.starts_with("\x93NUMPY");
-}
+bool sniff_npy(const std::string&, std::string_view first_bytes) { return first_bytes.starts_with("\x93NUMPY"); }
 
 }  // namespace
 

@@ -49,10 +49,9 @@ class Literal {
       throw refusal("E0407", position_).says("text stands behind the header's }").got(word());
     if (!descr || !order || !shape)
       throw refusal("E0407", 0)
-          .says("the header has no key \"{}\"",
-                !descr   ? "descr"
-                : !order ? "fortran_order"
-                         : "shape");
+          .says("the header has no key \"{}\"", !descr   ? "descr"
+                                                : !order ? "fortran_order"
+                                                         : "shape");
   }
 
  private:
@@ -77,8 +76,7 @@ class Literal {
   }
   std::string_view word() const { return text_.substr(std::min(position_, text_.size()), 40); }
   void expect(char c) {
-    if (peek() != c)
-      throw refusal("E0407", position_).says("expected {} in the header", c).got(word());
+    if (peek() != c) throw refusal("E0407", position_).says("expected {} in the header", c).got(word());
     ++position_;
   }
 
@@ -96,8 +94,7 @@ class Literal {
       }
       value += text_[position_];
     }
-    if (position_ >= text_.size())
-      throw refusal("E0407", position_).says("a string in the header does not end");
+    if (position_ >= text_.size()) throw refusal("E0407", position_).says("a string in the header does not end");
     ++position_;
     return value;
   }
@@ -118,15 +115,12 @@ class Literal {
     const std::size_t at = position_;
     std::uint64_t value = 0;
     if (peek() == '-') throw refusal("E0408", at).says("a dimension is negative").got(word());
-    const auto [end, status] =
-        std::from_chars(text_.data() + position_, text_.data() + text_.size(), value);
+    const auto [end, status] = std::from_chars(text_.data() + position_, text_.data() + text_.size(), value);
     if (status == std::errc::result_out_of_range)
       throw refusal("E0408", at).says("a dimension is too large").got(word());
-    if (status != std::errc())
-      throw refusal("E0407", at).says("expected a dimension (a whole number)").got(word());
+    if (status != std::errc()) throw refusal("E0407", at).says("expected a dimension (a whole number)").got(word());
     position_ = static_cast<std::size_t>(end - text_.data());
-    if (position_ < text_.size() && text_[position_] == 'L')
-      ++position_;  // Python 2 wrote long integers so
+    if (position_ < text_.size() && text_[position_] == 'L') ++position_;  // Python 2 wrote long integers so
     return value;
   }
 
@@ -137,10 +131,8 @@ class Literal {
     std::vector<std::uint64_t> shape;
     bool comma = true;
     while (peek() != ')') {
-      if (!comma)
-        throw refusal("E0407", position_).says("expected , between dimensions").got(word());
-      if (shape.size() == 32)
-        throw refusal("E0408", at).says("the array has more than 32 dimensions");
+      if (!comma) throw refusal("E0407", position_).says("expected , between dimensions").got(word());
+      if (shape.size() == 32) throw refusal("E0408", at).says("the array has more than 32 dimensions");
       shape.push_back(number());
       comma = peek() == ',';
       if (comma) ++position_;
@@ -154,9 +146,7 @@ class Literal {
   }
 
   // "<f8" and its kin; everything that is not a plain number is refused by what it is.
-  NumberFormat number_type(const std::string& type,
-                           std::size_t at,
-                           const std::string& field) const {
+  NumberFormat number_type(const std::string& type, std::size_t at, const std::string& field) const {
     const char order = type.empty() ? '\0' : type[0];
     const bool marked = order == '<' || order == '>' || order == '|' || order == '=';
     const std::string kind = marked ? type.substr(1) : type;
@@ -165,8 +155,7 @@ class Literal {
     };
     switch (kind.empty() ? '\0' : kind[0]) {
       case 'O':
-        no("holds Python objects (pickled code), which are never read",
-           "save numbers: array.astype(float)");
+        no("holds Python objects (pickled code), which are never read", "save numbers: array.astype(float)");
         break;
       case 'c':
         no("holds complex numbers", "save real and imaginary parts as two columns");
@@ -178,8 +167,7 @@ class Literal {
         break;
       case 'M':
       case 'm':
-        no("holds calendar times",
-           "save them as integers: array.astype('datetime64[ns]').astype('int64')");
+        no("holds calendar times", "save them as integers: array.astype('datetime64[ns]').astype('int64')");
         break;
       case 'V':
         no("holds opaque bytes", "save numbers: array.astype(float)");
@@ -190,17 +178,10 @@ class Literal {
       default:
         break;
     }
-    static constexpr std::pair<std::string_view, NumberType> kKinds[] = {{"f2", NumberType::f16},
-                                                                         {"f4", NumberType::f32},
-                                                                         {"f8", NumberType::f64},
-                                                                         {"i1", NumberType::i8},
-                                                                         {"i2", NumberType::i16},
-                                                                         {"i4", NumberType::i32},
-                                                                         {"i8", NumberType::i64},
-                                                                         {"u1", NumberType::u8},
-                                                                         {"u2", NumberType::u16},
-                                                                         {"u4", NumberType::u32},
-                                                                         {"u8", NumberType::u64}};
+    static constexpr std::pair<std::string_view, NumberType> kKinds[] = {
+        {"f2", NumberType::f16}, {"f4", NumberType::f32}, {"f8", NumberType::f64}, {"i1", NumberType::i8},
+        {"i2", NumberType::i16}, {"i4", NumberType::i32}, {"i8", NumberType::i64}, {"u1", NumberType::u8},
+        {"u2", NumberType::u16}, {"u4", NumberType::u32}, {"u8", NumberType::u64}};
     for (const auto& [name, number] : kKinds)
       if (kind == name && (marked || size_of(number) == 1)) return {number, order == '>'};
     no("is of a type that is not read; f2, f4, f8, i1 to i8 and u1 to u8 are",
@@ -210,8 +191,7 @@ class Literal {
 
   void add_field(NpyHeader& header, NpyField field) const {
     std::uint64_t bytes = 0;
-    if (__builtin_mul_overflow(field.count, size_of(field.number.type), &bytes) ||
-        field.count > kMaxColumns)
+    if (__builtin_mul_overflow(field.count, size_of(field.number.type), &bytes) || field.count > kMaxColumns)
       throw refusal("E0408", 0, field.name).says("has more than {} columns", kMaxColumns);
     field.byte = header.item_bytes;
     header.item_bytes += bytes;
@@ -234,17 +214,14 @@ class Literal {
         throw refusal("E0407", position_).says("expected , or ] in descr").got(word());
     }
     ++position_;
-    if (header.fields.empty())
-      throw refusal("E0409", 0).says("the record has no field that holds numbers");
+    if (header.fields.empty()) throw refusal("E0409", 0).says("the record has no field that holds numbers");
   }
 
   // ('gyr', '<f8', (3,)); the last part is optional.
   void read_field(NpyHeader& header) {
     expect('(');
     if (peek() == '(')
-      throw refusal("E0409", position_)
-          .says("a field has a title besides its name, which is not read")
-          .got(word());
+      throw refusal("E0409", position_).says("a field has a title besides its name, which is not read").got(word());
     NpyField field;
     field.name = string();
     expect(',');
@@ -259,8 +236,7 @@ class Literal {
     if (peek() != ')') {
       field.array = true;
       const std::size_t shape_at = position_;
-      const std::vector<std::uint64_t> shape =
-          peek() == '(' ? read_shape() : std::vector<std::uint64_t>{number()};
+      const std::vector<std::uint64_t> shape = peek() == '(' ? read_shape() : std::vector<std::uint64_t>{number()};
       for (const std::uint64_t extent : shape)
         if (__builtin_mul_overflow(field.count, extent, &field.count))
           throw refusal("E0408", shape_at, field.name).says("the shape overflows");
@@ -268,8 +244,7 @@ class Literal {
     expect(')');
     if (field.name.empty() && type.starts_with("|V")) return skip_padding(header, type, at);
     for (const NpyField& other : header.fields)
-      if (other.name == field.name)
-        throw refusal("E0307", at).says("two fields have one name").got(field.name);
+      if (other.name == field.name) throw refusal("E0307", at).says("two fields have one name").got(field.name);
     if (field.name.empty()) throw refusal("E0409", at).says("a field has no name").got(type);
     if (field.count == 0) throw refusal("E0408", at, field.name).says("the field holds no number");
     field.number = number_type(type, at, field.name);
@@ -292,9 +267,7 @@ class Literal {
 };
 
 void check_magic(std::string_view bytes, const std::string& file) {
-  const auto refusal = [&] {
-    return input_error("E0404", file + " (byte 0)").got(bytes.substr(0, 8));
-  };
+  const auto refusal = [&] { return input_error("E0404", file + " (byte 0)").got(bytes.substr(0, 8)); };
   if (bytes.starts_with("PK\x03\x04"))
     throw refusal().says("is a ZIP archive (.npz), not one array").hint("`format` npz reads it");
   constexpr std::string_view kMark = "\x93NUMPY";
@@ -303,17 +276,11 @@ void check_magic(std::string_view bytes, const std::string& file) {
 
 }  // namespace
 
-NpyHeader parse_npy_header(std::string_view bytes,
-                           std::uint64_t file_bytes,
-                           const std::string& file) {
+NpyHeader parse_npy_header(std::string_view bytes, std::uint64_t file_bytes, const std::string& file) {
   check_magic(bytes, file);
-  const auto refusal = [&](std::size_t byte) {
-    return input_error("E0405", fmt::format("{} (byte {})", file, byte));
-  };
+  const auto refusal = [&](std::size_t byte) { return input_error("E0405", fmt::format("{} (byte {})", file, byte)); };
   if (bytes.size() < 10) throw refusal(bytes.size()).says("ends within its header");
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i]));
-  };
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])); };
   NpyHeader header;
   header.major = static_cast<int>(byte(6));
   if (header.major < 1 || header.major > 3)
@@ -327,8 +294,7 @@ NpyHeader parse_npy_header(std::string_view bytes,
   }
   if (length > file_bytes - begin)
     throw refusal(8).says("header length {} exceeds the file size {}", length, file_bytes);
-  if (length > kMaxNpyHeader)
-    throw refusal(8).says("header length {} exceeds the limit of {}", length, kMaxNpyHeader);
+  if (length > kMaxNpyHeader) throw refusal(8).says("header length {} exceeds the limit of {}", length, kMaxNpyHeader);
   std::string literal(bytes.substr(begin, detail::in_memory(length)));
   if (header.major < 3)
     literal = latin1_to_utf8(literal);

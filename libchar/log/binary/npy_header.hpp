@@ -34,8 +34,6 @@ inline constexpr std::uint64_t kMaxColumns = 100000;
 
 /// Reads the header from the first bytes of a file (at least 12 + kMaxNpyHeader of them, or all
 /// there are) of `file_bytes` bytes. Throws Error(input) with the byte at fault.
-NpyHeader parse_npy_header(std::string_view first_bytes,
-                           std::uint64_t file_bytes,
-                           const std::string& file);
+NpyHeader parse_npy_header(std::string_view first_bytes, std::uint64_t file_bytes, const std::string& file);
 
 }  // namespace libchar

@@ -30,11 +30,8 @@ constexpr std::array<TypeName, kNumberTypes> kTypes = {{{"f16", 2},
 
 template <std::size_t size>
 using Bits = std::conditional_t<
-    size == 1,
-    std::uint8_t,
-    std::conditional_t<size == 2,
-                       std::uint16_t,
-                       std::conditional_t<size == 4, std::uint32_t, std::uint64_t>>>;
+    size == 1, std::uint8_t,
+    std::conditional_t<size == 2, std::uint16_t, std::conditional_t<size == 4, std::uint32_t, std::uint64_t>>>;
 
 template <typename U>
 U swapped(U bits) {
@@ -51,8 +48,7 @@ double half_value(std::uint16_t bits) {
   const int fraction = bits & 0x3FF;
   double value = 0;
   if (exponent == 31)
-    value = fraction == 0 ? std::numeric_limits<double>::infinity()
-                          : std::numeric_limits<double>::quiet_NaN();
+    value = fraction == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
   else if (exponent == 0)
     value = std::ldexp(fraction, -24);
   else
@@ -64,9 +60,7 @@ struct Half {
   std::uint16_t bits;
 };
 
-double to_double(Half half) {
-  return half_value(half.bits);
-}
+double to_double(Half half) { return half_value(half.bits); }
 
 struct Triple {
   std::array<std::uint8_t, 3> bytes;  // the least significant first
@@ -76,9 +70,7 @@ double to_double(Triple t) {
   const std::uint32_t bits = t.bytes[0] | t.bytes[1] << 8U | t.bytes[2] << 16U;
   return static_cast<double>(static_cast<std::int32_t>(bits << 8U) / 256);
 }
-double to_double(float value) {
-  return static_cast<double>(value);
-}
+double to_double(float value) { return static_cast<double>(value); }
 template <typename T>
 double to_double(T value) {
   return static_cast<double>(value);
@@ -122,9 +114,7 @@ std::uint64_t read_as(const std::byte* first, std::size_t stride, std::span<doub
 }
 
 template <typename T, bool swap>
-std::optional<std::size_t> integers_as(const std::byte* first,
-                                       std::size_t stride,
-                                       std::span<std::int64_t> out) {
+std::optional<std::size_t> integers_as(const std::byte* first, std::size_t stride, std::span<std::int64_t> out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     const T value = load<T, swap>(first + i * stride);
     if constexpr (std::is_same_v<T, std::uint64_t>) {
@@ -172,15 +162,9 @@ auto with_type(NumberType type, F f) {
 static_assert(std::endian::native == std::endian::little,
               "byte orders are swapped relative to a little-endian machine");
 
-std::size_t size_of(NumberType type) {
-  return kTypes[static_cast<std::size_t>(type)].size;
-}
-std::string_view name_of(NumberType type) {
-  return kTypes[static_cast<std::size_t>(type)].name;
-}
-bool is_float(NumberType type) {
-  return type <= NumberType::f64;
-}
+std::size_t size_of(NumberType type) { return kTypes[static_cast<std::size_t>(type)].size; }
+std::string_view name_of(NumberType type) { return kTypes[static_cast<std::size_t>(type)].name; }
+bool is_float(NumberType type) { return type <= NumberType::f64; }
 
 std::optional<NumberType> find_number_type(std::string_view name) {
   for (std::size_t i = 0; i < kTypes.size(); ++i)
@@ -188,30 +172,23 @@ std::optional<NumberType> find_number_type(std::string_view name) {
   return std::nullopt;
 }
 
-std::uint64_t read_numbers(const std::byte* first,
-                           std::size_t stride,
-                           NumberFormat format,
-                           std::span<double> out) {
+std::uint64_t read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out) {
   if (format.type == NumberType::f64 && !format.big_endian && stride == sizeof(double)) {
     if (!out.empty()) std::memcpy(out.data(), first, out.size_bytes());
     return 0;
   }
   return with_type(format.type, [&](auto example) {
     using T = decltype(example);
-    return format.big_endian ? read_as<T, true>(first, stride, out)
-                             : read_as<T, false>(first, stride, out);
+    return format.big_endian ? read_as<T, true>(first, stride, out) : read_as<T, false>(first, stride, out);
   });
 }
 
-std::optional<std::size_t> read_integers(const std::byte* first,
-                                         std::size_t stride,
-                                         NumberFormat format,
+std::optional<std::size_t> read_integers(const std::byte* first, std::size_t stride, NumberFormat format,
                                          std::span<std::int64_t> out) {
   return with_type(format.type, [&](auto example) -> std::optional<std::size_t> {
     using T = decltype(example);
     if constexpr (std::is_integral_v<T>) {
-      return format.big_endian ? integers_as<T, true>(first, stride, out)
-                               : integers_as<T, false>(first, stride, out);
+      return format.big_endian ? integers_as<T, true>(first, stride, out) : integers_as<T, false>(first, stride, out);
     } else {
       return 0;  // a programmer's mistake: no float is an exact stamp
     }
@@ -244,8 +221,7 @@ bool looks_byte_swapped(std::span<const double> values, NumberType type) {
     if (type == NumberType::f64)
       other = std::bit_cast<double>(swapped(std::bit_cast<std::uint64_t>(x)));
     else
-      other = static_cast<double>(
-          std::bit_cast<float>(swapped(std::bit_cast<std::uint32_t>(static_cast<float>(x)))));
+      other = static_cast<double>(std::bit_cast<float>(swapped(std::bit_cast<std::uint32_t>(static_cast<float>(x)))));
     odd += !plausible(x, limit) && plausible(other, 1e20);
   }
   return counted > 0 && 2 * odd > counted;

@@ -25,16 +25,11 @@ bool is_float(NumberType type);
 /// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed).
 /// Returns how many of them a double cannot hold exactly (64-bit integers above 2^53), which were
 /// rounded to nearest.
-std::uint64_t read_numbers(const std::byte* first,
-                           std::size_t stride,
-                           NumberFormat format,
-                           std::span<double> out);
+std::uint64_t read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out);
 
 /// The same as exact 64-bit integers, for stamps; only for integer types. Returns the position of
 /// the first u64 that does not fit, or nothing.
-std::optional<std::size_t> read_integers(const std::byte* first,
-                                         std::size_t stride,
-                                         NumberFormat format,
+std::optional<std::size_t> read_integers(const std::byte* first, std::size_t stride, NumberFormat format,
                                          std::span<std::int64_t> out);
 
 /// Writes one double as f32 or f64.

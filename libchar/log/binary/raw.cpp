@@ -17,9 +17,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
   const std::string& path = file.path();
   if (sidecar.offset > file.size())
     throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
-        .says("the offset of {} bytes lies behind the end of the file ({} bytes)",
-              sidecar.offset,
-              file.size());
+        .says("the offset of {} bytes lies behind the end of the file ({} bytes)", sidecar.offset, file.size());
   const std::uint64_t present = file.size() - sidecar.offset;
   const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
   const std::uint64_t whole = present / record;
@@ -30,23 +28,18 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
   const std::uint64_t rows = sidecar.rows.value_or(whole);
   std::uint64_t needed = 0;
   if (__builtin_mul_overflow(rows, record, &needed) || needed > (std::uint64_t{1} << 62U))
-    throw input_error("E0422", path)
-        .says("rows × channels × bytes overflows: {} × {}", rows, record);
+    throw input_error("E0422", path).says("rows × channels × bytes overflows: {} × {}", rows, record);
   if (rows > whole)
     throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
         .says("is truncated: {} of {} rows present", whole, rows)
         .hint("copy it again, or correct the sidecar's rows");
   if (!sidecar.rows && sidecar.planar && present % record != 0)
     throw input_error("E0422", path)
-        .says("{} bytes are no whole number of rows of {} bytes, so the planes cannot be found",
-              present,
-              record)
+        .says("{} bytes are no whole number of rows of {} bytes, so the planes cannot be found", present, record)
         .hint("give rows in the sidecar");
   if (present > needed)
-    warnings.add("trailing_bytes",
-                 "bytes behind the last row were left out",
-                 fmt::format("byte {}", sidecar.offset + needed),
-                 present - needed);
+    warnings.add("trailing_bytes", "bytes behind the last row were left out",
+                 fmt::format("byte {}", sidecar.offset + needed), present - needed);
   return rows;
 }
 
@@ -70,8 +63,7 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   layout.data_bytes = layout.rows * columns * item;
   for (std::uint64_t c = 0; c < columns; ++c) {
     const SidecarChannel& channel = sidecar.channels[static_cast<std::size_t>(c)];
-    BinaryColumn column{
-        channel.name, channel.unit, sidecar.number, 0, 0, channel.scale, channel.offset};
+    BinaryColumn column{channel.name, channel.unit, sidecar.number, 0, 0, channel.scale, channel.offset};
     column.first_byte = sidecar.offset + item * (layout.column_major ? c * layout.rows : c);
     column.stride = layout.column_major ? item : item * columns;
     layout.columns.push_back(std::move(column));
@@ -81,18 +73,14 @@ std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& 
   info.time.rate_hz = sidecar.rate_hz;
   info.time.start_ns = sidecar.t0_ns;
   info.dialect = {"sidecar " + beside,
-                  fmt::format("{}, {} endian, {}, {} bytes before the first row",
-                              name_of(sidecar.number.type),
-                              sidecar.number.big_endian ? "big" : "little",
-                              sidecar.planar ? "planar" : "interleaved",
+                  fmt::format("{}, {} endian, {}, {} bytes before the first row", name_of(sidecar.number.type),
+                              sidecar.number.big_endian ? "big" : "little", sidecar.planar ? "planar" : "interleaved",
                               sidecar.offset)};
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
 // Whatever stands beside a sidecar.
-bool sniff_raw(const std::string& path, std::string_view) {
-  return !find_sidecar(path).empty();
-}
+bool sniff_raw(const std::string& path, std::string_view) { return !find_sidecar(path).empty(); }
 
 }  // namespace
 
@@ -101,8 +89,7 @@ Format raw_format() {
   row.about.name = "raw";
   row.about.title = "raw binary + sidecar";
   row.about.brief = "raw with sidecar";
-  row.about.suffixes = {
-      ".f64", ".f32", ".i16", ".i32", ".i8", ".i64", ".u8", ".u16", ".u32", ".u64", ".bin", ".raw"};
+  row.about.suffixes = {".f64", ".f32", ".i16", ".i32", ".i8", ".i64", ".u8", ".u16", ".u32", ".u64", ".bin", ".raw"};
   row.about.otherwise = "any with a sidecar";
   row.about.rows_at_places = true;
   row.about.rate = "yes";

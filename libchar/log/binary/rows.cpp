@@ -32,10 +32,7 @@ struct Wanted {
 
 class BinaryRows final : public RowSource {
  public:
-  BinaryRows(std::unique_ptr<BinaryFile> file,
-             BinaryLayout layout,
-             LogInfo info,
-             const ReadOptions& options)
+  BinaryRows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info, const ReadOptions& options)
       : file_(std::move(file)),
         layout_(std::move(layout)),
         info_(std::move(info)),
@@ -63,8 +60,7 @@ class BinaryRows final : public RowSource {
       row_bytes += size_of(time_->number.type);
     }
     if (!layout_.column_major) row_bytes = layout_.columns.front().stride;
-    rows_per_block_ =
-        std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
+    rows_per_block_ = std::max<std::size_t>(1, options.block_bytes / static_cast<std::size_t>(row_bytes));
     info_.bytes = file_->size();
     info_.rows = end_row_ = layout_.rows;
     layout_.columns.clear();
@@ -89,8 +85,8 @@ class BinaryRows final : public RowSource {
       if (channels_.first == 0) warnings.merge(layout_.warnings);
       hash_.start();
     }
-    block.rows = static_cast<std::size_t>(
-        std::min<std::uint64_t>(rows_per_block_, end_row_ - std::min(end_row_, next_row_)));
+    block.rows =
+        static_cast<std::size_t>(std::min<std::uint64_t>(rows_per_block_, end_row_ - std::min(end_row_, next_row_)));
     block.columns.resize(values_.size());
     block.time_ns.clear();
     block.first_line = 0;
@@ -118,14 +114,12 @@ class BinaryRows final : public RowSource {
     const std::string message =
         restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_);
     for (const std::string& place : missing_places_) warnings.add("missing_cell", message, place);
-    if (count > missing_places_.size())
-      warnings.add("missing_cell", message, "", count - missing_places_.size());
+    if (count > missing_places_.size()) warnings.add("missing_cell", message, "", count - missing_places_.size());
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
     const BinaryColumn& column = values_.front().column;
-    return fmt::format(
-        "row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
+    return fmt::format("row {} (byte {})", rows_before + i, column.first_byte + (rows_before + i) * column.stride);
   }
 
   std::string sha256() override { return hash_.finish(); }
@@ -152,19 +146,16 @@ class BinaryRows final : public RowSource {
   }
 
   std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
-    return fmt::format(
-        "row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
+    return fmt::format("row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
   }
 
   void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Findings& warnings) {
     const BinaryColumn& column = wanted.column;
-    const std::uint64_t rounded = read_numbers(
-        locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
+    const std::uint64_t rounded =
+        read_numbers(locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
     if (rounded > 0)
-      warnings.add("rounded_integer",
-                   "64-bit integers above 2^53 do not fit a double and were rounded",
-                   fmt::format("{} from row {}", column.name, next_row_),
-                   rounded);
+      warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
+                   fmt::format("{} from row {}", column.name, next_row_), rounded);
     probe_byte_order(wanted, out, warnings);
     if (is_float(column.number.type)) drop_non_finite(wanted, out, warnings);
     if (column.scale != 1 || column.offset != 0) to_unit(column, out, warnings);
@@ -179,8 +170,7 @@ class BinaryRows final : public RowSource {
         warnings.add("number_too_small", kNumbersTooSmall, place_of(column, next_row_ + i));
       if (!std::isinf(out[i])) continue;
       if (!overflow_as_missing_)
-        throw input_error("E0312",
-                          fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)))
+        throw input_error("E0312", fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)))
             .says("number out of range: with its scale and offset no double can hold it")
             .got(shortest(stored))
             .hint("`overflow_as_missing` counts it as missing");
@@ -208,14 +198,11 @@ class BinaryRows final : public RowSource {
   }
 
   void probe_byte_order(Wanted& wanted, const std::vector<double>& out, Findings& warnings) const {
-    if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 ||
-        !is_float(wanted.column.number.type))
+    if (next_row_ >= kOrderProbe || size_of(wanted.column.number.type) < 4 || !is_float(wanted.column.number.type))
       return;
     const std::size_t missing =
-        static_cast<std::size_t>(std::min<std::uint64_t>(kOrderProbe, layout_.rows)) -
-        wanted.probe.size();
-    wanted.probe.insert(wanted.probe.end(),
-                        out.begin(),
+        static_cast<std::size_t>(std::min<std::uint64_t>(kOrderProbe, layout_.rows)) - wanted.probe.size();
+    wanted.probe.insert(wanted.probe.end(), out.begin(),
                         out.begin() + static_cast<std::ptrdiff_t>(std::min(missing, out.size())));
     if (wanted.probe.size() < std::min<std::uint64_t>(kOrderProbe, layout_.rows)) return;
     if (looks_byte_swapped(wanted.probe, wanted.column.number.type)) {
@@ -231,11 +218,8 @@ class BinaryRows final : public RowSource {
   TableFront front() const {
     TableFront table;
     table.named = layout_.named;
-    for (const BinaryColumn& column : layout_.columns)
-      table.columns.push_back({column.name, column.unit});
-    table.first_values = [this](std::size_t column) {
-      return first_values(layout_.columns[column]);
-    };
+    for (const BinaryColumn& column : layout_.columns) table.columns.push_back({column.name, column.unit});
+    table.first_values = [this](std::size_t column) { return first_values(layout_.columns[column]); };
     return table;
   }
 
@@ -257,13 +241,9 @@ class BinaryRows final : public RowSource {
   void read_times(RowBlock& block) {
     block.time_ns.resize(block.rows);
     const std::byte* first = locate(*time_, block.rows);
-    read_stamps(first,
-                static_cast<std::size_t>(time_->stride),
-                {time_->number, time_->scale, time_->offset - unit_.zero, unit_.ns},
-                block.time_ns,
-                [this](std::size_t i) {
-                  return fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i));
-                });
+    read_stamps(first, static_cast<std::size_t>(time_->stride),
+                {time_->number, time_->scale, time_->offset - unit_.zero, unit_.ns}, block.time_ns,
+                [this](std::size_t i) { return fmt::format("{} {}", file_->path(), place_of(*time_, next_row_ + i)); });
   }
 
   std::unique_ptr<BinaryFile> file_;
@@ -284,9 +264,7 @@ class BinaryRows final : public RowSource {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file,
-                                            BinaryLayout layout,
-                                            LogInfo info,
+std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info,
                                             const ReadOptions& options) {
   return std::make_unique<BinaryRows>(std::move(file), std::move(layout), std::move(info), options);
 }

@@ -27,14 +27,12 @@ struct BinaryLayout {
   std::uint64_t rows = 0;
   std::uint64_t data_byte = 0, data_bytes = 0;
   bool column_major = false;  ///< every column is one contiguous stretch
-  bool named = false;  ///< names come from the file: a column named like time is the time column
+  bool named = false;         ///< names come from the file: a column named like time is the time column
   Findings warnings;
 };
 
 /// `info` brings format and dialect; channels, time column and warnings are filled in here.
-std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file,
-                                            BinaryLayout layout,
-                                            LogInfo info,
+std::unique_ptr<RowSource> open_binary_rows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info,
                                             const ReadOptions& options);
 
 }  // namespace libchar

@@ -38,11 +38,10 @@ Refusal key_refusal(const MapReader& at, std::string_view key, std::string code)
 
 const Fields<SidecarChannel>& channel_rows() {
   static const Fields<SidecarChannel> rows = {
-      field<&SidecarChannel::name>(
-          "name", {.meaning = "unique in the file", .written = Written::always, .required = true}),
+      field<&SidecarChannel::name>("name",
+                                   {.meaning = "unique in the file", .written = Written::always, .required = true}),
       field<&SidecarChannel::unit>("unit", {.meaning = "of the value", .otherwise = "none"}),
-      field<&SidecarChannel::scale>("scale",
-                                    {.meaning = "value = raw * scale + offset", .otherwise = "1"}),
+      field<&SidecarChannel::scale>("scale", {.meaning = "value = raw * scale + offset", .otherwise = "1"}),
       field<&SidecarChannel::offset>("offset", {.meaning = "see scale", .otherwise = "0"}),
   };
   return rows;
@@ -51,8 +50,7 @@ const Fields<SidecarChannel>& channel_rows() {
 void check_number(const MapReader& at, std::uint64_t n) {
   if (n == 0) throw key_refusal(at, "channels", "E0543").says("there must be at least one channel");
   if (n > kMaxColumns)
-    throw key_refusal(at, "channels", "E0543")
-        .says("{} channels, more than the limit of {}", n, kMaxColumns);
+    throw key_refusal(at, "channels", "E0543").says("{} channels, more than the limit of {}", n, kMaxColumns);
 }
 
 void read_channel(const MapReader& at, std::unordered_set<std::string>& names, Sidecar& sidecar) {
@@ -60,41 +58,32 @@ void read_channel(const MapReader& at, std::unordered_set<std::string>& names, S
   read_fields(channel_rows(), at, channel);
   if (channel.name.empty() || channel.name.size() > kMaxName)
     throw key_refusal(at, "name", "E0543").says("expected a name of 1 to {} bytes", kMaxName);
-  if (!names.insert(channel.name).second)
-    throw key_refusal(at, "name", "E0307").says("two channels have one name");
-  if (channel.scale == 0)
-    throw key_refusal(at, "scale", "E0543").says("a scale of 0 makes every value the same");
+  if (!names.insert(channel.name).second) throw key_refusal(at, "name", "E0307").says("two channels have one name");
+  if (channel.scale == 0) throw key_refusal(at, "scale", "E0543").says("a scale of 0 makes every value the same");
   sidecar.channels.push_back(std::move(channel));
 }
 
 void read_channels(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   const Document* const node = at.get(key);
   if (node == nullptr)
-    throw key_refusal(at, key, "E0542")
-        .says("the key is missing")
-        .hint("such as " + minimal_sidecar());
+    throw key_refusal(at, key, "E0542").says("the key is missing").hint("such as " + minimal_sidecar());
   if (node->kind == Document::Kind::number && node->whole && node->number >= 0) {
     const std::uint64_t n = at.count(key);
     check_number(at, n);
-    for (std::uint64_t i = 0; i < n; ++i)
-      sidecar.channels.push_back({fmt::format("c{}", i), "", 1, 0});
+    for (std::uint64_t i = 0; i < n; ++i) sidecar.channels.push_back({fmt::format("c{}", i), "", 1, 0});
     return;
   }
   if (node->kind != Document::Kind::list)
-    throw key_refusal(
-        at, key, node->kind == Document::Kind::number && node->whole ? "E0543" : "E0541")
+    throw key_refusal(at, key, node->kind == Document::Kind::number && node->whole ? "E0543" : "E0541")
         .says("expected a number of channels, or a list of {name, unit, scale, offset}");
   if (node->list.empty()) throw key_refusal(at, key, "E0543").says("the list is empty");
   check_number(at, node->list.size());
   sidecar.named = true;
   std::unordered_set<std::string> names;
   for (std::size_t i = 0; i < node->list.size(); ++i)
-    read_channel(MapReader(node->list[i],
-                           at.file(),
-                           fmt::format("{}[{}]", at.path_of(key), i),
-                           keys_of(channel_rows())),
-                 names,
-                 sidecar);
+    read_channel(
+        MapReader(node->list[i], at.file(), fmt::format("{}[{}]", at.path_of(key), i), keys_of(channel_rows())), names,
+        sidecar);
 }
 
 void write_channels(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {
@@ -114,10 +103,7 @@ void write_channels(const Field& row, const Sidecar& sidecar, std::vector<Entry>
 // ---- the file ----
 
 void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
-  if (!at.has(key))
-    throw key_refusal(at, key, "E0542")
-        .says("the key is missing")
-        .hint("such as " + minimal_sidecar());
+  if (!at.has(key)) throw key_refusal(at, key, "E0542").says("the key is missing").hint("such as " + minimal_sidecar());
   const std::string got = at.text(key);
   const auto type = find_number_type(got);
   if (type && *type != NumberType::f16) {
@@ -126,12 +112,9 @@ void read_type(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   }
   std::string lower = got;
   for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  const std::vector<std::string> names = {
-      "f64", "f32", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"};
+  const std::vector<std::string> names = {"f64", "f32", "i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"};
   const auto near = nearest(lower, names);
-  throw key_refusal(at, key, "E0544")
-      .says("expected one of {}", fmt::join(names, ", "))
-      .hint(did_you_mean(near));
+  throw key_refusal(at, key, "E0544").says("expected one of {}", fmt::join(names, ", ")).hint(did_you_mean(near));
 }
 
 void write_type(const Field& row, const Sidecar& sidecar, std::vector<Entry>& out) {
@@ -170,9 +153,7 @@ Sidecar sidecar_of(const Document& document, const std::string& file) {
   Sidecar sidecar;
   read_fields(sidecar_fields(), at, sidecar);
   if (!at.has("endian") && size_of(sidecar.number.type) > 1)
-    throw key_refusal(at, "endian", "E0542")
-        .says("the key is missing")
-        .hint("little or big; a PC writes little");
+    throw key_refusal(at, "endian", "E0542").says("the key is missing").hint("little or big; a PC writes little");
   return sidecar;
 }
 
@@ -185,34 +166,27 @@ bool exists(const std::string& path) {
 
 const Fields<Sidecar>& sidecar_fields() {
   static const Fields<Sidecar> rows = {
-      custom<Sidecar, read_type, write_type>(
-          "dtype",
-          "f64, f32, i8 … i64, u8 … u64",
-          {.meaning = "type of every number", .otherwise = "needed"}),
-      field<&Sidecar::number, &NumberFormat::big_endian>(
-          "endian",
-          {.words = kEndians,
-           .meaning = "byte order",
-           .otherwise = "needed when a number has more than one byte",
-           .written = Written::always}),
+      custom<Sidecar, read_type, write_type>("dtype", "f64, f32, i8 … i64, u8 … u64",
+                                             {.meaning = "type of every number", .otherwise = "needed"}),
+      field<&Sidecar::number, &NumberFormat::big_endian>("endian",
+                                                         {.words = kEndians,
+                                                          .meaning = "byte order",
+                                                          .otherwise = "needed when a number has more than one byte",
+                                                          .written = Written::always}),
       custom<Sidecar, read_channels, write_channels>(
-          "channels",
-          "a number, or a list of `{name, unit, scale, offset}`",
+          "channels", "a number, or a list of `{name, unit, scale, offset}`",
           {.meaning = "value = raw · scale + offset", .otherwise = "needed; scale 1, offset 0"}),
-      field<&Sidecar::rate_hz>("rate_hz",
-                               {.unit = "Hz", .range = kRates, .meaning = "sampling rate"}),
-      custom<Sidecar, read_offset, write_offset>(
-          "offset", "bytes", {.meaning = "skipped before the first value", .otherwise = "0"}),
-      field<&Sidecar::rows>("rows",
-                            {.range = {1, std::numeric_limits<double>::max(), false},
-                             .meaning = "instants",
-                             .otherwise = "what the file holds"}),
+      field<&Sidecar::rate_hz>("rate_hz", {.unit = "Hz", .range = kRates, .meaning = "sampling rate"}),
+      custom<Sidecar, read_offset, write_offset>("offset", "bytes",
+                                                 {.meaning = "skipped before the first value", .otherwise = "0"}),
+      field<&Sidecar::rows>("rows", {.range = {1, std::numeric_limits<double>::max(), false},
+                                     .meaning = "instants",
+                                     .otherwise = "what the file holds"}),
       custom<Sidecar, read_start, write_start>("t0_ns", "ns", {.meaning = "time of the first row"}),
-      field<&Sidecar::planar>("order",
-                              {.words = kOrders,
-                               .meaning = "a row after the other, or a channel after the other",
-                               .otherwise = "interleaved",
-                               .written = Written::always}),
+      field<&Sidecar::planar>("order", {.words = kOrders,
+                                        .meaning = "a row after the other, or a channel after the other",
+                                        .otherwise = "interleaved",
+                                        .written = Written::always}),
   };
   return rows;
 }
@@ -223,10 +197,7 @@ std::string find_sidecar(const std::string& log) {
     const std::string path = log + suffix;
     if (!exists(path)) continue;
     if (!found.empty())
-      throw input_error("E0421", path)
-          .says("there are two sidecars of one log")
-          .got(found)
-          .hint("keep one of them");
+      throw input_error("E0421", path).says("there are two sidecars of one log").got(found).hint("keep one of them");
     found = path;
   }
   return found;
@@ -240,17 +211,12 @@ Sidecar read_sidecar(const std::string& path) {
   refuse_interrupted(path);
   const BinaryFile file(path);
   if (file.size() > kMaxBytes)
-    throw input_error("E0605", path)
-        .says("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes);
+    throw input_error("E0605", path).says("a sidecar of {} bytes exceeds the limit of {}", file.size(), kMaxBytes);
   return parse_sidecar(file.head(kMaxBytes), path, path.ends_with(".json"));
 }
 
-std::string sidecar_json(const Sidecar& sidecar) {
-  return dump_json(json_of(entries_of(sidecar_fields(), sidecar)));
-}
+std::string sidecar_json(const Sidecar& sidecar) { return dump_json(json_of(entries_of(sidecar_fields(), sidecar))); }
 
-std::string minimal_sidecar() {
-  return R"({"dtype": "f64", "endian": "little", "channels": 3, "rate_hz": 200.0})";
-}
+std::string minimal_sidecar() { return R"({"dtype": "f64", "endian": "little", "channels": 3, "rate_hz": 200.0})"; }
 
 }  // namespace libchar

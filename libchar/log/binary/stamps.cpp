@@ -33,14 +33,9 @@ std::optional<WholeStamps> whole_stamps(const StampFormat& format) {
       .hint("is the time unit right? `time_unit` says it");
 }
 
-void read_whole_stamps(const std::byte* first,
-                       std::size_t stride,
-                       const StampFormat& format,
-                       const WholeStamps& line,
-                       std::span<std::int64_t> out,
-                       const Places& where) {
-  if (const auto bad = read_integers(first, stride, format.number, out))
-    refuse_stamp(where(*bad), 1.8e19);
+void read_whole_stamps(const std::byte* first, std::size_t stride, const StampFormat& format, const WholeStamps& line,
+                       std::span<std::int64_t> out, const Places& where) {
+  if (const auto bad = read_integers(first, stride, format.number, out)) refuse_stamp(where(*bad), 1.8e19);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto stored = static_cast<double>(out[i]);
     if (__builtin_mul_overflow(out[i], line.scale_ns, &out[i]) ||
@@ -49,11 +44,8 @@ void read_whole_stamps(const std::byte* first,
   }
 }
 
-void read_real_stamps(const std::byte* first,
-                      std::size_t stride,
-                      const StampFormat& format,
-                      std::span<std::int64_t> out,
-                      const Places& where) {
+void read_real_stamps(const std::byte* first, std::size_t stride, const StampFormat& format,
+                      std::span<std::int64_t> out, const Places& where) {
   std::vector<double> stamps(out.size());
   read_numbers(first, stride, format.number, stamps);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -71,10 +63,7 @@ void read_real_stamps(const std::byte* first,
 
 }  // namespace
 
-void read_stamps(const std::byte* first,
-                 std::size_t stride,
-                 const StampFormat& format,
-                 std::span<std::int64_t> out,
+void read_stamps(const std::byte* first, std::size_t stride, const StampFormat& format, std::span<std::int64_t> out,
                  const Places& where) {
   if (const auto whole = whole_stamps(format))
     read_whole_stamps(first, stride, format, *whole, out, where);

@@ -34,10 +34,7 @@ std::array<std::byte, n> bytes_at(const BinaryFile& file, std::uint64_t byte) {
   return bytes;
 }
 
-void read_format(const BinaryFile& file,
-                 std::uint64_t byte,
-                 std::uint64_t size,
-                 WavHeader& header) {
+void read_format(const BinaryFile& file, std::uint64_t byte, std::uint64_t size, WavHeader& header) {
   constexpr std::uint64_t kExtensible = 0xFFFE;
   const auto b = bytes_at<16>(file, byte);
   header.kind = little_endian<2>(b.data());
@@ -45,15 +42,13 @@ void read_format(const BinaryFile& file,
   header.rate_hz = little_endian<4>(b.data() + 4);
   header.row_bytes = little_endian<2>(b.data() + 12);
   header.bits = little_endian<2>(b.data() + 14);
-  if (header.kind == kExtensible && size >= 26)
-    header.kind = little_endian<2>(bytes_at<2>(file, byte + 24).data());
+  if (header.kind == kExtensible && size >= 26) header.kind = little_endian<2>(bytes_at<2>(file, byte + 24).data());
 }
 
 /// Chunks up to that of the samples: a name of four letters, a size, so many bytes and one more where they are odd.
 WavHeader read_header(const BinaryFile& file) {
   const std::string front = file.head(12);
-  if (front.size() < 12 || (!front.starts_with("RIFF") && !front.starts_with("RF64")) ||
-      !front.ends_with("WAVE"))
+  if (front.size() < 12 || (!front.starts_with("RIFF") && !front.starts_with("RF64")) || !front.ends_with("WAVE"))
     throw wav_refusal(file, 0).says("does not begin like a WAV file");
   WavHeader header;
   std::uint64_t size64 = kUnknownSize;
@@ -96,24 +91,19 @@ std::unique_ptr<RowSource> open_wav(const std::string& path, const ReadOptions& 
         .hint("PCM of 8, 16, 24 or 32 bits and floats are: ffmpeg -i FILE -c:a pcm_s24le log.wav");
   const std::uint64_t item = size_of(*type), row = item * header.channels;
   if (header.channels == 0 || header.rate_hz == 0 || header.row_bytes != row)
-    throw wav_refusal(*file, 12).says(
-        "has a broken format: {} channels, {} Hz, {} bytes for each row",
-        header.channels,
-        header.rate_hz,
-        header.row_bytes);
+    throw wav_refusal(*file, 12).says("has a broken format: {} channels, {} Hz, {} bytes for each row", header.channels,
+                                      header.rate_hz, header.row_bytes);
   BinaryLayout layout;
   const std::uint64_t present = file->size() - header.data_byte;
   layout.rows = std::min(header.data_bytes == 0 ? present : header.data_bytes, present) / row;
   if (layout.rows == 0) throw input_error("E0322", path).says("holds no samples");
   if (header.data_bytes > present && header.data_bytes < kUnknownSize)
-    layout.warnings.add("cut_end",
-                        "the file ends inside of its samples: the whole rows up to there are read",
+    layout.warnings.add("cut_end", "the file ends inside of its samples: the whole rows up to there are read",
                         fmt::format("row {}", layout.rows));
   layout.data_byte = header.data_byte;
   layout.data_bytes = layout.rows * row;
   for (std::uint64_t c = 0; c < header.channels; ++c) {
-    BinaryColumn column{
-        fmt::format("c{}", c), "", {*type, false}, header.data_byte + c * item, row};
+    BinaryColumn column{fmt::format("c{}", c), "", {*type, false}, header.data_byte + c * item, row};
     if (!is_float(*type)) column.scale = std::ldexp(1.0, 1 - static_cast<int>(header.bits));
     if (*type == NumberType::u8) column.offset = -1;
     layout.columns.push_back(std::move(column));
@@ -122,8 +112,7 @@ std::unique_ptr<RowSource> open_wav(const std::string& path, const ReadOptions& 
   info.format = "wav";
   info.time.rate_hz = static_cast<double>(header.rate_hz);
   info.dialect = {fmt::format("{} of {} bits, full scale is ±1 (`channel_scale` says what that is)",
-                              is_float(*type) ? "floats" : "PCM",
-                              header.bits)};
+                              is_float(*type) ? "floats" : "PCM", header.bits)};
   return open_binary_rows(std::move(file), std::move(layout), std::move(info), options);
 }
 
@@ -138,8 +127,7 @@ Format wav_format() {
   row.about.rate = "yes";
   row.about.rows_at_places = true;
   row.certain = [](std::string_view front) {
-    return (front.starts_with("RIFF") || front.starts_with("RF64")) &&
-           front.substr(0, 12).ends_with("WAVE");
+    return (front.starts_with("RIFF") || front.starts_with("RF64")) && front.substr(0, 12).ends_with("WAVE");
   };
   row.open = open_wav;
   return row;

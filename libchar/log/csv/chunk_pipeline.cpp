@@ -49,11 +49,10 @@ void ChunkPipeline::drive(int threads) {
 
 void ChunkPipeline::run() {
   const auto item_of = [](void* item) { return static_cast<Item*>(item); };
-  parallel::in_order(items_.size(),
-                     {.read = [&]() -> void* { return read(); },
-                      .first = [&](void* item) { chunks_.hash(item_of(item)->raw); },
-                      .work = [&](void* item) { parse(*item_of(item)); },
-                      .last = [&](void* item) { done_.push(item_of(item)); }});
+  parallel::in_order(items_.size(), {.read = [&]() -> void* { return read(); },
+                                     .first = [&](void* item) { chunks_.hash(item_of(item)->raw); },
+                                     .work = [&](void* item) { parse(*item_of(item)); },
+                                     .last = [&](void* item) { done_.push(item_of(item)); }});
 }
 
 // The next chunk, as soon as an item is free: so chunks that the caller has not taken do not pile up.

@@ -48,14 +48,12 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
   if (path_ == "-") {
     descriptor_ = ::dup(STDIN_FILENO);
     if (descriptor_ < 0)
-      throw input_error("E0101", "standard input")
-          .says("cannot read: " + std::string(std::strerror(errno)));
+      throw input_error("E0101", "standard input").says("cannot read: " + std::string(std::strerror(errno)));
     return;
   }
   // Without O_NONBLOCK a named pipe without a writer would hang the program here.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0)
-    throw input_error("E0101", path_).says("cannot open: " + std::string(std::strerror(errno)));
+  if (descriptor_ < 0) throw input_error("E0101", path_).says("cannot open: " + std::string(std::strerror(errno)));
   // A writer that waits for us in its own open() needs a moment to begin.
   pollfd waiting{descriptor_, POLLIN, 0};
   ::poll(&waiting, 1, kPatience_ms);
@@ -63,18 +61,15 @@ ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
   struct stat status {};
   const int looked = ::fstat(descriptor_, &status);
   if (looked != 0 || S_ISDIR(status.st_mode)) {
-    const std::string why = looked != 0
-                                ? "cannot be looked at: " + std::string(std::strerror(errno))
-                                : "is a folder, a file was expected";
+    const std::string why =
+        looked != 0 ? "cannot be looked at: " + std::string(std::strerror(errno)) : "is a folder, a file was expected";
     ::close(descriptor_);
     throw input_error("E0101", path_).says(why);
   }
   regular_ = S_ISREG(status.st_mode);
   if (regular_) size_ = static_cast<std::uint64_t>(status.st_size);
   if (size_ > 0)
-    block_ = std::min(
-        block_,
-        std::max<std::size_t>(4096, detail::in_memory(size_)));  // small files, small buffers
+    block_ = std::min(block_, std::max<std::size_t>(4096, detail::in_memory(size_)));  // small files, small buffers
 }
 
 ChunkReader::ChunkReader(std::unique_ptr<Unpacker> text, std::string name, std::size_t block_bytes)
@@ -124,9 +119,7 @@ void ChunkReader::look_for_packing() {
   const Packing packing = packing_of(front_);
   if (packing == Packing::none) return;
   unpacker_ = make_unpacker(
-      packing,
-      [this](char* to, std::size_t n) { return read_stored(to, n); },
-      path_ == "-" ? "standard input" : path_);
+      packing, [this](char* to, std::size_t n) { return read_stored(to, n); }, path_ == "-" ? "standard input" : path_);
 }
 
 std::size_t ChunkReader::read_file(char* to, std::size_t n) {
@@ -144,8 +137,7 @@ std::size_t ChunkReader::read_file(char* to, std::size_t n) {
 }
 
 std::string_view ChunkReader::head() {
-  const std::size_t first = std::size_t{1}
-                            << 16U;  // small files end here; long headers ask for more
+  const std::size_t first = std::size_t{1} << 16U;  // small files end here; long headers ask for more
   look_for_packing();
   head_.resize(first);
   std::size_t size = read_some(head_.data(), first);
@@ -183,9 +175,8 @@ bool ChunkReader::next(RawChunk& chunk) {
   chunk.offset = offset_;
   carry_.clear();
   while (cut == 0 && !done_) {
-    const std::size_t searched =
-        size == 0 ? 0 : size - 1;  // a '\r' that stood last may now have its '\n'
-    const std::size_t more = std::max(block_, size / 2);  // a long row is not looked at for ever
+    const std::size_t searched = size == 0 ? 0 : size - 1;  // a '\r' that stood last may now have its '\n'
+    const std::size_t more = std::max(block_, size / 2);    // a long row is not looked at for ever
     chunk.bytes.resize(std::max(chunk.bytes.size(), size + more + kPadding));
     std::size_t known = 0;
     size += fill(chunk.bytes.data() + size, more, known);
@@ -255,8 +246,7 @@ std::string ChunkReader::finish_hash() {
   std::vector<char> buffer(std::size_t{1} << 18U);
   while (packed() && read_stored(buffer.data(), buffer.size()) > 0) {
   }
-  while (!packed() && !ended_)
-    sha_->update({buffer.data(), read_some(buffer.data(), buffer.size())});
+  while (!packed() && !ended_) sha_->update({buffer.data(), read_some(buffer.data(), buffer.size())});
   return sha_->finish();
 }
 

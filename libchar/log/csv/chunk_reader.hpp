@@ -67,12 +67,8 @@ class ChunkReader {
   bool packed_cut() const { return packed() && unpacker_->cut(); }
   std::uint64_t stored_read() const { return stored_; }  ///< bytes of a compressed file
   std::uint64_t bytes_read() const { return read_; }
-  std::uint64_t nul_tail() const {
-    return nuls_;
-  }  ///< NUL bytes at the end of the file (after the last chunk)
-  std::uint64_t cut_bytes() const {
-    return cut_bytes_;
-  }  ///< of a last line that ran into them and was dropped
+  std::uint64_t nul_tail() const { return nuls_; }        ///< NUL bytes at the end of the file (after the last chunk)
+  std::uint64_t cut_bytes() const { return cut_bytes_; }  ///< of a last line that ran into them and was dropped
 
  private:
   std::size_t fill(char* to, std::size_t n, std::size_t& from_head);

@@ -108,8 +108,7 @@ void Pivot::widen(RowBlock& block, const std::vector<std::uint32_t>& groups) {
       line_ = block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
     }
     filled_[group] = true;
-    for (std::size_t c = 0; c < channels_; ++c)
-      values_[group * channels_ + c] = block.columns[c][i];
+    for (std::size_t c = 0; c < channels_; ++c) values_[group * channels_ + c] = block.columns[c][i];
   }
   block = std::move(out);
 }
@@ -163,42 +162,29 @@ class CsvSource final : public RowSource {
     if (reached_end_) check_account();
     warnings.merge(std::exchange(pending_, {}));
     refuse_many_bad_rows();
-    add(warnings,
-        "bad_row",
-        "rows that cannot be read: left out, or missing where there are no stamps",
-        odd_.bad);
+    add(warnings, "bad_row", "rows that cannot be read: left out, or missing where there are no stamps", odd_.bad);
     add(warnings, "blank_line", "blank lines skipped", odd_.blank);
     add(warnings, "comment_line", "comment lines between the rows skipped", odd_.comment);
     add(warnings, "repeated_header", "repeated header lines skipped", odd_.repeated);
-    add(warnings,
-        "mixed_line_ends",
-        "line ends of another kind than the first, accepted",
-        odd_.mixed_end);
+    add(warnings, "mixed_line_ends", "line ends of another kind than the first, accepted", odd_.mixed_end);
     add(warnings, "infinite_value", kInfiniteValues, odd_.infinite);
     add(warnings, "number_out_of_range", kNumbersOutOfRange, odd_.overflow);
     add(warnings, "number_too_small", kNumbersTooSmall, odd_.too_small);
     if (odd_.missing.count > 0)
-      add(warnings,
-          "missing_cell",
-          missing_cells(read_channels_, missing_per_channel_),
-          odd_.missing);
+      add(warnings, "missing_cell", missing_cells(read_channels_, missing_per_channel_), odd_.missing);
     if (chunks_.nul_tail() > 0)
       warnings.add("nul_tail",
-                   fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}",
-                               chunks_.nul_tail(),
+                   fmt::format("the file ends in {} NUL bytes (cut by a power failure?): dropped{}", chunks_.nul_tail(),
                                chunks_.cut_bytes() > 0 ? " with the line they cut off" : ""),
                    place_name(next_line_, 1));
     chunks_.finish(warnings);
     if (chunks_.packed_cut())
-      warnings.add(
-          "compressed_cut",
-          "the file ends inside of what is packed (cut?): the whole rows up to there are read",
-          place_name(next_line_, 1));
-    if (filtered_ > 0)
-      info_.dialect.push_back(fmt::format("{} of other kinds left out", plural(filtered_, "row")));
+      warnings.add("compressed_cut",
+                   "the file ends inside of what is packed (cut?): the whole rows up to there are read",
+                   place_name(next_line_, 1));
+    if (filtered_ > 0) info_.dialect.push_back(fmt::format("{} of other kinds left out", plural(filtered_, "row")));
     if (inexact_ > 0)
-      info_.dialect.push_back(
-          fmt::format("{} integers beyond 2^53 rounded to the nearest double", inexact_));
+      info_.dialect.push_back(fmt::format("{} integers beyond 2^53 rounded to the nearest double", inexact_));
   }
 
   std::string place(const RowBlock& block, std::size_t i, std::uint64_t) const override {
@@ -246,10 +232,8 @@ class CsvSource final : public RowSource {
     info_.bytes = chunks_.size();
     if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
     info_.first_line = next_line_;
-    const int threads =
-        std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
-    const bool small =
-        chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
+    const int threads = std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
+    const bool small = chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     if (threads > 1 && !small) read_ahead(threads);
     info_.read_ahead = pipeline_ != nullptr;
   }
@@ -268,8 +252,8 @@ class CsvSource final : public RowSource {
     columns.channels.clear();
     made.channels.clear();
     for (const std::string& word : options.channels) {
-      const bool names_column = std::any_of(
-          names.begin(), names.end(), [&](const auto& name) { return matches(word, name); });
+      const bool names_column =
+          std::any_of(names.begin(), names.end(), [&](const auto& name) { return matches(word, name); });
       (names_column ? columns : made).channels.push_back(word);
     }
     read_channels_ = columns_planned(columns);
@@ -291,8 +275,7 @@ class CsvSource final : public RowSource {
         wide.back().name = plan_.channels == 1 ? group : group + "_" + channel.name;
       }
     info_.channels = std::move(wide);
-    pivot_ =
-        Pivot(plan_.channels, dialect_.groups.size(), dialect_.time.column >= 0, dialect_.cycles);
+    pivot_ = Pivot(plan_.channels, dialect_.groups.size(), dialect_.time.column >= 0, dialect_.cycles);
   }
 
   void read_ahead(int threads) {
@@ -315,8 +298,7 @@ class CsvSource final : public RowSource {
     if (chunks_.packed()) return 0;
     if (body.empty() || chunks_.size() <= dialect_.data_offset) return 0;
     return static_cast<std::uint64_t>(static_cast<double>(chunks_.size() - dialect_.data_offset) /
-                                      static_cast<double>(body.size()) *
-                                      static_cast<double>(lines));
+                                      static_cast<double>(body.size()) * static_cast<double>(lines));
   }
 
   // Of a table that is damaged all over nothing should be trusted.
@@ -324,9 +306,7 @@ class CsvSource final : public RowSource {
     constexpr std::uint64_t kFew = 10;
     if (odd_.bad.count <= kFew || odd_.bad.count * 10 <= rows_ + odd_.bad.count) return;
     throw input_error("E0335", fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line))
-        .says("{} of {} rows cannot be read, more than one in ten",
-              odd_.bad.count,
-              rows_ + odd_.bad.count)
+        .says("{} of {} rows cannot be read, more than one in ten", odd_.bad.count, rows_ + odd_.bad.count)
         .hint(
             "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how "
             "the cells are written");
@@ -335,21 +315,14 @@ class CsvSource final : public RowSource {
   // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of
   // this reader.
   void check_account() const {
-    const std::uint64_t bytes =
-        dialect_.data_offset + total_.bytes + chunks_.nul_tail() + chunks_.cut_bytes();
-    if (!total_.balanced() || bytes != chunks_.bytes_read() ||
-        total_.cells != rows_ * plan_.target.size())
+    const std::uint64_t bytes = dialect_.data_offset + total_.bytes + chunks_.nul_tail() + chunks_.cut_bytes();
+    if (!total_.balanced() || bytes != chunks_.bytes_read() || total_.cells != rows_ * plan_.target.size())
       throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
 
-  static void add(Findings& warnings,
-                  std::string_view code,
-                  std::string_view message,
-                  const Tally& tally) {
-    for (const Spot& spot : tally.spots)
-      warnings.add(code, message, place_name(spot.line, spot.column), 1);
-    if (tally.count > tally.spots.size())
-      warnings.add(code, message, "", tally.count - tally.spots.size());
+  static void add(Findings& warnings, std::string_view code, std::string_view message, const Tally& tally) {
+    for (const Spot& spot : tally.spots) warnings.add(code, message, place_name(spot.line, spot.column), 1);
+    if (tally.count > tally.spots.size()) warnings.add(code, message, "", tally.count - tally.spots.size());
   }
 
   // From lines of the chunk to lines of the file.
@@ -374,15 +347,13 @@ class CsvSource final : public RowSource {
     collect(odd_.missing, chunk.missing);
     if (dialect_.line_end == LineEnd::cr && !cr_noted_) {
       cr_noted_ = true;
-      warnings.add("carriage_return_line_ends",
-                   "lines end in a lone carriage return (old Macintosh)",
+      warnings.add("carriage_return_line_ends", "lines end in a lone carriage return (old Macintosh)",
                    place_name(1, dialect_.has_header ? dialect_.header.size() + 1 : 1));
     }
     if (chunk.unended)
-      warnings.add(
-          "no_final_newline",
-          "the last line has no line end: if the file was cut, its last number may be cut too",
-          place_name(next_line_ + chunk.unended->line, chunk.unended->column));
+      warnings.add("no_final_newline",
+                   "the last line has no line end: if the file was cut, its last number may be cut too",
+                   place_name(next_line_ + chunk.unended->line, chunk.unended->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       fractional_[c] |= chunk.fractional[c];
@@ -410,15 +381,11 @@ class CsvSource final : public RowSource {
 
   void prepare_problem() {
     problem_ = current_.problem->problem;
-    problem_->where = at(info_.file,
-                         chunk_line_ + current_.problem->spot.line,
-                         current_.problem->spot.column,
+    problem_->where = at(info_.file, chunk_line_ + current_.problem->spot.line, current_.problem->spot.column,
                          current_offset_ + current_.problem->byte);
   }
 
-  bool take(ParsedChunk& chunk) {
-    return pipeline_ ? pipeline_->next(chunk, current_offset_) : take_inline(chunk);
-  }
+  bool take(ParsedChunk& chunk) { return pipeline_ ? pipeline_->next(chunk, current_offset_) : take_inline(chunk); }
 
   bool take_inline(ParsedChunk& chunk) {
     const bool any = chunks_.next(raw_);
@@ -447,8 +414,8 @@ class CsvSource final : public RowSource {
   std::vector<std::uint64_t> missing_per_channel_;
   std::vector<std::uint32_t> fractional_;
   Account total_;
-  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0,
-                inexact_ = 0, filtered_ = 0;
+  std::uint64_t next_line_ = 1, chunk_line_ = 1, current_offset_ = 0, consumed_ = 0, rows_ = 0, inexact_ = 0,
+                filtered_ = 0;
   bool cr_noted_ = false, finished_ = false, reached_end_ = false, flushed_ = false;
   std::unique_ptr<ChunkPipeline> pipeline_;  // ends before what it reads
 };
@@ -459,8 +426,7 @@ std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& opti
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_text(std::unique_ptr<Unpacker> text,
-                                     const std::string& name,
+std::unique_ptr<RowSource> open_text(std::unique_ptr<Unpacker> text, const std::string& name,
                                      const ReadOptions& options) {
   return std::make_unique<CsvSource>(std::move(text), name, options);
 }

@@ -43,9 +43,7 @@ class ObjectCells {
         .hint("one object for each row: {\"t\": 0.01, \"gyro\": [0.1, 0.2, 0.3]}");
   }
   void blanks() {
-    while (at_ < text_.size() &&
-           std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
-      ++at_;
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
   }
   char here() {
     blanks();
@@ -147,10 +145,7 @@ class JsonRows final : public MadeText {
   std::string_view format() const override { return "jsonl"; }
   void finish(Findings& findings) const override {
     if (late_ > 0)
-      findings.add("late_key",
-                   "keys of JSON that the first objects do not have: left out",
-                   first_late_,
-                   late_);
+      findings.add("late_key", "keys of JSON that the first objects do not have: left out", first_late_, late_);
   }
 
  protected:
@@ -183,8 +178,7 @@ class JsonRows final : public MadeText {
       }
       for (const auto& cell : ObjectCells(*object, place()).cells()) {
         if (!columns_.emplace(cell.path, columns_.size()).second) continue;
-        if (columns_.size() > kMaxColumns)
-          throw input_error("E0337", place()).says("more than {} keys", kMaxColumns);
+        if (columns_.size() > kMaxColumns) throw input_error("E0337", place()).says("more than {} keys", kMaxColumns);
         if (columns_.size() > 1) text += ',';
         add_quoted(text, cell.path);
       }
@@ -268,8 +262,7 @@ class JsonRows final : public MadeText {
   /// What is no object, to the end of its line, marked so that it does not begin like one.
   std::string broken(std::size_t length) {
     std::size_t end = from_.raw.find('\n', from_.at + length);
-    while (length == 0 && end == std::string::npos && from_.raw.size() - from_.at < kMaxLine &&
-           from_.more())
+    while (length == 0 && end == std::string::npos && from_.raw.size() - from_.at < kMaxLine && from_.more())
       end = from_.raw.find('\n', from_.at);
     if (length == 0) length = std::min(end, from_.raw.size()) - from_.at;
     std::string text = " " + from_.raw.substr(from_.at, length);

@@ -9,9 +9,7 @@ namespace libchar::csv {
 
 namespace {
 
-bool padding(char c) {
-  return c == ' ' || c == '\t';
-}
+bool padding(char c) { return c == ' ' || c == '\t'; }
 
 bool separates(char c, char delimiter) {
   if (delimiter == 0) return c == ',' || c == ';' || padding(c);
@@ -20,8 +18,7 @@ bool separates(char c, char delimiter) {
 
 // A quote opens a cell at the beginning of one; anywhere else it is a letter like others.
 bool opens_cell(std::string_view text, std::size_t from, std::size_t quote, char delimiter) {
-  while (quote > from && padding(text[quote - 1]) && !separates(text[quote - 1], delimiter))
-    --quote;
+  while (quote > from && padding(text[quote - 1]) && !separates(text[quote - 1], delimiter)) --quote;
   return quote == from || separates(text[quote - 1], delimiter);
 }
 
@@ -70,22 +67,19 @@ Line line_at(std::string_view head, std::size_t offset, std::uint64_t number) {
   const bool pair = head[end] == '\r' && end + 1 < head.size() && head[end + 1] == '\n';
   line.end = pair ? LineEnd::crlf : head[end] == '\r' ? LineEnd::cr : LineEnd::lf;
   line.after = end + (pair ? 2 : 1);
-  line.lines += static_cast<std::uint64_t>(
-      std::count(line.text.begin(), line.text.end(), line.end == LineEnd::cr ? '\r' : '\n'));
+  line.lines +=
+      static_cast<std::uint64_t>(std::count(line.text.begin(), line.text.end(), line.end == LineEnd::cr ? '\r' : '\n'));
   return line;
 }
 
-std::string at(const std::string& file,
-               std::uint64_t line,
-               std::uint64_t column,
-               std::uint64_t byte) {
+std::string at(const std::string& file, std::uint64_t line, std::uint64_t column, std::uint64_t byte) {
   return fmt::format("{}:{}:{} (byte {})", file, line, column, byte);
 }
 
 bool is_comment(std::string_view line, bool semicolons) {
   line = trimmed(line);
-  return !line.empty() && (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" ||
-                           (semicolons && line[0] == ';'));
+  return !line.empty() &&
+         (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" || (semicolons && line[0] == ';'));
 }
 
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote) {

@@ -28,10 +28,7 @@ struct Line {
 /// Where the row that begins at `from` ends: the first line end outside quoted cells, else the end
 /// of the text. `open` is set where a quoted cell may close in what follows the text; one that does
 /// not within 128 KiB is no quoted cell. `delimiter` 0: not known.
-std::size_t row_end(std::string_view text,
-                    std::size_t from,
-                    char delimiter = 0,
-                    bool* open = nullptr);
+std::size_t row_end(std::string_view text, std::size_t from, char delimiter = 0, bool* open = nullptr);
 
 /// The row at `offset`, without its line end. One that reaches the end of a head that is not the whole file is cut.
 Line line_at(std::string_view head, std::size_t offset, std::uint64_t number);
@@ -59,9 +56,6 @@ std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::
 bool is_comment(std::string_view line, bool semicolons = false);
 
 /// "FILE:LINE:COL (byte N)".
-std::string at(const std::string& file,
-               std::uint64_t line,
-               std::uint64_t column,
-               std::uint64_t byte);
+std::string at(const std::string& file, std::uint64_t line, std::uint64_t column, std::uint64_t byte);
 
 }  // namespace libchar::csv

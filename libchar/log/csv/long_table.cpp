@@ -23,17 +23,14 @@ constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
 
 bool names_kinds(std::string_view name) {
   static constexpr std::array<std::string_view, 22> kNames = {
-      "sensor",       "sensorname", "sensor_name", "sensortype", "sensor_type", "source",
-      "channel",      "signal",     "topic",       "device",     "field",       "_field",
-      "type",         "name",       "variable",    "quantity",   "parameter",   "measurement",
-      "_measurement", "tag",        "id",          "instance"};
+      "sensor",    "sensorname",  "sensor_name",  "sensortype", "sensor_type", "source",  "channel",  "signal",
+      "topic",     "device",      "field",        "_field",     "type",        "name",    "variable", "quantity",
+      "parameter", "measurement", "_measurement", "tag",        "id",          "instance"};
   const std::string lower = ascii_lower(name);
   return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
 }
 
-std::vector<std::string> values_of(const std::vector<Cells>& rows,
-                                   std::size_t column,
-                                   std::size_t most = kMostKinds) {
+std::vector<std::string> values_of(const std::vector<Cells>& rows, std::size_t column, std::size_t most = kMostKinds) {
   std::vector<std::string> values;
   for (const Cells& row : rows)
     if (column < row.size() && values.size() <= most &&
@@ -49,8 +46,7 @@ std::optional<std::int64_t> stamp_of(const Cells& row, const Dialect& dialect) {
     const auto column = static_cast<std::size_t>(part->column);
     std::int64_t ns = 0;
     std::size_t offset = 0;
-    if (column >= row.size() ||
-        read_part(row[column].text, *part, dialect, ns, offset) != StampDefect::none ||
+    if (column >= row.size() || read_part(row[column].text, *part, dialect, ns, offset) != StampDefect::none ||
         __builtin_add_overflow(sum, ns, &sum))
       return std::nullopt;
   }
@@ -87,10 +83,7 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
 
 // Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
 // stand, and rise by kind.
-bool told_apart(const std::vector<Cells>& rows,
-                std::size_t column,
-                bool named,
-                const Dialect& dialect) {
+bool told_apart(const std::vector<Cells>& rows, std::size_t column, bool named, const Dialect& dialect) {
   std::vector<std::int64_t> all;
   std::map<std::string, std::vector<std::int64_t>> kinds;
   for (const Cells& row : rows)
@@ -103,27 +96,20 @@ bool told_apart(const std::vector<Cells>& rows,
   if (named) return true;
   std::size_t standing = 0;
   for (const auto& [kind, stamps] : kinds) standing += steps_of(stamps).standing;
-  return 10 * whole.standing >= whole.all && 10 * standing < whole.standing &&
-         3 * kinds.size() <= rows.size();
+  return 10 * whole.standing >= whole.all && 10 * standing < whole.standing && 3 * kinds.size() <= rows.size();
 }
 
 bool whole_numbers(const std::vector<std::string>& values) {
-  return values.size() <= kMostNumbers &&
-         std::all_of(values.begin(), values.end(), [](const auto& text) {
+  return values.size() <= kMostNumbers && std::all_of(values.begin(), values.end(), [](const auto& text) {
            const Cell cell = read_cell(text, '.');
            return cell.kind == Cell::value && cell.integer;
          });
 }
 
-[[noreturn]] void refuse(const std::string& name,
-                         const std::vector<std::string>& values,
-                         const LogInfo& info) {
+[[noreturn]] void refuse(const std::string& name, const std::vector<std::string>& values, const LogInfo& info) {
   throw input_error("E0327", info.file)
       .says("the rows are of several kinds: {} is {}", name, first_names(values))
-      .hint("`where` {}={} reads one of them, `group_by` {} makes channels of each",
-            name,
-            values.front(),
-            name);
+      .hint("`where` {}={} reads one of them, `group_by` {} makes channels of each", name, values.front(), name);
 }
 
 /// The column that "COLUMN=VALUE" or "COLUMN" names, by name, text or position c0, c1… among all. Throws Error(usage).
@@ -155,9 +141,7 @@ Turns turns_of(const std::vector<Cells>& rows, const Dialect& dialect) {
       behind[i % n].push_back(static_cast<double>(*stamp - *first) / 1e9);
     }
   }
-  const auto middle = [](std::vector<double>& some) {
-    return some.empty() ? 0 : median_in_place(some, Middle::lower);
-  };
+  const auto middle = [](std::vector<double>& some) { return some.empty() ? 0 : median_in_place(some, Middle::lower); };
   Turns out{std::vector<double>(n), middle(periods)};
   std::transform(behind.begin(), behind.end(), out.behind_s.begin(), middle);
   return out;
@@ -165,28 +149,18 @@ Turns turns_of(const std::vector<Cells>& rows, const Dialect& dialect) {
 
 }  // namespace
 
-std::vector<RowFilter> filters_of(const ReadOptions& options,
-                                  const Dialect& dialect,
-                                  const LogInfo& info) {
+std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dialect, const LogInfo& info) {
   std::vector<RowFilter> out;
   for (const std::string& word : options.kinds.where) {
     const std::size_t sign = word.find('=');
     if (sign == std::string::npos || sign == 0)
-      throw usage_error("E0202", "`where`")
-          .says("expected COLUMN=VALUE")
-          .got(word)
-          .hint("such as sensor=Gyroscope");
-    out.push_back({static_cast<int>(column_named(word.substr(0, sign), dialect, info)),
-                   word.substr(sign + 1),
-                   false});
+      throw usage_error("E0202", "`where`").says("expected COLUMN=VALUE").got(word).hint("such as sensor=Gyroscope");
+    out.push_back({static_cast<int>(column_named(word.substr(0, sign), dialect, info)), word.substr(sign + 1), false});
   }
   return out;
 }
 
-void choose_groups(const std::vector<Cells>& rows,
-                   const ReadOptions& options,
-                   Dialect& dialect,
-                   LogInfo& info) {
+void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   if (options.kinds.group_by.empty()) return;
   const std::size_t column = column_named(options.kinds.group_by, dialect, info);
   dialect.group_column = static_cast<int>(column);
@@ -207,8 +181,7 @@ void choose_groups(const std::vector<Cells>& rows,
       together = together && stamp_of(rows[i], dialect) == stamp_of(rows[i - 1], dialect);
   }
   dialect.cycles = n > 1 && cyclic && !together && !options.kinds.own_stamps;
-  if (dialect.cycles && dialect.time.column >= 0)
-    say_apart(dialect.groups, turns_of(rows, dialect), info.warnings);
+  if (dialect.cycles && dialect.time.column >= 0) say_apart(dialect.groups, turns_of(rows, dialect), info.warnings);
   if (n > 1 && changes < n && rows.size() > 2 * n)
     throw usage_error("E0328", info.file)
         .says("the rows of one kind come behind those of another, and are not side by side: " +
@@ -216,11 +189,8 @@ void choose_groups(const std::vector<Cells>& rows,
         .hint("`where` {}={} reads one of them", options.kinds.group_by, dialect.groups[0]);
 }
 
-void refuse_long_table(const std::vector<Cells>& rows,
-                       const std::vector<ColumnKind>& kinds,
-                       const ReadOptions& options,
-                       Dialect& dialect,
-                       const LogInfo& info) {
+void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnKind>& kinds, const ReadOptions& options,
+                       Dialect& dialect, const LogInfo& info) {
   if (!options.kinds.where.empty() || !options.kinds.group_by.empty()) return;
   const bool timed = dialect.time.column >= 0;
   if (!timed && !options.channels.empty()) return;
@@ -234,12 +204,10 @@ void refuse_long_table(const std::vector<Cells>& rows,
     const std::vector<std::string> values = values_of(rows, c, words ? kMostKinds : kMostNumbers);
     if (values.size() > kMostKinds) continue;
     if (values.size() == 1) {
-      if (words && names_kinds(column.name))
-        dialect.filters.push_back({static_cast<int>(c), values[0], true});
+      if (words && names_kinds(column.name)) dialect.filters.push_back({static_cast<int>(c), values[0], true});
     } else if (words && names_kinds(column.name) && !timed) {
       refuse(column.name, values, info);
-    } else if (timed && (options.channels.empty() || names_kinds(column.name)) &&
-               (words || whole_numbers(values)) &&
+    } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                told_apart(rows, c, words && names_kinds(column.name), dialect)) {
       refuse(column.name, values, info);
     }

@@ -34,8 +34,7 @@ class LvmRows final : public MadeText {
   bool more(std::string& text) override {
     if (line_ == 0 && !read_file_header()) return false;
     for (Cells cells; next(cells);) {
-      const bool blank =
-          std::all_of(cells.begin(), cells.end(), [](const auto& c) { return c.empty(); });
+      const bool blank = std::all_of(cells.begin(), cells.end(), [](const auto& c) { return c.empty(); });
       if (blank) {
         in_rows_ = false;
       } else if (!in_rows_) {
@@ -57,14 +56,11 @@ class LvmRows final : public MadeText {
   bool read_file_header() {
     for (Cells cells; next(cells);) {
       const std::string value = cells.size() > 1 ? cells[1] : "";
-      if (cells[0] == "Separator")
-        separator_ = value.starts_with("Comma") || value == "," ? ',' : '\t';
+      if (cells[0] == "Separator") separator_ = value.starts_with("Comma") || value == "," ? ',' : '\t';
       if (cells[0].starts_with("Separator,")) separator_ = ',';
       if (cells[0] == "Decimal_Separator") decimal_ = value.empty() ? '.' : value[0];
       if (cells[0] == "X_Columns")
-        time_ = value == "No"      ? TimeIn::no_column
-                : value == "Multi" ? TimeIn::a_column_each
-                                   : TimeIn::one_column;
+        time_ = value == "No" ? TimeIn::no_column : value == "Multi" ? TimeIn::a_column_each : TimeIn::one_column;
       if (cells[0] == kEndOfHeader) return true;
     }
     refuse("ends before ***End_of_Header***");
@@ -93,8 +89,7 @@ class LvmRows final : public MadeText {
     in_rows_ = true;
     row_ = 0;
     const bool first = channels_.empty();
-    if (!first && channels != channels_)
-      refuse("a segment has other channels than the first", cells.back());
+    if (!first && channels != channels_) refuse("a segment has other channels than the first", cells.back());
     if (first) first_clock_s_ = clock_s_;
     shift_s_ = 0;
     if (!first) return;
@@ -104,9 +99,7 @@ class LvmRows final : public MadeText {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       text += ',';
       const std::string unit = c < units.size() ? units[c] : "";
-      add_quoted(text,
-                 unit.empty() || channels_[c].ends_with(']') ? channels_[c]
-                                                             : channels_[c] + " [" + unit + "]");
+      add_quoted(text, unit.empty() || channels_[c].ends_with(']') ? channels_[c] : channels_[c] + " [" + unit + "]");
     }
     text += '\n';
   }
@@ -117,11 +110,9 @@ class LvmRows final : public MadeText {
     const std::size_t width = each ? 2 * n : n + 1;
     // A comment may follow; with a column of time for each channel a shorter one ends before.
     cells.resize(width);
-    double x =
-        time_ == TimeIn::no_column ? x0_ + static_cast<double>(row_) * delta_ : number(cells[0]);
+    double x = time_ == TimeIn::no_column ? x0_ + static_cast<double>(row_) * delta_ : number(cells[0]);
     for (std::size_t c = 1; each && c < n; ++c)
-      if (!cells[2 * c].empty() &&
-          std::fabs(number(cells[2 * c]) - x) > 1e-9 * std::max(1.0, std::fabs(x)))
+      if (!cells[2 * c].empty() && std::fabs(number(cells[2 * c]) - x) > 1e-9 * std::max(1.0, std::fabs(x)))
         throw input_error("E0340", fmt::format("{}:{}", file_, line_))
             .says("channels have clocks of their own")
             .got(cells[2 * c])
@@ -173,8 +164,7 @@ class LvmRows final : public MadeText {
       end = from_.raw.find('\n', before);
     }
     if (end == std::string::npos && from_.at >= from_.raw.size()) return false;
-    std::string_view line =
-        std::string_view(from_.raw).substr(from_.at, std::min(end, from_.raw.size()) - from_.at);
+    std::string_view line = std::string_view(from_.raw).substr(from_.at, std::min(end, from_.raw.size()) - from_.at);
     from_.at = std::min(end, from_.raw.size() - 1) + 1;
     ++line_;
     while (line.ends_with('\r')) line.remove_suffix(1);
@@ -199,9 +189,7 @@ class LvmRows final : public MadeText {
 
 }  // namespace
 
-bool is_lvm(std::string_view front) {
-  return front.starts_with("LabVIEW Measurement");
-}
+bool is_lvm(std::string_view front) { return front.starts_with("LabVIEW Measurement"); }
 
 std::unique_ptr<Unpacker> open_lvm_rows(std::function<std::size_t(char*, std::size_t)> stored,
                                         const std::string& file) {

@@ -19,18 +19,16 @@ struct Kind {
   std::size_t skipped;  ///< fields in front of the week
   std::string_view columns;
 };
-constexpr std::array kKinds = {
-    Kind{"$VNIMU",
-         0,
-         "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss],acc_x [m/s^2],acc_y [m/s^2],acc_z "
-         "[m/s^2],gyro_x [rad/s],gyro_y "
-         "[rad/s],gyro_z [rad/s],temp [degC],pressure [kPa]"},
-    Kind{"$VNGYR", 0, "gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s]"},
-    Kind{"$VNACC", 0, "acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2]"},
-    Kind{"$VNMAG", 0, "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss]"},
-    Kind{"#RAWIMUSXA", 2, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"},
-    Kind{"%RAWIMUSA", 0, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"},
-    Kind{"#RAWIMUA", 0, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"}};
+constexpr std::array kKinds = {Kind{"$VNIMU", 0,
+                                    "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss],acc_x [m/s^2],acc_y [m/s^2],acc_z "
+                                    "[m/s^2],gyro_x [rad/s],gyro_y "
+                                    "[rad/s],gyro_z [rad/s],temp [degC],pressure [kPa]"},
+                               Kind{"$VNGYR", 0, "gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s]"},
+                               Kind{"$VNACC", 0, "acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2]"},
+                               Kind{"$VNMAG", 0, "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss]"},
+                               Kind{"#RAWIMUSXA", 2, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"},
+                               Kind{"%RAWIMUSA", 0, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"},
+                               Kind{"#RAWIMUA", 0, "time [s],acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x"}};
 
 const Kind* kind_of(std::string_view line) {
   for (const Kind& kind : kKinds)
@@ -40,12 +38,10 @@ const Kind* kind_of(std::string_view line) {
 
 class SentenceRows final : public MadeText {
  public:
-  explicit SentenceRows(std::function<std::size_t(char*, std::size_t)> stored)
-      : from_{std::move(stored)} {}
+  explicit SentenceRows(std::function<std::size_t(char*, std::size_t)> stored) : from_{std::move(stored)} {}
   std::string_view what() const override { return "lines of an inertial unit"; }
   void finish(Findings& findings) const override {
-    if (others_ > 0)
-      findings.add("comment_line", "comment lines between the rows skipped", first_other_, others_);
+    if (others_ > 0) findings.add("comment_line", "comment lines between the rows skipped", first_other_, others_);
   }
 
  protected:
@@ -121,9 +117,7 @@ class SentenceRows final : public MadeText {
 
 }  // namespace
 
-bool is_sentences(std::string_view front) {
-  return kind_of(front) != nullptr;
-}
+bool is_sentences(std::string_view front) { return kind_of(front) != nullptr; }
 
 std::unique_ptr<Unpacker> open_sentence_rows(std::function<std::size_t(char*, std::size_t)> stored,
                                              const std::string&) {

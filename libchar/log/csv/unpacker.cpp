@@ -34,9 +34,7 @@ constexpr std::size_t kStoredBlock = std::size_t{1} << 17U;
       .hint("copy the file again, or unpack what can be saved with the tool that packed it");
 }
 
-[[noreturn, maybe_unused]] void refuse_without_library(const std::string& file,
-                                                       const char* what,
-                                                       const char* tool) {
+[[noreturn, maybe_unused]] void refuse_without_library(const std::string& file, const char* what, const char* tool) {
   throw input_error("E0330", file)
       .says(std::string("this build cannot unpack ") + what)
       .hint(std::string("unpack it first: ") + tool);
@@ -155,8 +153,7 @@ class Unxz final : public Unpacker {
  public:
   explicit Unxz(StoredBytes stored) : stored_(std::move(stored)) {
     constexpr std::uint64_t kMostMemory = std::uint64_t{256} << 20U;
-    if (lzma_stream_decoder(&stream_, kMostMemory, LZMA_CONCATENATED) != LZMA_OK)
-      throw std::bad_alloc();
+    if (lzma_stream_decoder(&stream_, kMostMemory, LZMA_CONCATENATED) != LZMA_OK) throw std::bad_alloc();
   }
   Unxz(const Unxz&) = delete;
   Unxz& operator=(const Unxz&) = delete;
@@ -239,8 +236,7 @@ Packing packing_of(std::string_view first_bytes) {
                                                6)))
     return Packing::xz;
   constexpr std::size_t kMark = 2;
-  if (first_bytes.size() > kMark &&
-      first_bytes.substr(kMark, kMark) != std::string_view("\0\0", kMark)) {
+  if (first_bytes.size() > kMark && first_bytes.substr(kMark, kMark) != std::string_view("\0\0", kMark)) {
     if (first_bytes.starts_with("\xFF\xFE")) return Packing::utf16le;
     if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
   }
@@ -249,17 +245,15 @@ Packing packing_of(std::string_view first_bytes) {
   return is_json_rows(first_bytes) ? Packing::json : Packing::none;
 }
 
-std::unique_ptr<Unpacker> make_unpacker(
-    Packing packing,
-    [[maybe_unused]] std::function<std::size_t(char*, std::size_t)> stored,
-    const std::string& file) {
+std::unique_ptr<Unpacker> make_unpacker(Packing packing,
+                                        [[maybe_unused]] std::function<std::size_t(char*, std::size_t)> stored,
+                                        const std::string& file) {
   switch (packing) {
     case Packing::none:
       break;
     case Packing::utf16le:
     case Packing::utf16be:
-      return std::make_unique<FromUtf16>(StoredBytes(std::move(stored), file),
-                                         packing == Packing::utf16be);
+      return std::make_unique<FromUtf16>(StoredBytes(std::move(stored), file), packing == Packing::utf16be);
     case Packing::json:
       return open_json_rows(std::move(stored), file);
     case Packing::sentences:

@@ -37,8 +37,7 @@ class Unpacker {
 };
 
 /// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.
-std::unique_ptr<Unpacker> make_unpacker(Packing packing,
-                                        std::function<std::size_t(char*, std::size_t)> stored,
+std::unique_ptr<Unpacker> make_unpacker(Packing packing, std::function<std::size_t(char*, std::size_t)> stored,
                                         const std::string& file);
 
 }  // namespace libchar::csv

@@ -38,9 +38,7 @@ std::optional<std::size_t> find_column(const TableColumns& table, const std::str
   return k ? std::optional(values[*k]) : std::nullopt;
 }
 
-std::size_t column_of(const TableColumns& table,
-                      const std::string& wanted,
-                      const ReadOptions& options,
+std::size_t column_of(const TableColumns& table, const std::string& wanted, const ReadOptions& options,
                       const std::string& file) {
   const auto column = find_column(table, wanted);
   if (column && column != table.time) return *column;
@@ -55,15 +53,12 @@ std::size_t column_of(const TableColumns& table,
 }
 
 // A name wins over a pattern.
-std::vector<std::size_t> columns_of(const TableColumns& table,
-                                    const std::string& wanted,
-                                    const ReadOptions& options,
+std::vector<std::size_t> columns_of(const TableColumns& table, const std::string& wanted, const ReadOptions& options,
                                     const std::string& file) {
   std::vector<std::size_t> out;
   if (is_pattern(wanted) && !find_column(table, wanted))
     for (const std::size_t i : all_channels(table))
-      if (matches(wanted, table.names[i]) ||
-          (i < table.texts.size() && matches(wanted, table.texts[i])))
+      if (matches(wanted, table.names[i]) || (i < table.texts.size() && matches(wanted, table.texts[i])))
         out.push_back(i);
   if (out.empty()) out.push_back(column_of(table, wanted, options, file));
   return out;
@@ -80,38 +75,29 @@ std::optional<std::size_t> position_in(std::string_view word, std::size_t count)
   return whole && index < count ? std::optional(index) : std::nullopt;
 }
 
-bool excludes(std::string_view word) {
-  return word.size() > 1 && word[0] == '!';
-}
+bool excludes(std::string_view word) { return word.size() > 1 && word[0] == '!'; }
 
 bool chooses(const ReadOptions& options) {
   return !std::all_of(options.channels.begin(), options.channels.end(), excludes);
 }
 
-std::string channel_hint(const std::string& wanted,
-                         const std::vector<std::string>& names,
-                         const ReadOptions& options) {
+std::string channel_hint(const std::string& wanted, const std::vector<std::string>& names, const ReadOptions& options) {
   const std::string all = first_names(names);
   if (std::find(options.names.begin(), options.names.end(), wanted) != options.names.end())
-    return "`channels` chooses by the names in the log, " + all +
-           ", and `names` then name what was chosen";
+    return "`channels` chooses by the names in the log, " + all + ", and `names` then name what was chosen";
   const auto near = is_pattern(wanted) ? std::nullopt : nearest(wanted, names);
   return did_you_mean(near, "it has " + all);
 }
 
-void refuse_channel(const std::string& wanted,
-                    const std::vector<std::string>& names,
-                    const ReadOptions& options,
+void refuse_channel(const std::string& wanted, const std::vector<std::string>& names, const ReadOptions& options,
                     const std::string& file) {
   throw usage_error("E0320", file)
-      .says(is_pattern(wanted) ? "no channel matches this pattern"
-                               : "there is no channel of this name")
+      .says(is_pattern(wanted) ? "no channel matches this pattern" : "there is no channel of this name")
       .got(wanted)
       .hint(channel_hint(wanted, names, options));
 }
 
-std::vector<std::size_t> choose_channels(const TableColumns& table,
-                                         const ReadOptions& options,
+std::vector<std::size_t> choose_channels(const TableColumns& table, const ReadOptions& options,
                                          const std::string& file) {
   std::vector<std::size_t> chosen = all_channels(table);
   if (chosen.empty())
@@ -127,10 +113,8 @@ std::vector<std::size_t> choose_channels(const TableColumns& table,
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   for (const std::string& word : options.channels)
     if (excludes(word))
-      for (const std::size_t i : columns_of(table, word.substr(1), options, file))
-        std::erase(chosen, i);
-  if (chosen.empty())
-    throw usage_error("E0320", file).says("no channel is left").got(options.channels.back());
+      for (const std::size_t i : columns_of(table, word.substr(1), options, file)) std::erase(chosen, i);
+  if (chosen.empty()) throw usage_error("E0320", file).says("no channel is left").got(options.channels.back());
   return chosen;
 }
 

@@ -13,15 +13,12 @@ namespace {
 // A unit behind '_': one letter alone is a unit only where it has no other use (gyro_x keeps
 // its x, o3_1 its 1).
 std::optional<std::string> unit_suffix(std::string_view name, std::string_view suffix) {
-  if (suffix.empty() || (suffix[0] >= '0' && suffix[0] <= '9') || suffix == "-")
-    return std::nullopt;
+  if (suffix.empty() || (suffix[0] >= '0' && suffix[0] <= '9') || suffix == "-") return std::nullopt;
   if (suffix.size() == 1 && suffix != "g" && suffix != "s" && suffix != "V" && suffix != "K") {
-    const bool celsius =
-        (suffix == "C" || suffix == "c") && ascii_lower(name).find("temp") != std::string::npos;
+    const bool celsius = (suffix == "C" || suffix == "c") && ascii_lower(name).find("temp") != std::string::npos;
     return celsius ? std::optional<std::string>("degC") : std::nullopt;
   }
-  if (suffix == "none" || suffix == "min" || suffix == "rad" || suffix == "bar" ||
-      suffix == "volt") {
+  if (suffix == "none" || suffix == "min" || suffix == "rad" || suffix == "bar" || suffix == "volt") {
     if (suffix == "none" || suffix == "min") return std::nullopt;  // "speed_min" is a minimum
   }
   if (find_unit(suffix)) return std::string(suffix);
@@ -77,10 +74,8 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     const bool index = unit.find_first_not_of("0123456789") == std::string_view::npos;
     // "Temp, °C (serial 10012345)" has its unit in front of a remark.
     const std::size_t comma = name.rfind(", ");
-    if (!find_unit(unit) && comma != std::string_view::npos && comma > 0 &&
-        find_unit(trimmed(name.substr(comma + 2))))
-      return {std::string(trimmed(name.substr(0, comma))),
-              std::string(trimmed(name.substr(comma + 2)))};
+    if (!find_unit(unit) && comma != std::string_view::npos && comma > 0 && find_unit(trimmed(name.substr(comma + 2))))
+      return {std::string(trimmed(name.substr(0, comma))), std::string(trimmed(name.substr(comma + 2)))};
     if (unit.find(": ") != std::string_view::npos) return {std::string(name), ""};
     if (!name.empty() && !index && unit.size() <= 40 && unit.find('"') == std::string_view::npos)
       return {std::string(name), std::string(unit)};
@@ -97,8 +92,7 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     if (unit == "ga") unit = "Gauss";
     if (!unit.empty()) return {name + std::string(cell.substr(index)), unit};
   }
-  for (std::size_t low = cell.find('_'); low != std::string_view::npos;
-       low = cell.find('_', low + 1)) {
+  for (std::size_t low = cell.find('_'); low != std::string_view::npos; low = cell.find('_', low + 1)) {
     if (low == 0 || cell.substr(0, low).ends_with("_per")) continue;
     if (const auto unit = unit_suffix(cell.substr(0, low), cell.substr(low + 1)))
       return {std::string(cell.substr(0, low)), *unit};

@@ -55,8 +55,7 @@ void FlagRuns::join(const FlagRuns& later, std::uint64_t at, std::uint64_t skipp
   if (across >= place_from_ && across > 0) {  // one place of two
     const bool kept = now_ >= place_from_ && !places_.empty() && places_.back().second == border;
     if (kept) places_.back().second = border + later.lead_;
-    if (now_ < place_from_ && places_.size() < kMostPlaces)
-      places_.push_back({border - now_, border + later.lead_});
+    if (now_ < place_from_ && places_.size() < kMostPlaces) places_.push_back({border - now_, border + later.lead_});
     taken = later.lead_ >= place_from_ ? 1 : 0;
   }
   for (std::size_t p = taken; p < later.places_.size() && places_.size() < kMostPlaces; ++p)
@@ -91,8 +90,7 @@ std::pair<std::uint64_t, std::uint64_t> FlagRuns::from_length(std::uint64_t leas
     add(length, closed_[length]);
     counted += closed_[length] * static_cast<double>(length);
   }
-  if (flags > 0)
-    flags += static_cast<double>(set_) - counted;  // of runs beyond the longest counted
+  if (flags > 0) flags += static_cast<double>(set_) - counted;  // of runs beyond the longest counted
   return {static_cast<std::uint64_t>(runs), static_cast<std::uint64_t>(flags)};
 }
 
@@ -104,8 +102,7 @@ double FlagRuns::unevenness() const {
 
 void FlagRuns::check(StateReader& from) const {
   if (!closed_.empty() && closed_.size() != kLongestCounted + 1) from.refuse("runs of a channel");
-  if (set_ > seen_ || now_ > set_ || lead_ > set_ || places_.size() > kMostPlaces)
-    from.refuse("runs of a channel");
+  if (set_ > seen_ || now_ > set_ || lead_ > set_ || places_.size() > kMostPlaces) from.refuse("runs of a channel");
 }
 
 }  // namespace libchar::detail

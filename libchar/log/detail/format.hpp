@@ -25,11 +25,9 @@ struct Format {
   /// Of a format of one table; nullptr where `topics` is there.
   std::unique_ptr<RowSource> (*open)(const std::string& path, const ReadOptions& options) = nullptr;
   /// Of a format of several streams: topics/topic_rows.hpp makes rows of what it reads.
-  std::unique_ptr<TopicReader> (*topics)(const std::string& path,
-                                         const ReadOptions& options) = nullptr;
+  std::unique_ptr<TopicReader> (*topics)(const std::string& path, const ReadOptions& options) = nullptr;
   /// nullptr for a format that is not written.
-  std::unique_ptr<LogWriter> (*write)(const std::string& path,
-                                      const LogInfo& info,
+  std::unique_ptr<LogWriter> (*write)(const std::string& path, const LogInfo& info,
                                       const WriteOptions& options) = nullptr;
 };
 
@@ -40,9 +38,7 @@ std::unique_ptr<TopicReader> open_topics(const std::string& path, const ReadOpti
 }
 
 /// Opens a file of this format, of one table or of several streams.
-std::unique_ptr<RowSource> open_rows(const Format& format,
-                                     const std::string& path,
-                                     const ReadOptions& options);
+std::unique_ptr<RowSource> open_rows(const Format& format, const std::string& path, const ReadOptions& options);
 
 /// The table, the most specific format first.
 const std::vector<Format>& formats();

@@ -38,16 +38,12 @@ LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
   }
   bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
   for (; i < n; ++i)
-    out |= on_line(x[i - 2], x[i - 1], x[i], kStraight) &&
-           on_line(x[i - 3], x[i - 2], x[i - 1], kStraight);
+    out |= on_line(x[i - 2], x[i - 1], x[i], kStraight) && on_line(x[i - 3], x[i - 2], x[i - 1], kStraight);
   return out;
 }
 constexpr InLanes<any_two_lanes> any_two;
 
-void LineWatch::push(std::span<const double> x,
-                     const unsigned char* starts,
-                     std::size_t i,
-                     std::uint64_t at) {
+void LineWatch::push(std::span<const double> x, const unsigned char* starts, std::size_t i, std::uint64_t at) {
   const bool whole = starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0);
   flag(x[i - 2], x[i - 1], x[i], whole, at + i);
 }
@@ -136,8 +132,8 @@ std::uint64_t LineWatch::least_exact_run() const {
   const double lone = straight.empty() ? 0 : straight[1];
   const double share = ((exact.empty() ? 0 : exact[1]) + 1) / (lone + 100);
   for (std::uint64_t length = 2; length < kFewest; ++length) {
-    const double mean = static_cast<double>(runs_.from_length(length).second) *
-                        std::pow(share, static_cast<double>(length));
+    const double mean =
+        static_cast<double>(runs_.from_length(length).second) * std::pow(share, static_cast<double>(length));
     const auto count = static_cast<double>(exact_.from_length(length).first);
     if (count > mean && count - mean - count * std::log(count / mean) < kLogChance) return length;
   }

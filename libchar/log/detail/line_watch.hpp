@@ -35,8 +35,7 @@ class LineWatch {
   static constexpr std::uint64_t kFewest = 6;
 
   static void layout(auto& at, auto& watch) {
-    at.group(
-        "lines of a channel", watch.n_, watch.before_, watch.last_, watch.first_, watch.second_);
+    at.group("lines of a channel", watch.n_, watch.before_, watch.last_, watch.first_, watch.second_);
     at(watch.pair_, watch.direct_, watch.coarse_);
     FlagRuns::layout(at, watch.runs_);
     FlagRuns::layout(at, watch.exact_);
@@ -53,17 +52,14 @@ class LineWatch {
   void flag(double a, double b, double c, bool whole, std::uint64_t at);
   bool has_chance_lines() const;
   void take(double x, bool direct, std::uint64_t at);
-  void push(std::span<const double> x,
-            const unsigned char* starts,
-            std::size_t i,
-            std::uint64_t at);
+  void push(std::span<const double> x, const unsigned char* starts, std::size_t i, std::uint64_t at);
 
   std::uint64_t n_ = 0;
   double before_ = 0, last_ = 0;   ///< the last two samples
   double first_ = 0, second_ = 0;  ///< the first two
   bool pair_ = false;              ///< the last one follows directly on that before
   bool direct_ = false;            ///< the second one on the first
-  bool coarse_ = false;  ///< steps of a coarse grid are alike by chance: nothing is told from it
+  bool coarse_ = false;            ///< steps of a coarse grid are alike by chance: nothing is told from it
   /// Of either straightness; a run of one flag may be left out.
   FlagRuns runs_{kFewest}, exact_{2};
 };

@@ -10,8 +10,7 @@
 
 namespace libchar {
 
-std::string missing_cells(const std::vector<Channel>& channels,
-                          const std::vector<std::uint64_t>& missing_per_channel) {
+std::string missing_cells(const std::vector<Channel>& channels, const std::vector<std::uint64_t>& missing_per_channel) {
   std::string message = "empty or NaN cells, taken as missing samples";
   if (missing_per_channel.empty()) return message;
   message += " (";
@@ -22,8 +21,7 @@ std::string missing_cells(const std::vector<Channel>& channels,
       message += ", …";
       break;
     }
-    message +=
-        fmt::format("{}{} {}", listed == 1 ? "" : ", ", channels[c].name, missing_per_channel[c]);
+    message += fmt::format("{}{} {}", listed == 1 ? "" : ", ", channels[c].name, missing_per_channel[c]);
   }
   return message + ")";
 }
@@ -33,13 +31,9 @@ void say_apart(const std::vector<std::string>& names, const Turns& turns, Findin
   for (std::size_t k = 1; k < turns.behind_s.size(); ++k) {
     const double behind = turns.behind_s[k];
     if (std::fabs(behind) > kApart * turns.period_s)
-      findings.add("stamps_apart",
-                   "channels of one row never share a stamp: they were sampled one after the other",
-                   fmt::format("{} {} {} {}",
-                               printable(names[k]),
-                               duration_text(std::fabs(behind)),
-                               behind > 0 ? "behind" : "before",
-                               printable(names[0])));
+      findings.add("stamps_apart", "channels of one row never share a stamp: they were sampled one after the other",
+                   fmt::format("{} {} {} {}", printable(names[k]), duration_text(std::fabs(behind)),
+                               behind > 0 ? "behind" : "before", printable(names[0])));
   }
   if (findings.find("stamps_apart") == nullptr) return;
   const double period = turns.period_s;
@@ -48,9 +42,8 @@ void say_apart(const std::vector<std::string>& names, const Turns& turns, Findin
     return shortest(std::round(value * unit) / unit);
   };
   findings.add("stamps_apart", "", {}, 0)
-      .help.push_back(
-          {"A replay interpolates each by its own stamps to one grid.",
-           {{"resample_hz", period > 1 ? "1/" + four_digits(period) : four_digits(1 / period)}}});
+      .help.push_back({"A replay interpolates each by its own stamps to one grid.",
+                       {{"resample_hz", period > 1 ? "1/" + four_digits(period) : four_digits(1 / period)}}});
 }
 
 }  // namespace libchar

@@ -17,13 +17,10 @@ namespace libchar {
 struct RowBlock {
   std::size_t rows = 0;
   std::vector<std::vector<double>>
-      columns;  ///< the selected value columns, at least `rows` values each; NaN = missing cell
-  std::vector<std::int64_t>
-      time_ns;  ///< stamps in ns, at least `rows` values; empty when there is no time column
-  std::uint64_t first_line =
-      0;  ///< CSV: physical line of the first row (1-based); 0 for binary formats
-  std::vector<std::uint32_t>
-      line_offset;  ///< CSV: line of row i is first_line + line_offset[i]; empty = i
+      columns;                        ///< the selected value columns, at least `rows` values each; NaN = missing cell
+  std::vector<std::int64_t> time_ns;  ///< stamps in ns, at least `rows` values; empty when there is no time column
+  std::uint64_t first_line = 0;       ///< CSV: physical line of the first row (1-based); 0 for binary formats
+  std::vector<std::uint32_t> line_offset;  ///< CSV: line of row i is first_line + line_offset[i]; empty = i
 };
 
 /// A file opened by its format.
@@ -45,9 +42,7 @@ class RowSource {
     return false;
   }
   /// Where row i of `block` stands, for messages: "line 412" or "row 17 (byte 1024)".
-  virtual std::string place(const RowBlock& block,
-                            std::size_t i,
-                            std::uint64_t rows_before) const = 0;
+  virtual std::string place(const RowBlock& block, std::size_t i, std::uint64_t rows_before) const = 0;
   /// The same for the front of an error: "FILE:412:1" or "FILE (row 17, byte 1024)".
   virtual std::string where(const RowBlock& block, std::size_t i, std::uint64_t rows_before) const {
     return info().file + " (" + place(block, i, rows_before) + ")";

@@ -50,11 +50,9 @@ class DataflashReader final : public TopicReader {
     std::vector<std::size_t> usual;
     for (std::size_t i = 0; i < about.fields.size(); ++i) {
       const Channel& field = about.fields[i];
-      const bool instance =
-          content.kind && log_.formats.kind(*content.kind).instance == content.channels[i].field;
+      const bool instance = content.kind && log_.formats.kind(*content.kind).instance == content.channels[i].field;
       if (instance || dataflash_no_sample(field.name)) continue;
-      if (!about.sensor || (!field.unit.empty() && field.unit != "s" && field.unit != "Hz"))
-        usual.push_back(i);
+      if (!about.sensor || (!field.unit.empty() && field.unit != "s" && field.unit != "Hz")) usual.push_back(i);
     }
     return usual;
   }
@@ -83,9 +81,7 @@ class DataflashReader final : public TopicReader {
     return first;
   }
 
-  void select(std::size_t topic,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time,
+  void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
               StampUnit unit) override {
     topic_ = topic;
     chosen_ = fields;
@@ -116,21 +112,17 @@ class DataflashReader final : public TopicReader {
   void finish(Findings& warnings) override {
     warnings.merge(log_.losses);
     for (const std::string& field : log_.formats.contradictions())
-      warnings.add(
-          "two_scales",
-          "fields whose format letter and multiplier say different scales: the multiplier is taken",
-          printable(field));
+      warnings.add("two_scales",
+                   "fields whose format letter and multiplier say different scales: the multiplier is taken",
+                   printable(field));
     if (!walk_ || log_.contents[topic_].kind) return;
     const DataflashTopic& content = log_.contents[topic_];
-    warnings.add(
-        "bursts",
-        fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
-                    "spectrum, no good for Allan deviations beyond {}",
-                    content.burst_samples,
-                    brief_text(content.burst_rate_hz, 6),
-                    duration_text(content.burst_samples / content.burst_rate_hz)),
-        "",
-        content.bursts);
+    warnings.add("bursts",
+                 fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
+                             "spectrum, no good for Allan deviations beyond {}",
+                             content.burst_samples, brief_text(content.burst_rate_hz, 6),
+                             duration_text(content.burst_samples / content.burst_rate_hz)),
+                 "", content.bursts);
   }
 
  private:
@@ -159,54 +151,44 @@ class DataflashReader final : public TopicReader {
       const std::size_t index = *formats_.kind_of(message.type);
       if (content.kind) {
         if (index != *content.kind) continue;
-        if (dataflash_instance(formats_.kind(index), message.body) == content.instance)
-          return message.body;
+        if (dataflash_instance(formats_.kind(index), message.body) == content.instance) return message.body;
         continue;
       }
       const DataflashKind& kind = formats_.kind(index);
       if (DataflashBatches::is_header(kind)) batches_.take_header(kind, message.body);
       if (!DataflashBatches::is_block(kind)) continue;
       const DataflashBurst* burst = batches_.burst_of(kind, message.body);
-      if (burst == nullptr || burst->type != content.batch_type ||
-          burst->instance != content.instance)
-        continue;
+      if (burst == nullptr || burst->type != content.batch_type || burst->instance != content.instance) continue;
       burst_ = *burst;
       first_sample_ = DataflashBatches::first_sample(kind, message.body);
       if (first_sample_ >= burst_.samples) continue;
       constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
       for (std::size_t a = 0; a < 3; ++a)
         for (std::size_t k = 0; k < kDataflashArray; ++k)
-          counts_[a][k] = static_cast<std::int16_t>(
-              little_endian<2>(message.body.data() + kind.find(kAxes[a], 'a')->byte + 2 * k));
+          counts_[a][k] =
+              static_cast<std::int16_t>(little_endian<2>(message.body.data() + kind.find(kAxes[a], 'a')->byte + 2 * k));
       return message.body;
     }
     return std::nullopt;
   }
 
   double value_of(const DataflashChannel& channel, Body body, Findings& warnings) const {
-    const DataflashField& field =
-        log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
+    const DataflashField& field = log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
     double value = 0;
     if (read_numbers(body.data() + channel.byte, 0, {field.type, false}, {&value, 1}) > 0)
-      warnings.add("rounded_integer",
-                   "64-bit integers above 2^53 do not fit a double and were rounded",
+      warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
                    fmt::format("{} of message {}", printable(field.name), messages_read_));
     return value * field.factor / field.divisor;
   }
 
   std::int64_t time_of_field(Body body) const {
     const DataflashChannel& channel = log_.contents[topic_].channels[*time_];
-    const DataflashField& field =
-        log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
+    const DataflashField& field = log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
     Findings ignored;
     const double value = value_of(channel, body, ignored);
     const auto refusal = [&](const char* code) {
-      return input_error(code,
-                         fmt::format("{} (message {} of {}, field {})",
-                                     file_.path(),
-                                     messages_read_,
-                                     printable(log_.topics[topic_].name),
-                                     printable(field.name)))
+      return input_error(code, fmt::format("{} (message {} of {}, field {})", file_.path(), messages_read_,
+                                           printable(log_.topics[topic_].name), printable(field.name)))
           .got(shortest(value))
           .hint("`time_column` auto takes the stamps of the messages");
     };
@@ -219,8 +201,7 @@ class DataflashReader final : public TopicReader {
       throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
     }
     const double ns = value * static_cast<double>(unit_ns_);
-    if (!(std::abs(ns) < 9.2e18))
-      throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
+    if (!(std::abs(ns) < 9.2e18)) throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
     return std::llround(ns);
   }
 
@@ -233,11 +214,9 @@ class DataflashReader final : public TopicReader {
     const DataflashClock& clock = clock_of(log_.contents[topic_]);
     if (!clock.byte) return true;
     const std::byte* at = body.data() + *clock.byte;
-    const std::uint64_t stamp =
-        clock.type == NumberType::u64 ? little_endian<8>(at) : little_endian<4>(at);
+    const std::uint64_t stamp = clock.type == NumberType::u64 ? little_endian<8>(at) : little_endian<4>(at);
     if (stamp > kDataflashLargestStamp) {
-      warnings.add("unusable_stamp",
-                   "messages whose stamp is beyond 64-bit nanoseconds were left out",
+      warnings.add("unusable_stamp", "messages whose stamp is beyond 64-bit nanoseconds were left out",
                    fmt::format("message {}", messages_read_));
       return false;
     }
@@ -259,8 +238,7 @@ class DataflashReader final : public TopicReader {
   void add_samples(RowBlock& block, std::size_t most) {
     for (; sample_ < samples_ && block.rows < most; ++sample_, ++block.rows) {
       const double after_ns = (first_sample_ + sample_) * 1e9 / burst_.rate_hz;
-      block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 +
-                              std::llround(after_ns));
+      block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 + std::llround(after_ns));
       for (std::size_t c = 0; c < chosen_.size(); ++c)
         block.columns[c].push_back(counts_[chosen_[c]][sample_] / burst_.multiplier);
     }

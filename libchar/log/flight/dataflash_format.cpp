@@ -44,9 +44,7 @@ std::uint64_t dataflash_fill(const BinaryFile& file) {
 
 }  // namespace
 
-DataflashWalk::DataflashWalk(const BinaryFile& file,
-                             std::size_t block_bytes,
-                             const DataflashFormats& formats,
+DataflashWalk::DataflashWalk(const BinaryFile& file, std::size_t block_bytes, const DataflashFormats& formats,
                              Findings& losses)
     : window_(file, block_bytes, kDataflashLookedBack),
       end_(file.size()),
@@ -64,16 +62,14 @@ bool DataflashWalk::is_front(std::uint64_t byte) {
 // Bytes of the message here, 0 when none begins here, its type is not known or the end cuts it.
 std::size_t DataflashWalk::whole_length(std::uint64_t byte) {
   if (!is_front(byte)) return 0;
-  const std::size_t length =
-      formats_->length(std::to_integer<std::uint8_t>(window_.at(byte, kDataflashFront)[2]));
+  const std::size_t length = formats_->length(std::to_integer<std::uint8_t>(window_.at(byte, kDataflashFront)[2]));
   return length <= end_ - byte ? length : 0;
 }
 
 bool DataflashWalk::cut_by_end(std::uint64_t byte) {
   if (end_ - byte >= kDataflashFront)
     return is_front(byte) &&
-           formats_->length(std::to_integer<std::uint8_t>(window_.at(byte, kDataflashFront)[2])) >
-               end_ - byte;
+           formats_->length(std::to_integer<std::uint8_t>(window_.at(byte, kDataflashFront)[2])) > end_ - byte;
   const std::byte* rest = window_.at(byte, static_cast<std::size_t>(end_ - byte));
   return end_ == byte || (rest[0] == kFirstMagic && (end_ - byte == 1 || rest[1] == kSecondMagic));
 }
@@ -116,17 +112,12 @@ void DataflashWalk::pass_over_damage() {
   const std::string place = fmt::format("byte {}", from);
   const std::uint64_t bytes = std::min(position_, std::max(fill_, from + 1)) - from;
   if (position_ == end_ && cut_by_end(from))
-    losses_->add(
-        "cut_message",
-        fmt::format("the log ends inside a message: its last {} bytes were left out", end_ - from),
-        place);
+    losses_->add("cut_message",
+                 fmt::format("the log ends inside a message: its last {} bytes were left out", end_ - from), place);
   else if (is_front(from) && whole_length(from) == 0)
-    losses_->add(
-        "unknown_message", "messages of types that the log does not define were left out", place);
+    losses_->add("unknown_message", "messages of types that the log does not define were left out", place);
   else
-    losses_->add("damaged_bytes",
-                 "bytes that are no message were left out, and messages among them are lost",
-                 place,
+    losses_->add("damaged_bytes", "bytes that are no message were left out, and messages among them are lost", place,
                  bytes);
 }
 
@@ -156,8 +147,8 @@ constexpr std::array kLetters = {
     Letter{'Z', NumberType::u8, 64, 1, true}};
 
 const Letter* find_letter(char letter) {
-  const auto found = std::find_if(
-      kLetters.begin(), kLetters.end(), [&](const Letter& row) { return row.letter == letter; });
+  const auto found =
+      std::find_if(kLetters.begin(), kLetters.end(), [&](const Letter& row) { return row.letter == letter; });
   return found == kLetters.end() ? nullptr : &*found;
 }
 
@@ -172,9 +163,7 @@ std::vector<std::string> split_labels(const std::string& labels) {
 }
 
 // The label at this place, made unique.
-std::string field_name(const std::vector<std::string>& labels,
-                       std::size_t position,
-                       std::set<std::string>& taken) {
+std::string field_name(const std::vector<std::string>& labels, std::size_t position, std::set<std::string>& taken) {
   std::string name = position < labels.size() ? labels[position] : "";
   if (name.empty()) name = fmt::format("field{}", position);
   const std::string base = name;
@@ -188,8 +177,7 @@ void add_dataflash_fields(const std::vector<std::string>& labels, DataflashKind&
   for (std::size_t position = 0; position < kind.format.size(); ++position) {
     const Letter* letter = find_letter(kind.format[position]);
     if (letter == nullptr) {
-      kind.why_not =
-          fmt::format("its format has the letter {}", printable(kind.format.substr(position, 1)));
+      kind.why_not = fmt::format("its format has the letter {}", printable(kind.format.substr(position, 1)));
       return;
     }
     DataflashField field;
@@ -205,13 +193,10 @@ void add_dataflash_fields(const std::vector<std::string>& labels, DataflashKind&
     kind.fields.push_back(std::move(field));
   }
   if (byte + kDataflashFront != kind.length)
-    kind.why_not = fmt::format(
-        "its format makes {} bytes and its length says {}", byte + kDataflashFront, kind.length);
+    kind.why_not = fmt::format("its format makes {} bytes and its length says {}", byte + kDataflashFront, kind.length);
 }
 
-bool is_clock(const std::string& name) {
-  return name == "TimeUS" || name == "SampleUS" || name == "TimeMS";
-}
+bool is_clock(const std::string& name) { return name == "TimeUS" || name == "SampleUS" || name == "TimeMS"; }
 
 // The same number as a division where that is exact: n / 100 is nearer to what was meant than n · 0.01.
 void set_scale(DataflashField& field, double multiplier) {
@@ -245,9 +230,7 @@ bool is_dataflash_fmt(std::span<const std::byte> body) {
   return !name.empty() && plain(name) && plain(format);
 }
 
-DataflashFormats::DataflashFormats() {
-  rewind();
-}
+DataflashFormats::DataflashFormats() { rewind(); }
 
 void DataflashFormats::rewind() {
   current_.fill(std::nullopt);
@@ -292,12 +275,10 @@ void DataflashFormats::define(std::span<const std::byte> body) {
     kind.length = std::to_integer<std::uint8_t>(body[1]);
     kind.name = dataflash_text(body.subspan(2, kNameBytes));
     kind.format = dataflash_text(body.subspan(2 + kNameBytes, kFormatBytes));
-    const auto labels =
-        split_labels(dataflash_text(body.subspan(2 + kNameBytes + kFormatBytes, kLabelBytes)));
+    const auto labels = split_labels(dataflash_text(body.subspan(2 + kNameBytes + kFormatBytes, kLabelBytes)));
     add_dataflash_fields(labels, kind);
     for (std::size_t i = 0; i < kind.fields.size(); ++i)
-      if (kind.fields[i].name == "I" && kind.fields[i].type == NumberType::u8 &&
-          !kind.fields[i].text)
+      if (kind.fields[i].name == "I" && kind.fields[i].type == NumberType::u8 && !kind.fields[i].text)
         kind.instance = i;
     if (kind.name == "FMTU") kind.role = DataflashRole::units_of_kind;
     if (kind.name == "UNIT") kind.role = DataflashRole::unit;
@@ -321,8 +302,7 @@ void DataflashFormats::take_units(const DataflashKind& kind, std::span<const std
   DataflashKind& described = kinds_[*target];
   for (std::size_t i = 0; i < described.fields.size(); ++i) {
     const DataflashField& field = described.fields[i];
-    const bool marked =
-        field.position < meaning.units.size() && meaning.units[field.position] == '#';
+    const bool marked = field.position < meaning.units.size() && meaning.units[field.position] == '#';
     if (!marked || field.text || is_float(field.type) || size_of(field.type) != 1) continue;
     if (described.instance != i && used_[*target]) changed_behind_ = true;
     described.instance = i;
@@ -335,8 +315,7 @@ void DataflashFormats::take_unit(const DataflashKind& kind, std::span<const std:
   const DataflashField* id = kind.find("Id", 'b');
   const DataflashField* label = kind.find("Label", 'Z');
   if (id != nullptr && label != nullptr)
-    units_[static_cast<char>(body[id->byte])] =
-        dataflash_text(body.subspan(label->byte, kLabelBytes));
+    units_[static_cast<char>(body[id->byte])] = dataflash_text(body.subspan(label->byte, kLabelBytes));
 }
 
 void DataflashFormats::take_multiplier(const DataflashKind& kind, std::span<const std::byte> body) {
@@ -347,19 +326,16 @@ void DataflashFormats::take_multiplier(const DataflashKind& kind, std::span<cons
   read_numbers(body.data() + factor->byte, 0, {NumberType::f64, false}, {&value, 1});
   // Written as doubles, many are floats that were widened: 1e-6 stands as 9.999999974752427e-07.
   const double short_of_it = rounded(value, 7);
-  if (std::isfinite(value) && short_of_it > 0)
-    multipliers_[static_cast<char>(body[id->byte])] = short_of_it;
+  if (std::isfinite(value) && short_of_it > 0) multipliers_[static_cast<char>(body[id->byte])] = short_of_it;
 }
 
 void DataflashFormats::apply_units() {
   contradictions_.clear();
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     const auto meaning = meanings_.find(k);
-    if (meaning != meanings_.end())
-      apply_units(kinds_[k], meaning->second.units, meaning->second.multipliers);
+    if (meaning != meanings_.end()) apply_units(kinds_[k], meaning->second.units, meaning->second.multipliers);
     for (DataflashField& field : kinds_[k].fields) {
-      if (meaning == meanings_.end() && field.unit.empty())
-        field.unit = dataflash_unit(kinds_[k].name, field.name);
+      if (meaning == meanings_.end() && field.unit.empty()) field.unit = dataflash_unit(kinds_[k].name, field.name);
       if (!is_clock(field.name)) continue;
       field.unit = field.name == "TimeMS" ? "ms" : "us";
       field.factor = field.divisor = 1;
@@ -367,9 +343,7 @@ void DataflashFormats::apply_units() {
   }
 }
 
-void DataflashFormats::apply_units(DataflashKind& kind,
-                                   const std::string& units,
-                                   const std::string& multipliers) {
+void DataflashFormats::apply_units(DataflashKind& kind, const std::string& units, const std::string& multipliers) {
   for (DataflashField& field : kind.fields) {
     if (field.text || is_clock(field.name)) continue;
     if (field.position < units.size())
@@ -382,29 +356,16 @@ void DataflashFormats::apply_units(DataflashKind& kind,
     if (id == '-' || id == '?' || multiplier == multipliers_.end()) continue;
     const double by_letter = find_letter(field.letter)->divisor;
     set_scale(field, multiplier->second);
-    if (by_letter != 1 && field.divisor != by_letter)
-      contradictions_.push_back(kind.name + "." + field.name);
+    if (by_letter != 1 && field.divisor != by_letter) contradictions_.push_back(kind.name + "." + field.name);
   }
 }
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kFamilies = {
-    "GYR", "ACC", "IMU", "MAG", "BARO", "BAR", "ARSP", "ISBD"};
+constexpr std::array<std::string_view, 8> kFamilies = {"GYR", "ACC", "IMU", "MAG", "BARO", "BAR", "ARSP", "ISBD"};
 
-constexpr std::array<std::string_view, 13> kNoSample = {"TimeUS",
-                                                        "TimeMS",
-                                                        "SampleUS",
-                                                        "SMS",
-                                                        "Offset",
-                                                        "GndTemp",
-                                                        "GHz",
-                                                        "AHz",
-                                                        "OfsX",
-                                                        "OfsY",
-                                                        "OfsZ",
-                                                        "Primary",
-                                                        "Pri"};
+constexpr std::array<std::string_view, 13> kNoSample = {
+    "TimeUS", "TimeMS", "SampleUS", "SMS", "Offset", "GndTemp", "GHz", "AHz", "OfsX", "OfsY", "OfsZ", "Primary", "Pri"};
 
 // "IMU2" is of the family IMU: older versions have a message for each sensor.
 std::string_view family_of(std::string_view message) {
@@ -417,8 +378,7 @@ std::string_view family_of(std::string_view message) {
 }
 
 bool is_axis(std::string_view field, std::string_view front) {
-  return field.size() == front.size() + 1 && field.starts_with(front) && field.back() >= 'X' &&
-         field.back() <= 'Z';
+  return field.size() == front.size() + 1 && field.starts_with(front) && field.back() >= 'X' && field.back() <= 'Z';
 }
 
 }  // namespace
@@ -448,13 +408,10 @@ std::string plain_unit(std::string_view label) {
   return std::string(label);
 }
 
-bool dataflash_sensor(std::string_view message) {
-  return !family_of(message).empty();
-}
+bool dataflash_sensor(std::string_view message) { return !family_of(message).empty(); }
 
 bool dataflash_no_sample(std::string_view field) {
-  return field.starts_with("MO") ||
-         std::find(kNoSample.begin(), kNoSample.end(), field) != kNoSample.end();
+  return field.starts_with("MO") || std::find(kNoSample.begin(), kNoSample.end(), field) != kNoSample.end();
 }
 
 }  // namespace libchar

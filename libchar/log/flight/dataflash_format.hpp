@@ -116,10 +116,7 @@ class DataflashWalk {
  public:
   /// `formats` is looked at while messages are read: lengths are added as definitions come. Damage
   /// is counted in `losses`.
-  DataflashWalk(const BinaryFile& file,
-                std::size_t block_bytes,
-                const DataflashFormats& formats,
-                Findings& losses);
+  DataflashWalk(const BinaryFile& file, std::size_t block_bytes, const DataflashFormats& formats, Findings& losses);
 
   bool next(DataflashMessage& message);
   std::uint64_t position() const { return position_; }

@@ -39,9 +39,8 @@ DataflashClock clock_of(const DataflashKind& kind, std::string_view name, Number
 
 void note_clock(DataflashClock& clock, Body body) {
   if (!clock.byte) return;
-  const std::uint64_t stamp = clock.type == NumberType::u64
-                                  ? little_endian<8>(body.data() + *clock.byte)
-                                  : little_endian<4>(body.data() + *clock.byte);
+  const std::uint64_t stamp = clock.type == NumberType::u64 ? little_endian<8>(body.data() + *clock.byte)
+                                                            : little_endian<4>(body.data() + *clock.byte);
   if (clock.first == 0) clock.first = stamp;
   if (stamp != 0) clock.last = stamp;
 }
@@ -65,8 +64,7 @@ class DataflashLister {
       LogTopic& about = listing_->topics[i];
       describe_topic(listing_->contents[i], about);
       // A message whose format changed within the log is one topic before and another one behind.
-      if (const int again = names[about.name]++; again > 0)
-        about.name += fmt::format(" #{}", again + 1);
+      if (const int again = names[about.name]++; again > 0) about.name += fmt::format(" #{}", again + 1);
     }
   }
 
@@ -91,8 +89,7 @@ class DataflashLister {
   }
 
   DataflashTopic* topic_of(const DataflashBurst& burst) {
-    const auto [place, fresh] =
-        of_batch_.try_emplace({burst.type, burst.instance}, listing_->contents.size());
+    const auto [place, fresh] = of_batch_.try_emplace({burst.type, burst.instance}, listing_->contents.size());
     if (!fresh) return &listing_->contents[place->second];
     DataflashTopic content;
     content.instance = burst.instance;
@@ -106,11 +103,10 @@ class DataflashLister {
   void note_block(const DataflashKind& kind, const DataflashMessage& message) {
     const DataflashBurst* burst = batches_.burst_of(kind, message.body);
     if (burst == nullptr) {
-      listing_->losses.add(
-          "burst_without_header",
-          "blocks of the batch sampler whose header is not there or says no rate and "
-          "no scale were left out",
-          fmt::format("byte {}", message.byte));
+      listing_->losses.add("burst_without_header",
+                           "blocks of the batch sampler whose header is not there or says no rate and "
+                           "no scale were left out",
+                           fmt::format("byte {}", message.byte));
       return;
     }
     DataflashTopic* content = topic_of(*burst);
@@ -135,8 +131,7 @@ class DataflashLister {
       return;
     }
     const DataflashKind& kind = listing_->formats.kind(*content.kind);
-    about.name =
-        content.instance < 0 ? kind.name : fmt::format("{} {}", kind.name, content.instance);
+    about.name = content.instance < 0 ? kind.name : fmt::format("{} {}", kind.name, content.instance);
     about.type = kind.name;
     about.sensor = dataflash_sensor(kind.name);
     about.why_not = kind.why_not;
@@ -152,19 +147,16 @@ class DataflashLister {
       numbers = numbers || (!dataflash_no_sample(field.name) && kind.instance != f);
       const bool integer = !is_float(field.type) && field.factor == 1 && field.divisor == 1;
       for (std::uint32_t k = 0; k < (field.array ? kDataflashArray : 1U); ++k) {
-        about.fields.push_back(
-            {field.array ? fmt::format("{}[{}]", field.name, k) : field.name, field.unit, integer});
-        content.channels.push_back(
-            {f, field.byte + k * static_cast<std::uint32_t>(size_of(field.type))});
+        about.fields.push_back({field.array ? fmt::format("{}[{}]", field.name, k) : field.name, field.unit, integer});
+        content.channels.push_back({f, field.byte + k * static_cast<std::uint32_t>(size_of(field.type))});
       }
     }
     fields_ += about.fields.size();
     if (!numbers) about.why_not = "text";
     const DataflashClock& clock = content.logged;
     if (clock.last > clock.first)
-      about.rate_hz =
-          static_cast<double>(content.rows - 1) * 1e9 /
-          (static_cast<double>(clock.last - clock.first) * static_cast<double>(clock.unit_ns));
+      about.rate_hz = static_cast<double>(content.rows - 1) * 1e9 /
+                      (static_cast<double>(clock.last - clock.first) * static_cast<double>(clock.unit_ns));
   }
 
   DataflashListing* listing_;
@@ -185,8 +177,7 @@ void DataflashLister::note(const DataflashMessage& message) {
   if (DataflashBatches::is_block(kind)) return note_block(kind, message);
   DataflashTopic* content = topic_of(index, dataflash_instance(kind, message.body));
   if (content == nullptr) {
-    listing_->losses.add("too_many_topics",
-                         fmt::format("messages beyond the first {} topics", kMostTopics),
+    listing_->losses.add("too_many_topics", fmt::format("messages beyond the first {} topics", kMostTopics),
                          fmt::format("byte {}", message.byte));
     return;
   }
@@ -211,8 +202,8 @@ bool DataflashBatches::is_header(const DataflashKind& kind) {
 
 bool DataflashBatches::is_block(const DataflashKind& kind) {
   return kind.name == "ISBD" && kind.why_not.empty() && kind.find("N", 'H') != nullptr &&
-         kind.find("seqno", 'H') != nullptr && kind.find("x", 'a') != nullptr &&
-         kind.find("y", 'a') != nullptr && kind.find("z", 'a') != nullptr;
+         kind.find("seqno", 'H') != nullptr && kind.find("x", 'a') != nullptr && kind.find("y", 'a') != nullptr &&
+         kind.find("z", 'a') != nullptr;
 }
 
 void DataflashBatches::take_header(const DataflashKind& kind, Body body) {
@@ -224,8 +215,8 @@ void DataflashBatches::take_header(const DataflashKind& kind, Body body) {
   burst.multiplier = number_of(*kind.find("mul", 'H'), body);
   burst.rate_hz = number_of(*kind.find("smp_rate", 'f'), body);
   burst.start_us = little_endian<8>(body.data() + kind.find("SampleUS", 'Q')->byte);
-  const bool usable = burst.multiplier > 0 && burst.rate_hz >= 1e-3 && burst.rate_hz <= 1e7 &&
-                      burst.start_us <= kDataflashLargestStamp;
+  const bool usable =
+      burst.multiplier > 0 && burst.rate_hz >= 1e-3 && burst.rate_hz <= 1e7 && burst.start_us <= kDataflashLargestStamp;
   if (usable)
     burst_ = burst;
   else

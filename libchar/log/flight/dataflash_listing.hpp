@@ -44,8 +44,7 @@ struct DataflashTopic {
   double burst_rate_hz = 0;
 };
 
-inline constexpr std::uint64_t kDataflashLargestStamp =
-    9200000000000000;  ///< µs that fit 64-bit nanoseconds
+inline constexpr std::uint64_t kDataflashLargestStamp = 9200000000000000;  ///< µs that fit 64-bit nanoseconds
 
 /// A burst of the batch sampler, as its header (ISBH) says: value = count / multiplier, sample k at start + k / rate.
 struct DataflashBurst {

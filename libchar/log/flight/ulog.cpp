@@ -91,9 +91,7 @@ class UlogReader final : public TopicReader {
     return first;
   }
 
-  void select(std::size_t topic,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time,
+  void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
               StampUnit unit) override {
     topic_ = topic;
     chosen_ = fields;
@@ -148,9 +146,7 @@ class UlogReader final : public TopicReader {
     }
   }
 
-  const UlogStamps& stamps_of(const UlogTopic& content) const {
-    return ulog_stamps(content, by_publication_);
-  }
+  const UlogStamps& stamps_of(const UlogTopic& content) const { return ulog_stamps(content, by_publication_); }
 
   // The next message of this topic whose size is right, its data behind the id.
   std::optional<Data> next_data(UlogWalk& walk, std::size_t topic) {
@@ -161,8 +157,7 @@ class UlogReader final : public TopicReader {
       const auto id = static_cast<std::size_t>(little_endian<2>(message.body.data()));
       if (id >= log_.topic_of_id.size() || log_.topic_of_id[id] != topic) continue;
       const Data data = message.body.subspan(2);
-      if (data.size() >= content.layout.least_bytes && data.size() <= content.layout.bytes)
-        return data;
+      if (data.size() >= content.layout.least_bytes && data.size() <= content.layout.bytes) return data;
     }
     return std::nullopt;
   }
@@ -183,8 +178,7 @@ class UlogReader final : public TopicReader {
     } else if (const UlogStamps& stamps = stamps_of(content); stamps.byte) {
       const std::uint64_t stamp = little_endian<8>(data.data() + *stamps.byte);
       if (!stamp_usable(stamp, message)) {
-        warnings.add("unusable_stamp",
-                     "messages whose stamp is zero or beyond 64-bit nanoseconds were left out",
+        warnings.add("unusable_stamp", "messages whose stamp is zero or beyond 64-bit nanoseconds were left out",
                      fmt::format("message {}", message));
         return;
       }
@@ -194,8 +188,7 @@ class UlogReader final : public TopicReader {
       const UlogField& field = content.layout.fields[chosen_[c]];
       double value = 0;
       if (read_numbers(data.data() + field.byte, 0, {field.type, false}, {&value, 1}) > 0)
-        warnings.add("rounded_integer",
-                     "64-bit integers above 2^53 do not fit a double and were rounded",
+        warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
                      fmt::format("{} of message {}", printable(field.name), message));
       block.columns[c].push_back(value);
     }
@@ -210,8 +203,7 @@ class UlogReader final : public TopicReader {
     fifo_samples_ = std::min(samples, fifo.room);
     fifo_sample_ = 0;
     if (samples > fifo.room)
-      warnings.add("too_many_samples",
-                   fmt::format("messages that say more samples than the {} they hold", fifo.room),
+      warnings.add("too_many_samples", fmt::format("messages that say more samples than the {} they hold", fifo.room),
                    fmt::format("message {}", messages_read_ - 1));
   }
 
@@ -225,8 +217,7 @@ class UlogReader final : public TopicReader {
     const double scale = number_at(data + fifo.scale, NumberType::f32);
     // 255 samples of an hour are no FIFO.
     if (!stamp_usable(stamp, messages_read_ - 1) || !(dt_ns > 0 && dt_ns < 1e12)) {
-      warnings.add("unusable_stamp",
-                   "messages whose stamp is zero or beyond 64-bit nanoseconds were left out",
+      warnings.add("unusable_stamp", "messages whose stamp is zero or beyond 64-bit nanoseconds were left out",
                    fmt::format("message {}", messages_read_ - 1));
       fifo_sample_ = fifo_samples_;
       return;
@@ -244,12 +235,8 @@ class UlogReader final : public TopicReader {
   std::int64_t time_of_field(Data data) const {
     const UlogField& field = log_.contents[topic_].layout.fields[*time_];
     const auto refusal = [&](const char* code, double got) {
-      return input_error(code,
-                         fmt::format("{} (message {} of {}, field {})",
-                                     file_.path(),
-                                     messages_read_,
-                                     printable(log_.topics[topic_].name),
-                                     printable(field.name)))
+      return input_error(code, fmt::format("{} (message {} of {}, field {})", file_.path(), messages_read_,
+                                           printable(log_.topics[topic_].name), printable(field.name)))
           .got(shortest(got))
           .hint("`time_column` auto takes the stamps of the messages");
     };
@@ -258,8 +245,7 @@ class UlogReader final : public TopicReader {
     if (is_float(field.type)) {
       if (std::isnan(value)) throw refusal("E0313", value).says("missing time stamp");
       const double ns = value * static_cast<double>(unit_ns_);
-      if (!(std::abs(ns) < 9.2e18))
-        throw refusal("E0314", value).says("a time stamp does not fit 64-bit nanoseconds");
+      if (!(std::abs(ns) < 9.2e18)) throw refusal("E0314", value).says("a time stamp does not fit 64-bit nanoseconds");
       return std::llround(ns);
     }
     if (read_integers(data.data() + field.byte, 0, {field.type, false}, {&stamp, 1}) ||

@@ -24,26 +24,20 @@ void refuse_unknown_flags(std::span<const std::byte> flags, const std::string& p
   for (std::size_t i = 0; i < flags.size(); ++i) {
     const auto bits = std::to_integer<unsigned>(flags[i]) & (i == 0 ? 0xfeU : 0xffU);
     if (bits == 0) continue;
-    throw input_error(
-        "E0482", fmt::format("{} (byte {}, field incompat_flags)", path, kUlogHeader + 3 + 8 + i))
-        .says("needs a later reader: bits 0x{:02x} of the flags that may not be ignored are set",
-              bits)
+    throw input_error("E0482", fmt::format("{} (byte {}, field incompat_flags)", path, kUlogHeader + 3 + 8 + i))
+        .says("needs a later reader: bits 0x{:02x} of the flags that may not be ignored are set", bits)
         .hint("convert it with PX4's own tools");
   }
 }
 
-void split_at_appended(std::span<const std::byte> offsets,
-                       const BinaryFile& file,
-                       UlogHeader& header,
+void split_at_appended(std::span<const std::byte> offsets, const BinaryFile& file, UlogHeader& header,
                        Findings& warnings) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint64_t offset = little_endian<8>(offsets.data() + 8 * i);
     if (offset == 0) return;
     UlogStretch& last = header.stretches.back();
     if (offset <= last.first || offset >= file.size()) {
-      warnings.add(
-          "appended_lost",
-          fmt::format("data were appended at byte {}, which the file does not hold", offset));
+      warnings.add("appended_lost", fmt::format("data were appended at byte {}, which the file does not hold", offset));
       return;
     }
     last.end = offset;
@@ -64,8 +58,7 @@ UlogHeader read_ulog_header(const BinaryFile& file, Findings& warnings) {
     throw input_error("E0481", path)
         .says("is an encrypted ULog")
         .hint("decrypt it first, with PX4's Tools/decrypt_ulog.py");
-  if (!head.starts_with(kUlogMagic))
-    throw input_error("E0480", path).says(wrong_start(head, kUlogMagic, "a ULog"));
+  if (!head.starts_with(kUlogMagic)) throw input_error("E0480", path).says(wrong_start(head, kUlogMagic, "a ULog"));
   if (head.size() < kUlogHeader)
     throw input_error("E0480", fmt::format("{} (byte {})", path, head.size()))
         .says("is cut inside the {} bytes of its header", kUlogHeader);
@@ -102,10 +95,7 @@ UlogInfo read_ulog_info(std::span<const std::byte> body) {
     info.value = fmt::format("v{}.{}.{}", number >> 24U, number >> 16U & 255U, number >> 8U & 255U);
     const std::uint32_t kind = number & 255U;
     if (kind < 255)
-      info.value += kind >= 192   ? " (RC)"
-                    : kind >= 128 ? " (beta)"
-                    : kind >= 64  ? " (alpha)"
-                                  : " (development)";
+      info.value += kind >= 192 ? " (RC)" : kind >= 128 ? " (beta)" : kind >= 64 ? " (alpha)" : " (development)";
   }
   return info;
 }
@@ -118,19 +108,18 @@ constexpr std::uint32_t kMostBytes = 65535 - 2;  // of a message of data
 constexpr std::uint64_t kMostFields = 200000, kMostSteps = 4000000;
 
 std::optional<NumberType> ulog_number(std::string_view type) {
-  static constexpr std::array<std::pair<std::string_view, NumberType>, 12> kTypes = {
-      {{"int8_t", NumberType::i8},
-       {"uint8_t", NumberType::u8},
-       {"int16_t", NumberType::i16},
-       {"uint16_t", NumberType::u16},
-       {"int32_t", NumberType::i32},
-       {"uint32_t", NumberType::u32},
-       {"int64_t", NumberType::i64},
-       {"uint64_t", NumberType::u64},
-       {"float", NumberType::f32},
-       {"double", NumberType::f64},
-       {"bool", NumberType::u8},
-       {"char", NumberType::i8}}};
+  static constexpr std::array<std::pair<std::string_view, NumberType>, 12> kTypes = {{{"int8_t", NumberType::i8},
+                                                                                      {"uint8_t", NumberType::u8},
+                                                                                      {"int16_t", NumberType::i16},
+                                                                                      {"uint16_t", NumberType::u16},
+                                                                                      {"int32_t", NumberType::i32},
+                                                                                      {"uint32_t", NumberType::u32},
+                                                                                      {"int64_t", NumberType::i64},
+                                                                                      {"uint64_t", NumberType::u64},
+                                                                                      {"float", NumberType::f32},
+                                                                                      {"double", NumberType::f64},
+                                                                                      {"bool", NumberType::u8},
+                                                                                      {"char", NumberType::i8}}};
   for (const auto& [word, number] : kTypes)
     if (word == type) return number;
   return std::nullopt;
@@ -152,8 +141,7 @@ void UlogFormats::add(std::string_view text) {
     Member member;
     if (one.empty()) continue;
     if (!parse_member(one, member)) {
-      definition.why_not =
-          fmt::format("its format has a field that is none: {}", printable(one, 40));
+      definition.why_not = fmt::format("its format has a field that is none: {}", printable(one, 40));
       break;
     }
     definition.members.push_back(std::move(member));
@@ -173,10 +161,8 @@ bool UlogFormats::parse_member(std::string_view text, Member& member) {
   const std::size_t bracket = type.find('[');
   if (bracket != std::string_view::npos) {
     const std::string_view number = type.substr(bracket + 1);
-    const auto [end, error] =
-        std::from_chars(number.data(), number.data() + number.size(), member.count);
-    if (error != std::errc() || end + 1 != number.data() + number.size() || *end != ']')
-      return false;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), member.count);
+    if (error != std::errc() || end + 1 != number.data() + number.size() || *end != ']') return false;
     member.array = true;
     type = type.substr(0, bracket);
   }
@@ -202,13 +188,9 @@ UlogLayout UlogFormats::layout(const std::string& name) {
   return out;
 }
 
-std::string UlogFormats::flatten(const std::string& format,
-                                 const std::string& prefix,
-                                 int depth,
-                                 UlogLayout& out) {
+std::string UlogFormats::flatten(const std::string& format, const std::string& prefix, int depth, UlogLayout& out) {
   const auto found = definitions_.find(format);
-  if (found == definitions_.end())
-    return fmt::format("the log does not define its format {}", printable(format, 40));
+  if (found == definitions_.end()) return fmt::format("the log does not define its format {}", printable(format, 40));
   if (!found->second.why_not.empty()) return found->second.why_not;
   if (depth > kDeepest) return "its format holds itself";
   for (const Member& member : found->second.members) {
@@ -218,25 +200,19 @@ std::string UlogFormats::flatten(const std::string& format,
   return "";
 }
 
-std::string UlogFormats::flatten_member(const Member& member,
-                                        const std::string& prefix,
-                                        int depth,
-                                        UlogLayout& out) {
+std::string UlogFormats::flatten_member(const Member& member, const std::string& prefix, int depth, UlogLayout& out) {
   if (prefix.size() + member.name.size() > kLongestName)
     return fmt::format("its fields have names of more than {} characters", kLongestName);
   const auto number = ulog_number(member.type);
   const std::uint64_t size = number ? size_of(*number) : 0;
-  if (out.bytes + size * member.count > kMostBytes)
-    return "its format is longer than a message can be";
+  if (out.bytes + size * member.count > kMostBytes) return "its format is longer than a message can be";
   if (number && (member.name.starts_with("_padding") || member.type == "char")) {
     out.bytes += static_cast<std::uint32_t>(size * member.count);
     return "";
   }
   for (std::uint32_t k = 0; k < member.count; ++k) {
-    if (++steps_ > kMostSteps || fields_ == kMostFields)
-      return "the formats of the log have too many fields in all";
-    const std::string name =
-        member.array ? fmt::format("{}{}[{}]", prefix, member.name, k) : prefix + member.name;
+    if (++steps_ > kMostSteps || fields_ == kMostFields) return "the formats of the log have too many fields in all";
+    const std::string name = member.array ? fmt::format("{}{}[{}]", prefix, member.name, k) : prefix + member.name;
     if (!number) {
       std::string why_not = flatten(member.type, name + ".", depth + 1, out);
       if (!why_not.empty()) return why_not;
@@ -274,8 +250,7 @@ constexpr std::array kUnits = {
     FieldUnit{"sensor_mag", "y", "Gauss"},
     FieldUnit{"sensor_mag", "z", "Gauss"},
     FieldUnit{"sensor_mag", "temperature", "degC"},
-    FieldUnit{
-        "sensor_baro", "pressure", "Pa"},  // hPa before version 1.14: ulog.cpp looks at the value
+    FieldUnit{"sensor_baro", "pressure", "Pa"},  // hPa before version 1.14: ulog.cpp looks at the value
     FieldUnit{"sensor_baro", "temperature", "degC"},
     FieldUnit{"sensor_baro", "altitude", "m"},
     FieldUnit{"sensor_hygrometer", "temperature", "degC"},
@@ -316,33 +291,19 @@ constexpr std::array kUnits = {
     FieldUnit{"battery_status", "temperature", "degC"},
 };
 
-constexpr std::array<std::string_view, 11> kSensors = {"sensor_gyro",
-                                                       "sensor_gyro_fifo",
-                                                       "sensor_accel",
-                                                       "sensor_accel_fifo",
-                                                       "sensor_mag",
-                                                       "sensor_baro",
-                                                       "sensor_hygrometer",
-                                                       "sensor_combined",
-                                                       "vehicle_imu",
-                                                       "differential_pressure",
-                                                       "distance_sensor"};
+constexpr std::array<std::string_view, 11> kSensors = {
+    "sensor_gyro",       "sensor_gyro_fifo", "sensor_accel", "sensor_accel_fifo",     "sensor_mag",     "sensor_baro",
+    "sensor_hygrometer", "sensor_combined",  "vehicle_imu",  "differential_pressure", "distance_sensor"};
 
-constexpr std::array<std::string_view, 7> kNoSamples = {"timestamp",
-                                                        "timestamp_sample",
-                                                        "error_count",
-                                                        "clip_counter",
-                                                        "samples",
-                                                        "is_external",
-                                                        "calibration_count"};
+constexpr std::array<std::string_view, 7> kNoSamples = {
+    "timestamp", "timestamp_sample", "error_count", "clip_counter", "samples", "is_external", "calibration_count"};
 
 }  // namespace
 
 std::optional<std::string_view> px4_unit(std::string_view message, std::string_view field) {
   if (field == "timestamp" || field == "timestamp_sample") return "us";
-  const auto found = std::find_if(kUnits.begin(), kUnits.end(), [&](const FieldUnit& row) {
-    return row.message == message && row.field == field;
-  });
+  const auto found = std::find_if(kUnits.begin(), kUnits.end(),
+                                  [&](const FieldUnit& row) { return row.message == message && row.field == field; });
   if (found == kUnits.end()) return std::nullopt;
   return found->unit;
 }
@@ -352,9 +313,8 @@ bool px4_sensor(std::string_view message) {
 }
 
 bool px4_no_sample(std::string_view field) {
-  return field.ends_with("device_id") || field.ends_with("_calibration_count") ||
-         field.ends_with("_clipping") || field.ends_with("timestamp_relative") ||
-         field.ends_with("_dt") ||
+  return field.ends_with("device_id") || field.ends_with("_calibration_count") || field.ends_with("_clipping") ||
+         field.ends_with("timestamp_relative") || field.ends_with("_dt") ||
          std::find(kNoSamples.begin(), kNoSamples.end(), field) != kNoSamples.end();
 }
 

@@ -73,14 +73,8 @@ class UlogFormats {
     std::string why_not;
   };
   static bool parse_member(std::string_view text, Member& member);
-  std::string flatten(const std::string& format,
-                      const std::string& prefix,
-                      int depth,
-                      UlogLayout& out);
-  std::string flatten_member(const Member& member,
-                             const std::string& prefix,
-                             int depth,
-                             UlogLayout& out);
+  std::string flatten(const std::string& format, const std::string& prefix, int depth, UlogLayout& out);
+  std::string flatten_member(const Member& member, const std::string& prefix, int depth, UlogLayout& out);
 
   std::map<std::string, Definition, std::less<>> definitions_;
   bool contradicted_ = false;

@@ -27,8 +27,7 @@ std::optional<UlogFifo> fifo_of(const std::string& message, const UlogLayout& la
   for (std::size_t a = 0; a < 3; ++a) {
     const char axis = "xyz"[a];
     std::uint32_t room = 0;
-    while (const UlogField* count =
-               find_field(layout, fmt::format("{}[{}]", axis, room), NumberType::i16)) {
+    while (const UlogField* count = find_field(layout, fmt::format("{}[{}]", axis, room), NumberType::i16)) {
       if (room == 0) fifo.axes[a] = count->byte;
       ++room;
     }
@@ -66,8 +65,7 @@ std::vector<Channel> fields_of(const UlogTopic& content) {
     return std::string(px4_unit(content.message, plain_name(name)).value_or(""));
   };
   if (content.fifo)
-    for (const std::string_view axis : {"x", "y", "z"})
-      fields.push_back({std::string(axis), unit(axis), false});
+    for (const std::string_view axis : {"x", "y", "z"}) fields.push_back({std::string(axis), unit(axis), false});
   else
     for (const UlogField& field : content.layout.fields)
       fields.push_back({field.name, unit(field.name), !is_float(field.type)});
@@ -77,16 +75,14 @@ std::vector<Channel> fields_of(const UlogTopic& content) {
 // Takes the messages of a log one by one.
 class Lister {
  public:
-  Lister(UlogListing& listing, bool by_publication)
-      : listing_(&listing), by_publication_(by_publication) {}
+  Lister(UlogListing& listing, bool by_publication) : listing_(&listing), by_publication_(by_publication) {}
 
   void note(const UlogMessage& message) {
     if (message.type == 'D') return note_data(message);
     if (message.type == 'A') return subscribe(message.body);
     if (message.type == 'O') return note_dropout(message);
     if (message.type == 'F')
-      return formats_.add(
-          {reinterpret_cast<const char*>(message.body.data()), message.body.size()});
+      return formats_.add({reinterpret_cast<const char*>(message.body.data()), message.body.size()});
     if (message.type != 'I' || listing_->info.size() >= 100) return;
     UlogInfo info = read_ulog_info(message.body);
     if (!info.value.empty()) listing_->info.emplace(std::move(info.key), std::move(info.value));
@@ -116,22 +112,19 @@ class Lister {
     }
     if (listing_->topic_of_id[id].value_or(place->second) != place->second) {
       for (const std::size_t topic : {*listing_->topic_of_id[id], place->second})
-        listing_->topics[topic].why_not =
-            fmt::format("its number {} is that of another topic too", id);
+        listing_->topics[topic].why_not = fmt::format("its number {} is that of another topic too", id);
       return;
     }
     listing_->topic_of_id[id] = place->second;
     const UlogLayout& layout = listing_->contents[place->second].layout;
-    listing_->sizes[id] =
-        layout.why_not.empty() ? UlogSizes{true, layout.least_bytes, layout.bytes} : UlogSizes{};
+    listing_->sizes[id] = layout.why_not.empty() ? UlogSizes{true, layout.least_bytes, layout.bytes} : UlogSizes{};
   }
 
   void note_data(const UlogMessage& message) {
     const auto id = static_cast<std::size_t>(little_endian<2>(message.body.data()));
     Findings& losses = listing_->losses;
     if (id >= listing_->topic_of_id.size() || !listing_->topic_of_id[id]) {
-      losses.add("unknown_message",
-                 "messages of data that no subscription announces were left out",
+      losses.add("unknown_message", "messages of data that no subscription announces were left out",
                  fmt::format("byte {}", message.byte));
       return;
     }
@@ -142,15 +135,13 @@ class Lister {
       return;
     }
     if (data.size() < content.layout.least_bytes || data.size() > content.layout.bytes) {
-      losses.add("wrong_size",
-                 "messages that are shorter or longer than their format were left out",
+      losses.add("wrong_size", "messages that are shorter or longer than their format were left out",
                  fmt::format("byte {}", message.byte));
       return;
     }
     std::uint64_t rows = 1;
     if (content.fifo)
-      rows = std::min<std::uint64_t>(std::to_integer<unsigned>(data[content.fifo->samples]),
-                                     content.fifo->room);
+      rows = std::min<std::uint64_t>(std::to_integer<unsigned>(data[content.fifo->samples]), content.fifo->room);
     if (content.messages == 0) {
       content.first_byte = message.byte;
       content.rows_of_first = rows;
@@ -170,8 +161,7 @@ class Lister {
     ++listing_->dropouts;
     listing_->dropped_ms += ms;
     if (listing_->dropout_places.size() < 3)
-      listing_->dropout_places.push_back(
-          fmt::format("{} ms at {:.3f} s", ms, static_cast<double>(last_stamp_) * 1e-6));
+      listing_->dropout_places.push_back(fmt::format("{} ms at {:.3f} s", ms, static_cast<double>(last_stamp_) * 1e-6));
   }
 
   void drop_empty_topics() {
@@ -197,8 +187,7 @@ class Lister {
     about.type = content.message;
     about.sensor = px4_sensor(content.message);
     if (about.why_not.empty()) about.why_not = content.layout.why_not;
-    if (about.why_not.empty() && formats_.contradicted())
-      about.why_not = formats_.layout(content.message).why_not;
+    if (about.why_not.empty() && formats_.contradicted()) about.why_not = formats_.layout(content.message).why_not;
     if (!about.why_not.empty()) return;
     about.fields = fields_of(content);
     const UlogStamps& stamps = ulog_stamps(content, by_publication_);
@@ -221,10 +210,7 @@ const UlogStamps& ulog_stamps(const UlogTopic& content, bool by_publication) {
   return sampled && (!by_publication || content.fifo) ? content.sampled : content.published;
 }
 
-UlogListing list_ulog(const BinaryFile& file,
-                      const UlogHeader& header,
-                      std::size_t block_bytes,
-                      bool by_publication) {
+UlogListing list_ulog(const BinaryFile& file, const UlogHeader& header, std::size_t block_bytes, bool by_publication) {
   UlogListing listing;
   Lister lister(listing, by_publication);
   UlogWalk walk(file, block_bytes, header.stretches, listing.sizes, listing.losses);

@@ -50,10 +50,7 @@ struct UlogListing {
 };
 
 /// `by_publication`: rates and stamps are those of publication, where a message has both.
-UlogListing list_ulog(const BinaryFile& file,
-                      const UlogHeader& header,
-                      std::size_t block_bytes,
-                      bool by_publication);
+UlogListing list_ulog(const BinaryFile& file, const UlogHeader& header, std::size_t block_bytes, bool by_publication);
 
 /// When a sample was taken, where messages say it and it is not always zero; else when they were published.
 const UlogStamps& ulog_stamps(const UlogTopic& content, bool by_publication);

@@ -55,21 +55,13 @@ bool is_text(const std::byte* bytes, std::size_t count) {
   });
 }
 
-std::string at_byte(std::uint64_t byte) {
-  return fmt::format("byte {}", byte);
-}
+std::string at_byte(std::uint64_t byte) { return fmt::format("byte {}", byte); }
 
 }  // namespace
 
-UlogWalk::UlogWalk(const BinaryFile& file,
-                   std::size_t block_bytes,
-                   std::vector<UlogStretch> stretches,
-                   const std::vector<UlogSizes>& sizes,
-                   Findings& losses)
-    : window_(file, block_bytes, kUlogLookedBack),
-      stretches_(std::move(stretches)),
-      sizes_(&sizes),
-      losses_(&losses) {
+UlogWalk::UlogWalk(const BinaryFile& file, std::size_t block_bytes, std::vector<UlogStretch> stretches,
+                   const std::vector<UlogSizes>& sizes, Findings& losses)
+    : window_(file, block_bytes, kUlogLookedBack), stretches_(std::move(stretches)), sizes_(&sizes), losses_(&losses) {
   position_ = stretches_.front().first;
   end_ = stretches_.front().end;
 }
@@ -130,10 +122,8 @@ UlogWalk::Sight UlogWalk::look(std::uint64_t byte) {
   if (type == 'S') {
     if (size != kSync.size()) return Sight::no;
     const std::byte* magic = window_.at(byte, 3 + kSync.size()) + 3;
-    const bool right =
-        std::equal(kSync.begin(), kSync.end(), magic, [](unsigned char a, std::byte b) {
-          return a == std::to_integer<unsigned char>(b);
-        });
+    const bool right = std::equal(kSync.begin(), kSync.end(), magic,
+                                  [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); });
     return right ? Sight::sure : Sight::no;
   }
   if (kTypes.find(type) != std::string_view::npos) return look_at_text(byte, size, type);
@@ -167,8 +157,7 @@ UlogWalk::Sight UlogWalk::look_at_text(std::uint64_t byte, std::uint32_t size, c
 bool UlogWalk::cut_by_end(std::uint64_t byte) {
   if (end_ - byte < 3) return true;
   const std::byte* head = window_.at(byte, 3);
-  return little_endian<2>(head) > end_ - byte - 3 &&
-         kTypes.find(static_cast<char>(head[2])) != std::string_view::npos;
+  return little_endian<2>(head) > end_ - byte - 3 && kTypes.find(static_cast<char>(head[2])) != std::string_view::npos;
 }
 
 // Looks like a message, or like one of a kind that is not known, with a known one behind it or soon behind it.
@@ -197,15 +186,12 @@ void UlogWalk::pass_over_damage() {
   position_ = next_good(from + 1);
   const bool cut = position_ == end_ && cut_by_end(from);
   if (cut)
-    losses_->add(
-        "cut_message",
-        fmt::format("the log ends inside a message: its last {} bytes were left out", end_ - from),
-        at_byte(from));
+    losses_->add("cut_message",
+                 fmt::format("the log ends inside a message: its last {} bytes were left out", end_ - from),
+                 at_byte(from));
   else
-    losses_->add("damaged_bytes",
-                 "bytes that are no message were left out, and messages among them are lost",
-                 at_byte(from),
-                 position_ - from);
+    losses_->add("damaged_bytes", "bytes that are no message were left out, and messages among them are lost",
+                 at_byte(from), position_ - from);
 }
 
 }  // namespace libchar

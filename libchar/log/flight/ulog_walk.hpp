@@ -35,11 +35,8 @@ class UlogWalk {
  public:
   /// `sizes` is looked at while messages are read: entries are added as subscriptions come. Damage
   /// is counted in `losses`.
-  UlogWalk(const BinaryFile& file,
-           std::size_t block_bytes,
-           std::vector<UlogStretch> stretches,
-           const std::vector<UlogSizes>& sizes,
-           Findings& losses);
+  UlogWalk(const BinaryFile& file, std::size_t block_bytes, std::vector<UlogStretch> stretches,
+           const std::vector<UlogSizes>& sizes, Findings& losses);
 
   /// Reading goes on with the message that begins at this byte.
   void go_to(std::uint64_t byte);
@@ -51,9 +48,7 @@ class UlogWalk {
   Sight look(std::uint64_t byte);
   Sight look_at_data(std::uint64_t byte, std::uint32_t size);
   Sight look_at_text(std::uint64_t byte, std::uint32_t size, char type);
-  std::uint64_t behind(std::uint64_t byte) {
-    return byte + 3 + little_endian<2>(window_.at(byte, 3));
-  }
+  std::uint64_t behind(std::uint64_t byte) { return byte + 3 + little_endian<2>(window_.at(byte, 3)); }
   bool cut_by_end(std::uint64_t byte);
   bool good(std::uint64_t byte);
   bool believed(std::uint64_t byte);

@@ -46,15 +46,7 @@ struct BagIndex {
   std::uint64_t at = 0;  ///< byte of the file at which it begins: the end of the messages
 };
 
-enum class BagOp {
-  none = 0,
-  message = 2,
-  header = 3,
-  index = 4,
-  chunk = 5,
-  chunk_info = 6,
-  connection = 7
-};
+enum class BagOp { none = 0, message = 2, header = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
 
 constexpr std::uint32_t kLongestHeader = 1U << 20U;  // of a record; the largest is a topic's name
 constexpr const char* kNoRecords = "no records";
@@ -98,8 +90,7 @@ BagOp op_of(std::string_view header) {
 // u32 seconds, u32 nanoseconds.
 std::int64_t time_of_field(std::string_view value) {
   const auto both = number<std::uint64_t>(value).value_or(0);
-  return static_cast<std::int64_t>(both & 0xffffffffU) * 1000000000 +
-         static_cast<std::int64_t>(both >> 32U);
+  return static_cast<std::int64_t>(both & 0xffffffffU) * 1000000000 + static_cast<std::int64_t>(both >> 32U);
 }
 
 std::optional<StreamId> connection_of(std::string_view header) {
@@ -130,8 +121,7 @@ std::optional<FileRecord> find_record(MovingWindow& file, std::uint64_t at, std:
   if (at > end || end - at < 4) return std::nullopt;
   record.header = ByteReader(file.view(at, 4)).number<std::uint32_t>();
   record.header_at = at + 4;
-  if (record.header > kLongestHeader || end - record.header_at < std::uint64_t{record.header} + 4)
-    return std::nullopt;
+  if (record.header > kLongestHeader || end - record.header_at < std::uint64_t{record.header} + 4) return std::nullopt;
   const std::uint64_t size_at = record.header_at + record.header;
   record.data = ByteReader(file.view(size_at, 4)).number<std::uint32_t>();
   record.data_at = size_at + 4;
@@ -168,8 +158,7 @@ void add_chunk_info(std::string_view header, std::span<const std::byte> data, Ba
 
 // Throws Error(input) where the file is no bag that is read: another version, or encrypted.
 void check_bag(MovingWindow& file) {
-  const auto head =
-      text_of(file.view(0, static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 13))));
+  const auto head = text_of(file.view(0, static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 13))));
   const auto refusal = [&]() { return input_error("E0444", file.path() + " (byte 0)"); };
   constexpr std::string_view kMark = "#ROSBAG V2.0\n";
   const bool cut = head.size() < kMark.size() && kMark.starts_with(head);
@@ -213,16 +202,14 @@ std::optional<BagIndex> read_bag_index(MovingWindow& file) {
     here = record->end;
   }
   if (index.chunks.size() != number_field<std::uint32_t>(header, "chunk_count").value_or(0) ||
-      index.catalog.connections.size() !=
-          number_field<std::uint32_t>(header, "conn_count").value_or(0))
+      index.catalog.connections.size() != number_field<std::uint32_t>(header, "conn_count").value_or(0))
     return std::nullopt;
   return index;
 }
 
 class BagScan final : public ChunkScan {
  public:
-  BagScan(MovingWindow& file, BagCatalog& catalog)
-      : ChunkScan(file), catalog_(catalog), end_(file.size()) {}
+  BagScan(MovingWindow& file, BagCatalog& catalog) : ChunkScan(file), catalog_(catalog), end_(file.size()) {}
   /// The messages end here; without it they end with the file, and that is said.
   void end_at(std::uint64_t end) { end_ = end, closed_ = true; }
 
@@ -234,22 +221,16 @@ class BagScan final : public ChunkScan {
     const std::string header = header_of(file_, *record);
     const BagOp op = op_of(header);
     if (op == BagOp::chunk)
-      enter_chunk(header,
-                  record->data_at,
-                  std::min<std::uint64_t>(record->data, end_ - record->data_at),
-                  warnings);
-    if (!record->whole)
-      return cut_here(warnings, op == BagOp::chunk ? "inside a chunk" : "inside a record");
+      enter_chunk(header, record->data_at, std::min<std::uint64_t>(record->data, end_ - record->data_at), warnings);
+    if (!record->whole) return cut_here(warnings, op == BagOp::chunk ? "inside a chunk" : "inside a record");
     at_ = record->end;
     if (op == BagOp::chunk) return single_ ? Step::end : Step::other;
     if (record->data > kLargestChunk) return Step::other;
-    if (op == BagOp::connection)
-      add_connection(header, text_of(file_.view(record->data_at, record->data)), catalog_);
+    if (op == BagOp::connection) add_connection(header, text_of(file_.view(record->data_at, record->data)), catalog_);
     if (op != BagOp::message) return Step::other;
     message.at = record->header_at - 4;
-    return take_message(header, file_.view(record->data_at, record->data), message, connection)
-               ? Step::message
-               : Step::other;
+    return take_message(header, file_.view(record->data_at, record->data), message, connection) ? Step::message
+                                                                                                : Step::other;
   }
 
   bool chunk_record(RawMessage& message, StreamId& connection, Findings& warnings) override {
@@ -268,10 +249,7 @@ class BagScan final : public ChunkScan {
     return op == BagOp::message && take_message(header, data, message, connection);
   }
 
-  void enter_chunk(std::string_view header,
-                   std::uint64_t data_at,
-                   std::uint64_t length,
-                   Findings& warnings) {
+  void enter_chunk(std::string_view header, std::uint64_t data_at, std::uint64_t length, Findings& warnings) {
     if (!enters(at_)) return;
     const std::string method(field(header, "compression"));
     const std::uint64_t size = number_field<std::uint32_t>(header, "size").value_or(0);
@@ -286,9 +264,7 @@ class BagScan final : public ChunkScan {
     }
   }
 
-  bool take_message(std::string_view header,
-                    std::span<const std::byte> data,
-                    RawMessage& message,
+  bool take_message(std::string_view header, std::span<const std::byte> data, RawMessage& message,
                     StreamId& connection) const {
     const auto id = connection_of(header);
     if (!id || !wanted(*id)) return false;

@@ -14,14 +14,11 @@ namespace {
 
 constexpr std::size_t kLargestExample = std::size_t{1} << 20U;
 constexpr std::uint64_t kEnoughForRate = 20;
-constexpr std::uint64_t kExampleBytes = std::uint64_t{32}
-                                        << 20U;  // looked through for first messages
+constexpr std::uint64_t kExampleBytes = std::uint64_t{32} << 20U;  // looked through for first messages
 
 double rate_seen(const StreamCount& count) {
-  const double seconds =
-      (static_cast<double>(count.last_seen_ns) - static_cast<double>(count.first_seen_ns)) * 1e-9;
-  return count.seen >= kEnoughForRate && seconds > 0 ? static_cast<double>(count.seen - 1) / seconds
-                                                     : 0;
+  const double seconds = (static_cast<double>(count.last_seen_ns) - static_cast<double>(count.first_seen_ns)) * 1e-9;
+  return count.seen >= kEnoughForRate && seconds > 0 ? static_cast<double>(count.seen - 1) / seconds : 0;
 }
 
 }  // namespace
@@ -53,13 +50,9 @@ bool ChunkScan::enters(std::uint64_t at) {
   return !std::binary_search(skip_.begin(), skip_.end(), at);
 }
 
-void ChunkScan::note_packing(const std::string& method,
-                             std::uint64_t bytes,
-                             const char* rewrite,
-                             const char* unpack) {
+void ChunkScan::note_packing(const std::string& method, std::uint64_t bytes, const char* rewrite, const char* unpack) {
   const std::string name = method.empty() ? "none" : printable(method, 40);
-  if (packed_with_.find(name) == std::string::npos)
-    packed_with_ += (packed_with_.empty() ? "" : ", ") + name;
+  if (packed_with_.find(name) == std::string::npos) packed_with_ += (packed_with_.empty() ? "" : ", ") + name;
   const auto refusal = [&](const char* code) {
     return input_error(code, fmt::format("{} (byte {})", file_.path(), chunk_at_));
   };
@@ -72,21 +65,16 @@ void ChunkScan::note_packing(const std::string& method,
 }
 
 void ChunkScan::lose_chunk(Findings& warnings, const char* what, const std::string& why) {
-  warnings.add(
-      "broken_chunk",
-      fmt::format("chunks that are broken (cannot be unpacked, or {}) were left out", what),
-      fmt::format("byte {}{}{}", chunk_at_, why.empty() ? "" : ": ", why));
+  warnings.add("broken_chunk", fmt::format("chunks that are broken (cannot be unpacked, or {}) were left out", what),
+               fmt::format("byte {}{}{}", chunk_at_, why.empty() ? "" : ": ", why));
   chunk_ = {};
 }
 
-ChunkScan::Step ChunkScan::cut(Findings& warnings,
-                               std::string_view inside,
-                               std::uint64_t at) const {
+ChunkScan::Step ChunkScan::cut(Findings& warnings, std::string_view inside, std::uint64_t at) const {
   warnings.add("cut_end",
                fmt::format("the file ends at byte {} {} (a recording that was not closed, or a "
                            "copy that was cut): only what is whole is read",
-                           file_.size(),
-                           inside),
+                           file_.size(), inside),
                at < file_.size() ? fmt::format("which begins at byte {}", at) : std::string());
   return Step::end;
 }
@@ -129,8 +117,8 @@ void ChunkedTopics::find_examples() {
   RawMessage message;
   StreamId stream = 0;
   for (const ChunkPlace& chunk : chunks_) {
-    const bool looked_for = std::any_of(
-        chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return lacks_example(id); });
+    const bool looked_for =
+        std::any_of(chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return lacks_example(id); });
     if (!looked_for || chunk.at < first_record_) continue;
     scan_.begin_at(chunk.at);
     scan_.stop_behind_chunk();
@@ -138,9 +126,7 @@ void ChunkedTopics::find_examples() {
     for (auto& [id, count] : counts_) count.piece_ended = count.seen > 0;
   }
   const auto lacking = [&] {
-    return std::any_of(counts_.begin(), counts_.end(), [&](const auto& count) {
-      return lacks_example(count.first);
-    });
+    return std::any_of(counts_.begin(), counts_.end(), [&](const auto& count) { return lacks_example(count.first); });
   };
   if (!lacking()) return;
   scan_.begin_at(first_record_);
@@ -176,8 +162,7 @@ void ChunkedTopics::start(std::size_t topic) {
   std::vector<std::uint64_t> skip;
   for (const ChunkPlace& chunk : chunks_)
     if (!chunk.streams.empty() &&
-        std::none_of(
-            chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return wanted[id]; }))
+        std::none_of(chunk.streams.begin(), chunk.streams.end(), [&](StreamId id) { return wanted[id]; }))
       skip.push_back(chunk.at);
   std::sort(skip.begin(), skip.end());
   scan_.only(std::move(wanted), std::move(skip));
@@ -199,11 +184,10 @@ void ChunkedTopics::finish(Findings& warnings) {
   if (!ended_) return;
   const LogTopic& topic = topics()[chosen_];
   if (seen_ < topic.rows)
-    warnings.add("lost_messages",
-                 fmt::format("messages of {} that the file's index counts and that are not there",
-                             printable(topic.name)),
-                 "",
-                 topic.rows - seen_);
+    warnings.add(
+        "lost_messages",
+        fmt::format("messages of {} that the file's index counts and that are not there", printable(topic.name)), "",
+        topic.rows - seen_);
 }
 
 }  // namespace libchar

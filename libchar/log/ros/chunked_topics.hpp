@@ -49,10 +49,7 @@ class ChunkScan {
   bool enters(std::uint64_t at);
   /// Notes how the chunk is packed. Throws Error(input) where it is too large, or cannot be unpacked by
   /// this program: `rewrite` and `unpack` write the file again.
-  void note_packing(const std::string& method,
-                    std::uint64_t bytes,
-                    const char* rewrite,
-                    const char* unpack);
+  void note_packing(const std::string& method, std::uint64_t bytes, const char* rewrite, const char* unpack);
   void lose_chunk(Findings& warnings, const char* what, const std::string& why = "");
   /// Counts the end of a file that was never written, or copied, to its end: `inside` says of what
   /// ("inside a chunk", "without its index"), which begins at byte `at`.
@@ -94,15 +91,9 @@ class ChunkedTopics : public MessageTopics {
 
  protected:
   /// `scan`, of `file()`, need not be made yet.
-  ChunkedTopics(const std::string& path,
-                const ReadOptions& options,
-                bool publishes,
-                ChunkScan& scan,
+  ChunkedTopics(const std::string& path, const ReadOptions& options, bool publishes, ChunkScan& scan,
                 std::uint64_t first_record)
-      : MessageTopics(path, options.time_source, publishes),
-        file_(path),
-        scan_(scan),
-        first_record_(first_record) {}
+      : MessageTopics(path, options.time_source, publishes), file_(path), scan_(scan), first_record_(first_record) {}
   MovingWindow& file() { return file_; }
   /// ", chunks packed with zstd"; "" when none was seen.
   std::string packing() const;

@@ -29,8 +29,7 @@ constexpr std::uint64_t kSqliteHeader = 100;
 
 #if LIBCHAR_HAVE_SQLITE
 
-constexpr const char* kDamaged =
-    "the database is cut or damaged: messages in front of the damage were read";
+constexpr const char* kDamaged = "the database is cut or damaged: messages in front of the damage were read";
 
 class Database {
  public:
@@ -97,8 +96,7 @@ class Query {
 };
 
 bool Database::has_table(const char* name) const {
-  Query query(*this,
-              fmt::format("SELECT 1 FROM sqlite_master WHERE type='table' AND name='{}'", name));
+  Query query(*this, fmt::format("SELECT 1 FROM sqlite_master WHERE type='table' AND name='{}'", name));
   return query.step();
 }
 
@@ -109,17 +107,15 @@ class Db3Reader final : public MessageTopics {
     std::error_code none;
     bytes_ = std::filesystem::file_size(path, none);
     warn_of_missing_pages(path);
-    if (!database_.has_table("topics") || !database_.has_table("messages"))
-      refuse_without_tables(path);
+    if (!database_.has_table("topics") || !database_.has_table("messages")) refuse_without_tables(path);
     warn_of_journal(path);
     read_definitions();
     list();
   }
 
   std::vector<std::string> dialect() const override {
-    return {fmt::format(
-        "rosbag2 database, {}",
-        definitions_.empty() ? "no definitions in it: those of common types" : "with definitions")};
+    return {fmt::format("rosbag2 database, {}",
+                        definitions_.empty() ? "no definitions in it: those of common types" : "with definitions")};
   }
 
   std::uint64_t bytes_read() const override {
@@ -133,9 +129,8 @@ class Db3Reader final : public MessageTopics {
     rows_ = topics()[topic].rows;
     seen_ = 0;
     query_ = std::make_unique<Query>(
-        database_,
-        fmt::format("SELECT id, timestamp, data FROM messages WHERE topic_id IN ({}) ORDER BY id",
-                    fmt::join(ids_[topic], ",")));
+        database_, fmt::format("SELECT id, timestamp, data FROM messages WHERE topic_id IN ({}) ORDER BY id",
+                               fmt::join(ids_[topic], ",")));
   }
 
   bool next_message(RawMessage& message, Findings& warnings) override {
@@ -146,15 +141,12 @@ class Db3Reader final : public MessageTopics {
       message.data = plain(query_->bytes(2), unpacked_);
       return true;
     }
-    if (query_->damaged())
-      warnings.add("cut_end", kDamaged, fmt::format("behind row {}: {}", seen_, query_->why()));
+    if (query_->damaged()) warnings.add("cut_end", kDamaged, fmt::format("behind row {}: {}", seen_, query_->why()));
     ended_ = true;
     return false;
   }
 
-  std::string place(const RawMessage& message) const override {
-    return fmt::format("message {}", message.at);
-  }
+  std::string place(const RawMessage& message) const override { return fmt::format("message {}", message.at); }
 
  private:
   struct Definition {
@@ -166,18 +158,15 @@ class Db3Reader final : public MessageTopics {
   };
 
   // Messages may be packed one by one (compression_mode: message).
-  static std::span<const std::byte> plain(std::span<const std::byte> data,
-                                          std::vector<std::byte>& to) {
+  static std::span<const std::byte> plain(std::span<const std::byte> data, std::vector<std::byte>& to) {
     constexpr unsigned char kZstd[] = {0x28, 0xb5, 0x2f, 0xfd};
     if (data.size() < 4 || std::memcmp(data.data(), kZstd, 4) != 0) return data;
-    if (!why_not_packed("zstd").empty() || !unpack("zstd", data, kLargestChunk, to).empty())
-      return {};
+    if (!why_not_packed("zstd").empty() || !unpack("zstd", data, kLargestChunk, to).empty()) return {};
     return to;
   }
 
   [[noreturn]] void refuse_without_tables(const std::string& path) {
-    std::string what =
-        "a database of SQLite without the tables of rosbag2 (topics, messages), or a damaged one";
+    std::string what = "a database of SQLite without the tables of rosbag2 (topics, messages), or a damaged one";
     std::string hint = "export its table as CSV (sqlite3 -header -csv FILE 'select …')";
     const std::string head = BinaryFile(path).head(kSqliteMagic.size());
     if (head != kSqliteMagic) {
@@ -199,10 +188,8 @@ class Db3Reader final : public MessageTopics {
       std::error_code none;
       const auto bytes = std::filesystem::file_size(path + end, none);
       if (!none && bytes > 0)
-        found_early().add(
-            "open_recording",
-            "the recording was not closed: what stands in the file beside it is not read",
-            path + end);
+        found_early().add("open_recording",
+                          "the recording was not closed: what stands in the file beside it is not read", path + end);
     }
   }
 
@@ -218,19 +205,15 @@ class Db3Reader final : public MessageTopics {
     const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
     const std::uint64_t said = page * number(28, 4);
     if (bytes_ < said)
-      found_early().add("cut_end",
-                        fmt::format("the database ends at byte {} of {} (a copy that was cut): "
-                                    "messages in front of that are read",
-                                    bytes_,
-                                    said));
+      found_early().add("cut_end", fmt::format("the database ends at byte {} of {} (a copy that was cut): "
+                                               "messages in front of that are read",
+                                               bytes_, said));
   }
 
   void read_definitions() {
     if (!database_.has_table("message_definitions")) return;
-    Query query(database_,
-                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
-    while (query.step())
-      definitions_.try_emplace(query.text(0), Definition{query.text(1), query.text(2)});
+    Query query(database_, "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
+    while (query.step()) definitions_.try_emplace(query.text(0), Definition{query.text(1), query.text(2)});
   }
 
   std::map<std::int64_t, Count> counted() const {

@@ -24,8 +24,7 @@ namespace {
 // Room behind what has come out so far: twice as much each time, so that a false size asks for nothing.
 class Growing {
  public:
-  Growing(std::vector<std::byte>& to, std::size_t packed, std::uint64_t most)
-      : to_(to), most_(most) {
+  Growing(std::vector<std::byte>& to, std::size_t packed, std::uint64_t most) : to_(to), most_(most) {
     to_.clear();
     step_ = std::max<std::size_t>(std::size_t{1} << 16U, 4 * packed);
   }
@@ -55,20 +54,15 @@ constexpr const char* kCut = "ends in the middle";
 #if LIBCHAR_HAVE_LZ4
 std::string unpack_lz4(std::span<const std::byte> packed, Growing& out) {
   LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0)
-    return "no memory for lz4";
-  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
-      context, &LZ4F_freeDecompressionContext);
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) return "no memory for lz4";
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(context,
+                                                                                   &LZ4F_freeDecompressionContext);
   for (std::size_t at = 0;;) {
     const std::span<std::byte> room = out.room();
     std::size_t produced = room.size(), consumed = packed.size() - at;
     std::byte nowhere{};
-    const std::size_t left = LZ4F_decompress(context,
-                                             room.empty() ? &nowhere : room.data(),
-                                             &produced,
-                                             packed.data() + at,
-                                             &consumed,
-                                             nullptr);
+    const std::size_t left = LZ4F_decompress(context, room.empty() ? &nowhere : room.data(), &produced,
+                                             packed.data() + at, &consumed, nullptr);
     if (LZ4F_isError(left) != 0) return fmt::format("lz4: {}", LZ4F_getErrorName(left));
     out.used(produced);
     at += consumed;
@@ -80,8 +74,7 @@ std::string unpack_lz4(std::span<const std::byte> packed, Growing& out) {
 
 #if LIBCHAR_HAVE_ZSTD
 std::string unpack_zstd(std::span<const std::byte> packed, Growing& out) {
-  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
-                                                                          &ZSTD_freeDStream);
+  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(), &ZSTD_freeDStream);
   if (!stream) return "no memory for zstd";
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   for (;;) {
@@ -104,8 +97,7 @@ std::string unpack_bz2(std::span<const std::byte> packed, Growing& out) {
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return "no memory for bz2";
   const std::unique_ptr<bz_stream, int (*)(bz_stream*)> owner(&stream, &BZ2_bzDecompressEnd);
   // bzlib takes no pointer to const; it reads only.
-  stream.next_in =
-      const_cast<char*>(reinterpret_cast<const char*>(packed.data()));  // NOLINT(*const-cast)
+  stream.next_in = const_cast<char*>(reinterpret_cast<const char*>(packed.data()));  // NOLINT(*const-cast)
   stream.avail_in = static_cast<unsigned>(packed.size());
   for (;;) {
     const std::span<std::byte> room = out.room();
@@ -128,20 +120,15 @@ std::string unpack_bz2(std::span<const std::byte> packed, Growing& out) {
 std::string why_not_packed(std::string_view method) {
   if (method.empty() || method == "none") return "";
   const bool known = method == "lz4" || method == "zstd" || method == "bz2";
-  const bool built = (method == "lz4" && LIBCHAR_HAVE_LZ4) ||
-                     (method == "zstd" && LIBCHAR_HAVE_ZSTD) ||
+  const bool built = (method == "lz4" && LIBCHAR_HAVE_LZ4) || (method == "zstd" && LIBCHAR_HAVE_ZSTD) ||
                      (method == "bz2" && LIBCHAR_HAVE_BZIP2);
   if (built) return "";
-  return known
-             ? fmt::format("its chunks are packed with {0}, and this program is built without {0}",
-                           method)
-             : fmt::format("its chunks are packed with \"{}\"; none, lz4, zstd and bz2 are read",
-                           printable(method, 40));
+  return known ? fmt::format("its chunks are packed with {0}, and this program is built without {0}", method)
+               : fmt::format("its chunks are packed with \"{}\"; none, lz4, zstd and bz2 are read",
+                             printable(method, 40));
 }
 
-std::string unpack([[maybe_unused]] std::string_view method,
-                   std::span<const std::byte> packed,
-                   std::uint64_t most,
+std::string unpack([[maybe_unused]] std::string_view method, std::span<const std::byte> packed, std::uint64_t most,
                    std::vector<std::byte>& to) {
   Growing out(to, packed.size(), most);
 #if LIBCHAR_HAVE_LZ4

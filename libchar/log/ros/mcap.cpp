@@ -105,9 +105,7 @@ struct McapSummary {
   McapStatistics statistics;
 };
 
-std::int64_t stamp_of(std::uint64_t ns) {
-  return static_cast<std::int64_t>(ns);
-}
+std::int64_t stamp_of(std::uint64_t ns) { return static_cast<std::int64_t>(ns); }
 
 template <typename T>
 std::optional<T> if_good(const ByteReader& in, T value) {
@@ -122,8 +120,7 @@ std::optional<std::string> read_mcap_profile(std::span<const std::byte> content)
   return if_good(in, std::move(profile));
 }
 
-std::optional<std::pair<std::uint16_t, McapSchema>> read_mcap_schema(
-    std::span<const std::byte> content) {
+std::optional<std::pair<std::uint16_t, McapSchema>> read_mcap_schema(std::span<const std::byte> content) {
   ByteReader in(content);
   const auto id = in.number<std::uint16_t>();
   McapSchema schema;
@@ -133,8 +130,7 @@ std::optional<std::pair<std::uint16_t, McapSchema>> read_mcap_schema(
   return if_good(in, std::pair(id, std::move(schema)));
 }
 
-std::optional<std::pair<std::uint16_t, McapChannel>> read_mcap_channel(
-    std::span<const std::byte> content) {
+std::optional<std::pair<std::uint16_t, McapChannel>> read_mcap_channel(std::span<const std::byte> content) {
   ByteReader in(content);
   const auto id = in.number<std::uint16_t>();
   McapChannel channel;
@@ -232,8 +228,7 @@ void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Findin
   if (added) return;
   const McapSchema& known = at->second;
   if (known.name != read->second.name || known.text != read->second.text)
-    warnings.add("definition_changed",
-                 "a schema or channel stands twice and differs: the first is used",
+    warnings.add("definition_changed", "a schema or channel stands twice and differs: the first is used",
                  printable(known.name));
 }
 
@@ -244,15 +239,12 @@ void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Findi
   const auto [at, added] = catalog.channels.try_emplace(id, std::move(read->second));
   if (added) return catalog.order.push_back(id);
   if (at->second.topic != read->second.topic || at->second.schema != read->second.schema)
-    warnings.add("definition_changed",
-                 "a schema or channel stands twice and differs: the first is used",
+    warnings.add("definition_changed", "a schema or channel stands twice and differs: the first is used",
                  printable(at->second.topic));
 }
 
 // The summary's records; nothing when one of them is broken.
-std::optional<McapSummary> summary_records(MovingWindow& file,
-                                           std::uint64_t at,
-                                           std::uint64_t end,
+std::optional<McapSummary> summary_records(MovingWindow& file, std::uint64_t at, std::uint64_t end,
                                            Findings& warnings) {
   McapSummary summary;
   bool counted = false;
@@ -268,8 +260,7 @@ std::optional<McapSummary> summary_records(MovingWindow& file,
       if (front.op == McapOp::schema) add_schema(content, summary.catalog, warnings);
       if (front.op == McapOp::channel) add_channel(content, summary.catalog, warnings);
       if (front.op == McapOp::chunk_index)
-        if (auto index = read_mcap_chunk_index(content))
-          summary.chunks.push_back(std::move(*index));
+        if (auto index = read_mcap_chunk_index(content)) summary.chunks.push_back(std::move(*index));
       if (front.op == McapOp::statistics)
         if (auto statistics = read_mcap_statistics(content)) {
           summary.statistics = std::move(*statistics);
@@ -309,8 +300,7 @@ std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Findings& warni
       front.op != McapOp::footer || front.length != kMcapFooter)
     return std::nullopt;
   const auto footer = read_mcap_footer(bytes.subspan(kMcapFront, kMcapFooter));
-  if (!footer || footer->summary_at < kFirstRecord || footer->summary_at > footer_at)
-    return std::nullopt;
+  if (!footer || footer->summary_at < kFirstRecord || footer->summary_at > footer_at) return std::nullopt;
   std::uint32_t crc = 0;
   const std::uint64_t crc_end = footer_at + kMcapFront + kMcapFooter - sizeof crc;
   for (std::uint64_t at = footer->summary_at; footer->crc != 0 && at < crc_end;) {
@@ -318,12 +308,10 @@ std::optional<McapSummary> read_mcap_summary(MovingWindow& file, Findings& warni
     crc = crc32_of(file.view(at, count), crc);
     at += count;
   }
-  auto summary = crc == footer->crc || footer->crc == 0
-                     ? summary_records(file, footer->summary_at, footer_at, warnings)
-                     : std::nullopt;
+  auto summary = crc == footer->crc || footer->crc == 0 ? summary_records(file, footer->summary_at, footer_at, warnings)
+                                                        : std::nullopt;
   if (crc != footer->crc && footer->crc != 0)
-    warnings.add("broken_index",
-                 "the summary is not what its checksum says: the file was read whole instead",
+    warnings.add("broken_index", "the summary is not what its checksum says: the file was read whole instead",
                  fmt::format("byte {}", footer->summary_at));
   return summary;
 }
@@ -352,8 +340,7 @@ class McapScan final : public ChunkScan {
       return single_ ? Step::end : Step::other;
     }
     if (front.length > behind || static_cast<std::uint8_t>(front.op) == 0)
-      return cut(
-          warnings, front.op == McapOp::message ? "inside a message" : "inside a record", at_);
+      return cut(warnings, front.op == McapOp::message ? "inside a message" : "inside a record", at_);
     if (front.op != McapOp::data_end) note_crc(kMcapFront + front.length);
     at_ = content_at + front.length;
     const auto size = static_cast<std::size_t>(std::min(front.length, kLargestChunk + 1));
@@ -368,10 +355,7 @@ class McapScan final : public ChunkScan {
         channel = head->channel;
         if (!wanted(channel)) return Step::other;
         if (size > kLargestChunk) break;
-        message = {file_.view(content_at, size).subspan(kMcapMessageFront),
-                   head->log_ns,
-                   head->publish_ns,
-                   content_at};
+        message = {file_.view(content_at, size).subspan(kMcapMessageFront), head->log_ns, head->publish_ns, content_at};
         return Step::message;
       }
       case McapOp::data_end:
@@ -382,8 +366,7 @@ class McapScan final : public ChunkScan {
       default:
         return Step::other;
     }
-    warnings.add("broken_message",
-                 "messages that are too short or too long to be any were left out",
+    warnings.add("broken_message", "messages that are too short or too long to be any were left out",
                  fmt::format("byte {}", content_at));
     return Step::other;
   }
@@ -409,10 +392,7 @@ class McapScan final : public ChunkScan {
     return true;
   }
   void enter_chunk(std::uint64_t content_at, std::uint64_t length, Findings& warnings);
-  void unpack_chunk(const McapChunkFront& front,
-                    std::span<const std::byte> packed,
-                    bool whole,
-                    Findings& warnings) {
+  void unpack_chunk(const McapChunkFront& front, std::span<const std::byte> packed, bool whole, Findings& warnings) {
     const auto broken = [&](const std::string& why) { lose_chunk(warnings, kNotAsSaid, why); };
     chunk_ = packed;
     if (!front.compression.empty() && front.compression != "none") {
@@ -468,12 +448,11 @@ void McapScan::note_catalog(McapOp op, std::span<const std::byte> content, Findi
 
 void McapScan::enter_chunk(std::uint64_t content_at, std::uint64_t length, Findings& warnings) {
   if (!enters(content_at - kMcapFront)) return;
-  const auto head = read_mcap_chunk(
-      file_.view(content_at, static_cast<std::size_t>(std::min<std::uint64_t>(length, 256))));
+  const auto head =
+      read_mcap_chunk(file_.view(content_at, static_cast<std::size_t>(std::min<std::uint64_t>(length, 256))));
   if (!head) return;  // cut off in the front
   const std::uint64_t packed_here = std::min(head->packed, length - head->bytes);
-  note_packing(
-      head->compression, std::max(head->unpacked, head->packed), "mcap filter", "mcap decompress");
+  note_packing(head->compression, std::max(head->unpacked, head->packed), "mcap filter", "mcap decompress");
   const auto packed = file_.view(content_at + head->bytes, static_cast<std::size_t>(packed_here));
   unpack_chunk(*head, packed, packed_here == head->packed, warnings);
 }
@@ -494,17 +473,14 @@ class McapReader final : public ChunkedTopics {
   }
 
   std::vector<std::string> dialect() const override {
-    return {fmt::format("MCAP{}{}{}",
-                        profile_.empty() ? "" : ", profile " + printable(profile_, 40),
-                        packing(),
+    return {fmt::format("MCAP{}{}{}", profile_.empty() ? "" : ", profile " + printable(profile_, 40), packing(),
                         summary_ ? "" : ", no summary")};
   }
 
  private:
   void read_profile() {
     const std::uint64_t left = file().left(kFirstRecord);
-    const auto bytes =
-        file().view(kFirstRecord, static_cast<std::size_t>(std::min<std::uint64_t>(left, 4096)));
+    const auto bytes = file().view(kFirstRecord, static_cast<std::size_t>(std::min<std::uint64_t>(left, 4096)));
     if (bytes.size() > kMcapFront && bytes[0] == std::byte{1})
       profile_ = read_mcap_profile(bytes.subspan(kMcapFront)).value_or("");
   }
@@ -512,8 +488,7 @@ class McapReader final : public ChunkedTopics {
   void take_summary(McapSummary summary) {
     summary_ = true;
     catalog_ = std::move(summary.catalog);
-    for (McapChunkIndex& chunk : summary.chunks)
-      chunks().push_back({chunk.at, std::move(chunk.channels)});
+    for (McapChunkIndex& chunk : summary.chunks) chunks().push_back({chunk.at, std::move(chunk.channels)});
     for (const auto& [id, rows] : summary.statistics.messages)
       counts()[id] = {rows,
                       static_cast<std::int64_t>(summary.statistics.first_ns),

@@ -17,18 +17,14 @@
 namespace libchar {
 namespace {
 
-std::string name_of(const std::string& part) {
-  return std::filesystem::path(part).filename().string();
-}
+std::string name_of(const std::string& part) { return std::filesystem::path(part).filename().string(); }
 
 const Format& format_of_part(const std::string& part) {
   const Format* const format = format_by_suffix(part);
-  if (format != nullptr && (format->about.name == "mcap" || format->about.name == "db3"))
-    return *format;
+  if (format != nullptr && (format->about.name == "mcap" || format->about.name == "db3")) return *format;
   throw input_error("E0449", part)
       .says("is a part of a recording of rosbag2 and neither .mcap nor .db3")
-      .hint(part.ends_with(".zstd") ? "unpack it first (unzstd), and mend its name in metadata.yaml"
-                                    : "");
+      .hint(part.ends_with(".zstd") ? "unpack it first (unzstd), and mend its name in metadata.yaml" : "");
 }
 
 // What a part is, as long as it is not read.
@@ -69,22 +65,16 @@ class Rosbag2Reader final : public TopicReader {
   std::vector<std::string> dialect() const override {
     std::vector<std::string> names;
     for (const Part& part : parts_) names.push_back(name_of(part.file));
-    std::vector<std::string> lines = {fmt::format(
-        "recording of rosbag2, {}: {}", plural(parts_.size(), "part"), first_names(names))};
+    std::vector<std::string> lines = {
+        fmt::format("recording of rosbag2, {}: {}", plural(parts_.size(), "part"), first_names(names))};
     lines.insert(lines.end(), dialect_.begin(), dialect_.end());
     return lines;
   }
-  std::vector<std::size_t> usual_fields(std::size_t topic) const override {
-    return merged_[topic].usual;
-  }
+  std::vector<std::size_t> usual_fields(std::size_t topic) const override { return merged_[topic].usual; }
   std::string stamps(std::size_t topic) const override { return merged_[topic].stamps; }
-  std::uint64_t bytes_read() const override {
-    return bytes_done_ + (reader_ ? reader_->bytes_read() : 0);
-  }
+  std::uint64_t bytes_read() const override { return bytes_done_ + (reader_ ? reader_->bytes_read() : 0); }
 
-  void select(std::size_t topic,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time,
+  void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
               StampUnit unit) override {
     selected_ = true;
     topic_ = topic;
@@ -196,12 +186,9 @@ class Rosbag2Reader final : public TopicReader {
       const LogTopic& about = part.topics[*topic];
       const auto time = time_ ? place_of(about.fields, topics_[topic_].fields[*time_].name) : time_;
       if (!about.why_not.empty() || about.fields.empty() || (time_ && !time)) {
-        warnings.add(
-            "unreadable_part",
-            "messages of parts of the recording in which the topic cannot be read",
-            fmt::format(
-                "{}: {}", name_of(part.file), about.why_not.empty() ? "no stamps" : about.why_not),
-            about.rows);
+        warnings.add("unreadable_part", "messages of parts of the recording in which the topic cannot be read",
+                     fmt::format("{}: {}", name_of(part.file), about.why_not.empty() ? "no stamps" : about.why_not),
+                     about.rows);
         continue;
       }
       at_ = next_part_++;
@@ -222,8 +209,7 @@ class Rosbag2Reader final : public TopicReader {
     here_.clear();
     chosen_.clear();
     for (std::size_t c = 0; c < fields_.size(); ++c)
-      if (const auto field =
-              place_of(part.topics[topic].fields, topics_[topic_].fields[fields_[c]].name)) {
+      if (const auto field = place_of(part.topics[topic].fields, topics_[topic_].fields[fields_[c]].name)) {
         here_.push_back(c);
         chosen_.push_back(*field);
       }
@@ -241,8 +227,7 @@ class Rosbag2Reader final : public TopicReader {
   // Fields that this part does not have are missing in its rows.
   void hand_over(RowBlock& rows, RowBlock& block) const {
     for (std::vector<double>& column : block.columns) column.assign(rows.rows, kMissing);
-    for (std::size_t i = 0; i < here_.size(); ++i)
-      block.columns[here_[i]] = std::move(rows.columns[i]);
+    for (std::size_t i = 0; i < here_.size(); ++i) block.columns[here_[i]] = std::move(rows.columns[i]);
     block.time_ns = std::move(rows.time_ns);
     block.rows = rows.rows;
   }
@@ -254,8 +239,7 @@ class Rosbag2Reader final : public TopicReader {
       const std::uint64_t places = one.where.rows.size();
       for (const std::string& place : one.where.rows)
         warnings.add(one.code, one.sentence, place.empty() ? name : name + ", " + place);
-      if (one.count > places)
-        warnings.add(one.code, one.sentence, places == 0 ? name : "", one.count - places);
+      if (one.count > places) warnings.add(one.code, one.sentence, places == 0 ? name : "", one.count - places);
     }
   }
 

@@ -22,16 +22,13 @@ struct OpenFile {
   std::uint64_t size;  // of whole pages
 };
 
-OpenFile& opened(sqlite3_file* file) {
-  return *reinterpret_cast<OpenFile*>(file);
-}
+OpenFile& opened(sqlite3_file* file) { return *reinterpret_cast<OpenFile*>(file); }
 
 // Big-endian at byte 16 of the file: 1 stands for 65536.
 std::uint64_t whole_pages(const BinaryFile& file) {
   const std::string head = file.head(18);
   if (head.size() < 18) return 0;
-  const std::uint64_t said =
-      static_cast<unsigned char>(head[16]) * 256U + static_cast<unsigned char>(head[17]);
+  const std::uint64_t said = static_cast<unsigned char>(head[16]) * 256U + static_cast<unsigned char>(head[17]);
   const std::uint64_t page = said == 1 ? 65536 : said;
   return page == 0 ? 0 : file.size() / page * page;
 }
@@ -46,8 +43,8 @@ int read_file(sqlite3_file* file, void* to, int count, sqlite3_int64 at) {
   const OpenFile& open = opened(file);
   const auto wanted = static_cast<std::size_t>(count);
   const auto begin = static_cast<std::uint64_t>(at);
-  const auto there = static_cast<std::size_t>(
-      begin < open.size ? std::min<std::uint64_t>(wanted, open.size - begin) : 0);
+  const auto there =
+      static_cast<std::size_t>(begin < open.size ? std::min<std::uint64_t>(wanted, open.size - begin) : 0);
   auto* bytes = static_cast<std::byte*>(to);
   std::memset(bytes + there, 0, wanted - there);
   try {

@@ -27,9 +27,7 @@ class MemberText {
     bytes_.read(std::as_writable_bytes(std::span(to, count)));
     left_ -= count;
     if (left_ == 0 && bytes_.crc() != crc_)
-      throw input_error("E0462", where_)
-          .says("does not match its checksum")
-          .hint("copy the file again");
+      throw input_error("E0462", where_).says("does not match its checksum").hint("copy the file again");
     return count;
   }
 

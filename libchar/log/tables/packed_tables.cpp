@@ -62,13 +62,10 @@ class ZipTables final : public TableReader {
       }
     for (const std::string& name : table_names(names)) list_table(name);
   }
-  std::vector<std::string> dialect() const override {
-    return {"ZIP archive of " + plural(members_.size(), "table")};
-  }
+  std::vector<std::string> dialect() const override { return {"ZIP archive of " + plural(members_.size(), "table")}; }
   std::unique_ptr<RowSource> open_table(std::size_t topic, const ReadOptions& options) override {
     return csv::open_text(std::make_unique<MemberUnpacker>(file_, members_[topic]),
-                          file_.path() + "/" + members_[topic].name,
-                          options);
+                          file_.path() + "/" + members_[topic].name, options);
   }
 
  private:
@@ -81,9 +78,7 @@ class FolderTables final : public TableReader {
   FolderTables(const std::string& path, const ReadOptions&) : files_(files_of_log(path)) {
     for (const std::string& name : table_names(files_)) list_table(name);
   }
-  std::vector<std::string> dialect() const override {
-    return {"folder of " + plural(files_.size(), "table")};
-  }
+  std::vector<std::string> dialect() const override { return {"folder of " + plural(files_.size(), "table")}; }
   std::unique_ptr<RowSource> open_table(std::size_t topic, const ReadOptions& options) override {
     return find_format("csv")->open(files_[topic], options);
   }
@@ -94,9 +89,7 @@ class FolderTables final : public TableReader {
 
 bool holds_table(std::string_view front) {
   if (!front.starts_with(kLocalMagic) || front.size() < 30) return false;
-  const auto byte = [&](std::size_t i) {
-    return static_cast<std::size_t>(static_cast<unsigned char>(front[i]));
-  };
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(front[i])); };
   return is_table_name(std::string(front.substr(30, byte(26) + 256 * byte(27))));
 }
 
@@ -112,8 +105,7 @@ Format tables_format() {
   row.sniff = [](const std::string& path, std::string_view front) {
     return detail::is_folder_of_tables(path) || holds_table(front);
   };
-  row.topics = [](const std::string& path,
-                  const ReadOptions& options) -> std::unique_ptr<TopicReader> {
+  row.topics = [](const std::string& path, const ReadOptions& options) -> std::unique_ptr<TopicReader> {
     if (detail::is_folder_of_tables(path)) return std::make_unique<FolderTables>(path, options);
     return std::make_unique<ZipTables>(path, options);
   };

@@ -13,13 +13,10 @@ namespace {
 /// Rows of the table, in a log that is more than it.
 class TableRows final : public RowSource {
  public:
-  TableRows(std::unique_ptr<TableReader> reader,
-            const std::string& path,
-            std::string_view format,
+  TableRows(std::unique_ptr<TableReader> reader, const std::string& path, std::string_view format,
             const ReadOptions& options)
       : reader_(std::move(reader)), path_(path) {
-    for (const std::string& file : files_of_log(path))
-      files_.push_back(std::make_unique<BinaryFile>(file));
+    for (const std::string& file : files_of_log(path)) files_.push_back(std::make_unique<BinaryFile>(file));
     std::vector<const BinaryFile*> all;
     for (const auto& file : files_) all.push_back(file.get());
     hash_ = std::make_unique<FileHash>(std::move(all), options.hash);
@@ -51,8 +48,7 @@ class TableRows final : public RowSource {
     ReadOptions named = options;
     std::string guess;
     const std::vector<LogTopic>& topics = reader_->topics();
-    if (const auto usual = reader_->usual_table();
-        usual && named.topic.empty() && named.channels.empty()) {
+    if (const auto usual = reader_->usual_table(); usual && named.topic.empty() && named.channels.empty()) {
       named.topic = topics[usual->first].name;
       guess = usual->second;
     }
@@ -102,10 +98,8 @@ void TableReader::list_table(const std::string& name) {
   }
 }
 
-std::unique_ptr<RowSource> open_table_rows(std::unique_ptr<TableReader> reader,
-                                           const std::string& path,
-                                           std::string_view format,
-                                           const ReadOptions& options) {
+std::unique_ptr<RowSource> open_table_rows(std::unique_ptr<TableReader> reader, const std::string& path,
+                                           std::string_view format, const ReadOptions& options) {
   return std::make_unique<TableRows>(std::move(reader), path, format, options);
 }
 

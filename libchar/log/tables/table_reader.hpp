@@ -15,8 +15,7 @@ namespace libchar {
 
 namespace csv {
 /// Rows of a table whose text comes from elsewhere; `name` is that of messages.
-std::unique_ptr<RowSource> open_text(std::unique_ptr<Unpacker> text,
-                                     const std::string& name,
+std::unique_ptr<RowSource> open_text(std::unique_ptr<Unpacker> text, const std::string& name,
                                      const ReadOptions& options);
 }  // namespace csv
 
@@ -29,13 +28,8 @@ class TableReader : public TopicReader {
 
   const std::vector<LogTopic>& topics() const final { return topics_; }
   std::string stamps(std::size_t) const final { return ""; }
-  void select(std::size_t,
-              const std::vector<std::size_t>&,
-              std::optional<std::size_t>,
-              StampUnit) final {}
-  bool next(RowBlock&, std::size_t, Findings&) final {
-    throw std::logic_error("tables are read by open_table");
-  }
+  void select(std::size_t, const std::vector<std::size_t>&, std::optional<std::size_t>, StampUnit) final {}
+  bool next(RowBlock&, std::size_t, Findings&) final { throw std::logic_error("tables are read by open_table"); }
   std::uint64_t bytes_read() const final { return 0; }
 
  protected:
@@ -47,9 +41,7 @@ class TableReader : public TopicReader {
 };
 
 /// The table and channels that `options` choose.
-std::unique_ptr<RowSource> open_table_rows(std::unique_ptr<TableReader> reader,
-                                           const std::string& path,
-                                           std::string_view format,
-                                           const ReadOptions& options);
+std::unique_ptr<RowSource> open_table_rows(std::unique_ptr<TableReader> reader, const std::string& path,
+                                           std::string_view format, const ReadOptions& options);
 
 }  // namespace libchar

@@ -75,28 +75,20 @@ std::string date_text(double serial, Style style, double first_day) {
   using namespace std::chrono;
   constexpr double kMostDays = 2958466;  // the year 10000
   if (!(serial >= 0 && serial < kMostDays)) return "";
-  const auto us = static_cast<std::int64_t>(
-      std::llround((serial + (style == Style::date ? first_day : 0)) * 86400e6));
+  const auto us = static_cast<std::int64_t>(std::llround((serial + (style == Style::date ? first_day : 0)) * 86400e6));
   const auto day = us / 86400000000, in_day = us % 86400000000;
-  const std::string clock = fmt::format("{:02}:{:02}:{:02}.{:06}",
-                                        in_day / 3600000000,
-                                        in_day / 60000000 % 60,
-                                        in_day / 1000000 % 60,
-                                        in_day % 1000000);
+  const std::string clock = fmt::format("{:02}:{:02}:{:02}.{:06}", in_day / 3600000000, in_day / 60000000 % 60,
+                                        in_day / 1000000 % 60, in_day % 1000000);
   if (style == Style::clock && day == 0) return clock;
   const year_month_day date{sys_days{year{1899} / 12 / 30} + days{day}};
-  return fmt::format("{:04}-{:02}-{:02} {}",
-                     static_cast<int>(date.year()),
-                     static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()),
-                     clock);
+  return fmt::format("{:04}-{:02}-{:02} {}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()), clock);
 }
 
 /// "AB12": 27.
 std::size_t column_of_cell(std::string_view place, std::size_t otherwise) {
   std::size_t column = 0, letters = 0;
-  for (; letters < place.size() && place[letters] >= 'A' && place[letters] <= 'Z' && letters < 3;
-       ++letters)
+  for (; letters < place.size() && place[letters] >= 'A' && place[letters] <= 'Z' && letters < 3; ++letters)
     column = 26 * column + static_cast<std::size_t>(place[letters] - 'A') + 1;
   return letters == 0 ? otherwise : column - 1;
 }
@@ -148,8 +140,7 @@ class SheetText final : public csv::MadeText {
     }
     if (value.empty() || type == "e") return;
     if (cells_.size() <= column) cells_.resize(column + 1);
-    cells_[column] =
-        shown(value, type, style < book_.styles.size() ? book_.styles[style] : Style::number);
+    cells_[column] = shown(value, type, style < book_.styles.size() ? book_.styles[style] : Style::number);
   }
 
   std::string shown(const std::string& value, const std::string& type, Style style) {
@@ -194,8 +185,7 @@ class SheetText final : public csv::MadeText {
 class Workbook final : public TableReader {
  public:
   Workbook(const std::string& path, const ReadOptions&) : file_(path) {
-    for (ZipMember& member : read_zip_directory(file_))
-      members_.emplace(member.name, std::move(member));
+    for (ZipMember& member : read_zip_directory(file_)) members_.emplace(member.name, std::move(member));
     if (!members_.contains("xl/workbook.xml"))
       throw input_error("E0339", path)
           .says("holds no workbook (xl/workbook.xml)")
@@ -204,16 +194,12 @@ class Workbook final : public TableReader {
     read_shared();
     read_sheets();
   }
-  std::vector<std::string> dialect() const override {
-    return {"workbook of " + plural(sheets_.size(), "sheet")};
-  }
+  std::vector<std::string> dialect() const override { return {"workbook of " + plural(sheets_.size(), "sheet")}; }
   std::optional<std::pair<std::size_t, std::string>> usual_table() const override {
     for (std::size_t t = 0; sheets_.size() > 1 && t < sheets_.size(); ++t)
       if (topics()[t].why_not.empty())
-        return std::pair(t,
-                         fmt::format("sheet: {}, the first of {} (`topic` takes another one)",
-                                     printable(topics()[t].name),
-                                     sheets_.size()));
+        return std::pair(t, fmt::format("sheet: {}, the first of {} (`topic` takes another one)",
+                                        printable(topics()[t].name), sheets_.size()));
     return {};
   }
   std::unique_ptr<RowSource> open_table(std::size_t topic, const ReadOptions& options) override {
@@ -221,8 +207,7 @@ class Workbook final : public TableReader {
     if (sheet == members_.end())
       throw input_error("E0339", file_.path()).says("does not hold the sheet").got(sheets_[topic]);
     return csv::open_text(std::make_unique<SheetText>(file_, sheet->second, book_),
-                          fmt::format("{}, sheet {}", file_.path(), topic + 1),
-                          options);
+                          fmt::format("{}, sheet {}", file_.path(), topic + 1), options);
   }
 
  private:
@@ -232,8 +217,7 @@ class Workbook final : public TableReader {
     const auto found = members_.find(part);
     if (found == members_.end()) return;
     MemberText member(file_, found->second);
-    XmlEvents xml([&](char* to, std::size_t n) { return member.read(to, n); },
-                  file_.path() + ", " + part);
+    XmlEvents xml([&](char* to, std::size_t n) { return member.read(to, n); }, file_.path() + ", " + part);
     while (xml.next_open()) tag(xml);
   }
 
@@ -256,8 +240,7 @@ class Workbook final : public TableReader {
     const auto found = members_.find("xl/sharedStrings.xml");
     if (found == members_.end()) return;
     MemberText member(file_, found->second);
-    XmlEvents xml([&](char* to, std::size_t n) { return member.read(to, n); },
-                  file_.path() + ", xl/sharedStrings.xml");
+    XmlEvents xml([&](char* to, std::size_t n) { return member.read(to, n); }, file_.path() + ", xl/sharedStrings.xml");
     using Kind = XmlEvents::Kind;
     std::size_t bytes = 0;
     bool counts = false, phonetic = false;
@@ -314,8 +297,7 @@ Format xlsx_format() {
   row.about.topics = row.about.text = true;
   row.certain = [](std::string_view front) {
     const std::string_view name = front.substr(std::min<std::size_t>(front.size(), 30));
-    return front.starts_with(kLocalMagic) &&
-           (name.starts_with("[Content_Types].xml") || name.starts_with("xl/"));
+    return front.starts_with(kLocalMagic) && (name.starts_with("[Content_Types].xml") || name.starts_with("xl/"));
   };
   row.topics = open_topics<Workbook>;
   return row;

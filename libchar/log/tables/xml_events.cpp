@@ -96,8 +96,7 @@ void XmlEvents::read_tag(std::string_view tag) {
   attributes_.clear();
   while ((at = tag.find_first_not_of(kBlanks, at)) != std::string_view::npos) {
     const std::size_t sign = tag.find('=', at);
-    const std::size_t first =
-        sign == std::string_view::npos ? sign : tag.find_first_not_of(kBlanks, sign + 1);
+    const std::size_t first = sign == std::string_view::npos ? sign : tag.find_first_not_of(kBlanks, sign + 1);
     if (first == std::string_view::npos || (tag[first] != '"' && tag[first] != '\''))
       refuse("an attribute without a value");
     const std::size_t last = tag.find(tag[first], first + 1);

@@ -17,9 +17,7 @@ namespace {
 constexpr std::int64_t kSecondNs = 1000000000, kMinuteNs = 60 * kSecondNs, kHourNs = 60 * kMinuteNs,
                        kDayNs = 24 * kHourNs;
 
-bool decimal_digit(char c) {
-  return c >= '0' && c <= '9';
-}
+bool decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 // A place in a text, moved on by what is taken.
 struct DateScanner {
@@ -61,18 +59,9 @@ struct DateScanner {
 
 // 1…12 for a month as a word, in English; 0 for none.
 int month_word(DateScanner& at) {
-  static constexpr std::array<std::string_view, 12> kMonths = {"january",
-                                                               "february",
-                                                               "march",
-                                                               "april",
-                                                               "may",
-                                                               "june",
-                                                               "july",
-                                                               "august",
-                                                               "september",
-                                                               "october",
-                                                               "november",
-                                                               "december"};
+  static constexpr std::array<std::string_view, 12> kMonths = {"january",   "february", "march",    "april",
+                                                               "may",       "june",     "july",     "august",
+                                                               "september", "october",  "november", "december"};
   if (!std::isalpha(static_cast<unsigned char>(at.peek()))) return 0;
   for (std::size_t m = 0; m < kMonths.size(); ++m)
     if (at.word(kMonths[m]) || at.word(kMonths[m].substr(0, 3))) return static_cast<int>(m + 1);
@@ -80,8 +69,7 @@ int month_word(DateScanner& at) {
 }
 
 std::optional<std::int64_t> days_of(int year, int month, int day) {
-  const std::chrono::year_month_day date(std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
+  const std::chrono::year_month_day date(std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day)));
   if (year < 1700 || year > 2200 || !date.ok()) return std::nullopt;
   return std::chrono::sys_days(date).time_since_epoch().count();
@@ -105,8 +93,7 @@ bool worded_date(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   int month = month_word(s), day = 0;
   const auto gap = [&] {
-    while (s.peek() == ' ' || s.peek() == '-' || s.peek() == ',' || s.peek() == '/')
-      s.rest.remove_prefix(1);
+    while (s.peek() == ' ' || s.peek() == '-' || s.peek() == ',' || s.peek() == '/') s.rest.remove_prefix(1);
   };
   if (month > 0) {
     gap();
@@ -131,9 +118,7 @@ bool worded_date(DateScanner& at, CalendarStamp& out) {
 
 // "20240501T…": without a clock it would be any number.
 bool compact_date(DateScanner& at, CalendarStamp& out) {
-  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_') ||
-      !decimal_digit(at.peek(9)))
-    return false;
+  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_') || !decimal_digit(at.peek(9))) return false;
   const int year = at.fixed(4), month = at.fixed(2);
   return take_days(out, year, month, at.fixed(2));
 }
@@ -159,9 +144,7 @@ bool numbered_date(DateScanner& at, DateOrder order, CalendarStamp& out) {
     out.first = *first;
     out.second = *second;
     const bool day = order == DateOrder::day_first;
-    if (!take_days(
-            out, full_year(*third, third_digits), day ? *second : *first, day ? *first : *second))
-      return false;
+    if (!take_days(out, full_year(*third, third_digits), day ? *second : *first, day ? *first : *second)) return false;
   }
   at = s;
   return true;
@@ -217,8 +200,7 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
     out.half_days = true;
     s = half;
   }
-  if (hours > 24 || *minute > 59 || second > 60 || (hours == 24 && (*minute > 0 || second > 0)))
-    return false;
+  if (hours > 24 || *minute > 59 || second > 60 || (hours == 24 && (*minute > 0 || second > 0))) return false;
   out.ns += hours * kHourNs + *minute * kMinuteNs + second * kSecondNs + part;
   out.clock = true;
   at = s;

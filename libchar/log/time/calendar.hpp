@@ -14,8 +14,7 @@ namespace libchar {
 enum class DateOrder : std::uint8_t { day_first, month_first };
 
 struct CalendarStamp {
-  std::int64_t ns =
-      0;  ///< since 1970, or since midnight where there is no date; in UTC where a zone is written
+  std::int64_t ns = 0;  ///< since 1970, or since midnight where there is no date; in UTC where a zone is written
   bool date = false, clock = false, zone = false;
   bool order_said = true;     ///< the year stands first, or the month is a word
   bool half_days = false;     ///< AM or PM is written

@@ -26,17 +26,15 @@ struct ClockRange {
 std::vector<ClockRange> ranges_of(const TimeBase& clock) {
   std::vector<ClockRange> out;
   for (const int bits : {16, 32}) {
-    if (clock.unit_ns < kNsInSecond)
-      out.push_back({std::ldexp(static_cast<double>(clock.unit_ns), bits), bits});
+    if (clock.unit_ns < kNsInSecond) out.push_back({std::ldexp(static_cast<double>(clock.unit_ns), bits), bits});
     for (const double unit : {1e3, 1e6})
       if (unit != static_cast<double>(clock.unit_ns))
         out.push_back({std::ldexp(unit, bits), bits, "", bits == 16 ? 2.5 : 20});
   }
-  for (const ClockRange& part : {ClockRange{60e9, 0, "seconds of a minute", 2.5},
-                                 ClockRange{3600e9, 0, "seconds of an hour", 2.5},
-                                 ClockRange{43200e9, 0, "hours of half a day", 2.5},
-                                 ClockRange{86400e9, 0, "seconds of a day", 20},
-                                 ClockRange{604800e9, 0, "seconds of a week", 20}})
+  for (const ClockRange& part :
+       {ClockRange{60e9, 0, "seconds of a minute", 2.5}, ClockRange{3600e9, 0, "seconds of an hour", 2.5},
+        ClockRange{43200e9, 0, "hours of half a day", 2.5}, ClockRange{86400e9, 0, "seconds of a day", 20},
+        ClockRange{604800e9, 0, "seconds of a week", 20}})
     out.push_back(part);
   return out;
 }
@@ -50,9 +48,7 @@ bool holds(const ClockRange& range, std::int64_t before_ns, std::int64_t stamp_n
 
 }  // namespace
 
-std::optional<ClockWrap> find_wrap(std::int64_t before_ns,
-                                   std::int64_t stamp_ns,
-                                   const TimeBase& clock,
+std::optional<ClockWrap> find_wrap(std::int64_t before_ns, std::int64_t stamp_ns, const TimeBase& clock,
                                    double interval_ns) {
   const double back = step_between(before_ns, stamp_ns);
   if (clock.local) {
@@ -66,9 +62,7 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns,
   for (const ClockRange& range : ranges_of(clock)) {
     if (range.ns > 4e18 || !holds(range, before_ns, stamp_ns)) continue;
     const double step = back + range.ns;
-    if (!(step > 0 && step < 0.5 * range.ns && step < range.most_steps * interval_ns) ||
-        step >= shortest)
-      continue;
+    if (!(step > 0 && step < 0.5 * range.ns && step < range.most_steps * interval_ns) || step >= shortest) continue;
     shortest = step;
     found = ClockWrap{std::llround(range.ns),
                       range.bits > 0 ? fmt::format("the {}-bit clock ran over", range.bits)
@@ -78,16 +72,12 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns,
   return found;
 }
 
-std::int64_t skipped_hour(std::int64_t before_ns,
-                          std::int64_t stamp_ns,
-                          const TimeBase& clock,
-                          double interval_ns) {
+std::int64_t skipped_hour(std::int64_t before_ns, std::int64_t stamp_ns, const TimeBase& clock, double interval_ns) {
   if (!clock.local || interval_ns > 0.5 * static_cast<double>(kHour)) return 0;
   const double step = static_cast<double>(stamp_ns - before_ns - kHour);
   const std::int64_t day = stamp_ns / kDay, of_day = stamp_ns % kDay;
   const bool sunday = day > 0 && (day + 4) % 7 == 0;  // 1970-01-01 was a Thursday
-  const bool at_night = of_day >= kHour && of_day < 4 * kHour &&
-                        static_cast<double>(of_day % kHour) < 2 * interval_ns;
+  const bool at_night = of_day >= kHour && of_day < 4 * kHour && static_cast<double>(of_day % kHour) < 2 * interval_ns;
   return sunday && at_night && std::fabs(step - interval_ns) < 0.5 * interval_ns ? kHour : 0;
 }
 
@@ -95,8 +85,7 @@ std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clo
   constexpr std::size_t kMost = 64, kTimes = 4;
   constexpr double kFar = 1e8;  // steps ahead: no pause is as long
   std::size_t wild = 0;
-  for (std::size_t i = 1; i <= kMost && i + std::max<std::size_t>(kTimes * i, 4) <= stamps.size();
-       ++i) {
+  for (std::size_t i = 1; i <= kMost && i + std::max<std::size_t>(kTimes * i, 4) <= stamps.size(); ++i) {
     std::vector<double> steps;
     bool rise = true;
     for (std::size_t k = i + 1; k < i + kTimes * i && rise; ++k) {
@@ -106,9 +95,7 @@ std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clo
     if (!rise) continue;
     const double usual = median_in_place(steps, Middle::lower);
     const double step = step_between(stamps[i - 1], stamps[i]);
-    if (step > kFar * usual ||
-        (step < -10 * usual && !find_wrap(stamps[i - 1], stamps[i], clock, usual)))
-      wild = i;
+    if (step > kFar * usual || (step < -10 * usual && !find_wrap(stamps[i - 1], stamps[i], clock, usual))) wild = i;
   }
   return wild;
 }

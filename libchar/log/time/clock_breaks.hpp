@@ -22,16 +22,11 @@ struct ClockWrap {
 /// Why a clock steps back between two stamps as the file has them: a counter of 16 or 32 bits, signed
 /// or not, in the stamps' own unit, us or ms; the seconds of a minute, an hour, a day, a week; an hour
 /// of local time that stands twice. Nothing when the step has another cause.
-std::optional<ClockWrap> find_wrap(std::int64_t before_ns,
-                                   std::int64_t stamp_ns,
-                                   const TimeBase& clock,
+std::optional<ClockWrap> find_wrap(std::int64_t before_ns, std::int64_t stamp_ns, const TimeBase& clock,
                                    double interval_ns);
 
 /// What local time skips at the beginning of summer time, where that is all that two rows lie apart.
-std::int64_t skipped_hour(std::int64_t before_ns,
-                          std::int64_t stamp_ns,
-                          const TimeBase& clock,
-                          double interval_ns);
+std::int64_t skipped_hour(std::int64_t before_ns, std::int64_t stamp_ns, const TimeBase& clock, double interval_ns);
 
 /// How many of the first rows are none: of an earlier run, or of a clock that was not set yet. The next
 /// ones rise, far away from them.

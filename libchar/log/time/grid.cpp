@@ -19,15 +19,11 @@ namespace {
 constexpr std::size_t kTogether = 256;  // rows whose stamps are looked at together
 
 /// All n stamps are `shortest` (>= 1) to `longest` after the one before.
-LIBCHAR_LANES bool steps_between_lanes(std::int64_t before,
-                                       const std::int64_t* stamps,
-                                       std::size_t n,
-                                       std::int64_t shortest,
-                                       std::int64_t longest) {
+LIBCHAR_LANES bool steps_between_lanes(std::int64_t before, const std::int64_t* stamps, std::size_t n,
+                                       std::int64_t shortest, std::int64_t longest) {
   // Differences wrap: a rising pair whose difference does not fit becomes negative.
   const auto step = [](std::int64_t from, std::int64_t to) {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(to) -
-                                     static_cast<std::uint64_t>(from));
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from));
   };
   const auto fits = [&](std::int64_t from, std::int64_t to) -> int {
     return int{to > from} & int{step(from, to) >= shortest} & int{step(from, to) <= longest};
@@ -41,23 +37,18 @@ constexpr InLanes<steps_between_lanes> steps_between;
 
 }  // namespace
 
-TimeGrid::TimeGrid(const RowSource& source,
-                   const ReadOptions& options,
-                   BlockSink& sink,
-                   Findings& warnings)
+TimeGrid::TimeGrid(const RowSource& source, const ReadOptions& options, BlockSink& sink, Findings& warnings)
     : source_(source), options_(options), output_(sink), warnings_(warnings) {
-  const auto instant =
-      [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {
-        if (!s) return otherwise;
-        if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
-          throw usage_error("E0201", name).says("is not a time in seconds").got(shortest(*s));
-        return static_cast<std::int64_t>(std::llround(*s * 1e9));
-      };
+  const auto instant = [](const std::optional<double>& s, std::int64_t otherwise, const char* name) {
+    if (!s) return otherwise;
+    if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
+      throw usage_error("E0201", name).says("is not a time in seconds").got(shortest(*s));
+    return static_cast<std::int64_t>(std::llround(*s * 1e9));
+  };
   window_.from_ns = instant(options.from_s, 0, "`from_s`");
   window_.to_ns = instant(options.to_s, INT64_MAX, "`to_s`");
   if (window_.to_ns <= window_.from_ns)
-    throw usage_error("E0201", "`to_s`")
-        .says("the window is empty: `to_s` does not lie after `from_s`");
+    throw usage_error("E0201", "`to_s`").says("the window is empty: `to_s` does not lie after `from_s`");
 }
 
 bool TimeGrid::push(RowBlock& block) {
@@ -104,13 +95,12 @@ void TimeGrid::process(bool end) {
     waiting_ = 0;
     return;
   }
-  const std::size_t ahead =
-      end ? 0 : std::max(kRowsAhead, std::min<std::size_t>(2 * step_.model.packet + 2, 256));
+  const std::size_t ahead = end ? 0 : std::max(kRowsAhead, std::min<std::size_t>(2 * step_.model.packet + 2, 256));
   while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
     if (!learned_) learn();
     Pending& front = pending_.front();
-    const std::size_t count = std::min(detail::in_memory(front.block.rows - front.done),
-                                       detail::in_memory(waiting_ - ahead));
+    const std::size_t count =
+        std::min(detail::in_memory(front.block.rows - front.done), detail::in_memory(waiting_ - ahead));
     const std::size_t taken = process_rows(front, count);
     clocks_.channels.look(front.block, front.done, front.done + taken);
     front.done += taken;
@@ -149,8 +139,7 @@ bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
   if (!steps_between(last_.stamp, time, n, step_.shortest, step_.longest)) return false;
   // They rise: the last is the furthest.
   if (time[n - 1] >= kMostNs || time[n - 1] - last_.first > kMostNs) return false;
-  if (time[0] - last_.first < window_.from_ns || time[n - 1] - last_.first >= window_.to_ns)
-    return false;
+  if (time[0] - last_.first < window_.from_ns || time[n - 1] - last_.first >= window_.to_ns) return false;
   if (!window_.begun) return false;
   if (backward_.in_a_row > 0) backward_ = {};
   sketch_.add_run(last_.index + 1, time, n);
@@ -165,8 +154,8 @@ bool TimeGrid::take_regular(const std::int64_t* time, std::size_t n) {
 
 /// Rows [from, to), of which those from `run` on are not passed on yet. Says where it ended: in front
 /// of the window's first row, whose interval is to be learnt, or of the first one behind the window.
-std::size_t TimeGrid::take_one_by_one(
-    Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run) {
+std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::size_t to, std::size_t ahead,
+                                      std::size_t& run) {
   const std::int64_t* const time = front.block.time_ns.data();
   for (std::size_t i = from; i < to; ++i) {
     std::int64_t stamp = 0;
@@ -178,8 +167,7 @@ std::size_t TimeGrid::take_one_by_one(
     }
     const std::int64_t step = last_.any ? stamp - last_.stamp : 0;
     if (last_.any && !step_.coarse && step > 0 && (step < step_.shortest || step > step_.longest) &&
-        watch_.add(static_cast<std::uint64_t>(last_.row) + 1,
-                   static_cast<double>(step) / step_.ns,
+        watch_.add(static_cast<std::uint64_t>(last_.row) + 1, static_cast<double>(step) / step_.ns,
                    last_.stamp - last_.first))
       watch_.keep_place(i > 0 ? place(front, i - 1) : last_.end_of_block);
     if (step <= 0 || step > step_.longest) {
@@ -232,15 +220,11 @@ void TimeGrid::without_stamps(Pending& front) {
       throw usage_error("E0205", source_.info().file)
           .says("`from_s` and `to_s` need a time base, and the log has neither stamps nor a rate")
           .hint("`rate_hz` HZ gives it");
-    const auto grid = [&](std::int64_t ns) {
-      return std::ceil(static_cast<double>(ns) * 1e-9 * rate - 1e-6);
-    };
-    const double base = static_cast<double>(front.rows_before),
-                 rows = static_cast<double>(front.block.rows);
+    const auto grid = [&](std::int64_t ns) { return std::ceil(static_cast<double>(ns) * 1e-9 * rate - 1e-6); };
+    const double base = static_cast<double>(front.rows_before), rows = static_cast<double>(front.block.rows);
     from = static_cast<std::size_t>(std::clamp(grid(window_.from_ns) - base, 0.0, rows));
-    to = window_.to_ns == INT64_MAX
-             ? front.block.rows
-             : static_cast<std::size_t>(std::clamp(grid(window_.to_ns) - base, 0.0, rows));
+    to = window_.to_ns == INT64_MAX ? front.block.rows
+                                    : static_cast<std::size_t>(std::clamp(grid(window_.to_ns) - base, 0.0, rows));
     window_.over = to < front.block.rows;
   }
   const std::size_t inside = to > from ? to - from : 0;
@@ -254,15 +238,12 @@ double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
-  if (!(spanned > 0) ||
-      off * rows <= std::max(0.01 * spanned * rows, 2.0 * static_cast<double>(step_.longest)))
+  if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, 2.0 * static_cast<double>(step_.longest)))
     return usual;
-  warnings_.add("uneven_sampling",
-                fmt::format("long stretches of the log keep {} Hz, rows over time are {} "
-                            "Hz, which is used: the sampling is uneven, and times on the axes are "
-                            "off by that",
-                            brief_text(1e9 / usual, 5),
-                            brief_text(1e9 / spanned, 5)));
+  warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} "
+                                               "Hz, which is used: the sampling is uneven, and times on the axes are "
+                                               "off by that",
+                                               brief_text(1e9 / usual, 5), brief_text(1e9 / spanned, 5)));
   return spanned;
 }
 
@@ -292,16 +273,13 @@ void TimeGrid::judge_rate_change() {
         .says(
             "the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds "
             "both",
-            at,
-            brief_text(before, 5),
-            brief_text(after, 5))
+            at, brief_text(before, 5), brief_text(after, 5))
         .hint("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at);
   }
   if (odd.rows > 0)
     warnings_.add("rate_change",
                   fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
-                              brief_text(before, 6),
-                              brief_text(after, 6)),
+                              brief_text(before, 6), brief_text(after, 6)),
                   odd.place);
 }
 
@@ -335,16 +313,13 @@ void TimeGrid::finish(LogInfo& info) {
   time.jitter_s = deviation.robust * 1e-9;
   time.max_deviation_s = deviation.largest * 1e-9;
   if (interval > 0 && deviation.robust > 0.1 * interval)
-    warnings_.add("jitter",
-                  fmt::format("stamps scatter by {} of the sampling interval: the samples "
-                              "are treated as evenly spaced",
-                              percent_text(deviation.robust / interval)));
+    warnings_.add("jitter", fmt::format("stamps scatter by {} of the sampling interval: the samples "
+                                        "are treated as evenly spaced",
+                                        percent_text(deviation.robust / interval)));
   if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
-    warnings_.add("rate_ignored",
-                  fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not "
-                              "used (`time_column` none ignores the stamps)",
-                              brief_text(1e9 / interval, 6),
-                              brief_text(*options_.rate_hz, 6)));
+    warnings_.add("rate_ignored", fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not "
+                                              "used (`time_column` none ignores the stamps)",
+                                              brief_text(1e9 / interval, 6), brief_text(*options_.rate_hz, 6)));
 }
 
 }  // namespace libchar

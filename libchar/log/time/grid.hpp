@@ -89,18 +89,13 @@ class GridOutput {
   std::uint64_t delivered_ = 0;
 };
 
-inline constexpr std::int64_t kMostNs = std::int64_t{1}
-                                        << 62U;  ///< of a stamp, and between two of a log
-inline constexpr std::size_t kRowsAhead =
-    16;  ///< rows looked at before a late stamp is called a gap
+inline constexpr std::int64_t kMostNs = std::int64_t{1} << 62U;  ///< of a stamp, and between two of a log
+inline constexpr std::size_t kRowsAhead = 16;                    ///< rows looked at before a late stamp is called a gap
 
 /// Places rows on the grid and passes them to the sink in order.
 class TimeGrid {
  public:
-  TimeGrid(const RowSource& source,
-           const ReadOptions& options,
-           BlockSink& sink,
-           Findings& warnings);
+  TimeGrid(const RowSource& source, const ReadOptions& options, BlockSink& sink, Findings& warnings);
 
   /// Takes the block's rows (its buffers come back for reuse). Returns false when the window's end
   /// has been reached.
@@ -130,8 +125,7 @@ class TimeGrid {
   void process(bool end);
   std::size_t process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
-  std::size_t take_one_by_one(
-      Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
+  std::size_t take_one_by_one(Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   bool place_in_window(std::int64_t stamp);
   void without_stamps(Pending& front);
   /// The stamp, when it and its distance from the first leave room for every sum and difference in
@@ -139,36 +133,20 @@ class TimeGrid {
   std::int64_t checked(const Pending& front, std::size_t row, std::int64_t stamp) const;
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);
-  Verdict place_late_row(const Pending& front,
-                         std::size_t row,
-                         std::int64_t step,
-                         std::int64_t& stamp);
-  Verdict pass_gap(
-      const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left);
+  Verdict place_late_row(const Pending& front, std::size_t row, std::int64_t step, std::int64_t& stamp);
+  Verdict pass_gap(const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left);
   Verdict drop_wild(const Pending& front, std::size_t row);
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
   [[noreturn]] void refuse_backward() const;
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
-  std::int64_t lag(const Pending& front,
-                   std::size_t row,
-                   std::int64_t stamp,
-                   std::size_t ahead) const;
-  std::vector<double> lags_ahead(const Pending& front,
-                                 std::size_t row,
-                                 std::int64_t stamp,
-                                 std::size_t ahead) const;
-  std::int64_t packet_lag(const Pending& front,
-                          std::size_t row,
-                          std::int64_t stamp,
-                          std::size_t ahead) const;
+  std::int64_t lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
+  std::vector<double> lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
+  std::int64_t packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
   bool rows_go_on(const Pending& front, std::size_t row, std::size_t ahead) const;
   /// A gap of so many steps, of which so many samples lie in the window.
   void leave_missing(std::uint64_t samples, std::int64_t steps);
   std::string place(const Pending& front, std::size_t row) const;
-  [[noreturn]] void fail(const Pending& front,
-                         std::size_t row,
-                         std::string code,
-                         std::string what,
+  [[noreturn]] void fail(const Pending& front, std::size_t row, std::string code, std::string what,
                          std::string hint = "") const;
 
   struct Step {
@@ -177,8 +155,7 @@ class TimeGrid {
         : model(found),
           ns(found.ns),
           longest(static_cast<std::int64_t>(std::min(found.longest_step, 9e18))),
-          shortest(std::max<std::int64_t>(
-              1, static_cast<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
+          shortest(std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
           coarse(found.pattern != StampPattern::steps) {}
     StampModel model;
     double ns = 0;

@@ -27,8 +27,7 @@ void TimeGrid::leave_out_blank(Pending& item) {
     warnings_.add("own_rows",
                   "rows without a value of the channels that are read are left out: these have a "
                   "clock of their own",
-                  "",
-                  blank);
+                  "", blank);
 }
 
 /// Enough rows are there to learn from.
@@ -50,11 +49,8 @@ std::vector<std::int64_t> TimeGrid::first_stamps() {
   for (const Pending& item : pending_)
     for (std::size_t i = item.done; i < item.block.rows && stamps.size() < kLearn; ++i) {
       const std::int64_t stamp = checked(item, i, item.block.time_ns[i]);
-      const std::int64_t first = last_.any        ? last_.first - last_.wrap
-                                 : stamps.empty() ? stamp
-                                                  : stamps.front();
-      if (stamps.size() > 1 && window_.to_ns != INT64_MAX && stamp - first >= window_.to_ns)
-        return stamps;
+      const std::int64_t first = last_.any ? last_.first - last_.wrap : stamps.empty() ? stamp : stamps.front();
+      if (stamps.size() > 1 && window_.to_ns != INT64_MAX && stamp - first >= window_.to_ns) return stamps;
       stamps.push_back(stamp);
     }
   return stamps;
@@ -78,12 +74,8 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
     item = &pending_[1];
     row = 0;
   }
-  const bool equal =
-      std::all_of(stamps.begin(), stamps.end(), [&](std::int64_t s) { return s == stamps[0]; });
-  fail(*item,
-       row,
-       "E0315",
-       equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
+  const bool equal = std::all_of(stamps.begin(), stamps.end(), [&](std::int64_t s) { return s == stamps[0]; });
+  fail(*item, row, "E0315", equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
        "`time_column` none and `rate_hz` HZ ignore the stamps");
 }
 
@@ -96,14 +88,11 @@ void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
   if (from <= window_.from_ns) return;
   window_.from_ns = from;
   const double seconds = std::round(static_cast<double>(from) * 1e-6) / 1e3;
-  warnings_.add(
-      "rate_change",
-      fmt::format("the sampling rate changes from {} to {} Hz: the first {} s are left out "
-                  "(`to_s` {} reads these)",
-                  brief_text(1e9 / change->before_ns, 5),
-                  brief_text(1e9 / change->after_ns, 5),
-                  shortest(seconds),
-                  shortest(seconds)));
+  warnings_.add("rate_change",
+                fmt::format("the sampling rate changes from {} to {} Hz: the first {} s are left out "
+                            "(`to_s` {} reads these)",
+                            brief_text(1e9 / change->before_ns, 5), brief_text(1e9 / change->after_ns, 5),
+                            shortest(seconds), shortest(seconds)));
 }
 
 // At the first row, and at the first one of a window that begins later: in front of it the rate may
@@ -140,37 +129,28 @@ void TimeGrid::say_pattern(const StampModel& found) {
                     "and spaced evenly");
       return;
     case StampPattern::coarse:
-      warnings_.add("coarse_stamps",
-                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
-                                "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
-                                "longer steps as gaps)",
-                                brief_text(span_hz, 5),
-                                shortest(rounded(step_hz, 5))));
+      warnings_.add("coarse_stamps", fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
+                                                 "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
+                                                 "longer steps as gaps)",
+                                                 brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::packets:
-      warnings_.add("packets",
-                    fmt::format("the stamps are those of packets: rows are spaced evenly at "
-                                "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
-                                "packet, takes the rest as gaps)",
-                                brief_text(span_hz, 5),
-                                shortest(rounded(step_hz, 5))));
+      warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at "
+                                           "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
+                                           "packet, takes the rest as gaps)",
+                                           brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::uneven:
-      warnings_.add("uneven_stamps",
-                    fmt::format("the stamps take turns in steps of unlike length and keep to one "
-                                "line: rows are spaced evenly at {} Hz, rows over time",
-                                brief_text(span_hz, 5)));
+      warnings_.add("uneven_stamps", fmt::format("the stamps take turns in steps of unlike length and keep to one "
+                                                 "line: rows are spaced evenly at {} Hz, rows over time",
+                                                 brief_text(span_hz, 5)));
       return;
     case StampPattern::disputed:
-      fail(pending_.front(),
-           0,
-           "E0324",
+      fail(pending_.front(), 0, "E0324",
            fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over "
                        "time give {} Hz, and gaps do not explain it",
-                       brief_text(step_hz, 5),
-                       brief_text(span_hz, 5)),
-           fmt::format("`rate_hz` {} or `rate_hz` {} decides",
-                       shortest(rounded(step_hz, 5)),
+                       brief_text(step_hz, 5), brief_text(span_hz, 5)),
+           fmt::format("`rate_hz` {} or `rate_hz` {} decides", shortest(rounded(step_hz, 5)),
                        shortest(rounded(span_hz, 5))));
   }
 }

@@ -26,8 +26,7 @@ void GridOutput::rows(const RowBlock& block, std::size_t from, std::size_t to) {
   }
   for (std::size_t c = 0; c < staging_.size(); ++c) {
     staging_[c].resize(staged_);
-    staging_[c].insert(staging_[c].end(),
-                       block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
+    staging_[c].insert(staging_[c].end(), block.columns[c].begin() + static_cast<std::ptrdiff_t>(from),
                        block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
   }
   staged_ += rows;

@@ -14,9 +14,8 @@ constexpr std::size_t kLearnt = 12;                                     // where
 constexpr double kLeastBlank = 20;                                      // one row in so many
 
 bool blank(const RowBlock& rows, std::size_t row) {
-  return std::all_of(rows.columns.begin(), rows.columns.end(), [&](const auto& column) {
-    return std::isnan(column[row]);
-  });
+  return std::all_of(rows.columns.begin(), rows.columns.end(),
+                     [&](const auto& column) { return std::isnan(column[row]); });
 }
 
 }  // namespace
@@ -26,12 +25,10 @@ bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks)
   if (over_blanks.empty()) return false;
   const double usual = median_in_place(steps, Middle::lower);
   const auto share = [&](const auto& holds) {
-    return static_cast<double>(std::count_if(steps.begin(), steps.end(), holds)) /
-           static_cast<double>(steps.size());
+    return static_cast<double>(std::count_if(steps.begin(), steps.end(), holds)) / static_cast<double>(steps.size());
   };
   if (!(usual > 0) || median_in_place(over_blanks, Middle::lower) > 1.5 * usual) return false;
-  if (steps.size() < kFew)
-    return share([&](double step) { return std::fabs(step - usual) <= 0.25 * usual; }) == 1;
+  if (steps.size() < kFew) return share([&](double step) { return std::fabs(step - usual) <= 0.25 * usual; }) == 1;
   return share([&](double step) { return step <= 0.55 * usual; }) <= 0.1;
 }
 
@@ -60,8 +57,7 @@ void OwnRows::decide_at_end() {
 
 void OwnRows::judge() {
   decided_ = true;
-  apart_ = kept_ >= kKept &&
-           kLeastBlank * static_cast<double>(rows_ - kept_) >= static_cast<double>(rows_) &&
+  apart_ = kept_ >= kKept && kLeastBlank * static_cast<double>(rows_ - kept_) >= static_cast<double>(rows_) &&
            keeps_own_clock(std::move(steps_), std::move(over_blanks_));
 }
 
@@ -77,8 +73,7 @@ void ChannelClocks::look(const RowBlock& rows, std::size_t from, std::size_t to)
         channel.blank = true;
         continue;
       }
-      const std::int64_t now =
-          rows.time_ns.empty() ? static_cast<std::int64_t>(rows_ + i - from) : rows.time_ns[i];
+      const std::int64_t now = rows.time_ns.empty() ? static_cast<std::int64_t>(rows_ + i - from) : rows.time_ns[i];
       if (channel.count++ > 0) {
         channel.steps.push_back(step_between(channel.last, now));
         if (channel.blank) channel.over_blanks.push_back(channel.steps.back());
@@ -105,8 +100,7 @@ std::size_t leave_out_blank_rows(RowBlock& rows) {
   const std::size_t left_out = rows.rows - kept.size();
   if (left_out == 0) return 0;
   if (rows.line_offset.empty() && rows.first_line > 0)
-    for (std::size_t i = 0; i < rows.rows; ++i)
-      rows.line_offset.push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < rows.rows; ++i) rows.line_offset.push_back(static_cast<std::uint32_t>(i));
   const auto compact = [&](auto& values) {
     if (values.empty()) return;
     for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];

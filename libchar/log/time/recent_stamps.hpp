@@ -14,9 +14,8 @@ namespace libchar {
 /// Exact where the difference fits into 64 bits: stamps of today are 2^60 ns and more.
 inline double step_between(std::int64_t from, std::int64_t to) {
   std::int64_t step = 0;
-  return __builtin_sub_overflow(to, from, &step)
-             ? static_cast<double>(to) - static_cast<double>(from)
-             : static_cast<double>(step);
+  return __builtin_sub_overflow(to, from, &step) ? static_cast<double>(to) - static_cast<double>(from)
+                                                 : static_cast<double>(step);
 }
 
 class RecentStamps {
@@ -34,8 +33,7 @@ class RecentStamps {
     const std::int64_t last = stamps_[(next_ - 1) % kMost];
     std::vector<double> off;
     for (std::size_t back = 0; back < size_; ++back)
-      off.push_back(step_between(stamps_[(next_ - 1 - back) % kMost], last) -
-                    static_cast<double>(back) * interval_ns);
+      off.push_back(step_between(stamps_[(next_ - 1 - back) % kMost], last) - static_cast<double>(back) * interval_ns);
     return off.empty() ? 0 : median_in_place(off, Middle::lower);
   }
 

@@ -37,9 +37,7 @@ constexpr double kPause = 3;           // times the longest of the usual steps
 constexpr double kNewPacket = 0.3;     // of the time from packet to packet
 constexpr std::size_t kAhead = 16;     // rows looked at before a long step is called a gap
 
-double middle_of(std::vector<double> values) {
-  return values.empty() ? 0 : median_in_place(values, Middle::lower);
-}
+double middle_of(std::vector<double> values) { return values.empty() ? 0 : median_in_place(values, Middle::lower); }
 
 /// The steps of the first stamps, pauses and steps back in time left out.
 struct FirstSteps {
@@ -55,8 +53,7 @@ struct FirstSteps {
 FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
   FirstSteps steps;
   for (std::size_t i = 1; i < stamps.size(); ++i)
-    if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0)
-      steps.rising.push_back(step);
+    if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0) steps.rising.push_back(step);
   if (steps.rising.empty()) return steps;
   std::vector<double> sorted = steps.rising;
   std::sort(sorted.begin(), sorted.end());
@@ -126,10 +123,7 @@ struct Walk {
   std::vector<double> gaps;   ///< steps, in intervals
 };
 
-Walk walk(const std::vector<std::int64_t>& stamps,
-          const FirstSteps& steps,
-          double ns,
-          double longest) {
+Walk walk(const std::vector<std::int64_t>& stamps, const FirstSteps& steps, double ns, double longest) {
   Walk out;
   RecentStamps recent;
   recent.push(stamps[0]);
@@ -141,8 +135,7 @@ Walk walk(const std::vector<std::int64_t>& stamps,
       const double late = recent.last_late(ns);
       std::vector<double> lags;
       for (std::size_t j = 0; j < kAhead && i + j < stamps.size(); ++j)
-        lags.push_back((step_between(stamps[i - 1], stamps[i + j]) + late) / ns -
-                       static_cast<double>(j + 1));
+        lags.push_back((step_between(stamps[i - 1], stamps[i + j]) + late) / ns - static_cast<double>(j + 1));
       cut = common_lag(std::move(lags)) >= 0.5;
       if (cut) out.gaps.push_back(step / ns);
     }
@@ -155,9 +148,7 @@ Walk walk(const std::vector<std::int64_t>& stamps,
   return out;
 }
 
-bool same_rate(double a, double b) {
-  return std::fabs(a - b) <= kSameRate * std::max(a, b);
-}
+bool same_rate(double a, double b) { return std::fabs(a - b) <= kSameRate * std::max(a, b); }
 
 bool multiple_of(double value, double unit, double tolerance) {
   return std::fabs(value / unit - std::round(value / unit)) <= tolerance;
@@ -201,8 +192,7 @@ double lattice_of(const FirstSteps& steps) {
   const auto as_expected = [&](double found, double share) {
     return std::fabs(found - count * share) <= 5 * std::sqrt(count * share) + 0.1 * count * share;
   };
-  const bool at_random =
-      as_expected(once, 1 - missing) && as_expected(twice, (1 - missing) * missing);
+  const bool at_random = as_expected(once, 1 - missing) && as_expected(twice, (1 - missing) * missing);
   return at_random ? interval : 0;
 }
 
@@ -283,8 +273,7 @@ std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
   constexpr std::size_t kFewest = 8;
   if (starts.size() < kFewest) return 0;
   std::vector<double> sizes;
-  for (std::size_t i = 1; i < starts.size(); ++i)
-    sizes.push_back(static_cast<double>(starts[i] - starts[i - 1]));
+  for (std::size_t i = 1; i < starts.size(); ++i) sizes.push_back(static_cast<double>(starts[i] - starts[i - 1]));
   const auto count = static_cast<double>(sizes.size());
   const double usual = middle_of(sizes);
   const auto alike = static_cast<double>(std::count(sizes.begin(), sizes.end(), usual));
@@ -306,34 +295,25 @@ bool rows_are_missing(const FirstSteps& steps, const CommonStep& common) {
 }
 
 /// What explains that many steps are longer than the common one.
-StampPattern explanation(const FirstSteps& steps,
-                         const CommonStep& common,
-                         const std::vector<double>& gaps) {
+StampPattern explanation(const FirstSteps& steps, const CommonStep& common, const std::vector<double>& gaps) {
   const auto share = [&](const auto& holds) {
-    return static_cast<double>(std::count_if(gaps.begin(), gaps.end(), holds)) /
-           static_cast<double>(gaps.size());
+    return static_cast<double>(std::count_if(gaps.begin(), gaps.end(), holds)) / static_cast<double>(gaps.size());
   };
   if (rows_are_missing(steps, common)) return StampPattern::steps;
   const bool to_a_line = keeps_to_a_line(steps);
   const double tick = tick_of(steps.rising);
-  const bool coarse = to_a_line && tick > 0.2 * common.ns &&
-                      std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) {
-                        return multiple_of(step, tick, 1e-3);
-                      });
+  const bool coarse =
+      to_a_line && tick > 0.2 * common.ns &&
+      std::all_of(steps.rising.begin(), steps.rising.end(), [&](double step) { return multiple_of(step, tick, 1e-3); });
   // Where steps are alike to a percent, longer gaps are known as exactly.
   const double near = 0.02 + 2.5 * common.spread, longest = near <= 0.05 ? 20.5 : 3.5;
   const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
   const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
   if (!coarse && share(whole) > 0.9) return StampPattern::steps;
-  const double rows_a_gap =
-      static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
-  const bool in_packets =
-      rows_a_gap <= kLongestPacket &&
-      (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
-  if (to_a_line)
-    return in_packets ? StampPattern::packets
-           : coarse   ? StampPattern::coarse
-                      : StampPattern::uneven;
+  const double rows_a_gap = static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
+  const bool in_packets = rows_a_gap <= kLongestPacket &&
+                          (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
+  if (to_a_line) return in_packets ? StampPattern::packets : coarse ? StampPattern::coarse : StampPattern::uneven;
   if (steps.mean > 2 * common.ns && in_packets) return StampPattern::packets;
   if (!common.tidy) return StampPattern::steps;
   // Of steps that are no multiples 40 % come as near to one by chance.
@@ -349,8 +329,7 @@ double packet_interval(const FirstSteps& steps, const std::vector<std::size_t>& 
   for (std::size_t i = 0, j = 0; i < starts.size(); ++i) {
     while (j < starts.size() && starts[j] < starts[i] + kApart) ++j;
     if (j < starts.size())
-      slopes.push_back((steps.line[starts[j]] - steps.line[starts[i]]) /
-                       static_cast<double>(starts[j] - starts[i]));
+      slopes.push_back((steps.line[starts[j]] - steps.line[starts[i]]) / static_cast<double>(starts[j] - starts[i]));
   }
   return middle_of(std::move(slopes));
 }
@@ -385,10 +364,7 @@ StampModel in_packets(const FirstSteps& steps, StampModel model) {
 }
 
 /// The model of stamps in which rows stand evenly, whatever their steps.
-StampModel evenly(const FirstSteps& steps,
-                  const CommonStep& common,
-                  StampPattern pattern,
-                  double slope,
+StampModel evenly(const FirstSteps& steps, const CommonStep& common, StampPattern pattern, double slope,
                   std::optional<double> rate_hz) {
   StampModel out{common.ns, common.longest(common.ns), StampPattern::steps, common.ns, slope};
   if (rate_hz && same_rate(1e9 / *rate_hz, common.ns)) return out;
@@ -402,20 +378,15 @@ StampModel evenly(const FirstSteps& steps,
   const double usual = coarse ? longer.back() : 1.6 * longer[longer.size() * 98 / 100];
   out.longest_step = std::max(1.5 * out.ns, 1.25 * usual);
   // Two steps on either side of the rate, none of them a gap: nothing that needs a word.
-  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * common.ns)
-    out.pattern = StampPattern::steps;
+  if (coarse && steps.equal == 0 && longer.back() <= 1.5 * common.ns) out.pattern = StampPattern::steps;
   return out;
 }
 
-StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
-                             const FirstSteps& steps,
+StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const FirstSteps& steps,
                              std::optional<double> rate_hz) {
   const CommonStep common = common_step(steps);
-  StampModel out{common.ns,
-                 common.longest(common.ns),
-                 common.equal ? StampPattern::equal : StampPattern::steps,
-                 common.ns,
-                 steps.mean};
+  StampModel out{common.ns, common.longest(common.ns), common.equal ? StampPattern::equal : StampPattern::steps,
+                 common.ns, steps.mean};
   Walk found;
   for (int i = 0; i < 8 && !common.equal; ++i) {
     found = walk(stamps, steps, out.ns, common.longest(out.ns));
@@ -427,17 +398,14 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps,
   if (stamps.size() <= kLeastOdd) return out;
   const StampLine line = line_through(steps.line);
   const double lattice = lattice_of(steps);
-  if (lattice > 0 && (!rate_hz || same_rate(1e9 / *rate_hz, lattice)) &&
-      !on_one_line(line, steps, lattice))
+  if (lattice > 0 && (!rate_hz || same_rate(1e9 / *rate_hz, lattice)) && !on_one_line(line, steps, lattice))
     return {lattice, 1.5 * lattice, StampPattern::steps, lattice, lattice};
   const bool often = found.gaps.size() >= kLeastOdd && found.gaps.size() * 50 > steps.line.size();
   const bool equal_at_times = steps.equal * 50 > stamps.size();
   if (!often && !equal_at_times && !common.equal) return out;
-  if (on_one_line(line, steps, common.ns))
-    return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
+  if (on_one_line(line, steps, common.ns)) return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
   if (common.equal) return in_packets(steps, out);
-  if (!often && !common.tidy)
-    out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
+  if (!often && !common.tidy) out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
   if (!often) return out;
   const StampPattern pattern = explanation(steps, common, found.gaps);
   if (pattern == StampPattern::steps) return out;
@@ -467,8 +435,7 @@ std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stam
   return find_rate_change(rows, steps.line);
 }
 
-std::optional<RateChange> find_rate_change(std::span<const double> rows,
-                                           std::span<const double> instants) {
+std::optional<RateChange> find_rate_change(std::span<const double> rows, std::span<const double> instants) {
   constexpr std::size_t kMost = 32, kFewest = 8, kSide = 3, kRows = 16;
   constexpr double kLeast = 0.03, kOff = 0.25;
   const std::size_t n = rows.size(), pieces = std::min(kMost, n / kRows);
@@ -479,8 +446,7 @@ std::optional<RateChange> find_rate_change(std::span<const double> rows,
   };
   const auto off = [&](std::size_t from, std::size_t to, double from_slope) {
     double most = 0;
-    for (std::size_t i = from; i < to; ++i)
-      most = std::max(most, std::fabs(slope(i, i + 1) - from_slope));
+    for (std::size_t i = from; i < to; ++i) most = std::max(most, std::fabs(slope(i, i + 1) - from_slope));
     return most;
   };
   std::optional<RateChange> best;
@@ -489,12 +455,11 @@ std::optional<RateChange> find_rate_change(std::span<const double> rows,
     const double before = slope(0, k), after = slope(k + 1, pieces);
     const double apart = std::fabs(after - before);
     const double most = std::max(off(0, k, before), off(k + 1, pieces, after));
-    if (!(apart > kLeast * std::min(before, after)) || most > kOff * apart || most / apart >= least)
-      continue;
+    if (!(apart > kLeast * std::min(before, after)) || most > kOff * apart || most / apart >= least) continue;
     least = most / apart;
-    const double row = (instants[edge(k + 1)] - after * rows[edge(k + 1)] -
-                        (instants[edge(0)] - before * rows[edge(0)])) /
-                       (before - after);
+    const double row =
+        (instants[edge(k + 1)] - after * rows[edge(k + 1)] - (instants[edge(0)] - before * rows[edge(0)])) /
+        (before - after);
     best = {std::clamp(row, rows[edge(k)], rows[edge(k + 1)]), before, after};
   }
   return best;

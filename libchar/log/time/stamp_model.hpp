@@ -32,13 +32,11 @@ struct StampModel {
   double step_ns = 0;      ///< the common step alone
   double span_ns = 0;      ///< rows over time, pauses left out
   std::size_t packet = 0;  ///< rows of each packet, where they are alike; 0: not
-  double usual_lag =
-      0;  ///< of packets: rows that the first of one and those behind it are late by, as common_lag says
+  double usual_lag = 0;  ///< of packets: rows that the first of one and those behind it are late by, as common_lag says
 };
 
 /// From the first stamps, in file order. `rate_hz` decides where stamps can be read in two ways.
-StampModel model_of_stamps(const std::vector<std::int64_t>& stamps,
-                           std::optional<double> rate_hz = {});
+StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz = {});
 
 /// One interval up to a row, another one from there on.
 struct RateChange {
@@ -48,8 +46,7 @@ struct RateChange {
 
 /// Where the instants of those rows change their rate for good by 3 % and more; nothing where they
 /// keep it, drift, or scatter by more than that.
-std::optional<RateChange> find_rate_change(std::span<const double> rows,
-                                           std::span<const double> instants);
+std::optional<RateChange> find_rate_change(std::span<const double> rows, std::span<const double> instants);
 
 /// The same of stamps in file order, pauses and steps back left out.
 std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps);

@@ -11,9 +11,7 @@
 namespace libchar {
 namespace {
 
-double median(std::vector<double>& values) {
-  return values.empty() ? 0 : median_in_place(values, Middle::lower);
-}
+double median(std::vector<double>& values) { return values.empty() ? 0 : median_in_place(values, Middle::lower); }
 
 struct SteadyLine {
   std::int64_t zero, index;  ///< of the first stamp
@@ -21,8 +19,8 @@ struct SteadyLine {
 };
 
 // AVX2 turns no 64-bit integer into a double; below 2^51 the mantissa of 1.5 2^52 does it, exactly. n is whole fours.
-LIBCHAR_LANES void extremes_about_lanes(
-    const SteadyLine& line, const std::int64_t* stamps, std::size_t n, double& low, double& high) {
+LIBCHAR_LANES void extremes_about_lanes(const SteadyLine& line, const std::int64_t* stamps, std::size_t n, double& low,
+                                        double& high) {
   using FourStamps [[gnu::vector_size(32)]] = std::int64_t;
   using FourStampsInMemory [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = std::int64_t;
   constexpr double kMantissa = 6755399441055744.0;  // 1.5 2^52
@@ -35,8 +33,7 @@ LIBCHAR_LANES void extremes_about_lanes(
     Four d;
     std::memcpy(&d, &shifted, sizeof d);
     const Four r =
-        (d - kMantissa) -
-        line.slope * (static_cast<double>(line.index + static_cast<std::int64_t>(i)) + steps);
+        (d - kMantissa) - line.slope * (static_cast<double>(line.index + static_cast<std::int64_t>(i)) + steps);
     lows = r < lows ? r : lows;
     highs = r > highs ? r : highs;
   }
@@ -62,8 +59,8 @@ void StampSketch::begin_cell(const Pair& read) {
 }
 
 // Lowest and highest of stamps[i] - first - slope (index + i), four at a time.
-void StampSketch::extremes(
-    const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const {
+void StampSketch::extremes(const std::int64_t* stamps, std::size_t n, const Pair& from, double& low,
+                           double& high) const {
   constexpr std::int64_t kLargest = std::int64_t{1} << 51U;
   const std::int64_t first = stamps[0] - zero_.stamp, last = stamps[n - 1] - zero_.stamp;
   std::size_t i = 0;
@@ -120,8 +117,7 @@ double StampSketch::interval_ns() const {
   std::vector<double> slopes;
   for (std::size_t i = 0; half > 0 && i + half < n; ++i) {
     const Pair &a = cells_[i].first, &b = cells_[i + half].first;
-    slopes.push_back(static_cast<double>(b.stamp - a.stamp) /
-                     static_cast<double>(b.index - a.index));
+    slopes.push_back(static_cast<double>(b.stamp - a.stamp) / static_cast<double>(b.index - a.index));
   }
   return median(slopes);
 }
@@ -152,8 +148,8 @@ std::optional<RateChange> StampSketch::rate_change() const {
   if (!change) return change;
   const auto next = std::lower_bound(index.begin(), index.end(), change->row);
   const Cell& near = cells_[static_cast<std::size_t>(next - index.begin())];
-  change->row = static_cast<double>(near.after_first) -
-                (static_cast<double>(near.first.index) - change->row) * change->after_ns;
+  change->row =
+      static_cast<double>(near.after_first) - (static_cast<double>(near.first.index) - change->row) * change->after_ns;
   return change;
 }
 
@@ -161,16 +157,14 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
   if (cells_.size() < 3) return {};
   const Pair origin = cells_.front().first;
   const auto off = [&](const Pair& pair) {
-    return static_cast<double>(pair.stamp - origin.stamp) -
-           interval * static_cast<double>(pair.index - origin.index);
+    return static_cast<double>(pair.stamp - origin.stamp) - interval * static_cast<double>(pair.index - origin.index);
   };
   std::vector<double> r;
   for (const Cell& cell : cells_) r.push_back(off(cell.first));
   const double centre = median(r);
   Deviation result;
   for (const Cell& cell : cells_)
-    result.largest = std::max(
-        {result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
+    result.largest = std::max({result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
   for (double& value : r) value = std::fabs(value - centre);
   result.robust = kMadToSd * median(r);
   return result;

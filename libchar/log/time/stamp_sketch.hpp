@@ -47,8 +47,7 @@ class StampSketch {
   /// From the first stamp to a last one, pauses left out: ns a grid step.
   double span_ns(std::int64_t index, std::int64_t stamp) const {
     return index <= zero_.index ? 0
-                                : static_cast<double>(stamp - zero_.stamp) /
-                                      static_cast<double>(index - zero_.index);
+                                : static_cast<double>(stamp - zero_.stamp) / static_cast<double>(index - zero_.index);
   }
   /// A change of rate (find_rate_change), its row in ns after the first stamp, pauses included.
   std::optional<RateChange> rate_change() const;
@@ -66,15 +65,12 @@ class StampSketch {
     Pair first, low, high;         // from zero_ on
     std::int64_t after_first = 0;  // the first's stamp, pauses included
   };
-  Pair from_zero(const Pair& pair) const {
-    return {pair.index - zero_.index, pair.stamp - zero_.stamp};
-  }
+  Pair from_zero(const Pair& pair) const { return {pair.index - zero_.index, pair.stamp - zero_.stamp}; }
   double residual(const Pair& from_zero) const {
     return static_cast<double>(from_zero.stamp) - slope_ * static_cast<double>(from_zero.index);
   }
   void begin_cell(const Pair& pair);
-  void extremes(
-      const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const;
+  void extremes(const std::int64_t* stamps, std::size_t n, const Pair& from, double& low, double& high) const;
   void thin();
   std::vector<Cell> cells_;
   Pair zero_;  // the very first, moved on by what was left out

@@ -24,65 +24,64 @@ struct KnownName {
   std::int64_t unit_ns = 0;  // 0 = not said by the name
 };
 
-constexpr std::array kTimeNames = {
-    KnownName{"time"},
-    KnownName{"timestamp"},
-    KnownName{"time stamp"},
-    KnownName{"timestamps"},
-    KnownName{"stamp"},
-    KnownName{"times"},
-    KnownName{"elapsed"},
-    KnownName{"elapsed time"},
-    KnownName{"elapsed_time"},
-    KnownName{"time elapsed"},
-    KnownName{"time_elapsed"},
-    KnownName{"time since start"},
-    KnownName{"relative time"},
-    KnownName{"uptime"},
-    KnownName{"time_stamp"},
-    KnownName{"host_time"},
-    KnownName{"sample_time"},
-    KnownName{"sampletime"},
-    KnownName{"datetime"},
-    KnownName{"date time"},
-    KnownName{"date/time"},
-    KnownName{"date_time"},
-    KnownName{"gps_time"},
-    KnownName{"unix_time"},
-    KnownName{"unixtime"},
-    KnownName{"epoch"},
-    KnownName{"epoch_time"},
-    KnownName{"zeit"},
-    KnownName{"zeitstempel"},
-    KnownName{"datum/zeit"},
-    KnownName{"temps"},
-    KnownName{"horodatage"},
-    KnownName{"tiempo"},
-    KnownName{"tempo"},
-    KnownName{"tijd"},
-    KnownName{"tid"},
-    KnownName{"czas"},
-    KnownName{"aika"},
-    KnownName{"cas"},
-    KnownName{"timeus", 1000},
-    KnownName{"timems", 1000000},
-    KnownName{"utime", 1000},
-    KnownName{"seconds", 1000000000},
-    KnownName{"seconds_elapsed", 1000000000},
-    KnownName{"elapsed_seconds", 1000000000},
-    KnownName{"sec", 1000000000},
-    KnownName{"secs", 1000000000},
-    KnownName{"x_value", 1000000000},  // LabVIEW measurement files
-    KnownName{"millis", 1000000},
-    KnownName{"milliseconds", 1000000},
-    KnownName{"micros", 1000},
-    KnownName{"\xE6\x97\xB6\xE9\x97\xB4"},  // Chinese
-    KnownName{"\xE6\x97\xB6\xE9\x97\xB4\xE6\x88\xB3"},
-    KnownName{"\xE6\x99\x82\xE9\x96\x93"},
-    KnownName{"\xE6\x99\x82\xE5\x88\xBB"},
-    KnownName{"microseconds", 1000},
-    KnownName{"nanoseconds", 1},
-    KnownName{"sampletimefine"}};  // Xsens: 0.1 ms from MT Manager, 1 us from DOTs
+constexpr std::array kTimeNames = {KnownName{"time"},
+                                   KnownName{"timestamp"},
+                                   KnownName{"time stamp"},
+                                   KnownName{"timestamps"},
+                                   KnownName{"stamp"},
+                                   KnownName{"times"},
+                                   KnownName{"elapsed"},
+                                   KnownName{"elapsed time"},
+                                   KnownName{"elapsed_time"},
+                                   KnownName{"time elapsed"},
+                                   KnownName{"time_elapsed"},
+                                   KnownName{"time since start"},
+                                   KnownName{"relative time"},
+                                   KnownName{"uptime"},
+                                   KnownName{"time_stamp"},
+                                   KnownName{"host_time"},
+                                   KnownName{"sample_time"},
+                                   KnownName{"sampletime"},
+                                   KnownName{"datetime"},
+                                   KnownName{"date time"},
+                                   KnownName{"date/time"},
+                                   KnownName{"date_time"},
+                                   KnownName{"gps_time"},
+                                   KnownName{"unix_time"},
+                                   KnownName{"unixtime"},
+                                   KnownName{"epoch"},
+                                   KnownName{"epoch_time"},
+                                   KnownName{"zeit"},
+                                   KnownName{"zeitstempel"},
+                                   KnownName{"datum/zeit"},
+                                   KnownName{"temps"},
+                                   KnownName{"horodatage"},
+                                   KnownName{"tiempo"},
+                                   KnownName{"tempo"},
+                                   KnownName{"tijd"},
+                                   KnownName{"tid"},
+                                   KnownName{"czas"},
+                                   KnownName{"aika"},
+                                   KnownName{"cas"},
+                                   KnownName{"timeus", 1000},
+                                   KnownName{"timems", 1000000},
+                                   KnownName{"utime", 1000},
+                                   KnownName{"seconds", 1000000000},
+                                   KnownName{"seconds_elapsed", 1000000000},
+                                   KnownName{"elapsed_seconds", 1000000000},
+                                   KnownName{"sec", 1000000000},
+                                   KnownName{"secs", 1000000000},
+                                   KnownName{"x_value", 1000000000},  // LabVIEW measurement files
+                                   KnownName{"millis", 1000000},
+                                   KnownName{"milliseconds", 1000000},
+                                   KnownName{"micros", 1000},
+                                   KnownName{"\xE6\x97\xB6\xE9\x97\xB4"},  // Chinese
+                                   KnownName{"\xE6\x97\xB6\xE9\x97\xB4\xE6\x88\xB3"},
+                                   KnownName{"\xE6\x99\x82\xE9\x96\x93"},
+                                   KnownName{"\xE6\x99\x82\xE5\x88\xBB"},
+                                   KnownName{"microseconds", 1000},
+                                   KnownName{"nanoseconds", 1},
+                                   KnownName{"sampletimefine"}};  // Xsens: 0.1 ms from MT Manager, 1 us from DOTs
 
 // Units as names, and what is a clock elsewhere: time only where the values are a steady clock.
 constexpr std::array kClockNames = {KnownName{"ms", 1000000},
@@ -98,25 +97,14 @@ constexpr std::array kClockNames = {KnownName{"ms", 1000000},
                                     KnownName{"ticks"}};
 
 // Time only where the values are dates or clock times.
-constexpr std::array<std::string_view, 8> kDateNames = {
-    "date", "datum", "fecha", "data", "uhrzeit", "heure", "hora", "clock"};
+constexpr std::array<std::string_view, 8> kDateNames = {"date",    "datum", "fecha", "data",
+                                                        "uhrzeit", "heure", "hora",  "clock"};
 
-constexpr std::array<std::string_view, 14> kDevices = {"device",
-                                                       "dev",
-                                                       "sensor",
-                                                       "imu",
-                                                       "hardware",
-                                                       "hw",
-                                                       "sample",
-                                                       "acc",
-                                                       "accel",
-                                                       "accelerometer",
-                                                       "gyr",
-                                                       "gyro",
-                                                       "gyroscope",
-                                                       "mag"};
-constexpr std::array<std::string_view, 11> kHosts = {
-    "host", "pc", "ros", "system", "sys", "recv", "receive", "received", "arrival", "log", "unix"};
+constexpr std::array<std::string_view, 14> kDevices = {"device", "dev",    "sensor",    "imu",   "hardware",
+                                                       "hw",     "sample", "acc",       "accel", "accelerometer",
+                                                       "gyr",    "gyro",   "gyroscope", "mag"};
+constexpr std::array<std::string_view, 11> kHosts = {"host",    "pc",       "ros",     "system", "sys", "recv",
+                                                     "receive", "received", "arrival", "log",    "unix"};
 constexpr std::array<std::string_view, 3> kTimes = {"time", "timestamp", "stamp"};
 
 template <std::size_t N>
@@ -130,18 +118,16 @@ bool time_of(std::string_view name, const std::array<std::string_view, N>& words
   const std::size_t between = name.find_first_of("_ .-");
   if (between == std::string_view::npos) return false;
   const std::string_view first = name.substr(0, between), second = name.substr(between + 1);
-  return (among(words, first) && among(kTimes, second)) ||
-         (among(kTimes, first) && among(words, second));
+  return (among(words, first) && among(kTimes, second)) || (among(kTimes, first) && among(words, second));
 }
 
 // "field.header.stamp", "/imu/header/stamp": stamps that a driver wrote.
 bool header_stamp(std::string_view name) {
   for (const std::string_view part : {"secs", "sec"})
     if (name.ends_with(part) && name.size() > part.size() + 1) name.remove_suffix(part.size() + 1);
-  static constexpr std::array<std::string_view, 4> kEnds = {
-      "header.stamp", "header/stamp", "header_stamp", "header:stamp"};
-  return std::any_of(
-      kEnds.begin(), kEnds.end(), [&](std::string_view end) { return name.ends_with(end); });
+  static constexpr std::array<std::string_view, 4> kEnds = {"header.stamp", "header/stamp", "header_stamp",
+                                                            "header:stamp"};
+  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return name.ends_with(end); });
 }
 
 }  // namespace
@@ -153,8 +139,7 @@ std::optional<TimeName> time_name(std::string_view stem) {
     name.remove_prefix(1);
   if (name.ends_with("()")) name.remove_suffix(2);  // millis()
   TimeName out;
-  if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) ||
-      header_stamp(name))
+  if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) || header_stamp(name))
     out.clock = Clock::device;
   else if (time_of(name, kHosts))
     out.clock = Clock::host;
@@ -171,9 +156,9 @@ std::optional<TimeName> time_name(std::string_view stem) {
     }
   out.letter = name == "t";
   out.date = among(kDateNames, name);
-  const bool said = out.letter || out.date || out.clock != Clock::unknown ||
-                    name.starts_with("timestamp_") || name.starts_with("timestamp ") ||
-                    name.starts_with("date time,") || name.starts_with("time since start");
+  const bool said = out.letter || out.date || out.clock != Clock::unknown || name.starts_with("timestamp_") ||
+                    name.starts_with("timestamp ") || name.starts_with("date time,") ||
+                    name.starts_with("time since start");
   return said ? std::optional(out) : std::nullopt;
 }
 
@@ -190,13 +175,9 @@ bool near_uniform_and_rising(const std::vector<double>& values) {
 }
 
 // The name of a column without its unit.
-std::string stem_of(const ColumnLabel& column) {
-  return name_and_unit(column.name).first;
-}
+std::string stem_of(const ColumnLabel& column) { return name_and_unit(column.name).first; }
 
-std::size_t named_column(const TableFront& table,
-                         const std::string& wanted,
-                         const ReadOptions& options,
+std::size_t named_column(const TableFront& table, const std::string& wanted, const ReadOptions& options,
                          const std::string& file) {
   const auto& columns = table.columns;
   const auto same = [&](const ColumnLabel& c) { return c.name == wanted; };
@@ -204,8 +185,7 @@ std::size_t named_column(const TableFront& table,
   const auto found = std::find_if(columns.begin(), columns.end(), same);
   if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
   if (std::count_if(columns.begin(), columns.end(), same_stem) == 1)
-    return static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same_stem) -
-                                    columns.begin());
+    return static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same_stem) - columns.begin());
   if (const auto index = position_in(wanted, columns.size())) return *index;
   std::vector<std::string> names;
   names.reserve(columns.size());
@@ -268,18 +248,14 @@ bool steady_clock(const std::vector<double>& values) {
 }
 
 bool unit_of_another_quantity(const ColumnLabel& column) {
-  const auto unit =
-      find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
+  const auto unit = find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
   return unit && unit->quantity != Quantity::time;
 }
 
-bool has_unit(const ColumnLabel& column) {
-  return !column.unit.empty() || !name_and_unit(column.name).second.empty();
-}
+bool has_unit(const ColumnLabel& column) { return !column.unit.empty() || !name_and_unit(column.name).second.empty(); }
 
 bool unit_of_time(const ColumnLabel& column) {
-  const auto unit =
-      find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
+  const auto unit = find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
   return unit && unit->quantity == Quantity::time;
 }
 
@@ -291,30 +267,26 @@ bool wanders(const TableFront& table, std::size_t column) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  return values.size() >= 8 && (5 * std::min(up, down) > values.size() ||
-                                (stem_of(table.columns[column]) == "T" && !steady_clock(values)));
+  return values.size() >= 8 &&
+         (5 * std::min(up, down) > values.size() || (stem_of(table.columns[column]) == "T" && !steady_clock(values)));
 }
 
 // The first column that is a clock by its values, one whose name speaks of time before others; said as
 // a guess. A rate that is known leaves it a channel.
-std::optional<std::size_t> column_like_a_clock(const TableFront& table,
-                                               const ReadOptions& options,
-                                               LogInfo& info) {
-  static constexpr std::array<std::string_view, 8> kWords = {
-      "time", "stamp", "clock", "tick", "epoch", "utc", "tow", "_ts"};
-  if (options.rate_hz || table.stated_rate_hz || info.time.rate_hz > 0 || table.columns.size() < 2)
-    return std::nullopt;
+std::optional<std::size_t> column_like_a_clock(const TableFront& table, const ReadOptions& options, LogInfo& info) {
+  static constexpr std::array<std::string_view, 8> kWords = {"time",  "stamp", "clock", "tick",
+                                                             "epoch", "utc",   "tow",   "_ts"};
+  if (options.rate_hz || table.stated_rate_hz || info.time.rate_hz > 0 || table.columns.size() < 2) return std::nullopt;
   std::optional<std::size_t> found;
   bool named = false;
   for (std::size_t c = 0; c < table.columns.size() && !named; ++c) {
     const ColumnLabel& column = table.columns[c];
     const std::string name = ascii_lower(stem_of(column));
-    if (column.text || unit_of_another_quantity(column) || name.find("temp") != std::string::npos ||
-        name == "t" || (has_unit(column) && !unit_of_time(column)))
+    if (column.text || unit_of_another_quantity(column) || name.find("temp") != std::string::npos || name == "t" ||
+        (has_unit(column) && !unit_of_time(column)))
       continue;
-    named = std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
-      return name.find(word) != std::string::npos;
-    });
+    named = std::any_of(kWords.begin(), kWords.end(),
+                        [&](std::string_view word) { return name.find(word) != std::string::npos; });
     if ((named || !found) && steady_clock(table.first_values(c).values))
       found = c;
     else
@@ -335,34 +307,24 @@ std::vector<TimeCandidate> time_candidates(const TableFront& table) {
     if (column.text || unit_of_another_quantity(column)) continue;
     const auto name = time_name(stem_of(column));
     if (!column.calendar &&
-        (!name || name->date ||
-         (name->letter && (wanders(table, c) || (has_unit(column) && !unit_of_time(column))))))
+        (!name || name->date || (name->letter && (wanders(table, c) || (has_unit(column) && !unit_of_time(column))))))
       continue;
     out.push_back(time_candidate(table, c, name ? name->clock : Clock::unknown));
     out.back().letter = name && name->letter;
   }
-  if (out.size() > 1)
-    std::erase_if(out, [](const TimeCandidate& one) { return one.letter && !one.rises; });
+  if (out.size() > 1) std::erase_if(out, [](const TimeCandidate& one) { return one.letter && !one.rises; });
   // "x-axis" in seconds: nothing else says time.
-  if (out.empty() && table.columns.size() > 1 && !table.columns[0].text &&
-      unit_of_time(table.columns[0]))
-    if (const TimeCandidate first = time_candidate(table, 0, Clock::unknown); first.rises)
-      out.push_back(first);
+  if (out.empty() && table.columns.size() > 1 && !table.columns[0].text && unit_of_time(table.columns[0]))
+    if (const TimeCandidate first = time_candidate(table, 0, Clock::unknown); first.rises) out.push_back(first);
   return out;
 }
 
-bool steadier(const TimeCandidate& a, const TimeCandidate& b) {
-  return a.scatter * 3 < b.scatter && b.scatter > 0.01;
-}
+bool steadier(const TimeCandidate& a, const TimeCandidate& b) { return a.scatter * 3 < b.scatter && b.scatter > 0.01; }
 
 // A device's clock that does not tell its own samples apart.
-bool coarser(const TimeCandidate& a, const TimeCandidate& b) {
-  return a.scatter > 0.1 && steadier(b, a);
-}
+bool coarser(const TimeCandidate& a, const TimeCandidate& b) { return a.scatter > 0.1 && steadier(b, a); }
 
-std::string names_of(const TableFront& table,
-                     const std::vector<TimeCandidate>& which,
-                     std::size_t but) {
+std::string names_of(const TableFront& table, const std::vector<TimeCandidate>& which, std::size_t but) {
   std::vector<std::string> names;
   for (const TimeCandidate& other : which)
     if (other.column != but) names.push_back(printable(table.columns[other.column].name));
@@ -370,9 +332,7 @@ std::string names_of(const TableFront& table,
 }
 
 // Of those that rise a device's clock, else the steadiest, else the first that is no host's.
-std::optional<std::size_t> column_called_time(const TableFront& table,
-                                              const ReadOptions& options,
-                                              LogInfo& info) {
+std::optional<std::size_t> column_called_time(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   std::vector<TimeCandidate> all = time_candidates(table);
   if (all.empty()) return column_like_a_clock(table, options, info);
   std::vector<TimeCandidate> rising;
@@ -381,19 +341,16 @@ std::optional<std::size_t> column_called_time(const TableFront& table,
   const std::vector<TimeCandidate>& among = rising.empty() ? all : rising;
   TimeCandidate best = among.front();
   for (const TimeCandidate& one : among) {
-    const bool device =
-        one.clock == Clock::device && best.clock != Clock::device && !coarser(one, best);
-    const bool beaten =
-        best.clock == Clock::device && one.clock != Clock::device && !coarser(best, one);
+    const bool device = one.clock == Clock::device && best.clock != Clock::device && !coarser(one, best);
+    const bool beaten = best.clock == Clock::device && one.clock != Clock::device && !coarser(best, one);
     if (device ||
-        (!beaten && (steadier(one, best) ||
-                     (one.clock < best.clock && !steadier(best, one) && !coarser(one, best)))))
+        (!beaten && (steadier(one, best) || (one.clock < best.clock && !steadier(best, one) && !coarser(one, best)))))
       best = one;
   }
   if (all.size() < 2) return best.column;
   const std::string others = names_of(table, all, best.column);
-  const bool steadiest = std::any_of(
-      among.begin(), among.end(), [&](const TimeCandidate& one) { return steadier(best, one); });
+  const bool steadiest =
+      std::any_of(among.begin(), among.end(), [&](const TimeCandidate& one) { return steadier(best, one); });
   info.guesses.push_back(fmt::format("time column: {}, {} {} (`time_column` takes another one)",
                                      printable(table.columns[best.column].name),
                                      best.clock == Clock::device ? "the device's own clock, not"
@@ -405,20 +362,17 @@ std::optional<std::size_t> column_called_time(const TableFront& table,
 }
 
 // Without names: a first column that rises evenly.
-std::optional<std::size_t> column_that_rises(const TableFront& table,
-                                             const ReadOptions& options,
-                                             LogInfo& info) {
+std::optional<std::size_t> column_that_rises(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   if (table.columns.size() < 2 || table.columns[0].text) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
   const std::vector<double> values = table.first_values(0).values;
   if (!near_uniform_and_rising(values)) return std::nullopt;
-  const bool counter = usual_step(values) == 1 &&
-                       values.back() - values.front() == static_cast<double>(values.size() - 1);
+  const bool counter =
+      usual_step(values) == 1 && values.back() - values.front() == static_cast<double>(values.size() - 1);
   if (counter || !table.text) {
     if (!counter) info.time.candidate = "c0";
-    info.guesses.push_back(
-        fmt::format("first column: {}, kept as a channel (`time_column` c0 takes it as time)",
-                    counter ? "counts the rows by ones" : "rises evenly"));
+    info.guesses.push_back(fmt::format("first column: {}, kept as a channel (`time_column` c0 takes it as time)",
+                                       counter ? "counts the rows by ones" : "rises evenly"));
     return std::nullopt;
   }
   info.guesses.emplace_back(
@@ -428,9 +382,7 @@ std::optional<std::size_t> column_that_rises(const TableFront& table,
 
 }  // namespace
 
-bool called_time(const std::string& name) {
-  return time_name(name_and_unit(name).first).has_value();
-}
+bool called_time(const std::string& name) { return time_name(name_and_unit(name).first).has_value(); }
 
 double usual_step(const std::vector<double>& values) {
   std::vector<double> steps;
@@ -438,12 +390,9 @@ double usual_step(const std::vector<double>& values) {
   return steps.empty() ? 0 : median_in_place(steps, Middle::lower);
 }
 
-std::optional<std::size_t> find_time_column(const TableFront& table,
-                                            const ReadOptions& options,
-                                            LogInfo& info) {
+std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   if (options.time_column == "none") return std::nullopt;
-  if (options.time_column != "auto")
-    return named_column(table, options.time_column, options, info.file);
+  if (options.time_column != "auto") return named_column(table, options.time_column, options, info.file);
   if (table.named) return column_called_time(table, options, info);
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c].calendar && !table.columns[c].text) return c;

@@ -34,9 +34,8 @@ struct TimeName {
 std::optional<TimeName> time_name(std::string_view stem);
 
 struct ColumnLabel {
-  std::string name;  ///< as it stands in the file, "" when the file names no columns
-  std::string
-      unit;  ///< said apart from the name (by a sidecar); "" when it can only be in the name
+  std::string name;       ///< as it stands in the file, "" when the file names no columns
+  std::string unit;       ///< said apart from the name (by a sidecar); "" when it can only be in the name
   bool calendar = false;  ///< its values are dates or clock times, `first_values` seconds
   bool text = false;      ///< no numbers, or part of the stamps of another column: never the time
 };
@@ -53,8 +52,7 @@ inline constexpr std::size_t kFirstRows = 100;  ///< that the rule looks at
 struct TableFront {
   std::vector<ColumnLabel> columns;
   bool named = false;  ///< the names come from the file, and one of them may say time
-  bool text =
-      false;  ///< a text table without names has its stamps in front, as a rule; an array is all channels
+  bool text = false;   ///< a text table without names has its stamps in front, as a rule; an array is all channels
   std::function<FirstValues(std::size_t column)> first_values;
   std::optional<double> stated_rate_hz;  ///< by a comment or a preamble of the file
   std::optional<double> stated_tick_s;   ///< the same of one count of the stamps
@@ -68,9 +66,7 @@ bool called_time(const std::string& name);
 /// those that rise, a device's clock before others, the steadier before others; the choice is a
 /// guess that names them all. Nothing when there is none. Throws Error(usage) for a name that is
 /// not there.
-std::optional<std::size_t> find_time_column(const TableFront& table,
-                                            const ReadOptions& options,
-                                            LogInfo& info);
+std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info);
 
 /// The usual distance of two values, 0 for fewer.
 double usual_step(const std::vector<double>& values);
@@ -84,9 +80,6 @@ struct StampUnit {
 /// The unit of that column; its name and whether it is a guess go to
 /// info.time. A guess has to agree with a rate that the file states (Error(input) else, with both),
 /// a unit that is said gives a warning. Throws Error(usage) for an unknown options.time_unit.
-StampUnit find_time_unit(const TableFront& table,
-                         std::size_t column,
-                         const ReadOptions& options,
-                         LogInfo& info);
+StampUnit find_time_unit(const TableFront& table, std::size_t column, const ReadOptions& options, LogInfo& info);
 
 }  // namespace libchar

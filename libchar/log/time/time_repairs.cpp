@@ -18,11 +18,10 @@
 namespace libchar {
 namespace {
 
-constexpr double kLargestGap = 1e8;  // grid points in one gap
-constexpr double kLongGap = 64;      // beyond it the rate is too little known to count them
-constexpr std::uint64_t kBackward =
-    64;                               // backward rows in a row before the clock is called restarted
-constexpr double kWildSteps = 10000;  // steps ahead of its followers that make a single stamp wild
+constexpr double kLargestGap = 1e8;      // grid points in one gap
+constexpr double kLongGap = 64;          // beyond it the rate is too little known to count them
+constexpr std::uint64_t kBackward = 64;  // backward rows in a row before the clock is called restarted
+constexpr double kWildSteps = 10000;     // steps ahead of its followers that make a single stamp wild
 constexpr std::int64_t kWildEnd = 1000;  // steps to the last rows, if that is longer than the log
 
 /// Of an interval far below a nanosecond there may be more steps than 64 bits count.
@@ -32,15 +31,14 @@ std::int64_t whole_steps(double steps) {
 
 }  // namespace
 
-GridStretch gap_in_window(
-    std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns) {
+GridStretch gap_in_window(std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns) {
   GridStretch inside{1, gap};
   if (before_ns < static_cast<double>(from_ns))
-    inside.first = std::max<std::int64_t>(
-        1, whole_steps(std::ceil((static_cast<double>(from_ns) - before_ns) / dt_ns)));
+    inside.first =
+        std::max<std::int64_t>(1, whole_steps(std::ceil((static_cast<double>(from_ns) - before_ns) / dt_ns)));
   if (to_ns != INT64_MAX)
-    inside.last = std::min<std::int64_t>(
-        gap, whole_steps(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
+    inside.last =
+        std::min<std::int64_t>(gap, whole_steps(std::ceil((static_cast<double>(to_ns) - before_ns) / dt_ns)) - 1);
   return inside;
 }
 
@@ -76,10 +74,8 @@ void RateWatch::count(double near, double share) {
   const auto odd = static_cast<double>(steps_.size());
   std::vector<double> steps = std::exchange(steps_, {});
   const double usual = median_in_place(steps, Middle::lower);
-  const auto alike =
-      static_cast<double>(std::count_if(steps.begin(), steps.end(), [&](double step) {
-        return std::fabs(step - usual) <= near * usual;
-      }));
+  const auto alike = static_cast<double>(
+      std::count_if(steps.begin(), steps.end(), [&](double step) { return std::fabs(step - usual) <= near * usual; }));
   const std::uint64_t rows = last_row_ - first_row_ + 1;
   const bool other = usual > 1.25 || usual < 0.75;
   const bool goes_on = run_.rows == 0 || std::fabs(usual - run_.intervals) <= 0.25 * run_.intervals;
@@ -97,11 +93,7 @@ std::string TimeGrid::place(const Pending& front, std::size_t row) const {
   return source_.place(front.block, row, front.rows_before);
 }
 
-void TimeGrid::fail(const Pending& front,
-                    std::size_t row,
-                    std::string code,
-                    std::string what,
-                    std::string hint) const {
+void TimeGrid::fail(const Pending& front, std::size_t row, std::string code, std::string what, std::string hint) const {
   throw input_error(std::move(code), source_.where(front.block, row, front.rows_before))
       .says(std::move(what))
       .hint(std::move(hint));
@@ -109,28 +101,20 @@ void TimeGrid::fail(const Pending& front,
 
 std::int64_t TimeGrid::checked(const Pending& front, std::size_t row, std::int64_t stamp) const {
   if (stamp >= kMostNs || stamp <= -kMostNs)
-    fail(front,
-         row,
-         "E0314",
+    fail(front, row, "E0314",
          fmt::format("a time stamp of {} s; those within 146 years (2^62 ns) of zero are read",
                      shortest(static_cast<double>(stamp) * 1e-9)),
          "is the time unit right? `time_unit` says it");
   if (last_.any && (stamp - last_.first > kMostNs || stamp - last_.first < -kMostNs))
-    fail(front,
-         row,
-         "E0316",
-         fmt::format(
-             "wild time stamp: {} s away from the first",
-             shortest(static_cast<double>(stamp) * 1e-9 - static_cast<double>(last_.first) * 1e-9)),
+    fail(front, row, "E0316",
+         fmt::format("wild time stamp: {} s away from the first",
+                     shortest(static_cast<double>(stamp) * 1e-9 - static_cast<double>(last_.first) * 1e-9)),
          "remove the row, or read with `time_column` none and `rate_hz` HZ");
   return stamp;
 }
 
 // A row whose stamp is not one regular step behind the last one.
-TimeGrid::Verdict TimeGrid::decide(const Pending& front,
-                                   std::size_t row,
-                                   std::int64_t& stamp,
-                                   std::size_t ahead) {
+TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead) {
   if (!last_.any) {
     last_.first = stamp;
     return Verdict::keep;
@@ -146,44 +130,34 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front,
                     place(front, row));
       return Verdict::keep;
     }
-    warnings_.add("duplicate_timestamp",
-                  "rows with the stamp of the row before: the first is kept",
-                  place(front, row));
+    warnings_.add("duplicate_timestamp", "rows with the stamp of the row before: the first is kept", place(front, row));
     return Verdict::drop;
   }
   if (step < 0) return backward(front, row, stamp);
   if (const std::int64_t hour = skipped_hour(last_.stamp, stamp, source_.info().time, step_.ns)) {
     last_.wrap -= hour;
     stamp -= hour;
-    warnings_.add("clock_change",
-                  "an hour is skipped, as at the beginning of summer time: no gap",
-                  place(front, row));
+    warnings_.add("clock_change", "an hour is skipped, as at the beginning of summer time: no gap", place(front, row));
     return Verdict::keep;
   }
   const bool packets = step_.model.packet > 0;
-  const std::int64_t gap =
-      packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead);
+  const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead);
   if (packets && gap == 0) return Verdict::keep;
   return gap > 0 ? pass_gap(front, row, step, gap, ahead) : place_late_row(front, row, step, stamp);
 }
 
 TimeGrid::Verdict TimeGrid::drop_wild(const Pending& front, std::size_t row) {
-  warnings_.add("wild_stamp",
-                "rows with a stamp far away from those around them: dropped",
-                place(front, row));
+  warnings_.add("wild_stamp", "rows with a stamp far away from those around them: dropped", place(front, row));
   return Verdict::drop;
 }
 
 // Late, but the rows behind it are not: its stamp is wrong, the row has its place.
-TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front,
-                                           std::size_t row,
-                                           std::int64_t step,
+TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row, std::int64_t step,
                                            std::int64_t& stamp) {
   const double late = static_cast<double>(step) + recent_.rows.last_late(step_.ns);
   if (late > kWildSteps * step_.ns) return drop_wild(front, row);
   if (late <= 2 * step_.ns) return Verdict::keep;
-  warnings_.add("late_stamp",
-                "stamps far ahead of the rows behind them: the rows are placed on the grid",
+  warnings_.add("late_stamp", "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
   stamp = last_.stamp + static_cast<std::int64_t>(std::llround(step_.ns));
   return Verdict::keep;
@@ -191,37 +165,27 @@ TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front,
 
 // Grid points before the window's start are passed over. A few last rows, further away than the log
 // is long, are no end of a gap.
-TimeGrid::Verdict TimeGrid::pass_gap(
-    const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left) {
-  if (left <= kRowsAhead && gap > kWildEnd && step > last_.stamp - last_.first &&
-      counts_.used > kRowsAhead)
+TimeGrid::Verdict TimeGrid::pass_gap(const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap,
+                                     std::size_t left) {
+  if (left <= kRowsAhead && gap > kWildEnd && step > last_.stamp - last_.first && counts_.used > kRowsAhead)
     return drop_wild(front, row);
   if (static_cast<double>(gap) > kLargestGap)
-    fail(front,
-         row,
-         "E0316",
+    fail(front, row, "E0316",
          fmt::format("wild time stamp: {} s after the row before ({} missing samples)",
-                     shortest(static_cast<double>(step) * 1e-9),
-                     gap),
+                     shortest(static_cast<double>(step) * 1e-9), gap),
          "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` "
          "HZ ignore "
          "the stamps");
-  const GridStretch inside = gap_in_window(gap,
-                                           static_cast<double>(last_.stamp - last_.first),
-                                           step_.ns,
-                                           window_.from_ns,
-                                           window_.to_ns);
+  const GridStretch inside =
+      gap_in_window(gap, static_cast<double>(last_.stamp - last_.first), step_.ns, window_.from_ns, window_.to_ns);
   if (inside.count() > 0)
     warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
   if (inside.count() > 0 && !start_ns_)
-    start_ns_ = last_.stamp + static_cast<std::int64_t>(
-                                  std::llround(static_cast<double>(inside.first) * step_.ns));
+    start_ns_ = last_.stamp + static_cast<std::int64_t>(std::llround(static_cast<double>(inside.first) * step_.ns));
   leave_missing(inside.count(), gap);
   // The step that is left is a usual one; of packets and the like only the lag says what that is.
-  const double left_out =
-      step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;
-  if (static_cast<double>(gap) > kLongGap)
-    sketch_.skip(gap, static_cast<std::int64_t>(std::llround(left_out)));
+  const double left_out = step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;
+  if (static_cast<double>(gap) > kLongGap) sketch_.skip(gap, static_cast<std::int64_t>(std::llround(left_out)));
   recent_.rows.clear();
   return Verdict::keep;
 }
@@ -235,16 +199,14 @@ void TimeGrid::leave_missing(std::uint64_t samples, std::int64_t steps) {
 
 // What begins again goes on; other steps back drop the row.
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  if (const auto wrap =
-          find_wrap(last_.stamp - last_.wrap, stamp - last_.wrap, source_.info().time, step_.ns)) {
+  if (const auto wrap = find_wrap(last_.stamp - last_.wrap, stamp - last_.wrap, source_.info().time, step_.ns)) {
     unwrap(front, row, *wrap, stamp);
     return Verdict::keep;
   }
   if (backward_.in_a_row == 0) backward_.place = source_.where(front.block, row, front.rows_before);
   backward_.add(stamp);
   if (backward_.in_a_row >= kBackward) refuse_backward();
-  warnings_.add("backward_timestamp",
-                "rows whose stamp lies before that of the row before: dropped",
+  warnings_.add("backward_timestamp", "rows whose stamp lies before that of the row before: dropped",
                 place(front, row));
   return Verdict::drop;
 }
@@ -253,54 +215,41 @@ void TimeGrid::refuse_backward() const {
   const LogInfo& log = source_.info();
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   const std::string how_far = duration_text(seconds(last_.stamp - backward_.first));
-  std::string hint =
-      fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
-                  shortest(rounded(1e9 / step_.ns, 6)));
+  std::string hint = fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
+                                 shortest(rounded(1e9 / step_.ns, 6)));
   if (backward_.restarted() && last_.stamp > last_.first)
-    hint = fmt::format("`to_s` {} reads what stands before it, {}",
-                       shortest(seconds(last_.stamp - last_.first)),
-                       hint);
+    hint = fmt::format("`to_s` {} reads what stands before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
   if (!log.topics.empty() && options_.time_source != "log")
     hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
   throw input_error("E0317", backward_.place)
       .says(backward_.restarted()
-                ? fmt::format(
-                      "the time steps back here by {} and goes on from there: {}",
-                      how_far,
-                      log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
-                          ? "parts of a second without leading zeros, or two logs in one file"
-                          : "two logs in one file, or a device that restarted")
+                ? fmt::format("the time steps back here by {} and goes on from there: {}", how_far,
+                              log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
+                                  ? "parts of a second without leading zeros, or two logs in one file"
+                                  : "two logs in one file, or a device that restarted")
                 : fmt::format("the time steps back here by {}, and {} rows in no order do not "
                               "catch up: rows of several sources, or a wild stamp before",
-                              how_far,
-                              kBackward))
+                              how_far, kBackward))
       .hint(hint);
 }
 
-void TimeGrid::unwrap(const Pending& front,
-                      std::size_t row,
-                      const ClockWrap& wrap,
-                      std::int64_t& stamp) {
+void TimeGrid::unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp) {
   last_.wrap += wrap.range_ns;
   stamp = checked(front, row, stamp + wrap.range_ns);
-  warnings_.add(
-      wrap.local ? "clock_change" : "clock_rollover", wrap.what + ": unwrapped", place(front, row));
+  warnings_.add(wrap.local ? "clock_change" : "clock_rollover", wrap.what + ": unwrapped", place(front, row));
   if (stamp - last_.stamp <= step_.longest) return;
   const std::int64_t late =
-      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_.stamp) / step_.ns)) -
-      1;
+      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_.stamp) / step_.ns)) - 1;
   if (late > 0) leave_missing(static_cast<std::uint64_t>(late), late);
 }
 
 // How much later than expected this row and those behind it are, in steps; its own first.
-std::vector<double> TimeGrid::lags_ahead(const Pending& front,
-                                         std::size_t row,
-                                         std::int64_t stamp,
+std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp,
                                          std::size_t ahead) const {
   const double last_late = step_.coarse ? 0 : recent_.rows.last_late(step_.ns);
   const auto late = [&](std::int64_t t, std::size_t j) {
-    return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns -
-           static_cast<double>(j + 1) - step_.model.usual_lag;
+    return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns - static_cast<double>(j + 1) -
+           step_.model.usual_lag;
   };
   // Of two rows that changed places the second is dropped: its place is empty.
   const bool close = static_cast<double>(stamp - last_.stamp) < 3 * step_.ns;
@@ -329,20 +278,14 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front,
 }
 
 // Missing grid points before this row.
-std::int64_t TimeGrid::lag(const Pending& front,
-                           std::size_t row,
-                           std::int64_t stamp,
-                           std::size_t ahead) const {
+std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   // Of an interval far below a nanosecond there may be more steps than 64 bits count.
   return static_cast<std::int64_t>(
       std::llround(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead)), -9e18, 9e18)));
 }
 
 // Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
-std::int64_t TimeGrid::packet_lag(const Pending& front,
-                                  std::size_t row,
-                                  std::int64_t stamp,
-                                  std::size_t ahead) const {
+std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   constexpr double kOff = 0.35;  // of a packet: further off it is no whole number of them
   if (!recent_.packets.any()) return 0;
   const auto rows = static_cast<double>(step_.model.packet);
@@ -358,18 +301,14 @@ std::int64_t TimeGrid::packet_lag(const Pending& front,
       i = 0;
     }
     std::int64_t t = 0, step = 0;
-    if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
-        __builtin_sub_overflow(t, before, &step))
-      break;
+    if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;
     before = t;
     if (step > step_.longest)
-      late = std::min(
-          late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
+      late = std::min(late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
   }
   const double packets = late / (rows * step_.ns), whole = std::round(packets);
   if (packets < 0.5 || late > 9e18) return 0;
-  return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows
-                                                                     : std::round(late / step_.ns));
+  return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows : std::round(late / step_.ns));
 }
 
 // A row with the stamp of the one before has a place of its own where those behind it stand where they would then:

@@ -11,24 +11,20 @@ namespace libchar {
 /// Grid points first … last behind a row; none when last < first.
 struct GridStretch {
   std::int64_t first = 1, last = 0;
-  std::uint64_t count() const {
-    return last < first ? 0 : static_cast<std::uint64_t>(last - first + 1);
-  }
+  std::uint64_t count() const { return last < first ? 0 : static_cast<std::uint64_t>(last - first + 1); }
 };
 
 /// Of the `gap` missing grid points behind a row `before_ns` after the first stamp: those from
 /// `from_ns` on and before `to_ns` (INT64_MAX = no end), also after the first stamp.
-GridStretch gap_in_window(
-    std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns);
+GridStretch gap_in_window(std::int64_t gap, double before_ns, double dt_ns, std::int64_t from_ns, std::int64_t to_ns);
 
 /// Rows that follow each other in steps of one length, which is not the grid's.
 struct OddRun {
   std::uint64_t rows = 0;
   double intervals = 0;  ///< a step
   std::int64_t began_ns = 0,
-               ended_ns =
-                   0;  ///< after the first stamp: the rows before the first and the last step
-  std::string place;   ///< of the former
+               ended_ns = 0;  ///< after the first stamp: the rows before the first and the last step
+  std::string place;          ///< of the former
   /// Rows are left out, one or more in each step: the grid holds.
   bool whole() const;
 };

@@ -59,9 +59,7 @@ constexpr std::array kDayCounts = {DayCount{"days since 1858-11-17 (MJD)", "mjd"
                                    DayCount{"days of MATLAB's datenum", "", 719529},
                                    DayCount{"Julian days", "", 2440587.5}};
 
-bool few_digits(double step) {
-  return std::fabs(step - rounded(step, 3)) <= 1e-6 * step;
-}
+bool few_digits(double step) { return std::fabs(step - rounded(step, 3)) <= 1e-6 * step; }
 
 /// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as
 /// seconds.
@@ -74,8 +72,7 @@ const DayCount* day_count(const std::string& stem, const FirstValues& first) {
     const bool said = *count.word != '\0' && name.find(count.word) != std::string::npos;
     if (*count.word != '\0' && !said) continue;
     if (size - count.of_1970 < kFrom || size - count.of_1970 > kTo) continue;
-    if (said || (!first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step))))
-      return &count;
+    if (said || (!first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step)))) return &count;
   }
   return nullptr;
 }
@@ -87,23 +84,18 @@ std::int64_t unit_by_step(double step) {
 }
 
 bool whole_thousands(const std::vector<double>& values) {
-  return std::all_of(
-      values.begin(), values.end(), [](double x) { return std::fmod(x, 1000) == 0; });
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::fmod(x, 1000) == 0; });
 }
 
-double rate_in(double step, std::int64_t unit_ns) {
-  return 1e9 / (step * static_cast<double>(unit_ns));
-}
+double rate_in(double step, std::int64_t unit_ns) { return 1e9 / (step * static_cast<double>(unit_ns)); }
 
-constexpr std::array kStampUnits = {
-    std::int64_t{1000000000}, std::int64_t{1000000}, std::int64_t{1000}, std::int64_t{1}};
+constexpr std::array kStampUnits = {std::int64_t{1000000000}, std::int64_t{1000000}, std::int64_t{1000},
+                                    std::int64_t{1}};
 
 /// Intervals at which sensors and loggers are read: whole rates up to 2 kHz in fives, or the usual pauses.
 bool usual_interval(double seconds) {
-  constexpr std::array kPauses = {
-      1, 2, 5, 10, 15, 20, 30, 60, 120, 180, 300, 600, 900, 1200, 1800, 3600, 7200, 86400};
-  if (seconds >= 1)
-    return std::any_of(kPauses.begin(), kPauses.end(), [&](int s) { return seconds == s; });
+  constexpr std::array kPauses = {1, 2, 5, 10, 15, 20, 30, 60, 120, 180, 300, 600, 900, 1200, 1800, 3600, 7200, 86400};
+  if (seconds >= 1) return std::any_of(kPauses.begin(), kPauses.end(), [&](int s) { return seconds == s; });
   const double rate = 1 / seconds;
   const double unit = rate < 5 ? 1 : 5;
   return rate <= 2000 && std::fabs(rate - unit * std::round(rate / unit)) < 1e-9 * rate;
@@ -115,15 +107,12 @@ std::vector<std::int64_t> usual_units(double step) {
   std::vector<std::int64_t> out;
   for (const std::int64_t unit : kStampUnits) {
     const double seconds = step * 1e-9 * static_cast<double>(unit);
-    if (step > 1 && usual_interval(seconds) && (unit == kStampUnits[0] || seconds <= kLongest))
-      out.push_back(unit);
+    if (step > 1 && usual_interval(seconds) && (unit == kStampUnits[0] || seconds <= kLongest)) out.push_back(unit);
   }
   return out;
 }
 
-bool says_a_date(const FirstValues& first) {
-  return first.values.empty() || std::fabs(first.values[0]) >= 6.3e8;
-}
+bool says_a_date(const FirstValues& first) { return first.values.empty() || std::fabs(first.values[0]) >= 6.3e8; }
 
 // Time since 1970 betrays its unit by its size, where that is a date from 1990 to 2100; a time
 // since power-on by its step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an
@@ -152,21 +141,16 @@ std::int64_t guess_unit(const FirstValues& first) {
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
-  std::vector<std::int64_t> units =
-      first.integers ? usual_units(step) : std::vector<std::int64_t>{};
+  std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
   if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
   if (units.size() == 1 && unit == kStampUnits[0]) return false;
   Finding& guess = info.warnings.add(
-      "time_unit_guessed",
-      fmt::format("the stamps state no unit: taken as {} by their step of {}, {} Hz",
-                  unit_name(unit),
-                  brief_text(step, 6),
-                  brief_text(rate_in(step, unit), 6)));
+      "time_unit_guessed", fmt::format("the stamps state no unit: taken as {} by their step of {}, {} Hz",
+                                       unit_name(unit), brief_text(step, 6), brief_text(rate_in(step, unit), 6)));
   guess.severity = units.size() > 1 ? Severity::caution : Severity::note;
   for (const std::int64_t one : units)
-    guess.help.push_back(
-        {fmt::format("{}: {} Hz.", unit_name(one), brief_text(rate_in(step, one), 6)),
-         {{"time_unit", unit_name(one)}}});
+    guess.help.push_back({fmt::format("{}: {} Hz.", unit_name(one), brief_text(rate_in(step, one), 6)),
+                          {{"time_unit", unit_name(one)}}});
   return true;
 }
 
@@ -175,10 +159,7 @@ std::int64_t unit_from_options(const std::string& word) {
     if (word == known) return unit_in_ns(word);
   if (word == "d") return kDayNs;
   if (word == "100us") return 100000;
-  throw usage_error("E0323")
-      .says("unknown time unit")
-      .got(word)
-      .hint("use auto, s, ms, us, ns, min, h, d or 100us");
+  throw usage_error("E0323").says("unknown time unit").got(word).hint("use auto, s, ms, us, ns, min, h, d or 100us");
 }
 
 // As the name or the file says; 0 when neither does.
@@ -190,31 +171,21 @@ std::int64_t unit_said(const ColumnLabel& column) {
 }
 
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
-std::int64_t guess_fine(const FirstValues& first) {
-  return usual_step(first.values) < 2000 ? 100000 : 1000;
-}
+std::int64_t guess_fine(const FirstValues& first) { return usual_step(first.values) < 2000 ? 100000 : 1000; }
 
-bool rates_agree(double rate_hz, double stated_hz) {
-  return rate_hz > 0.8 * stated_hz && rate_hz < 1.25 * stated_hz;
-}
+bool rates_agree(double rate_hz, double stated_hz) { return rate_hz > 0.8 * stated_hz && rate_hz < 1.25 * stated_hz; }
 
 // The unit in which the stamps run at the rate that the file states.
 std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, const LogInfo& info) {
   if (rates_agree(rate_in(step, guess), stated_hz)) return guess;
-  for (const std::int64_t unit : {std::int64_t{1},
-                                  std::int64_t{1000},
-                                  std::int64_t{100000},
-                                  std::int64_t{1000000},
-                                  std::int64_t{1000000000}})
+  for (const std::int64_t unit :
+       {std::int64_t{1}, std::int64_t{1000}, std::int64_t{100000}, std::int64_t{1000000}, std::int64_t{1000000000}})
     if (rates_agree(rate_in(step, unit), stated_hz)) return unit;
   throw input_error("E0325", info.file)
       .says(
           "the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no "
           "unit",
-          shortest(stated_hz),
-          brief_text(step, 6),
-          brief_text(rate_in(step, guess), 6),
-          unit_name(guess))
+          shortest(stated_hz), brief_text(step, 6), brief_text(rate_in(step, guess), 6), unit_name(guess))
       .hint(
           "`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the "
           "stated rate");
@@ -223,26 +194,19 @@ std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, con
 void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit, LogInfo& info) {
   const double rate = rate_in(step, unit);
   if (rates_agree(rate, *table.stated_rate_hz)) return;
-  info.warnings.add("stated_rate",
-                    "the file states another rate than its stamps have: the stamps are believed",
-                    fmt::format("{} Hz stated, {} Hz by the stamps",
-                                shortest(*table.stated_rate_hz),
-                                brief_text(rate, 6)));
+  info.warnings.add(
+      "stated_rate", "the file states another rate than its stamps have: the stamps are believed",
+      fmt::format("{} Hz stated, {} Hz by the stamps", shortest(*table.stated_rate_hz), brief_text(rate, 6)));
 }
 
 }  // namespace
 
-StampUnit find_time_unit(const TableFront& table,
-                         std::size_t column,
-                         const ReadOptions& options,
-                         LogInfo& info) {
+StampUnit find_time_unit(const TableFront& table, std::size_t column, const ReadOptions& options, LogInfo& info) {
   const std::string stem = name_and_unit(table.columns[column].name).first;
-  StampUnit unit{options.time_unit != "auto" ? unit_from_options(options.time_unit)
-                                             : unit_said(table.columns[column])};
+  StampUnit unit{options.time_unit != "auto" ? unit_from_options(options.time_unit) : unit_said(table.columns[column])};
   if (unit.ns == 0 && table.stated_tick_s) {
     unit.ns = std::max<std::int64_t>(1, std::llround(*table.stated_tick_s * 1e9));
-    info.dialect.push_back(
-        fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
+    info.dialect.push_back(fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
   }
   const FirstValues first = table.first_values(column);
   const double step = usual_step(first.values);
@@ -251,21 +215,18 @@ StampUnit find_time_unit(const TableFront& table,
   if (days != nullptr) {
     unit = {kDayNs, days->of_1970};
     info.time.unit_guessed = options.time_unit == "auto";
-    info.guesses.push_back(fmt::format(
-        "time: {}, from the size of the stamps (`time_unit` says otherwise)", days->name));
+    info.guesses.push_back(
+        fmt::format("time: {}, from the size of the stamps (`time_unit` says otherwise)", days->name));
   } else if (unit.ns == 0) {
-    const std::int64_t guess =
-        ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
+    const std::int64_t guess = ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
     unit.ns = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;
     if (!by_step || !say_guess_by_step(first, unit.ns, info))
-      info.guesses.push_back(fmt::format("time unit: {}, from {} (`time_unit` says otherwise)",
-                                         unit_name(unit.ns),
-                                         comparable
-                                             ? fmt::format("the rate of {} Hz that the file states",
-                                                           shortest(*table.stated_rate_hz))
-                                             : "the size and step of the stamps"));
+      info.guesses.push_back(fmt::format(
+          "time unit: {}, from {} (`time_unit` says otherwise)", unit_name(unit.ns),
+          comparable ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
+                     : "the size and step of the stamps"));
   } else if (comparable) {
     warn_of_stated_rate(table, step, unit.ns, info);
   }

@@ -25,8 +25,7 @@ constexpr std::size_t kMostTopics = 64, kLearnt = 1025, kRowsPerBlock = 8192;
 /// Rows of a topic that are read and not yet taken.
 class TopicQueue {
  public:
-  TopicQueue(std::unique_ptr<RowSource> rows, std::string name)
-      : name_(std::move(name)), source_(std::move(rows)) {}
+  TopicQueue(std::unique_ptr<RowSource> rows, std::string name) : name_(std::move(name)), source_(std::move(rows)) {}
 
   const std::string& name() const { return name_; }
   const RowSource& source() const { return *source_; }
@@ -45,8 +44,7 @@ class TopicQueue {
       columns_.resize(block_.columns.size());
       const auto rows = static_cast<std::ptrdiff_t>(block_.rows);
       for (std::size_t c = 0; c < columns_.size(); ++c)
-        columns_[c].insert(
-            columns_[c].end(), block_.columns[c].begin(), block_.columns[c].begin() + rows);
+        columns_[c].insert(columns_[c].end(), block_.columns[c].begin(), block_.columns[c].begin() + rows);
       times_.insert(times_.end(), block_.time_ns.begin(), block_.time_ns.begin() + rows);
     }
     return times_.size() - at_;
@@ -54,8 +52,7 @@ class TopicQueue {
   /// Is there a row? One whose stamp lies behind that of the next is out of turn and left out.
   bool ready() {
     while (have(2) > 1 && times_[at_] > times_[at_ + 1]) {
-      findings_.add("wild_stamp",
-                    "stamps that fit neither their neighbours nor the clock: left out",
+      findings_.add("wild_stamp", "stamps that fit neither their neighbours nor the clock: left out",
                     fmt::format("row {} of {}", taken_, printable(name_)));
       pop();
     }
@@ -88,9 +85,7 @@ class TopicQueue {
 
 class JoinedTopics final : public RowSource {
  public:
-  JoinedTopics(std::vector<TopicQueue> topics,
-               const std::vector<std::string>& left_out,
-               const ReadOptions& options)
+  JoinedTopics(std::vector<TopicQueue> topics, const std::vector<std::string>& left_out, const ReadOptions& options)
       : topics_(std::move(topics)),
         aligned_(topics_.size() > 1 && !options.kinds.own_stamps),
         behind_ns_(topics_.size(), 0),
@@ -99,8 +94,7 @@ class JoinedTopics final : public RowSource {
         raw_(topics_.size(), 0) {
     learn();
     describe(options);
-    if (!left_out.empty())
-      info_.dialect.push_back("left out, without stamps: " + first_names(left_out));
+    if (!left_out.empty()) info_.dialect.push_back("left out, without stamps: " + first_names(left_out));
   }
 
   const LogInfo& info() const override { return info_; }
@@ -142,11 +136,9 @@ class JoinedTopics final : public RowSource {
     if (aligned_) say_apart(names, turns, warnings);
     for (std::size_t t = 0; t < topics_.size(); ++t)
       if (lost_[t] > 0)
-        warnings.add(
-            "duplicate_timestamp",
-            "rows of a topic that share a row of the joined table with another one: dropped",
-            topics_[t].name(),
-            lost_[t]);
+        warnings.add("duplicate_timestamp",
+                     "rows of a topic that share a row of the joined table with another one: dropped",
+                     topics_[t].name(), lost_[t]);
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
@@ -177,8 +169,7 @@ class JoinedTopics final : public RowSource {
   static double usual_step(const TopicQueue& topic, std::size_t rows) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < rows; ++i)
-      if (topic.time(i) > topic.time(i - 1))
-        steps.push_back(static_cast<double>(topic.time(i) - topic.time(i - 1)));
+      if (topic.time(i) > topic.time(i - 1)) steps.push_back(static_cast<double>(topic.time(i) - topic.time(i - 1)));
     if (steps.empty()) return 0;
     const double usual = median_in_place(steps, Middle::lower);
     std::erase_if(steps, [&](double step) { return std::fabs(step - usual) > 0.5 * usual; });
@@ -188,8 +179,7 @@ class JoinedTopics final : public RowSource {
   /// Median distance of the first rows from the nearest of the fastest topic.
   double usual_distance(TopicQueue& topic) {
     TopicQueue& base = topics_[base_];
-    const std::size_t rows = std::min(base.have(kLearnt), kLearnt),
-                      n = std::min(topic.have(kLearnt), kLearnt);
+    const std::size_t rows = std::min(base.have(kLearnt), kLearnt), n = std::min(topic.have(kLearnt), kLearnt);
     std::vector<double> off;
     for (std::size_t i = 0, b = 0; i < n && rows > 0; ++i) {
       const auto distance = [&](std::size_t k) {
@@ -221,15 +211,11 @@ class JoinedTopics final : public RowSource {
     }
     row_.resize(info_.channels.size());
     if (topics_.size() > 1)
-      info_.dialect.push_back(fmt::format("{} topics as one table, in rows of {}: {}",
-                                          names.size(),
-                                          names[base_],
-                                          first_names(names)));
+      info_.dialect.push_back(
+          fmt::format("{} topics as one table, in rows of {}: {}", names.size(), names[base_], first_names(names)));
   }
 
-  std::int64_t aligned(std::size_t topic) const {
-    return topics_[topic].time() - std::llround(behind_ns_[topic]);
-  }
+  std::int64_t aligned(std::size_t topic) const { return topics_[topic].time() - std::llround(behind_ns_[topic]); }
 
   std::optional<std::size_t> earliest() {
     std::optional<std::size_t> first;
@@ -255,8 +241,7 @@ class JoinedTopics final : public RowSource {
     in_row_[t] = true;
     raw_[t] = topic.time();
     const std::size_t first = first_channel(t);
-    for (std::size_t c = 0; c < topic.source().info().channels.size(); ++c)
-      row_[first + c] = topic.value(c);
+    for (std::size_t c = 0; c < topic.source().info().channels.size(); ++c) row_[first + c] = topic.value(c);
     topic.pop();
   }
 
@@ -293,8 +278,7 @@ class JoinedTopics final : public RowSource {
       if (known != nullptr && known->count == one.count && known->where == one.where) continue;
       Findings alone;
       for (const std::string& row : one.where.rows) alone.add(one.code, one.sentence, row);
-      if (one.count > one.where.rows.size())
-        alone.add(one.code, one.sentence, "", one.count - one.where.rows.size());
+      if (one.count > one.where.rows.size()) alone.add(one.code, one.sentence, "", one.count - one.where.rows.size());
       warnings.merge(alone);
     }
   }
@@ -316,11 +300,8 @@ class JoinedTopics final : public RowSource {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& chosen,
-                                              const std::vector<LogTopic>& all,
-                                              const OpenTopics& open,
-                                              const std::string& path,
-                                              std::string_view format,
+std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& chosen, const std::vector<LogTopic>& all,
+                                              const OpenTopics& open, const std::string& path, std::string_view format,
                                               const ReadOptions& options) {
   if (chosen.size() > kMostTopics)
     throw usage_error("E0425", path)

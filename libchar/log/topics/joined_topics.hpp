@@ -10,17 +10,13 @@
 
 namespace libchar {
 
-using OpenTopics = std::unique_ptr<TopicReader> (*)(const std::string& path,
-                                                    const ReadOptions& options);
+using OpenTopics = std::unique_ptr<TopicReader> (*)(const std::string& path, const ReadOptions& options);
 
 /// Rows with the channels TOPIC/FIELD of all that `chosen` names, each read by a reader of its own. A row holds the
 /// samples of one instant, at the stamp of the fastest topic; with `own_stamps` each stamp has a row. Throws
 /// Error(usage) for topics without stamps.
-std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& chosen,
-                                              const std::vector<LogTopic>& all,
-                                              const OpenTopics& open,
-                                              const std::string& path,
-                                              std::string_view format,
+std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& chosen, const std::vector<LogTopic>& all,
+                                              const OpenTopics& open, const std::string& path, std::string_view format,
                                               const ReadOptions& options);
 
 }  // namespace libchar

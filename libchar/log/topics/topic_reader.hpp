@@ -54,9 +54,7 @@ class TopicReader {
   /// Called once, before the first row: what `next` is to deliver. `time` is a field that holds
   /// stamps, in that unit (exact where they are integers); absent
   /// when rows bring stamps of their own or there are none.
-  virtual void select(std::size_t topic,
-                      const std::vector<std::size_t>& fields,
-                      std::optional<std::size_t> time,
+  virtual void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
                       StampUnit unit) = 0;
 
   /// Appends up to `most` rows to a block whose columns (one a field, in the order of `select`)

@@ -21,9 +21,7 @@ namespace libchar {
 
 namespace {
 
-bool readable(const LogTopic& topic) {
-  return topic.why_not.empty() && !topic.fields.empty();
-}
+bool readable(const LogTopic& topic) { return topic.why_not.empty() && !topic.fields.empty(); }
 
 std::vector<std::string> readable_names(const std::vector<LogTopic>& topics) {
   std::vector<std::string> names;
@@ -67,9 +65,8 @@ std::set<std::size_t> topics_of(const std::vector<LogTopic>& topics, const std::
   if (const auto whole = qualified(topics, word)) return {whole->first};
   std::set<std::size_t> found;
   for (std::size_t t = 0; t < topics.size(); ++t)
-    if (std::any_of(topics[t].fields.begin(), topics[t].fields.end(), [&](const Channel& field) {
-          return field_fits(word, topics[t], field);
-        }))
+    if (std::any_of(topics[t].fields.begin(), topics[t].fields.end(),
+                    [&](const Channel& field) { return field_fits(word, topics[t], field); }))
       found.insert(t);
   return found;
 }
@@ -84,16 +81,13 @@ std::vector<std::string> fields_of(const LogTopic& topic, const std::string& wor
   return fields;
 }
 
-TopicChoice choice_of(const std::vector<LogTopic>& topics,
-                      std::size_t topic,
-                      const ReadOptions& options) {
+TopicChoice choice_of(const std::vector<LogTopic>& topics, std::size_t topic, const ReadOptions& options) {
   TopicChoice choice;
   choice.topic = topic;
   for (const std::string& word : options.channels) {
     const std::string name = word.substr(excludes(word) ? 1 : 0);
     const auto whole = qualified(topics, name);
-    for (const std::string& field :
-         fields_of(topics[topic], whole && whole->first == topic ? whole->second : name))
+    for (const std::string& field : fields_of(topics[topic], whole && whole->first == topic ? whole->second : name))
       choice.channels.push_back((excludes(word) ? "!" : "") + field);
   }
   return choice;
@@ -107,21 +101,17 @@ bool is_instance_of(const std::string& name, const std::string& wanted) {
 }
 
 /// Those that can be read.
-std::vector<std::size_t> topics_named(const std::vector<LogTopic>& topics,
-                                      const std::string& wanted) {
+std::vector<std::size_t> topics_named(const std::vector<LogTopic>& topics, const std::string& wanted) {
   std::vector<std::size_t> found;
   for (std::size_t t = 0; t < topics.size(); ++t) {
     if (topics[t].name == wanted) return {t};
-    const bool fits = is_pattern(wanted) ? matches(wanted, topics[t].name)
-                                         : is_instance_of(topics[t].name, wanted);
+    const bool fits = is_pattern(wanted) ? matches(wanted, topics[t].name) : is_instance_of(topics[t].name, wanted);
     if (fits && readable(topics[t])) found.push_back(t);
   }
   return found;
 }
 
-std::size_t named_topic(const std::vector<LogTopic>& topics,
-                        const std::string& wanted,
-                        const std::string& file) {
+std::size_t named_topic(const std::vector<LogTopic>& topics, const std::string& wanted, const std::string& file) {
   const std::vector<std::size_t> found = topics_named(topics, wanted);
   if (!found.empty()) return found[0];
   const std::vector<std::string> names = readable_names(topics);
@@ -131,8 +121,7 @@ std::size_t named_topic(const std::vector<LogTopic>& topics,
       .hint(did_you_mean(nearest(wanted, names), "it has " + first_names(names)));
 }
 
-std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
-                              const ReadOptions& options,
+std::size_t topic_of_channels(const std::vector<LogTopic>& topics, const ReadOptions& options,
                               const std::string& file) {
   std::optional<std::set<std::size_t>> common;
   for (const std::string& word : options.channels) {
@@ -164,8 +153,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
 }
 
 // What a log lost says why nothing of it can be read.
-[[noreturn]] void refuse_unreadable_log(const std::vector<LogTopic>& topics,
-                                        const std::string& file,
+[[noreturn]] void refuse_unreadable_log(const std::vector<LogTopic>& topics, const std::string& file,
                                         const Findings& losses) {
   std::string what, got, hint;
   if (!topics.empty()) {
@@ -188,8 +176,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics,
 
 }  // namespace
 
-std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
-                                        const ReadOptions& options,
+std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics, const ReadOptions& options,
                                         const std::string& file) {
   if (!options.topic.empty()) {
     const std::size_t t = named_topic(topics, options.topic, file);
@@ -210,15 +197,12 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
   }
   if (sensors.size() != 1) return std::nullopt;
   TopicChoice choice = choice_of(topics, sensors[0], options);
-  choice.guess =
-      fmt::format("topic: {}, the only one of {} that is a sensor's (`topic` takes another one)",
-                  printable(topics[sensors[0]].name),
-                  usable.size());
+  choice.guess = fmt::format("topic: {}, the only one of {} that is a sensor's (`topic` takes another one)",
+                             printable(topics[sensors[0]].name), usable.size());
   return choice;
 }
 
-std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics,
-                                       const ReadOptions& options,
+std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics, const ReadOptions& options,
                                        const std::string& file) {
   const std::vector<std::size_t> named = topics_named(topics, options.topic);
   if (options.topic.empty() || named.size() < 2) return {};
@@ -235,20 +219,16 @@ std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics,
     if (known) continue;
     std::vector<std::string> names;
     for (const std::size_t t : named)
-      for (const Channel& field : topics[t].fields)
-        names.push_back(topics[t].name + "/" + field.name);
+      for (const Channel& field : topics[t].fields) names.push_back(topics[t].name + "/" + field.name);
     refuse_channel(word, names, options, file);
   }
   std::vector<TopicChoice> chosen;
   for (std::size_t k = 0; k < named.size(); ++k)
-    if (!chooses(options) || chooses(parts[k]))
-      chosen.push_back(choice_of(topics, named[k], parts[k]));
+    if (!chooses(options) || chooses(parts[k])) chosen.push_back(choice_of(topics, named[k], parts[k]));
   return chosen;
 }
 
-void refuse_without_topic(const std::vector<LogTopic>& topics,
-                          const std::string& file,
-                          const Findings& losses) {
+void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file, const Findings& losses) {
   const std::vector<std::string> names = readable_names(topics);
   if (names.empty()) refuse_unreadable_log(topics, file, losses);
   throw usage_error("E0427", file)
@@ -260,9 +240,7 @@ namespace {
 
 class TopicRows final : public RowSource {
  public:
-  TopicRows(std::unique_ptr<TopicReader> reader,
-            const std::string& path,
-            std::string_view format,
+  TopicRows(std::unique_ptr<TopicReader> reader, const std::string& path, std::string_view format,
             const ReadOptions& options)
       : reader_(std::move(reader)), files_(open_all(path)), hash_(pointers(), options.hash) {
     info_.file = path;
@@ -270,8 +248,7 @@ class TopicRows final : public RowSource {
     for (const auto& file : files_) info_.bytes += file->size();
     info_.topics = reader_->topics();
     info_.dialect = reader_->dialect();
-    const auto choice =
-        info_.topics.empty() ? std::nullopt : choose_topic(info_.topics, options, path);
+    const auto choice = info_.topics.empty() ? std::nullopt : choose_topic(info_.topics, options, path);
     if (!choice) {
       Findings losses;
       reader_->finish(losses);
@@ -299,8 +276,7 @@ class TopicRows final : public RowSource {
     block.line_offset.clear();
     if (!reader_->next(block, rows_per_block_, warnings)) return false;
     if (ignore_stamps_) block.time_ns.clear();
-    for (std::size_t c = 0; c < block.columns.size(); ++c)
-      drop_non_finite(c, block.columns[c], warnings);
+    for (std::size_t c = 0; c < block.columns.size(); ++c) drop_non_finite(c, block.columns[c], warnings);
     rows_ += block.rows;
     return true;
   }
@@ -312,8 +288,7 @@ class TopicRows final : public RowSource {
     if (count == 0) return;
     const std::string message = missing_cells(info_.channels, missing_per_channel_);
     for (const std::string& place : missing_places_) warnings.add("missing_cell", message, place);
-    if (count > missing_places_.size())
-      warnings.add("missing_cell", message, "", count - missing_places_.size());
+    if (count > missing_places_.size()) warnings.add("missing_cell", message, "", count - missing_places_.size());
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
@@ -323,8 +298,7 @@ class TopicRows final : public RowSource {
  private:
   static std::vector<std::unique_ptr<BinaryFile>> open_all(const std::string& path) {
     std::vector<std::unique_ptr<BinaryFile>> files;
-    for (const std::string& file : files_of_log(path))
-      files.push_back(std::make_unique<BinaryFile>(file));
+    for (const std::string& file : files_of_log(path)) files.push_back(std::make_unique<BinaryFile>(file));
     return files;
   }
   std::vector<const BinaryFile*> pointers() const {
@@ -344,9 +318,8 @@ class TopicRows final : public RowSource {
     info_.topic = topic().name;
     info_.rows = topic().rows;
     if (!topic().name.empty())
-      info_.dialect.push_back(topic().type.empty()
-                                  ? fmt::format("topic {}", topic().name)
-                                  : fmt::format("topic {}, {}", topic().name, topic().type));
+      info_.dialect.push_back(topic().type.empty() ? fmt::format("topic {}", topic().name)
+                                                   : fmt::format("topic {}, {}", topic().name, topic().type));
     if (!choice.guess.empty()) info_.guesses.push_back(choice.guess);
   }
 
@@ -374,8 +347,7 @@ class TopicRows final : public RowSource {
     const std::vector<std::size_t> chosen = chosen_fields(columns, options);
     for (const std::size_t i : chosen) info_.channels.push_back(fields[i]);
     missing_per_channel_.assign(chosen.size(), 0);
-    rows_per_block_ =
-        std::max<std::size_t>(1, options.block_bytes / (sizeof(double) * (chosen.size() + 1)));
+    rows_per_block_ = std::max<std::size_t>(1, options.block_bytes / (sizeof(double) * (chosen.size() + 1)));
     reader_->select(topic_, chosen, columns.time, unit);
   }
 
@@ -388,15 +360,13 @@ class TopicRows final : public RowSource {
     for (const std::size_t i : chosen)
       if (std::find(usual.begin(), usual.end(), i) != usual.end()) kept.push_back(i);
     if (kept.empty() || kept.size() == chosen.size()) return chosen;
-    info_.dialect.push_back(
-        fmt::format("{} left out that no sensor measures, such as {} (`channels` reads them)",
-                    plural(chosen.size() - kept.size(), "field"),
-                    printable(left_out(chosen, kept, columns))));
+    info_.dialect.push_back(fmt::format("{} left out that no sensor measures, such as {} (`channels` reads them)",
+                                        plural(chosen.size() - kept.size(), "field"),
+                                        printable(left_out(chosen, kept, columns))));
     return kept;
   }
 
-  static std::string left_out(const std::vector<std::size_t>& all,
-                              const std::vector<std::size_t>& kept,
+  static std::string left_out(const std::vector<std::size_t>& all, const std::vector<std::size_t>& kept,
                               const TableColumns& columns) {
     for (const std::size_t i : all)
       if (std::find(kept.begin(), kept.end(), i) == kept.end()) return columns.names[i];
@@ -442,10 +412,8 @@ class TopicRows final : public RowSource {
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader,
-                                           const std::string& path,
-                                           std::string_view format,
-                                           const ReadOptions& options) {
+std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader, const std::string& path,
+                                           std::string_view format, const ReadOptions& options) {
   if (auto* tables = dynamic_cast<TableReader*>(reader.get())) {
     static_cast<void>(reader.release());
     return open_table_rows(std::unique_ptr<TableReader>(tables), path, format, options);

@@ -26,28 +26,23 @@ struct TopicChoice {
 /// Nothing when there are several and nobody said which: `options` name none. Throws Error(usage)
 /// for a topic or a channel that is not there, for channels of several topics (they have several
 /// clocks), and for a topic without a number.
-std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics,
-                                        const ReadOptions& options,
+std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics, const ReadOptions& options,
                                         const std::string& file);
 
 /// The topics that `options.topic` names where those are several, instances of one name or by a pattern, each with the
 /// channels asked for of it (TOPIC/FIELD, FIELD or a pattern); without those that have none of them. Empty where one
 /// topic is named. Throws Error(usage) for a word that no topic knows.
-std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics,
-                                       const ReadOptions& options,
+std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics, const ReadOptions& options,
                                        const std::string& file);
 
 /// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which
 /// can be read, Error(input): what it lost (`losses`) may be the reason.
-[[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics,
-                                       const std::string& file,
+[[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file,
                                        const Findings& losses = {});
 
 /// The rows of the topic and channels that `options` choose. Throws Error(usage) when they choose
 /// none or several (E0425).
-std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader,
-                                           const std::string& path,
-                                           std::string_view format,
-                                           const ReadOptions& options);
+std::unique_ptr<RowSource> open_topic_rows(std::unique_ptr<TopicReader> reader, const std::string& path,
+                                           std::string_view format, const ReadOptions& options);
 
 }  // namespace libchar

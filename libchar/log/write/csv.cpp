@@ -34,8 +34,7 @@ class CsvWriter final : public LogWriter {
     if (!stamped_) lost_.push_back(rate_ > 0 ? "the rate: no time column was wanted" : "");
     absolute_ = start_ns_ && std::abs(static_cast<double>(*start_ns_)) > kRelative;
     if (stamped_) text_ = absolute_ ? "t[ns]" : "t[s]";
-    for (const Channel& channel : info.channels)
-      text_ += (text_.empty() ? "" : ",") + header_cell(channel);
+    for (const Channel& channel : info.channels) text_ += (text_.empty() ? "" : ",") + header_cell(channel);
     text_ += '\n';
     // A row of nothing is no row for most readers.
     lone_ = !stamped_ && info.channels.size() == 1;
@@ -111,9 +110,7 @@ class CsvWriter final : public LogWriter {
 
 }  // namespace
 
-std::unique_ptr<LogWriter> write_csv(const std::string& path,
-                                     const LogInfo& info,
-                                     const WriteOptions& options) {
+std::unique_ptr<LogWriter> write_csv(const std::string& path, const LogInfo& info, const WriteOptions& options) {
   return std::make_unique<CsvWriter>(path, info, options);
 }
 

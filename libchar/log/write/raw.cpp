@@ -37,11 +37,9 @@ void refuse_other_sidecar(const std::string& path) {
 class RawWriter final : public LogWriter {
  public:
   RawWriter(const std::string& path, const LogInfo& info, const WriteOptions& options)
-      : file_(with_place_beside(path), options.overwrite),
-        beside_(path + ".json", options.overwrite) {
+      : file_(with_place_beside(path), options.overwrite), beside_(path + ".json", options.overwrite) {
     refuse_other_sidecar(path);
-    sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64,
-                       options.big_endian};
+    sidecar_.number = {options.dtype == "f32" ? NumberType::f32 : NumberType::f64, options.big_endian};
     sidecar_.planar = options.order == "planar";
     sidecar_.named = !unnamed(info.channels);
     for (const Channel& channel : info.channels) {
@@ -80,9 +78,7 @@ class RawWriter final : public LogWriter {
 
 }  // namespace
 
-std::unique_ptr<LogWriter> write_raw(const std::string& path,
-                                     const LogInfo& info,
-                                     const WriteOptions& options) {
+std::unique_ptr<LogWriter> write_raw(const std::string& path, const LogInfo& info, const WriteOptions& options) {
   return std::make_unique<RawWriter>(path, info, options);
 }
 

@@ -17,15 +17,12 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kStretch =
-    std::size_t{1} << 19U;  // bytes of one column that are kept before they go to the spool
+constexpr std::size_t kStretch = std::size_t{1}
+                                 << 19U;  // bytes of one column that are kept before they go to the spool
 
 }  // namespace
 
-ValueWriter::ValueWriter(WholeFile& file,
-                         std::size_t channels,
-                         NumberFormat number,
-                         bool column_major)
+ValueWriter::ValueWriter(WholeFile& file, std::size_t channels, NumberFormat number, bool column_major)
     : file_(file), number_(number), column_major_(column_major && channels > 1) {
   if (!column_major_) return;
   pending_.resize(channels);
@@ -61,8 +58,7 @@ void ValueWriter::write(std::span<const std::span<const double>> columns) {
     bytes_.resize(rows * columns.size() * item);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       assert(columns[c].size() == rows);
-      for (std::size_t i = 0; i < rows; ++i)
-        encode(columns[c][i], bytes_.data() + (i * columns.size() + c) * item);
+      for (std::size_t i = 0; i < rows; ++i) encode(columns[c][i], bytes_.data() + (i * columns.size() + c) * item);
     }
     file_.write(bytes_.data(), bytes_.size());
     return;
@@ -70,8 +66,7 @@ void ValueWriter::write(std::span<const std::span<const double>> columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t before = pending_[c].size();
     pending_[c].resize(before + rows * item);
-    for (std::size_t i = 0; i < rows; ++i)
-      encode(columns[c][i], pending_[c].data() + before + i * item);
+    for (std::size_t i = 0; i < rows; ++i) encode(columns[c][i], pending_[c].data() + before + i * item);
   }
   if (pending_[0].size() >= kStretch) spill();
 }
@@ -98,9 +93,7 @@ void ValueWriter::finish() {
     for (const std::uint64_t stretch : stretch_bytes_) {
       bytes_.resize(static_cast<std::size_t>(stretch));
       for (std::size_t done = 0; done < bytes_.size();) {
-        const ssize_t n = ::pread(spool_,
-                                  bytes_.data() + done,
-                                  bytes_.size() - done,
+        const ssize_t n = ::pread(spool_, bytes_.data() + done, bytes_.size() - done,
                                   static_cast<off_t>(spill_begin + c * stretch + done));
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) fail("read its temporary file back");

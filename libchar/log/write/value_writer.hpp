@@ -36,8 +36,7 @@ class ValueWriter {
   std::uint64_t rows_ = 0, rounded_ = 0;
   std::vector<std::byte> bytes_;                 // row by row: the block being encoded
   std::vector<std::vector<std::byte>> pending_;  // column by column: encoded, not yet in the spool
-  std::vector<std::uint64_t>
-      stretch_bytes_;  // length of each stretch in the spool; one stretch a column and spill
+  std::vector<std::uint64_t> stretch_bytes_;     // length of each stretch in the spool; one stretch a column and spill
 };
 
 }  // namespace libchar

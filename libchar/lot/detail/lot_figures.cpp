@@ -21,11 +21,9 @@ namespace {
 constexpr double kMostOfTypical = 4;
 
 /// Medians over the records of about the same length.
-std::vector<double> typical_variances(std::span<const double> variance,
-                                      std::span<const double> samples) {
+std::vector<double> typical_variances(std::span<const double> variance, std::span<const double> samples) {
   std::map<long, std::vector<double>> alike;
-  for (std::size_t i = 0; i < variance.size(); ++i)
-    alike[length_class(samples[i])].push_back(variance[i]);
+  for (std::size_t i = 0; i < variance.size(); ++i) alike[length_class(samples[i])].push_back(variance[i]);
   std::map<long, double> typical;
   for (auto& [key, values] : alike) typical[key] = median_in_place(values);
   std::vector<double> out(variance.size());
@@ -35,23 +33,19 @@ std::vector<double> typical_variances(std::span<const double> variance,
 
 }  // namespace
 
-std::optional<RandomEffects> lot_effects(std::span<const double> value,
-                                         std::span<const double> variance,
+std::optional<RandomEffects> lot_effects(std::span<const double> value, std::span<const double> variance,
                                          std::size_t members) {
   if (!enough_count(value.size(), members)) return std::nullopt;
   return random_effects(value, variance);
 }
 
-std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm,
-                                                 std::span<const double> variance,
-                                                 std::span<const double> samples,
-                                                 std::size_t members) {
+std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm, std::span<const double> variance,
+                                                 std::span<const double> samples, std::size_t members) {
   auto out = lot_effects(logarithm, variance, members);
   if (!out) return out;
   const std::vector<double> typical = typical_variances(variance, samples);
   std::vector<double> unbiased(logarithm.begin(), logarithm.end());
-  for (std::size_t i = 0; i < unbiased.size(); ++i)
-    unbiased[i] += std::min(variance[i], kMostOfTypical * typical[i]);
+  for (std::size_t i = 0; i < unbiased.size(); ++i) unbiased[i] += std::min(variance[i], kMostOfTypical * typical[i]);
   const RandomEffects mean = random_effects(unbiased, typical);
   out->mean = mean.mean;
   out->mean_ci95 = mean.mean_ci95;
@@ -66,9 +60,7 @@ LogCoefficient log_coefficient(const Coefficient& found) {
   return {std::log(square) / 2, sd * sd};
 }
 
-bool was_sought(Status status) {
-  return status != Status::misfit && status != Status::not_fitted;
-}
+bool was_sought(Status status) { return status != Status::misfit && status != Status::not_fitted; }
 
 std::optional<SquareInAll> square_in_lot(const Coefficient& found) {
   if (!was_sought(found.status) || found.status == Status::given) return std::nullopt;
@@ -77,23 +69,19 @@ std::optional<SquareInAll> square_in_lot(const Coefficient& found) {
     out.sd = std::max(out.sd, 2 * found.relative_sd * std::max(0.0, out.square));
     return out;
   }
-  const double square = found.value.value_or(0) * found.value.value_or(0),
-               sd = 2 * found.relative_sd * square;
+  const double square = found.value.value_or(0) * found.value.value_or(0), sd = 2 * found.relative_sd * square;
   if (!(sd > 0)) return std::nullopt;
   return SquareInAll{square, sd, 4 * found.relative_sd};  // chi-square
 }
 
-std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
-                                               std::size_t counted,
-                                               std::size_t members) {
+std::optional<LognormalEffects> effects_of_all(const LotSquares& squares, std::size_t counted, std::size_t members) {
   // The weights of a fit are estimated as well, so that a term that is little known scatters by
   // more than the information of its fit says: B and K of 12000 records each, known to 13 to 130 %
   // of their squares (docs/theory/lots.md).
   constexpr double kExcess = 0.55;
   const std::size_t known = squares.square.size();
   if (known <= counted || known < 3 || counted < 2 || 3 * counted < members) return std::nullopt;
-  return lognormal_effects(
-      {squares.square, squares.sd, squares.skewness, squares.samples, kExcess});
+  return lognormal_effects({squares.square, squares.sd, squares.skewness, squares.samples, kExcess});
 }
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms) {
@@ -104,8 +92,7 @@ LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms) {
   return out;
 }
 
-ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
-                                     std::span<const double> variance,
+ArithmeticFigures arithmetic_figures(std::span<const double> logarithm, std::span<const double> variance,
                                      std::span<const double> samples) {
   const std::vector<double> typical = typical_variances(variance, samples);
   const std::size_t count = logarithm.size();
@@ -114,8 +101,7 @@ ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
   double square = 0;
   for (std::size_t i = 0; i < count; ++i) {
     // E[ln c] = ln c - v, so that E[c] is smaller by v/2 of it.
-    value[i] =
-        std::exp(logarithm[i]) * (1 + std::min(variance[i], kMostOfTypical * typical[i]) / 2);
+    value[i] = std::exp(logarithm[i]) * (1 + std::min(variance[i], kMostOfTypical * typical[i]) / 2);
     square += value[i] * value[i] / (1 + typical[i]) / n;
   }
   for (std::size_t i = 0; i < count; ++i) v[i] = typical[i] * square;

@@ -25,7 +25,7 @@ struct SquareEstimates {
   /// By the information at the square, or at zero where it is below: > 0.
   std::span<const double> sd;
   std::span<const double> skewness;  ///< there; 0 or less: not known
-  std::span<const double> samples;  ///< of each record: of about one length, errors are of one kind
+  std::span<const double> samples;   ///< of each record: of about one length, errors are of one kind
   /// With r = sd / square, the variance is 1 + excess r / (1 + 1.5 r) times that by the
   /// information.
   double excess = 0;
@@ -47,9 +47,7 @@ LognormalEffects lognormal_effects(const SquareEstimates& in);
 
 /// Records of one class have about the same length, within a factor of sqrt 2: their fits err
 /// alike.
-inline long length_class(double samples) {
-  return std::lround(2 * std::log2(std::max(1.0, samples)));
-}
+inline long length_class(double samples) { return std::lround(2 * std::log2(std::max(1.0, samples))); }
 
 /// At least two, and two thirds of all: what was not detected is smaller than what was.
 inline bool enough_count(std::size_t counted, std::size_t members) {
@@ -57,16 +55,13 @@ inline bool enough_count(std::size_t counted, std::size_t members) {
 }
 
 /// Of the members that count; none where they are not enough.
-std::optional<RandomEffects> lot_effects(std::span<const double> value,
-                                         std::span<const double> variance,
+std::optional<RandomEffects> lot_effects(std::span<const double> value, std::span<const double> variance,
                                          std::size_t members);
 
 /// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the
 /// records, one a value.
-std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm,
-                                                 std::span<const double> variance,
-                                                 std::span<const double> samples,
-                                                 std::size_t members);
+std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm, std::span<const double> variance,
+                                                 std::span<const double> samples, std::size_t members);
 
 /// ln(value) of a coefficient and its variance as a lot takes them: in the model of all terms.
 struct LogCoefficient {
@@ -90,16 +85,13 @@ struct LotSquares {
 
 /// Of all members, also those that are not detected or doubtful, where they are more than those
 /// that count, and a third of all members counts.
-std::optional<LognormalEffects> effects_of_all(const LotSquares& squares,
-                                               std::size_t counted,
-                                               std::size_t members);
+std::optional<LognormalEffects> effects_of_all(const LotSquares& squares, std::size_t counted, std::size_t members);
 
 LotFigures lot_figures(const RandomEffects& effects, bool of_logarithms);
 
 /// Of logarithms whose effects these are, without a belief in their distribution but for the
 /// interval of the standard deviation.
-ArithmeticFigures arithmetic_figures(std::span<const double> logarithm,
-                                     std::span<const double> variance,
+ArithmeticFigures arithmetic_figures(std::span<const double> logarithm, std::span<const double> variance,
                                      std::span<const double> samples);
 /// Those that a lognormal distribution has.
 ArithmeticFigures arithmetic_figures(const LognormalEffects& effects);

@@ -20,15 +20,13 @@ namespace libchar {
 
 namespace {
 
-const NoiseLimits* limits_of(const std::string& type,
-                             const std::map<std::string, NoiseLimits>& limits) {
+const NoiseLimits* limits_of(const std::string& type, const std::map<std::string, NoiseLimits>& limits) {
   auto at = limits.find(type);
   if (at == limits.end()) at = limits.find("");
   return at == limits.end() ? nullptr : &at->second;
 }
 
-void check_types(const std::vector<std::string>& types,
-                 const std::map<std::string, NoiseLimits>& limits) {
+void check_types(const std::vector<std::string>& types, const std::map<std::string, NoiseLimits>& limits) {
   for (const auto& [type, file] : limits)
     if (!type.empty() && std::find(types.begin(), types.end(), type) == types.end())
       throw usage_error("E0751", file.file)
@@ -38,33 +36,25 @@ void check_types(const std::vector<std::string>& types,
 }
 
 /// How bad the news is: of several recordings the worst counts.
-int rank_of(LimitStatus status) {
-  return status == LimitStatus::fail ? 2 : status == LimitStatus::not_decided ? 1 : 0;
-}
+int rank_of(LimitStatus status) { return status == LimitStatus::fail ? 2 : status == LimitStatus::not_decided ? 1 : 0; }
 
 LimitFailure failure_of(const LotGroup& group, const Coefficient& found, const GroupLimit& limit) {
   LimitFailure out;
   const double value = found.value.value_or(limit.most);
   // Without a standard deviation the interval, which lies above the limit, says it.
-  const double sd =
-      found.relative_sd > 0 ? found.relative_sd : std::log(value / found.ci95.low) / kNormal95;
+  const double sd = found.relative_sd > 0 ? found.relative_sd : std::log(value / found.ci95.low) / kNormal95;
   out.deviation = std::log(value / limit.most) / std::max(sd, 1e-9);
   out.p = std::erfc(out.deviation / std::sqrt(2.0)) / 2;
   const DeviceQuantity quantity = quantity_of(limit.term);
   const std::string unit = unit_of(quantity, group.channel_unit);
-  out.sentence = fmt::format("{}: {} {} {}, allowed {}.",
-                             group.name,
-                             title_of(quantity),
-                             coefficient_text(found),
-                             unit,
+  out.sentence = fmt::format("{}: {} {} {}, allowed {}.", group.name, title_of(quantity), coefficient_text(found), unit,
                              limit_text(limit.text, limit.most, unit));
   return out;
 }
 
 }  // namespace
 
-std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups,
-                                     const std::vector<std::string>& types,
+std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups, const std::vector<std::string>& types,
                                      const std::map<std::string, NoiseLimits>& limits) {
   check_types(types, limits);
   std::vector<GroupLimit> out;
@@ -85,18 +75,15 @@ std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups,
   return out;
 }
 
-LimitCount judge_members(std::span<const DeviceRecord> records,
-                         const LotGroup& group,
-                         const GroupLimit& limit) {
+LimitCount judge_members(std::span<const DeviceRecord> records, const LotGroup& group, const GroupLimit& limit) {
   LimitCount out;
   const DeviceQuantity quantity = quantity_of(limit.term);
   for (std::size_t i = 0; i < group.places.size(); ++i) {
     const LotPlace& place = group.places[i];
     const RecordedChannel& channel = records[place.recording].channels[place.channel];
     const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-    const Coefficient found = value == nullptr
-                                  ? Coefficient{}
-                                  : coefficient_of(*value, factor_of(group, channel, quantity));
+    const Coefficient found =
+        value == nullptr ? Coefficient{} : coefficient_of(*value, factor_of(group, channel, quantity));
     const LimitStatus status = judge_limit(found, limit.most);
     const bool same = i > 0 && group.member[i] == group.member[i - 1];
     if (!same) out.status.push_back(status);
@@ -125,16 +112,11 @@ int compared(const std::string& a, const std::string& b) {
   return comes_before(a, b) ? -1 : 1;
 }
 
-bool stands_before(const DeviceRecord& a,
-                   const std::string& batch_a,
-                   const DeviceRecord& b,
+bool stands_before(const DeviceRecord& a, const std::string& batch_a, const DeviceRecord& b,
                    const std::string& batch_b) {
   if (const int way = compared(a.type, b.type); way != 0) return way < 0;
   if (const int way = compared(batch_a, batch_b); way != 0) return way < 0;
-  for (const auto member : {&DeviceRecord::device,
-                            &DeviceRecord::batch,
-                            &DeviceRecord::log,
-                            &DeviceRecord::sha256,
+  for (const auto member : {&DeviceRecord::device, &DeviceRecord::batch, &DeviceRecord::log, &DeviceRecord::sha256,
                             &DeviceRecord::settings})
     if (const int way = compared(a.*member, b.*member); way != 0) return way < 0;
   return false;
@@ -150,8 +132,7 @@ KnownUnit known_unit(const std::string& text) {
   const auto unit = find_unit(text);
   if (!unit) return {text, text.empty() ? "" : "in " + text, 1};
   // Scales of temperature have a zero of their own: a mean is not converted by a factor.
-  if (unit->quantity == Quantity::temperature)
-    return {unit->symbol, "in " + unit->symbol, unit->to_si};
+  if (unit->quantity == Quantity::temperature) return {unit->symbol, "in " + unit->symbol, unit->to_si};
   return {unit->symbol, std::string(name_of(unit->quantity)), unit->to_si};
 }
 
@@ -167,10 +148,8 @@ void choose_unit(Records records, LotGroup& group) {
   for (const LotPlace& p : group.places) ++count[records[p.recording].channels[p.channel].unit];
   std::map<std::string, std::size_t> symbols;
   for (const auto& [text, n] : count) symbols[known_unit(text).symbol] += n;
-  const auto most =
-      std::max_element(symbols.begin(), symbols.end(), [](const auto& a, const auto& b) {
-        return a.second < b.second;
-      });
+  const auto most = std::max_element(symbols.begin(), symbols.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
   group.channel_unit = most->first;
   const double to_si = known_unit(most->first).to_si;
   for (const auto& [text, n] : count) group.factor[text] = known_unit(text).to_si / to_si;
@@ -184,12 +163,10 @@ void number_members(Records records, const std::vector<std::size_t>& device_of, 
         device_of[p.recording], records[p.recording].channels[p.channel].name, p.recording);
   };
   // Recordings of one device keep their order.
-  std::stable_sort(
-      group.places.begin(), group.places.end(), [&](const LotPlace& a, const LotPlace& b) {
-        const auto ka = key(a), kb = key(b);
-        return std::tie(std::get<0>(ka), std::get<1>(ka)) <
-               std::tie(std::get<0>(kb), std::get<1>(kb));
-      });
+  std::stable_sort(group.places.begin(), group.places.end(), [&](const LotPlace& a, const LotPlace& b) {
+    const auto ka = key(a), kb = key(b);
+    return std::tie(std::get<0>(ka), std::get<1>(ka)) < std::tie(std::get<0>(kb), std::get<1>(kb));
+  });
   for (std::size_t i = 0; i < group.places.size(); ++i) {
     const auto here = key(group.places[i]);
     if (i > 0) {
@@ -235,20 +212,16 @@ std::string named_devices(Records records, const SortedRecords& sorted, const Lo
   std::vector<std::string> names;
   for (std::size_t m = 0; m < std::min(kNamed, group.devices.size()); ++m)
     names.push_back(records[sorted.first[group.devices[m]]].device);
-  return fmt::format(" ({}{})",
-                     fmt::join(names, ", "),
-                     group.devices.size() > kNamed
-                         ? fmt::format(" and {} more", group.devices.size() - kNamed)
-                         : "");
+  return fmt::format(" ({}{})", fmt::join(names, ", "),
+                     group.devices.size() > kNamed ? fmt::format(" and {} more", group.devices.size() - kNamed) : "");
 }
 
 bool several_names(Records records, const LotGroup& kind) {
   const auto name = [&](const LotPlace& p) -> const std::string& {
     return records[p.recording].channels[p.channel].name;
   };
-  return std::any_of(kind.places.begin(), kind.places.end(), [&](const LotPlace& p) {
-    return name(p) != name(kind.places[0]);
-  });
+  return std::any_of(kind.places.begin(), kind.places.end(),
+                     [&](const LotPlace& p) { return name(p) != name(kind.places[0]); });
 }
 
 /// "gx, gy: recorded in deg/s, rad/s, compared in deg/s."
@@ -258,28 +231,23 @@ std::vector<std::string> converted_units(const std::vector<LotGroup>& groups) {
     std::set<std::string> symbols;
     for (const auto& [text, factor] : group.factor) symbols.insert(known_unit(text).symbol);
     if (group.of_kind || symbols.size() < 2) continue;
-    channels[fmt::format(
-                 "recorded in {}, compared in {}", fmt::join(symbols, ", "), group.channel_unit)]
-        .push_back(channel_title(group.name, group.type));
+    channels[fmt::format("recorded in {}, compared in {}", fmt::join(symbols, ", "), group.channel_unit)].push_back(
+        channel_title(group.name, group.type));
   }
   std::vector<std::string> out;
-  for (const auto& [how, names] : channels)
-    out.push_back(fmt::format("{}: {}.", fmt::join(names, ", "), how));
+  for (const auto& [how, names] : channels) out.push_back(fmt::format("{}: {}.", fmt::join(names, ", "), how));
   return out;
 }
 
 /// The same log of the same device twice: a run that was begun again writes it again.
 std::string copies_note(std::size_t copies) {
-  return fmt::format(
-      "{} of a log that is there already, with the same settings: not counted twice.",
-      plural(copies, "record"));
+  return fmt::format("{} of a log that is there already, with the same settings: not counted twice.",
+                     plural(copies, "record"));
 }
 
 }  // namespace
 
-std::string unit_title(const std::string& channel_unit) {
-  return channel_unit.empty() ? "no unit" : channel_unit;
-}
+std::string unit_title(const std::string& channel_unit) { return channel_unit.empty() ? "no unit" : channel_unit; }
 
 std::string channel_title(const std::string& channel, const std::string& type) {
   return type.empty() ? channel : channel + " of " + type;
@@ -288,9 +256,7 @@ std::string channel_title(const std::string& channel, const std::string& type) {
 SortedRecords sorted_records(Records records) {
   SortedRecords out;
   const DeviceBatches found = device_batches(records);
-  const auto batch = [&](std::size_t r) -> const std::string& {
-    return found.batch[found.device_of[r]];
-  };
+  const auto batch = [&](std::size_t r) -> const std::string& { return found.batch[found.device_of[r]]; };
   out.order.resize(records.size());
   std::iota(out.order.begin(), out.order.end(), std::size_t{0});
   std::stable_sort(out.order.begin(), out.order.end(), [&](std::size_t a, std::size_t b) {
@@ -313,8 +279,7 @@ SortedRecords sorted_records(Records records) {
     kept.push_back(r);
   }
   if (!found.note.empty()) out.notes.push_back(found.note);
-  if (kept.size() < out.order.size())
-    out.notes.push_back(copies_note(out.order.size() - kept.size()));
+  if (kept.size() < out.order.size()) out.notes.push_back(copies_note(out.order.size() - kept.size()));
   out.order = std::move(kept);
   return out;
 }
@@ -346,9 +311,7 @@ std::vector<LotGroup> lot_groups(Records records, const SortedRecords& sorted) {
   return out;
 }
 
-bool shows_outliers(const LotGroup& group) {
-  return !group.of_kind || group.devices.front() == group.devices.back();
-}
+bool shows_outliers(const LotGroup& group) { return !group.of_kind || group.devices.front() == group.devices.back(); }
 
 double factor_of(const LotGroup& group, const RecordedChannel& channel, DeviceQuantity quantity) {
   if (quantity == DeviceQuantity::gauss_markov_time) return 1;
@@ -361,8 +324,7 @@ void convert_group(const std::string& channel_unit, LotGroup& group) {
   group.channel_unit = channel_unit;
 }
 
-std::vector<std::string> unlike_records(Records records,
-                                        const SortedRecords& sorted,
+std::vector<std::string> unlike_records(Records records, const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups) {
   std::vector<std::string> out = converted_units(groups);
   std::map<std::pair<std::string, std::string>, std::map<std::string, std::string>> units;
@@ -375,9 +337,7 @@ std::vector<std::string> unlike_records(Records records,
     std::vector<std::string> each;
     for (const auto& [unit, text] : found) each.push_back(text);
     out.push_back(fmt::format("{} has {} units, {}: compared within each.",
-                              channel_title(channel.second, channel.first),
-                              found.size(),
-                              fmt::join(each, ", ")));
+                              channel_title(channel.second, channel.first), found.size(), fmt::join(each, ", ")));
   }
   std::set<std::string> settings, programs;
   for (const std::size_t r : sorted.order) {
@@ -385,13 +345,10 @@ std::vector<std::string> unlike_records(Records records,
     settings.insert(records[r].analysis.empty() ? records[r].settings : records[r].analysis);
     programs.insert(records[r].program);
   }
-  for (const auto& [what, found] :
-       {std::pair("settings", &settings), std::pair("versions of the program", &programs)})
+  for (const auto& [what, found] : {std::pair("settings", &settings), std::pair("versions of the program", &programs)})
     if (found->size() > 1)
       out.push_back(
-          fmt::format("The recordings were characterized with {} {}: what differs may be that.",
-                      found->size(),
-                      what));
+          fmt::format("The recordings were characterized with {} {}: what differs may be that.", found->size(), what));
   return out;
 }
 

@@ -48,8 +48,7 @@ std::string channel_title(const std::string& channel, const std::string& type);
 
 /// Channels of one type and name whose units are of one quantity; and, where a type has several of
 /// one kind, all of them. Kinds first.
-std::vector<LotGroup> lot_groups(std::span<const DeviceRecord> records,
-                                 const SortedRecords& sorted);
+std::vector<LotGroup> lot_groups(std::span<const DeviceRecord> records, const SortedRecords& sorted);
 
 /// Who stands out is asked of a channel among devices, and of a kind only where one device has all
 /// of its channels: what axes of every device differ by is no device's fault.
@@ -63,8 +62,7 @@ void convert_group(const std::string& channel_unit, LotGroup& group);
 
 /// Channels of one type and name in several units, whether they can be converted or not; records
 /// made with unlike settings or versions.
-std::vector<std::string> unlike_records(std::span<const DeviceRecord> records,
-                                        const SortedRecords& sorted,
+std::vector<std::string> unlike_records(std::span<const DeviceRecord> records, const SortedRecords& sorted,
                                         const std::vector<LotGroup>& groups);
 
 // The limits that hold for each group of a fleet, and each device held against them.
@@ -78,8 +76,7 @@ struct GroupLimit {
 };
 
 /// Throws as limits_for, and Error(usage) for limits of a type that no device is of.
-std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups,
-                                     const std::vector<std::string>& types,
+std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups, const std::vector<std::string>& types,
                                      const std::map<std::string, NoiseLimits>& limits);
 
 /// A member that fails: its recording and how far it is above.
@@ -96,8 +93,6 @@ struct LimitCount {
   std::vector<LimitStatus> status;  ///< of each member: of its recordings the worst
   std::vector<LimitFailure> failures;
 };
-LimitCount judge_members(std::span<const DeviceRecord> records,
-                         const LotGroup& group,
-                         const GroupLimit& limit);
+LimitCount judge_members(std::span<const DeviceRecord> records, const LotGroup& group, const GroupLimit& limit);
 
 }  // namespace libchar

@@ -15,9 +15,7 @@ namespace {
 
 std::vector<std::string> in_natural_order(const std::set<std::string>& words) {
   std::vector<std::string> out(words.begin(), words.end());
-  std::sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
-    return comes_before(a, b);
-  });
+  std::sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) { return comes_before(a, b); });
   return out;
 }
 
@@ -68,10 +66,7 @@ void add_batches(const Fleet& fleet, Statistic& s) {
     if (s.values.batch_counts[b].members == 0) continue;
     const QuantityValues part = values_of_batch(s.values, *s.group, fleet.batch_of, b);
     const double middle = median_of(part.y);
-    BatchLot one{fleet.batches[b],
-                 part.counts,
-                 std::nullopt,
-                 part.counts.counted,
+    BatchLot one{fleet.batches[b], part.counts, std::nullopt, part.counts.counted,
                  logarithm ? std::exp(middle) : middle};
     if (const auto found = effects_of(part, logarithm)) {
       one.figures = lot_figures(found->effects, logarithm);
@@ -87,8 +82,8 @@ void add_batches(const Fleet& fleet, Statistic& s) {
   if (out.batches.size() < 2) out.batches.clear();
   if (compared < 2) return;
   const GroupedEffects effects = grouped_effects(y, v, batch, compared);
-  out.batch_difference = BatchDifference{
-      effects.between.spread, effects.between.spread_ci95, effects.within, effects.p};
+  out.batch_difference =
+      BatchDifference{effects.between.spread, effects.between.spread_ci95, effects.within, effects.p};
 }
 
 void add_quantiles(const std::vector<double>& y, bool logarithm, QuantityLot& out) {
@@ -116,15 +111,13 @@ void add_figures(Statistic& s) {
   lot.figures = lot_figures(found->effects, logarithm);
   lot.arithmetic = found->arithmetic;
   lot.of_all = found->of_all;
-  if (!lot.of_all)
-    lot.left_out = left_out(lot.quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
+  if (!lot.of_all) lot.left_out = left_out(lot.quantity, lot.counts, s.values.y, s.values.v, *lot.effects);
 }
 
 void add_chart(const Statistic& s, QuantityLot& out) {
   if (s.values.y.size() < kLeastForChart) return;
   out.chart = control_chart(s.values.y);
-  for (const std::uint32_t m : s.values.member)
-    out.charted.push_back(place_of(*s.group, m).recording);
+  for (const std::uint32_t m : s.values.member) out.charted.push_back(place_of(*s.group, m).recording);
 }
 
 void add_capability(const GroupLimit& limit, Statistic& s) {
@@ -156,10 +149,8 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   lot.channel_unit = group.channel_unit;
   lot.unit = unit_of(quantity, group.channel_unit);
   lot.counts = s.values.counts;
-  const auto limit =
-      std::find_if(fleet.limits.begin(), fleet.limits.end(), [&](const GroupLimit& l) {
-        return l.group == g && quantity_of(l.term) == quantity;
-      });
+  const auto limit = std::find_if(fleet.limits.begin(), fleet.limits.end(),
+                                  [&](const GroupLimit& l) { return l.group == g && quantity_of(l.term) == quantity; });
   s.limited = limit != fleet.limits.end();
   // Quantization and ramps are looked for where they are suspected only: that they are not there is
   // no news.
@@ -186,8 +177,7 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
 std::vector<Statistic> statistics_of(const Fleet& fleet) {
   std::vector<std::optional<Statistic>> all(fleet.groups.size() * kDeviceQuantities);
   parallel::for_each(0, all.size(), [&](std::size_t i) {
-    all[i] = statistic_of(
-        fleet, i / kDeviceQuantities, static_cast<DeviceQuantity>(i % kDeviceQuantities));
+    all[i] = statistic_of(fleet, i / kDeviceQuantities, static_cast<DeviceQuantity>(i % kDeviceQuantities));
   });
   std::vector<Statistic> out;
   for (auto& one : all)

@@ -49,24 +49,18 @@ struct QuantityValues {
 };
 
 /// `batch_of`: of each device an index below `batches`.
-QuantityValues quantity_values(std::span<const DeviceRecord> records,
-                               const LotGroup& group,
-                               DeviceQuantity quantity,
-                               const std::vector<std::size_t>& batch_of,
-                               std::size_t batches);
+QuantityValues quantity_values(std::span<const DeviceRecord> records, const LotGroup& group, DeviceQuantity quantity,
+                               const std::vector<std::size_t>& batch_of, std::size_t batches);
 
 /// Those of the members of one batch.
-QuantityValues values_of_batch(const QuantityValues& all,
-                               const LotGroup& group,
-                               const std::vector<std::size_t>& batch_of,
-                               std::size_t batch);
+QuantityValues values_of_batch(const QuantityValues& all, const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of, std::size_t batch);
 
 /// Mean and spread of a quantity over its members.
 struct QuantityEffects {
   RandomEffects effects;
   std::optional<ArithmeticFigures> arithmetic;  ///< of what is compared as logarithm
-  bool of_all =
-      false;  ///< also of members that do not count, by the squares of what their records show
+  bool of_all = false;  ///< also of members that do not count, by the squares of what their records show
 };
 
 /// Of those that count, where they are enough (lot_figures.hpp); of a noise term that some have and

@@ -34,8 +34,7 @@ struct TemperatureLines {
   TemperatureRuns runs;         ///< without slopes
 };
 
-constexpr Interval kNothing = {std::numeric_limits<double>::infinity(),
-                               -std::numeric_limits<double>::infinity()};
+constexpr Interval kNothing = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
 void widen(Interval& range, double value) {
   if (std::isnan(value)) return;
@@ -76,8 +75,7 @@ double median_temperature(const MemberRecordings& in) {
   return *middle;
 }
 
-TemperatureRuns runs_of(const MemberRecordings& in,
-                        const std::vector<Interval>& ranges,
+TemperatureRuns runs_of(const MemberRecordings& in, const std::vector<Interval>& ranges,
                         const std::vector<bool>& sloped) {
   TemperatureRuns out;
   out.range_c = kNothing;
@@ -90,8 +88,8 @@ TemperatureRuns runs_of(const MemberRecordings& in,
       widen(out.range_c, at.low);
       widen(out.range_c, at.high);
     } else if (at.low <= at.high) {
-      out.elsewhere += at.low - out.reference_c >= kLeastTemperatureSpan ||
-                       out.reference_c - at.high >= kLeastTemperatureSpan;
+      out.elsewhere +=
+          at.low - out.reference_c >= kLeastTemperatureSpan || out.reference_c - at.high >= kLeastTemperatureSpan;
     }
   }
   return out;
@@ -101,8 +99,7 @@ TemperatureRuns runs_of(const MemberRecordings& in,
 std::optional<TemperatureLines> temperature_lines(const MemberRecordings& biases) {
   const std::vector<Interval> ranges = temperature_ranges(biases);
   std::vector<bool> sloped(ranges.size());
-  for (std::size_t m = 0; m < ranges.size(); ++m)
-    sloped[m] = ranges[m].high - ranges[m].low >= kLeastTemperatureSpan;
+  for (std::size_t m = 0; m < ranges.size(); ++m) sloped[m] = ranges[m].high - ranges[m].low >= kLeastTemperatureSpan;
   if (std::find(sloped.begin(), sloped.end(), true) == sloped.end()) return std::nullopt;
   TemperatureLines out;
   out.recordings = of_known_temperature(biases, sloped);
@@ -128,12 +125,7 @@ std::vector<DeviceSlope> device_slopes(const TemperatureLines& at) {
     if (!at.sloped[m]) continue;
     if (i == 0 || in.member[i - 1] != m) {
       const double slope = at.lines.slope[m], half = t * std::sqrt(at.lines.slope_variance[m]);
-      out.push_back({in.place[i].recording,
-                     in.place[i].channel,
-                     0,
-                     kNothing,
-                     slope,
-                     {slope - half, slope + half}});
+      out.push_back({in.place[i].recording, in.place[i].channel, 0, kNothing, slope, {slope - half, slope + half}});
     }
     ++out.back().recordings;
     widen(out.back().temperature_c, in.temperature_c[i]);
@@ -159,12 +151,10 @@ Measured measured(const RecordedChannel& channel, DeviceQuantity quantity, doubl
   if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
   const LogCoefficient in_logarithms =
       in_logarithm(quantity) ? log_coefficient(coefficient_of(*value, factor)) : LogCoefficient{};
-  const double sd = factor * value->sd,
-               y = in_logarithm(quantity) ? in_logarithms.y : factor * value->value,
+  const double sd = factor * value->sd, y = in_logarithm(quantity) ? in_logarithms.y : factor * value->value,
                v = in_logarithm(quantity) ? in_logarithms.v : sd * sd;
   // A square that a double does not hold is no uncertainty either.
-  const bool usable =
-      std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
+  const bool usable = std::isfinite(y) && std::abs(y) < kLargest && v > 1 / kLargest && v < kLargest;
   return usable ? Measured{Known::counted, y, v} : Measured{Known::doubtful};
 }
 
@@ -180,10 +170,7 @@ struct SquareSums {
 };
 
 /// False where its record was fitted and it has no square.
-bool add_square(const RecordedChannel& channel,
-                DeviceQuantity quantity,
-                double factor,
-                SquareSums& sums) {
+bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, double factor, SquareSums& sums) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
   if (value == nullptr || !was_sought(value->status)) return true;
   const auto one = square_in_lot(coefficient_of(*value, factor));
@@ -214,10 +201,8 @@ void count(Known known, LotCounts& out) {
 }
 
 /// `batch_of`: of each device an index below `batches`.
-MemberRecordings member_recordings(std::span<const DeviceRecord> records,
-                                   const LotGroup& group,
-                                   DeviceQuantity quantity,
-                                   const std::vector<std::size_t>& batch_of,
+MemberRecordings member_recordings(std::span<const DeviceRecord> records, const LotGroup& group,
+                                   DeviceQuantity quantity, const std::vector<std::size_t>& batch_of,
                                    std::size_t batches) {
   MemberRecordings out;
   out.batch_counts.resize(batches);
@@ -252,10 +237,8 @@ MemberRecordings member_recordings(std::span<const DeviceRecord> records,
 }
 
 /// Those with more recordings than their means and lines take.
-RepeatedDevices repeated(const std::vector<std::size_t>& recordings,
-                         const std::vector<std::size_t>& taken,
-                         double within,
-                         const Interval& within_ci95) {
+RepeatedDevices repeated(const std::vector<std::size_t>& recordings, const std::vector<std::size_t>& taken,
+                         double within, const Interval& within_ci95) {
   RepeatedDevices out{0, 0, within, within_ci95};
   for (std::size_t m = 0; m < recordings.size(); ++m) {
     const bool repeats = recordings[m] > taken[m];
@@ -282,8 +265,7 @@ void take_together(const MemberRecordings& in, QuantityValues& out) {
     return;
   }
   GroupedEffects effects = grouped_effects(in.y, in.v, in.member, members);
-  out.repeats = repeated(
-      recordings_of(in), std::vector<std::size_t>(members, 1), effects.within, effects.within_ci95);
+  out.repeats = repeated(recordings_of(in), std::vector<std::size_t>(members, 1), effects.within, effects.within_ci95);
   out.y = std::move(effects.mean);
   out.v = std::move(effects.variance);
 }
@@ -292,17 +274,14 @@ void take_lines(TemperatureLines at, QuantityValues& out) {
   std::vector<std::size_t> taken;
   for (const bool line : at.sloped) taken.push_back(line ? 2 : 1);
   if (at.lines.dof >= 1)
-    out.repeats =
-        repeated(recordings_of(at.recordings), taken, at.lines.within, at.lines.within_ci95);
+    out.repeats = repeated(recordings_of(at.recordings), taken, at.lines.within, at.lines.within_ci95);
   out.y = std::move(at.lines.at_zero);
   out.v = std::move(at.lines.at_zero_variance);
   out.temperatures = std::move(at.runs);
 }
 
 /// A lot of slopes is one of the members that have one: the others were not recorded so.
-QuantityValues slope_values(const TemperatureLines& at,
-                            const LotGroup& group,
-                            const std::vector<std::size_t>& batch_of,
+QuantityValues slope_values(const TemperatureLines& at, const LotGroup& group, const std::vector<std::size_t>& batch_of,
                             std::size_t batches) {
   QuantityValues out;
   out.batch_counts.resize(batches);
@@ -326,14 +305,9 @@ QuantityValues slope_values(const TemperatureLines& at,
 
 }  // namespace
 
-QuantityValues quantity_values(std::span<const DeviceRecord> records,
-                               const LotGroup& group,
-                               DeviceQuantity quantity,
-                               const std::vector<std::size_t>& batch_of,
-                               std::size_t batches) {
-  const auto recordings = [&](DeviceQuantity of) {
-    return member_recordings(records, group, of, batch_of, batches);
-  };
+QuantityValues quantity_values(std::span<const DeviceRecord> records, const LotGroup& group, DeviceQuantity quantity,
+                               const std::vector<std::size_t>& batch_of, std::size_t batches) {
+  const auto recordings = [&](DeviceQuantity of) { return member_recordings(records, group, of, batch_of, batches); };
   const MemberRecordings found = recordings(quantity);
   if (quantity == DeviceQuantity::temperature_coefficient) {
     const auto at = temperature_lines(recordings(DeviceQuantity::turn_on_bias));
@@ -355,32 +329,24 @@ QuantityValues quantity_values(std::span<const DeviceRecord> records,
     take_together(found, out);
   if (term_of(quantity)) {
     out.samples.resize(out.y.size());
-    for (std::size_t i = 0; i < found.member.size(); ++i)
-      out.samples[found.member[i]] += found.samples[i];
+    for (std::size_t i = 0; i < found.member.size(); ++i) out.samples[found.member[i]] += found.samples[i];
   }
   return out;
 }
 
-QuantityValues values_of_batch(const QuantityValues& all,
-                               const LotGroup& group,
-                               const std::vector<std::size_t>& batch_of,
-                               std::size_t batch) {
+QuantityValues values_of_batch(const QuantityValues& all, const LotGroup& group,
+                               const std::vector<std::size_t>& batch_of, std::size_t batch) {
   QuantityValues out;
   out.counts = all.batch_counts[batch];
-  const auto take = [&](const std::vector<std::uint32_t>& member,
-                        const std::vector<double>& from,
+  const auto take = [&](const std::vector<std::uint32_t>& member, const std::vector<double>& from,
                         std::vector<double>& to) {
     for (std::size_t i = 0; i < from.size(); ++i)
       if (batch_of[group.devices[member[i]]] == batch) to.push_back(from[i]);
   };
-  for (const auto values : {&QuantityValues::y,
-                            &QuantityValues::v,
-                            &QuantityValues::samples,
-                            &QuantityValues::v_low,
+  for (const auto values : {&QuantityValues::y, &QuantityValues::v, &QuantityValues::samples, &QuantityValues::v_low,
                             &QuantityValues::v_high})
     take(all.member, all.*values, out.*values);
-  for (const auto values :
-       {&LotSquares::square, &LotSquares::sd, &LotSquares::skewness, &LotSquares::samples})
+  for (const auto values : {&LotSquares::square, &LotSquares::sd, &LotSquares::skewness, &LotSquares::samples})
     take(all.squares.member, all.squares.*values, out.squares.*values);
   return out;
 }
@@ -388,8 +354,7 @@ QuantityValues values_of_batch(const QuantityValues& all,
 namespace {
 
 std::optional<RandomEffects> effects_of_counted(const QuantityValues& values) {
-  if (!values.samples.empty())
-    return coefficient_effects(values.y, values.v, values.samples, values.counts.members);
+  if (!values.samples.empty()) return coefficient_effects(values.y, values.v, values.samples, values.counts.members);
   auto out = lot_effects(values.y, values.v, values.counts.members);
   if (!out || values.v_low.empty()) return out;
   const auto square = [](double x) { return x * x; };
@@ -407,17 +372,14 @@ std::optional<RandomEffects> effects_of_counted(const QuantityValues& values) {
 std::optional<QuantityEffects> effects_of(const QuantityValues& values, bool of_logarithms) {
   if (const auto all = effects_of_all(values.squares, values.counts.counted, values.counts.members))
     return QuantityEffects{
-        {all->count, all->mean, all->mean_ci95, all->spread, all->spread_ci95, kNone},
-        arithmetic_figures(*all),
-        true};
+        {all->count, all->mean, all->mean_ci95, all->spread, all->spread_ci95, kNone}, arithmetic_figures(*all), true};
   const auto counted = effects_of_counted(values);
   if (!counted) return std::nullopt;
   QuantityEffects out{*counted, std::nullopt, false};
   if (!of_logarithms) return out;
   // Records of a process's parameters are taken as alike.
   const std::vector<double> alike(values.y.size(), 1.0);
-  out.arithmetic =
-      arithmetic_figures(values.y, values.v, values.samples.empty() ? alike : values.samples);
+  out.arithmetic = arithmetic_figures(values.y, values.v, values.samples.empty() ? alike : values.samples);
   return out;
 }
 

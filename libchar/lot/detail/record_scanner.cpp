@@ -18,8 +18,7 @@ class Scanner {
   explicit Scanner(std::string_view line) : at_(line.data()), end_(line.data() + line.size()) {}
 
   bool word(std::string_view expected) {
-    if (std::string_view(at_, static_cast<std::size_t>(end_ - at_)).substr(0, expected.size()) !=
-        expected)
+    if (std::string_view(at_, static_cast<std::size_t>(end_ - at_)).substr(0, expected.size()) != expected)
       return false;
     at_ += expected.size();
     return true;
@@ -91,17 +90,16 @@ bool scan_value(Scanner& in, RecordedValue& out) {
   if (!known) return false;
   out.status = *known;
   if (in.word(",\"value\":")) {
-    const bool value =
-        in_logarithm(out.quantity) ? in.not_negative(out.value) : in.number(out.value);
-    if (!value || !in.word(",\"ci95\":[") || !in.number_or_null(out.ci95.low, kNone) ||
-        !in.word(",") || !in.number_or_null(out.ci95.high, kInfinity) || !in.word("],\"sd\":") ||
-        !in.number_or_null(out.sd, kNone) || out.sd < 0 || out.ci95.low > out.ci95.high)
+    const bool value = in_logarithm(out.quantity) ? in.not_negative(out.value) : in.number(out.value);
+    if (!value || !in.word(",\"ci95\":[") || !in.number_or_null(out.ci95.low, kNone) || !in.word(",") ||
+        !in.number_or_null(out.ci95.high, kInfinity) || !in.word("],\"sd\":") || !in.number_or_null(out.sd, kNone) ||
+        out.sd < 0 || out.ci95.low > out.ci95.high)
       return false;
   }
   if (in.word(",\"square_in_all\":[")) {
     SquareInAll of;
-    if (!in.number(of.square) || !in.word(",") || !in.not_negative(of.sd) || !(of.sd > 0) ||
-        !in.word(",") || !in.number(of.skewness) || !in.word("]"))
+    if (!in.number(of.square) || !in.word(",") || !in.not_negative(of.sd) || !(of.sd > 0) || !in.word(",") ||
+        !in.number(of.skewness) || !in.word("]"))
       return false;
     out.in_all = of;
   }
@@ -132,9 +130,8 @@ bool scan_texts(Scanner& in, std::vector<std::string>& out) {
 }
 
 bool scan_channel(Scanner& in, RecordedChannel& out) {
-  if (!in.word("{\"name\":") || !in.text(out.name) || !in.word(",\"unit\":") ||
-      !in.text(out.unit) || !in.word(",\"samples\":") || !in.count(out.samples) ||
-      !in.word(",\"missing\":") || !in.count(out.missing))
+  if (!in.word("{\"name\":") || !in.text(out.name) || !in.word(",\"unit\":") || !in.text(out.unit) ||
+      !in.word(",\"samples\":") || !in.count(out.samples) || !in.word(",\"missing\":") || !in.count(out.missing))
     return false;
   if (in.word(",\"mean\":") && !in.number(out.mean)) return false;
   out.fitted = in.word(",\"rate_hz\":");
@@ -168,17 +165,13 @@ bool scan_channels(Scanner& in, std::vector<RecordedChannel>& out) {
 
 bool scan_head(Scanner& in, DeviceRecord& out) {
   if (!in.word("{\"format\":\"device-record\",\"version\":1")) return false;
-  for (const auto& [key, text] : {std::pair(",\"device\":", &out.device),
-                                  std::pair(",\"type\":", &out.type),
-                                  std::pair(",\"batch\":", &out.batch),
-                                  std::pair(",\"log\":", &out.log),
-                                  std::pair(",\"sha256\":", &out.sha256),
-                                  std::pair(",\"settings\":", &out.settings),
-                                  std::pair(",\"program\":", &out.program)})
+  for (const auto& [key, text] :
+       {std::pair(",\"device\":", &out.device), std::pair(",\"type\":", &out.type),
+        std::pair(",\"batch\":", &out.batch), std::pair(",\"log\":", &out.log), std::pair(",\"sha256\":", &out.sha256),
+        std::pair(",\"settings\":", &out.settings), std::pair(",\"program\":", &out.program)})
     if (!in.word(key) || !in.text(*text)) return false;
   if (in.word(",\"temperature_c\":") && !in.number(out.temperature_c.emplace())) return false;
-  for (const auto& [key, text] : {std::pair(",\"report\":", &out.report),
-                                  std::pair(",\"limits\":", &out.limits),
+  for (const auto& [key, text] : {std::pair(",\"report\":", &out.report), std::pair(",\"limits\":", &out.limits),
                                   std::pair(",\"problem\":", &out.problem)})
     if (in.word(key) && !in.text(*text)) return false;
   return !in.word(",\"warnings\":[") || scan_texts(in, out.warnings);
@@ -188,12 +181,10 @@ bool scan_head(Scanner& in, DeviceRecord& out) {
 
 std::optional<DeviceRecord> scan_device_record(std::string_view line) {
   if (line.ends_with('\n')) line.remove_suffix(1);
-  if (line.size() > kMaxDocumentBytes || first_invalid_utf8(line) != std::string_view::npos)
-    return std::nullopt;
+  if (line.size() > kMaxDocumentBytes || first_invalid_utf8(line) != std::string_view::npos) return std::nullopt;
   Scanner in(line);
   std::optional<DeviceRecord> out(std::in_place);
-  if (!scan_head(in, *out) || !scan_channels(in, out->channels) || !in.word("}") || !in.ended())
-    return std::nullopt;
+  if (!scan_head(in, *out) || !scan_channels(in, out->channels) || !in.word("}") || !in.ended()) return std::nullopt;
   return out;
 }
 

@@ -20,12 +20,9 @@ struct TermText {
   const char* curve;
 };
 constexpr std::array<TermText, kTerms> kTexts = {{
-    {"white noise (angle or velocity random walk): root of the two-sided density",
-     "Allan deviation value / sqrt(tau)"},
-    {"bias instability: flicker (1/f) noise; not the minimum of the Allan curve",
-     "Allan deviation 0.6643 value, flat"},
-    {"random walk of the bias: root of its two-sided driving density",
-     "Allan deviation value sqrt(tau / 3)"},
+    {"white noise (angle or velocity random walk): root of the two-sided density", "Allan deviation value / sqrt(tau)"},
+    {"bias instability: flicker (1/f) noise; not the minimum of the Allan curve", "Allan deviation 0.6643 value, flat"},
+    {"random walk of the bias: root of its two-sided driving density", "Allan deviation value sqrt(tau / 3)"},
     {"quantization noise of the integrated output", "Allan deviation sqrt(3) value / tau"},
     {"rate ramp: a linear drift", "Allan deviation value tau / sqrt(2)"},
 }};
@@ -41,15 +38,13 @@ enum class Density { unsaid, one, two };
 
 Density density_of(const MapReader& at) {
   if (!at.has("density")) return Density::unsaid;
-  return at.word("density", {"one-sided", "two-sided"}) == "one-sided" ? Density::one
-                                                                       : Density::two;
+  return at.word("density", {"one-sided", "two-sided"}) == "one-sided" ? Density::one : Density::two;
 }
 
 double side_factor(const MapReader& at, std::string_view key, Density density) {
   if (density == Density::one) return 1 / std::numbers::sqrt2;
   if (density == Density::two) return 1;
-  at.refuse(key,
-            "a density is one-sided or two-sided, and this file does not say which",
+  at.refuse(key, "a density is one-sided or two-sided, and this file does not say which",
             "add density: one-sided (data sheets) or density: two-sided, or give the unit per √h "
             "or in ·√s");
 }
@@ -60,12 +55,8 @@ struct Conversion {
   std::string sentence;  ///< empty when nothing was converted
 };
 
-Conversion conversion(const MapReader& at,
-                      std::string_view unit_key,
-                      std::size_t t,
-                      const std::optional<std::string>& unit,
-                      const std::string& channel_unit,
-                      Density density,
+Conversion conversion(const MapReader& at, std::string_view unit_key, std::size_t t,
+                      const std::optional<std::string>& unit, const std::string& channel_unit, Density density,
                       bool floor) {
   const Term term = static_cast<Term>(t);
   const std::string own = term_unit(kTermNames[t].key, channel_unit);
@@ -73,12 +64,10 @@ Conversion conversion(const MapReader& at,
   if (unit) {
     const auto found = find_noise_unit(term, *unit, channel_unit);
     if (!found)
-      at.refuse(
-          unit_key,
-          fmt::format("is no unit of {} for a channel in {}",
-                      kTermNames[t].key,
-                      channel_unit.empty() ? "an unnamed unit" : channel_unit),
-          fmt::format("such as {}", fmt::join(noise_unit_examples(term, channel_unit), ", ")));
+      at.refuse(unit_key,
+                fmt::format("is no unit of {} for a channel in {}", kTermNames[t].key,
+                            channel_unit.empty() ? "an unnamed unit" : channel_unit),
+                fmt::format("such as {}", fmt::join(noise_unit_examples(term, channel_unit), ", ")));
     understood = *found;
   } else {
     understood.density = term == Term::white || term == Term::walk;
@@ -94,33 +83,26 @@ Conversion conversion(const MapReader& at,
     out.factor /= std::sqrt(2 * std::numbers::ln2 / std::numbers::pi);
     said.push_back("floor of the Allan curve to coefficient (divided by 0.6643)");
   }
-  if (!said.empty())
-    out.sentence = fmt::format("{}: converted from {}", kTermNames[t].key, fmt::join(said, ", "));
+  if (!said.empty()) out.sentence = fmt::format("{}: converted from {}", kTermNames[t].key, fmt::join(said, ", "));
   return out;
 }
 
 void check_status(const MapReader& at, const Coefficient& c) {
   const bool needs = c.status == Status::detected || c.status == Status::given;
-  if (needs && !c.value)
-    at.refuse("value", fmt::format("a term that is {} has a value", name_of(c.status)));
+  if (needs && !c.value) at.refuse("value", fmt::format("a term that is {} has a value", name_of(c.status)));
   if (c.status == Status::not_detected && c.value)
     at.refuse("value", "a term that is not_detected has no value, only upper95");
   if (c.status == Status::not_fitted && c.value)
-    at.refuse("value",
-              "a term that is not_fitted has no value; status: given for one that is stated");
+    at.refuse("value", "a term that is not_fitted has no value; status: given for one that is stated");
 }
 
-void apply(const MapReader& at,
-           std::string_view key,
-           const Conversion& conversion,
-           Coefficient& c,
+void apply(const MapReader& at, std::string_view key, const Conversion& conversion, Coefficient& c,
            SensorModel& model) {
   if (c.value) *c.value *= conversion.factor;
   if (c.upper95) *c.upper95 *= conversion.factor;
   c.ci95.low *= conversion.factor;
   c.ci95.high *= conversion.factor;
-  if (!std::isfinite(c.value.value_or(0)) || !std::isfinite(c.upper95.value_or(0)) ||
-      !std::isfinite(c.ci95.high))
+  if (!std::isfinite(c.value.value_or(0)) || !std::isfinite(c.upper95.value_or(0)) || !std::isfinite(c.ci95.high))
     at.refuse(key, "is out of range once it is converted to the channel's unit");
   if (!conversion.sentence.empty()) model.remarks.push_back(conversion.sentence);
 }
@@ -131,8 +113,7 @@ void write_nothing(const Field&, const Coefficient&, std::vector<Entry>&) {}
 
 bool read_off_floor(const MapReader& at, Term term) {
   if (!at.has("reading") || at.word("reading", {"coefficient", "floor"}) != "floor") return false;
-  if (term != Term::flicker)
-    at.refuse("reading", "only bias_instability can be read off the floor of a curve");
+  if (term != Term::flicker) at.refuse("reading", "only bias_instability can be read off the floor of a curve");
   return true;
 }
 
@@ -149,8 +130,7 @@ void write_interval(const Coefficient& c, std::vector<Entry>& out) {
   Entry ci95{"ci95"};
   if (known) ci95.value = std::vector<double>{c.ci95.low, c.ci95.high};
   // JSON leaves out what it cannot say.
-  ci95.in_json =
-      known && c.status != Status::given && std::isfinite(c.ci95.low) && std::isfinite(c.ci95.high);
+  ci95.in_json = known && c.status != Status::given && std::isfinite(c.ci95.low) && std::isfinite(c.ci95.high);
   Entry by = word_entry("ci95_by", interval_words(), c.profile ? 1 : 0);
   by.in_json = ci95.in_json;
   out.push_back(std::move(ci95));
@@ -163,23 +143,19 @@ const Fields<Coefficient>& term_fields() {
   static const Fields<Coefficient> rows = {
       field<&Coefficient::value>("value", {.range = kNotNegative, .meaning = "the coefficient"}),
       custom<Coefficient, read_later, write_nothing>(
-          "unit",
-          "text",
+          "unit", "text",
           {.meaning = "U·√s, U, U/√s, U·s, U/s, or as data sheets say: deg/√h, °/s/√Hz, mdps/√Hz, "
                       "µg/√Hz, m/s/√h, deg/h, rad/s²/√Hz, deg/h/√h, arcsec, mV/√Hz…"}),
-      field<&Coefficient::upper95>(
-          "upper95",
-          {.range = kNotNegative,
-           .comment = "one-sided upper 95 % limit",
-           .meaning = "upper limit of a term that was not detected (simulated as 0)"}),
+      field<&Coefficient::upper95>("upper95",
+                                   {.range = kNotNegative,
+                                    .comment = "one-sided upper 95 % limit",
+                                    .meaning = "upper limit of a term that was not detected (simulated as 0)"}),
       field<&Coefficient::ci95>("ci95", {.range = kNotNegative, .meaning = "95 % interval"}),
-      field<&Coefficient::profile>(
-          "ci95_by", {.words = interval_words(), .meaning = "where the interval comes from"}),
-      field<&Coefficient::status>(
-          "status", {.words = status_words(), .meaning = "how it is known", .otherwise = "given"}),
+      field<&Coefficient::profile>("ci95_by", {.words = interval_words(), .meaning = "where the interval comes from"}),
+      field<&Coefficient::status>("status",
+                                  {.words = status_words(), .meaning = "how it is known", .otherwise = "given"}),
       custom<Coefficient, read_later, write_nothing>(
-          "reading",
-          "",
+          "reading", "",
           {.words = kReadings,
            .meaning = "floor: read off the flat part of an Allan curve, 0.664·B",
            .otherwise = "coefficient"}),
@@ -196,13 +172,9 @@ void read_term(const MapReader& top, std::string_view key, SensorModel& model) {
   const Density density = density_of(top);
   if (node->kind != Document::Kind::map) {
     c.value = top.number(key, kNotNegative);
-    return apply(
-        top,
-        key,
-        conversion(
-            top, key, t, std::nullopt, model.unit, *c.value == 0 ? Density::two : density, false),
-        c,
-        model);
+    return apply(top, key,
+                 conversion(top, key, t, std::nullopt, model.unit, *c.value == 0 ? Density::two : density, false), c,
+                 model);
   }
   const MapReader at = top.map(key, keys_of(term_fields()));
   read_fields(term_fields(), at, c);
@@ -212,11 +184,7 @@ void read_term(const MapReader& top, std::string_view key, SensorModel& model) {
   std::optional<std::string> unit;
   if (at.has("unit")) unit = at.text("unit");
   const bool none = c.value.value_or(0) == 0 && c.upper95.value_or(0) == 0;
-  apply(top,
-        key,
-        conversion(at, "unit", t, unit, model.unit, none ? Density::two : density, floor),
-        c,
-        model);
+  apply(top, key, conversion(at, "unit", t, unit, model.unit, none ? Density::two : density, floor), c, model);
 }
 
 void write_term(const Field& row, const SensorModel& model, std::vector<Entry>& out) {
@@ -224,14 +192,12 @@ void write_term(const Field& row, const SensorModel& model, std::vector<Entry>& 
   const Coefficient& c = model.noise[t];
   const TermName& name = kTermNames[t];
   Entry term{std::string(row.key)};
-  term.comment =
-      fmt::format("{} in IEEE 952: {}; {}", name.letter, kTexts[t].meaning, kTexts[t].curve);
+  term.comment = fmt::format("{} in IEEE 952: {}; {}", name.letter, kTexts[t].meaning, kTexts[t].curve);
   term.form = Entry::Form::block;
   term.below = {{"value"}, {"unit", term_unit(name.key, model.unit.empty() ? "U" : model.unit)}};
   if (c.value) term.below[0].value = *c.value;
   write_interval(c, term.below);
-  if (!c.value && c.upper95)
-    term.below.push_back({"upper95", *c.upper95, "one-sided upper 95 % limit"});
+  if (!c.value && c.upper95) term.below.push_back({"upper95", *c.upper95, "one-sided upper 95 % limit"});
   term.below.push_back(word_entry("status", status_words(), static_cast<int>(c.status)));
   out.push_back(std::move(term));
 }
@@ -302,8 +268,7 @@ std::optional<Factor> time_factor(std::string_view& text) {
     return std::nullopt;
   }
   const bool bracket = eat(text, "sqrt(") || eat(text, "√(");
-  const bool root =
-      bracket || eat(text, "√") || eat(text, "sqrt") || eat(text, "rt") || eat(text, "root");
+  const bool root = bracket || eat(text, "√") || eat(text, "sqrt") || eat(text, "rt") || eat(text, "root");
   auto factor = time_unit(text);
   if (!factor || (bracket && !eat(text, ")"))) return std::nullopt;
   if (root) {
@@ -347,9 +312,7 @@ std::string without_bracket(std::string text) {
   return text.substr(1, close - 1) + text.substr(close + 1);
 }
 
-bool near(double a, double b) {
-  return std::abs(a - b) < 1e-9;
-}
+bool near(double a, double b) { return std::abs(a - b) < 1e-9; }
 
 // The longest base in front whose rest is made of factors of time and gives the wanted exponent.
 std::optional<NoiseUnit> by_prefix(std::string_view text, const Base& channel, double wanted) {
@@ -378,17 +341,14 @@ std::optional<NoiseUnit> by_quantity(std::string_view text, std::string_view own
     const auto unit = find_unit(text.substr(0, length));
     if (!unit || unit->quantity != channel->quantity) continue;
     const auto rest = time_factors(text.substr(length));
-    if (rest && near(rest->exponent, wanted))
-      return NoiseUnit{unit->to_si * rest->si / channel->to_si, rest->hertz};
+    if (rest && near(rest->exponent, wanted)) return NoiseUnit{unit->to_si * rest->si / channel->to_si, rest->hertz};
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<NoiseUnit> find_noise_unit(Term term,
-                                         std::string_view raw,
-                                         std::string_view channel_unit) {
+std::optional<NoiseUnit> find_noise_unit(Term term, std::string_view raw, std::string_view channel_unit) {
   const std::string text = without_bracket(without_blanks(raw));
   const std::string own = without_blanks(channel_unit);
   const double wanted = kExponent[static_cast<std::size_t>(term)];

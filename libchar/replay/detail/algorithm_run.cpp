@@ -23,16 +23,13 @@ inline constexpr std::size_t kTrackBins = 400;
 inline constexpr std::size_t kWindowBins = 800;
 
 bool still(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [&](double v) {
-    return v == values[0] || (std::isnan(v) && std::isnan(values[0]));
-  });
+  return std::all_of(values.begin(), values.end(),
+                     [&](double v) { return v == values[0] || (std::isnan(v) && std::isnan(values[0])); });
 }
 
 /// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever
 /// changes.
-Timeline thinned(std::span<const double> time_s,
-                 const std::vector<std::vector<double>>& series,
-                 std::size_t bins) {
+Timeline thinned(std::span<const double> time_s, const std::vector<std::vector<double>>& series, std::size_t bins) {
   Timeline out;
   if (time_s.empty() || std::all_of(series.begin(), series.end(), still)) return out;
   bins = std::min(bins, time_s.size());
@@ -61,8 +58,7 @@ Timeline thinned(std::span<const double> time_s,
 Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, double window_s) {
   const std::vector<ErrorCell> cells = meter.cells();
   const double cell_s = static_cast<double>(meter.cell_samples()) / rate_hz;
-  const auto half =
-      static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
+  const auto half = static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
   std::vector<double> times, rms;
   // Sums over each window of their own: a difference of running sums would keep the traces of a
   // large error for ever.
@@ -122,8 +118,7 @@ void AlgorithmRun::guarded(const Work& work) {
     accounted(work);
     learning_s_ += thread_seconds() - start;
   } catch (const Error& error) {
-    if (error.problem().kind != ErrorKind::numeric && error.problem().kind != ErrorKind::usage)
-      throw;
+    if (error.problem().kind != ErrorKind::numeric && error.problem().kind != ErrorKind::usage) throw;
     const std::string what = error.problem().what, name(planned_->entry->description->name);
     failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
     runner_.reset();
@@ -160,8 +155,7 @@ AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& fram
   if (frame.allan) allan_.resize(inputs);
   medians_.set_length(frame.instants);
   guarded([&] {
-    runner_ = planned.entry->make(
-        some_left_out() ? subset(*frame.array, *frame.live) : *frame.array, planned.settings);
+    runner_ = planned.entry->make(some_left_out() ? subset(*frame.array, *frame.live) : *frame.array, planned.settings);
   });
 }
 
@@ -206,16 +200,14 @@ LearntAlgorithm AlgorithmRun::hand_out() const {
   if (!alive())
     out.refused = failure_;
   else if (planned_->learns_run())
-    out.refused =
-        out.label + " is a bound: it looks at the reference of the very run it is used on";
+    out.refused = out.label + " is a bound: it looks at the reference of the very run it is used on";
   else if (!runner_->exchange(with))
     out.refused = out.label + " has no way to hand out what it learnt";
   std::size_t numbers = 0;
   for (const fusion::LearntNumbers& part : with.learnt()) {
     numbers += part.values.size();
-    if (out.refused.empty() && !std::all_of(part.values.begin(), part.values.end(), [](double v) {
-          return std::isfinite(v);
-        }))
+    if (out.refused.empty() &&
+        !std::all_of(part.values.begin(), part.values.end(), [](double v) { return std::isfinite(v); }))
       out.refused = out.label + " learnt numbers that are not finite";
   }
   if (numbers > kMostLearnt)
@@ -234,10 +226,8 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
     const auto so_far = static_cast<std::int64_t>(steps_) + done;
     const std::int64_t due = noted ? medians_.until_next(so_far) : all.cols();
     part = static_cast<Eigen::Index>(std::min<std::int64_t>(due, all.cols() - done));
-    seconds += accounted([&] {
-      runner_->run(
-          all.middleCols(done, part), x_.middleCols(done, part), variance_.middleCols(done, part));
-    });
+    seconds += accounted(
+        [&] { runner_->run(all.middleCols(done, part), x_.middleCols(done, part), variance_.middleCols(done, part)); });
     if (noted && part == due) medians_.note(weights(), variances());
   }
   timed_s_ += seconds;
@@ -291,8 +281,7 @@ void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen
       double error = x_(j, k) - truth(j, k);
       if (frame_->tilt) error = fusion::wrapped(error);
       // An estimate that overflowed is none.
-      error_[static_cast<std::size_t>(k - skip)] =
-          std::isfinite(error) ? error * frame_->output_scale : kNone;
+      error_[static_cast<std::size_t>(k - skip)] = std::isfinite(error) ? error * frame_->output_scale : kNone;
       seen_.coverage[static_cast<std::size_t>(j)].add(error, std::sqrt(variance_(j, k)));
     }
     meters_[static_cast<std::size_t>(j)].push(error_);
@@ -312,8 +301,7 @@ void AlgorithmRun::note_tracks(double time_s) {
   track_times_.push_back(time_s);
   const auto add = [](std::vector<std::vector<double>>& series, const auto& values) {
     series.resize(static_cast<std::size_t>(values.size()));
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-      series[static_cast<std::size_t>(i)].push_back(values(i));
+    for (Eigen::Index i = 0; i < values.size(); ++i) series[static_cast<std::size_t>(i)].push_back(values(i));
   };
   if (one_input) add(weight_samples_, weights->col(0));
   if (variances) add(variance_samples_, *variances);
@@ -369,11 +357,9 @@ AlgorithmResult AlgorithmRun::result(const ScoreOptions& options, double window_
   out.availability = seen_.scored > 0 ? seen_.available / seen_.scored : 0;
   out.ns_per_sample = median_ns();
   out.learning_s = learning_s_ - ahead_s_;
-  if (frame_->heap != nullptr)
-    out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(heap_.peak, 0));
+  if (frame_->heap != nullptr) out.peak_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(heap_.peak, 0));
   if (const auto found = weights())
-    for (const auto& column : found->colwise())
-      out.weights.emplace_back(column.begin(), column.end());
+    for (const auto& column : found->colwise()) out.weights.emplace_back(column.begin(), column.end());
   if (const auto found = variances()) out.variances.assign(found->begin(), found->end());
   std::vector<double> none;
   medians_.take(out.weights.size() == 1 ? out.weights[0] : none, out.variances);

@@ -60,9 +60,7 @@ class AlgorithmRun {
   /// r x m estimates of the last block, in output units.
   const Eigen::MatrixXd& estimates() const { return x_; }
   const std::vector<ErrorMeter>& meters() const { return meters_; }
-  bool timed_enough() const {
-    return !alive() || ns_.size() >= kLeastTimed || timed_s_ >= kEnoughTimed_s;
-  }
+  bool timed_enough() const { return !alive() || ns_.size() >= kLeastTimed || timed_s_ >= kEnoughTimed_s; }
   /// Of an instant, what was done beforehand on the run itself counted in; NaN before the first block.
   double median_ns() const;
   /// Everything that is known without the others: scores, tracks, faults, cost.

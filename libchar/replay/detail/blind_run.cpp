@@ -8,13 +8,8 @@
 #include "libchar/fusion/why_not.hpp"
 
 namespace libchar {
-BlindRun::BlindRun(const PlannedAlgorithm& planned,
-                   const fusion::Array& array,
-                   const std::vector<Eigen::Index>& live)
-    : planned_(&planned),
-      array_(&array),
-      h_(array.h()),
-      meters_(static_cast<std::size_t>(array.channels)) {
+BlindRun::BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array, const std::vector<Eigen::Index>& live)
+    : planned_(&planned), array_(&array), h_(array.h()), meters_(static_cast<std::size_t>(array.channels)) {
   others_.resize(static_cast<std::size_t>(array.channels));
   std::vector<Eigen::Index> all = live;
   for (Eigen::Index i = 0; live.empty() && i < array.channels; ++i) all.push_back(i);
@@ -29,8 +24,7 @@ BlindRun::BlindRun(const PlannedAlgorithm& planned,
   }
   for (const Eigen::Index start : {0, 1}) {
     std::vector<Eigen::Index> channels;
-    for (Eigen::Index i = start; i < n; i += 2)
-      channels.push_back(all[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = start; i < n; i += 2) channels.push_back(all[static_cast<std::size_t>(i)]);
     halves_.push_back(part(channels));
   }
 }
@@ -39,8 +33,7 @@ BlindRun::Part BlindRun::part(const std::vector<Eigen::Index>& channels) const {
   Part out;
   out.channels = channels;
   const fusion::Array array = subset(*array_, channels);
-  if (channels.empty() || !fusion::why_not(*planned_->entry->description, array).empty())
-    return out;
+  if (channels.empty() || !fusion::why_not(*planned_->entry->description, array).empty()) return out;
   try {
     out.runner = planned_->entry->make(array, planned_->settings);
     if (!looks_ahead()) out.runner->finish_learning();
@@ -61,8 +54,7 @@ void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
   const auto add = [&](std::int64_t from, std::int64_t to, std::vector<Columns>& columns) {
     const std::int64_t begin = std::max(from - first, std::int64_t{0}),
                        end = std::min(to - first, static_cast<std::int64_t>(count));
-    if (begin < end)
-      columns.push_back({static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)});
+    if (begin < end) columns.push_back({static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)});
   };
   for (const BlindStretch& stretch : planned_->blind.stretches) {
     add(stretch.from, stretch.to, run_);
@@ -70,9 +62,7 @@ void BlindRun::find_columns(std::int64_t first, Eigen::Index count) {
   }
 }
 
-bool BlindRun::looks_ahead() const {
-  return planned_->looks_ahead();
-}
+bool BlindRun::looks_ahead() const { return planned_->looks_ahead(); }
 
 void BlindRun::look(std::int64_t first, const Eigen::MatrixXd& samples) {
   find_columns(first, samples.cols());
@@ -107,8 +97,7 @@ bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd&
   variance_.resize(x.rows(), x.cols());
   for (const Columns& columns : run_) {
     part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::all);
-    part.runner->run(part_,
-                     x.middleCols(columns.from, columns.count),
+    part.runner->run(part_, x.middleCols(columns.from, columns.count),
                      variance_.middleCols(columns.from, columns.count));
     steps_ += static_cast<std::uint64_t>(columns.count);
   }
@@ -144,8 +133,7 @@ void BlindRun::score_others(const Eigen::MatrixXd& samples, Eigen::Index skip) {
     push_errors(skip, meters_[i]);
   }
   errors_.resize(m);
-  for (std::size_t k = 0; k < m; ++k)
-    errors_[k] = counts_[k] > 0 ? std::sqrt(squares_[k] / counts_[k]) : kNone;
+  for (std::size_t k = 0; k < m; ++k) errors_[k] = counts_[k] > 0 ? std::sqrt(squares_[k] / counts_[k]) : kNone;
   push_errors(skip, all_);
 }
 

@@ -19,9 +19,7 @@ namespace libchar {
 class BlindRun {
  public:
   /// `live`: the sensors that have samples; empty: all.
-  BlindRun(const PlannedAlgorithm& planned,
-           const fusion::Array& array,
-           const std::vector<Eigen::Index>& live);
+  BlindRun(const PlannedAlgorithm& planned, const fusion::Array& array, const std::vector<Eigen::Index>& live);
   /// Where the method looks at the run before it estimates: a block of it, then the end.
   void look(std::int64_t first, const Eigen::MatrixXd& samples);
   void finish_looking();

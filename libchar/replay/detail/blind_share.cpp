@@ -16,44 +16,34 @@ constexpr double kLeadIn = 0.25;
 constexpr double kMostKept = 1e9;  // bytes
 
 /// Nanoseconds an instant of leave-one-out and both halves.
-double cost_of_all(const fusion::Entry& entry,
-                   const fusion::Settings& settings,
-                   const fusion::Array& array) {
+double cost_of_all(const fusion::Entry& entry, const fusion::Settings& settings, const fusion::Array& array) {
   const Eigen::Index n = array.channels;
   const auto cost = [&](Eigen::Index channels) {
     std::vector<Eigen::Index> some(static_cast<std::size_t>(channels));
     for (Eigen::Index i = 0; i < channels; ++i) some[static_cast<std::size_t>(i)] = i;
     const fusion::Array part = channels > 0 ? subset(array, some) : array;
-    return channels > 0 && fusion::why_not(*entry.description, part).empty()
-               ? entry.cost_ns(part, settings)
-               : 0.0;
+    return channels > 0 && fusion::why_not(*entry.description, part).empty() ? entry.cost_ns(part, settings) : 0.0;
   };
   return static_cast<double>(left_out_of(n)) * cost(n - 1) + cost((n + 1) / 2) + cost(n / 2);
 }
 
 }  // namespace
 
-BlindShare blind_share(const fusion::Entry& entry,
-                       const fusion::Settings& settings,
-                       const fusion::Array& array,
-                       std::int64_t run,
-                       std::int64_t warm_up,
-                       double budget_s) {
+BlindShare blind_share(const fusion::Entry& entry, const fusion::Settings& settings, const fusion::Array& array,
+                       std::int64_t run, std::int64_t warm_up, double budget_s) {
   BlindShare out;
   const double an_instant_s = 1e-9 * cost_of_all(entry, settings, array);
   out.cost_s = an_instant_s * static_cast<double>(run);
   // What looks ahead keeps the run of every part at the same time.
   const auto n = static_cast<double>(array.channels);
-  const double most =
-      entry.looks_ahead(settings)
-          ? kMostKept / (8 * n * static_cast<double>(left_out_of(array.channels) + 1))
-          : std::numeric_limits<double>::infinity();
+  const double most = entry.looks_ahead(settings)
+                          ? kMostKept / (8 * n * static_cast<double>(left_out_of(array.channels) + 1))
+                          : std::numeric_limits<double>::infinity();
   const double affordable = std::min(budget_s / an_instant_s, most);
   if (!(static_cast<double>(run) > affordable)) return out;
   out.whole = false;
   out.share = 0;
-  const auto cell = static_cast<std::int64_t>(
-      ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
+  const auto cell = static_cast<std::int64_t>(ErrorMeter::cell_samples_of(static_cast<std::uint64_t>(run - warm_up)));
   const std::int64_t cells = (run - warm_up) / cell;
   const auto length = static_cast<std::int64_t>(affordable / kBlindStretches);
   const auto scored = static_cast<std::int64_t>((1 - kLeadIn) * static_cast<double>(length)) / cell;
@@ -64,12 +54,10 @@ BlindShare blind_share(const fusion::Entry& entry,
     BlindStretch stretch;
     stretch.scored_from = warm_up + first * cell;
     stretch.to = stretch.scored_from + scored * cell;
-    stretch.from = std::max<std::int64_t>(out.stretches.empty() ? 0 : out.stretches.back().to,
-                                          stretch.to - length);
+    stretch.from = std::max<std::int64_t>(out.stretches.empty() ? 0 : out.stretches.back().to, stretch.to - length);
     out.stretches.push_back(stretch);
   }
-  out.share =
-      static_cast<double>(kBlindStretches * scored * cell) / static_cast<double>(run - warm_up);
+  out.share = static_cast<double>(kBlindStretches * scored * cell) / static_cast<double>(run - warm_up);
   return out;
 }
 

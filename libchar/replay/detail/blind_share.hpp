@@ -36,11 +36,7 @@ inline std::ptrdiff_t left_out_of(std::ptrdiff_t n) {
 }
 
 /// run: instants of it; the first `warm_up` are not scored. budget_s: of one core, infinite: no limit.
-BlindShare blind_share(const fusion::Entry& entry,
-                       const fusion::Settings& settings,
-                       const fusion::Array& array,
-                       std::int64_t run,
-                       std::int64_t warm_up,
-                       double budget_s);
+BlindShare blind_share(const fusion::Entry& entry, const fusion::Settings& settings, const fusion::Array& array,
+                       std::int64_t run, std::int64_t warm_up, double budget_s);
 
 }  // namespace libchar

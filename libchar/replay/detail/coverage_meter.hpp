@@ -25,8 +25,7 @@ class CoverageMeter {
     if (all_ < kLeast) return {};
     std::uint64_t below = 0;
     std::size_t bin = 0;
-    while (below + counts_[bin] < static_cast<std::uint64_t>(0.95 * static_cast<double>(all_)))
-      below += counts_[bin++];
+    while (below + counts_[bin] < static_cast<std::uint64_t>(0.95 * static_cast<double>(all_))) below += counts_[bin++];
     return std::pow(10.0, (static_cast<double>(bin) + 0.5 - kZero) / kPerDecade) / kNormal95;
   }
 

@@ -22,8 +22,7 @@ LearntAlignment learnt_alignment(const SceneAlignment& alignment, std::size_t se
 
 void add_noise(const fusion::Array& array, std::size_t i, LearntSensor& sensor) {
   const auto row = static_cast<Eigen::Index>(i);
-  if (array.noise_levels.size() > 0 && array.noise_levels[row] > 0)
-    sensor.noise_variance = array.noise_levels[row];
+  if (array.noise_levels.size() > 0 && array.noise_levels[row] > 0) sensor.noise_variance = array.noise_levels[row];
   if (array.noise_models.empty()) return;
   const fusion::NoiseModel& model = array.noise_models[i];
   sensor.flicker = model.flicker;
@@ -44,17 +43,13 @@ fusion::NoiseModel noise_model_of(const LearntSensor& sensor) {
 fusion::ChannelLimits limits_of_row(const LearntAlignment& alignment, std::size_t axis) {
   fusion::ChannelLimits out;
   if (axis < alignment.low.size() && alignment.low[axis] > -kNoLimit) out.low = alignment.low[axis];
-  if (axis < alignment.high.size() && alignment.high[axis] < kNoLimit)
-    out.high = alignment.high[axis];
+  if (axis < alignment.high.size() && alignment.high[axis] < kNoLimit) out.high = alignment.high[axis];
   return out;
 }
 
 // From the numbers and the unit that the log has to those that are fused, whatever the reader made of
 // them. The further axes of a device are as the reader made them, and so is its own.
-void set_units(const SourceInfo& source,
-               const Scene& scene,
-               const std::string& read_in,
-               LearntSensor& out) {
+void set_units(const SourceInfo& source, const Scene& scene, const std::string& read_in, LearntSensor& out) {
   std::string stated = scene.reading.units.empty() ? read_in : "";
   double factor = 1;
   if (!source.logs.empty() && out.cross.empty())
@@ -64,16 +59,12 @@ void set_units(const SourceInfo& source,
         factor = channel.factor;
       }
   out.recorded_unit = stated;
-  if (out.unit.empty() && stated != read_in && (std::abs(out.scale) == 1 || scene.tilt))
-    out.unit = read_in;
+  if (out.unit.empty() && stated != read_in && (std::abs(out.scale) == 1 || scene.tilt)) out.unit = read_in;
   out.scale *= factor;
 }
 
-LearntSensor learnt_sensor(const Scene& scene,
-                           const ReplayPlan& plan,
-                           const Instants& instants,
-                           const Eigen::MatrixXd& h,
-                           std::size_t i) {
+LearntSensor learnt_sensor(const Scene& scene, const ReplayPlan& plan, const Instants& instants,
+                           const Eigen::MatrixXd& h, std::size_t i) {
   const SceneSensor& from = scene.sensors[i];
   const auto row = static_cast<Eigen::Index>(i);
   LearntSensor out;
@@ -90,18 +81,14 @@ LearntSensor learnt_sensor(const Scene& scene,
   }
   if (!scene.tilt) out.h.assign(h.row(row).begin(), h.row(row).end());
   add_noise(plan.array, i, out);
-  out.left_out =
-      !plan.live.empty() && std::find(plan.live.begin(), plan.live.end(), row) == plan.live.end();
+  out.left_out = !plan.live.empty() && std::find(plan.live.begin(), plan.live.end(), row) == plan.live.end();
   return out;
 }
 
 }  // namespace
 
-LearntFusion learnt_of(const Scene& scene,
-                       const ReplayPlan& plan,
-                       const Instants& instants,
-                       const SensorKnowledge& knowledge,
-                       const SceneAlignment* alignment) {
+LearntFusion learnt_of(const Scene& scene, const ReplayPlan& plan, const Instants& instants,
+                       const SensorKnowledge& knowledge, const SceneAlignment* alignment) {
   LearntFusion out;
   const InstantsInfo& info = instants.info();
   out.name = scene.name;
@@ -117,8 +104,7 @@ LearntFusion learnt_of(const Scene& scene,
   if (const double offset = instants.reference_offset(); offset != 0)
     out.inputs[0].reference_offset = offset * info.output_scale;
   if (scene.tilt)
-    out.tilt = {scene.sensors[scene.tilt->gyroscope].name,
-                scene.sensors[scene.tilt->accelerometer_x].name,
+    out.tilt = {scene.sensors[scene.tilt->gyroscope].name, scene.sensors[scene.tilt->accelerometer_x].name,
                 scene.sensors[scene.tilt->accelerometer_z].name};
   const Eigen::MatrixXd h = plan.array.h();
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
@@ -129,8 +115,7 @@ LearntFusion learnt_of(const Scene& scene,
     out.sensors[i].alignment = learnt_alignment(*alignment, i);
   }
   if (alignment != nullptr)
-    out.interpolation =
-        alignment->alignment.interpolation == fusion::Interpolation::cubic ? "cubic" : "sinc";
+    out.interpolation = alignment->alignment.interpolation == fusion::Interpolation::cubic ? "cubic" : "sinc";
   return out;
 }
 
@@ -145,8 +130,7 @@ void note_step_noise(const std::vector<std::optional<StepNoise>>& noise, LearntF
   }
 }
 
-void note_readings(const std::vector<std::optional<LearntSensor::Reading>>& readings,
-                   LearntFusion& learnt) {
+void note_readings(const std::vector<std::optional<LearntSensor::Reading>>& readings, LearntFusion& learnt) {
   std::size_t next = 0;
   for (LearntSensor& sensor : learnt.sensors)
     if (!sensor.left_out && next < readings.size()) sensor.reading = readings[next++];
@@ -168,26 +152,20 @@ fusion::Array array_of(const LearntFusion& learnt) {
     const LearntSensor& sensor = *given[static_cast<std::size_t>(i)];
     if (levels) out.noise_levels[i] = *sensor.noise_variance;
     if (models) out.noise_models.push_back(noise_model_of(sensor));
-    for (Eigen::Index j = 0; j < h.cols() && !tilt; ++j)
-      h(i, j) = sensor.h[static_cast<std::size_t>(j)];
+    for (Eigen::Index j = 0; j < h.cols() && !tilt; ++j) h(i, j) = sensor.h[static_cast<std::size_t>(j)];
   }
   if (!tilt && !(h.cols() == 1 && (h.array() == 1).all())) out.observation_matrix = h;
   out.learning_samples = static_cast<std::int64_t>(learnt.learning_instants);
   const auto place = [&](const std::string& name) {
-    return std::find_if(
-               given.begin(), given.end(), [&](const auto* s) { return s->name == name; }) -
-           given.begin();
+    return std::find_if(given.begin(), given.end(), [&](const auto* s) { return s->name == name; }) - given.begin();
   };
   if (tilt)
-    out.tilt = fusion::TiltChannels{place(learnt.tilt.gyroscope),
-                                    place(learnt.tilt.accelerometer_x),
+    out.tilt = fusion::TiltChannels{place(learnt.tilt.gyroscope), place(learnt.tilt.accelerometer_x),
                                     place(learnt.tilt.accelerometer_z)};
   return out;
 }
 
-SceneAlignment alignment_of(const LearntFusion& learnt,
-                            const std::vector<std::size_t>& sensors,
-                            double rate_hz) {
+SceneAlignment alignment_of(const LearntFusion& learnt, const std::vector<std::size_t>& sensors, double rate_hz) {
   SceneAlignment out;
   out.alignment.interpolation =
       learnt.interpolation == "cubic" ? fusion::Interpolation::cubic : fusion::Interpolation::sinc;

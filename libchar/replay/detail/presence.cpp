@@ -36,16 +36,13 @@ bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t 
   std::vector<double> others;
   for (std::size_t k = 0; k < presence.size(); ++k)
     if (k != i) others.push_back(static_cast<double>(presence[k].still));
-  const double usual =
-      std::max(median_in_place(others, Middle::upper), static_cast<double>(presence[i].next_still));
+  const double usual = std::max(median_in_place(others, Middle::upper), static_cast<double>(presence[i].next_still));
   return static_cast<double>(presence[i].still) >
          std::max({kShortest, kShareOfRun * static_cast<double>(samples), kLonger * usual});
 }
 
 std::string still_words(const std::string& name, const Presence& at, double rate_hz) {
-  return fmt::format("{} from {} to {} s",
-                     name,
-                     place_text(static_cast<double>(at.still_from) / rate_hz),
+  return fmt::format("{} from {} to {} s", name, place_text(static_cast<double>(at.still_from) / rate_hz),
                      place_text(static_cast<double>(at.still_from + at.still) / rate_hz));
 }
 

@@ -15,8 +15,7 @@ constexpr double kLeastSum = 0.1;
 
 void add(std::vector<std::vector<double>>& series, const Eigen::VectorXd& values) {
   series.resize(static_cast<std::size_t>(values.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    series[static_cast<std::size_t>(i)].push_back(values(i));
+  for (Eigen::Index i = 0; i < values.size(); ++i) series[static_cast<std::size_t>(i)].push_back(values(i));
 }
 
 void take_medians(std::vector<std::vector<double>> notes, std::vector<double>& values) {
@@ -34,15 +33,11 @@ double sum_of(const std::vector<double>& values) {
 
 }  // namespace
 
-void RunMedians::set_length(std::int64_t instants) {
-  every_ = std::max<std::int64_t>(1, instants / kNotes);
-}
+void RunMedians::set_length(std::int64_t instants) { every_ = std::max<std::int64_t>(1, instants / kNotes); }
 
-void RunMedians::note(const std::optional<Eigen::MatrixXd>& weights,
-                      const std::optional<Eigen::VectorXd>& variances) {
+void RunMedians::note(const std::optional<Eigen::MatrixXd>& weights, const std::optional<Eigen::VectorXd>& variances) {
   // Where nothing was fused the weights have no sum, and mean nothing.
-  const bool fused =
-      weights && weights->cols() == 1 && weights->allFinite() && weights->array().abs().sum() > 0;
+  const bool fused = weights && weights->cols() == 1 && weights->allFinite() && weights->array().abs().sum() > 0;
   if (fused) add(weights_, weights->col(0));
   if (variances) add(variances_, *variances);
 }

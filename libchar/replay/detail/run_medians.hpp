@@ -15,8 +15,7 @@ class RunMedians {
   std::int64_t until_next(std::int64_t done) const { return every_ - done % every_; }
   void set_length(std::int64_t instants);
   /// After an instant whose notes are due.
-  void note(const std::optional<Eigen::MatrixXd>& weights,
-            const std::optional<Eigen::VectorXd>& variances);
+  void note(const std::optional<Eigen::MatrixXd>& weights, const std::optional<Eigen::VectorXd>& variances);
   /// In the place of the values at the end; untouched where nothing was noted. Weights keep the sum that they have at
   /// most instants.
   void take(std::vector<double>& weights, std::vector<double>& variances) const;

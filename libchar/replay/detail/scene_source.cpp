@@ -21,15 +21,10 @@ constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
 // Of sensors that are compared (is_frozen) one that hangs is missing there anyway.
-void note_bad_samples(const ChannelQuality& quality,
-                      const std::string& sensor,
-                      bool compared,
-                      Findings& to) {
+void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, bool compared, Findings& to) {
   for (const Finding& one : quality.findings)
-    if (one.severity == Severity::bad && one.code != "no_value" &&
-        (one.code != "stuck" || !compared))
-      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help =
-          one.help;
+    if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !compared))
+      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help = one.help;
 }
 
 // The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.
@@ -80,8 +75,7 @@ std::size_t position(const std::vector<std::string>& names, const std::string& n
 // What the sensors of one pass go through on their way.
 class SensorPath {
  public:
-  SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, double rate_hz)
-      : scene_(scene) {
+  SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, double rate_hz) : scene_(scene) {
     const std::uint64_t seed = scene.simulated ? scene.simulated->seed : 1;
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
       std::vector<SensorFault> own;
@@ -110,10 +104,7 @@ class SensorPath {
 
 }  // namespace
 
-std::size_t column_of(const LogInfo& log,
-                      const std::string& channel,
-                      const std::string& scene,
-                      const char* role) {
+std::size_t column_of(const LogInfo& log, const std::string& channel, const std::string& scene, const char* role) {
   std::vector<std::string> names;
   for (const Channel& one : log.channels) names.push_back(one.name);
   const std::size_t column = position(names, channel);
@@ -141,8 +132,7 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
     describe_simulation();
   } else {
     if (scene.simulated)
-      known_faults_.insert(
-          known_faults_.end(), scene.simulated->faults.begin(), scene.simulated->faults.end());
+      known_faults_.insert(known_faults_.end(), scene.simulated->faults.begin(), scene.simulated->faults.end());
     if (scene.resample_hz)
       read_even(progress);
     else
@@ -157,10 +147,7 @@ void SceneSource::hide_frozen() {
     if (!is_frozen(info_.presence, i, info_.samples)) continue;
     const Presence& at = info_.presence[i];
     info_.frozen.push_back(i);
-    injected_.push_back({i,
-                         FaultKind::dropout,
-                         0,
-                         static_cast<double>(at.still_from) / info_.rate_hz,
+    injected_.push_back({i, FaultKind::dropout, 0, static_cast<double>(at.still_from) / info_.rate_hz,
                          static_cast<double>(at.still_from + at.still) / info_.rate_hz});
   }
 }
@@ -196,17 +183,12 @@ void SceneSource::describe_simulation() {
           .hint("cross: names of sensors or truth signals");
   }
   for (std::size_t k = scene_->sensors.size(); k < own_; ++k)
-    info_.reference_units.push_back(
-        simulation_.truth.size() == 1 ? simulation_.sensors[0].model.unit : "");
+    info_.reference_units.push_back(simulation_.truth.size() == 1 ? simulation_.sensors[0].model.unit : "");
 }
 
 void SceneSource::read_even(Progress& progress) {
-  ResampledLog even = read_resampled(scene_->recording,
-                                     scene_->reading,
-                                     wanted_,
-                                     *scene_->resample_hz,
-                                     scene_->tilt ? scene_->sensors.size() : wanted_.size(),
-                                     progress);
+  ResampledLog even = read_resampled(scene_->recording, scene_->reading, wanted_, *scene_->resample_hz,
+                                     scene_->tilt ? scene_->sensors.size() : wanted_.size(), progress);
   kept_ = std::move(even.samples);
   for (std::size_t k = 0; k < kept_.size(); ++k) columns_.push_back(k);
   info_.kept = true;
@@ -217,8 +199,7 @@ void SceneSource::read_even(Progress& progress) {
       if (channel.name == wanted_[k])
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
   info_.logs.push_back(std::move(even.log));
-  for (std::size_t k = 0; k < scene_->sensors.size(); ++k)
-    info_.presence.emplace_back().push(0, kept_[k]);
+  for (std::size_t k = 0; k < scene_->sensors.size(); ++k) info_.presence.emplace_back().push(0, kept_[k]);
 }
 
 void SceneSource::scan(Progress& progress) {
@@ -250,12 +231,9 @@ void SceneSource::scan(Progress& progress) {
     const bool sensor = k < scene_->sensors.size(), seen = column < first.channels.size();
     if (sensor) info_.presence.push_back(seen ? first.channels[column] : Presence{});
     if (seen)
-      note_bad_samples(first.meters[column].finish(),
-                       sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
-                       sensor && scene_->sensors.size() >= 3 && !scene_->tilt,
-                       info_.samples_say);
-    (k < scene_->sensors.size() ? info_.units : info_.reference_units)
-        .push_back(log.channels[column].unit);
+      note_bad_samples(first.meters[column].finish(), sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
+                       sensor && scene_->sensors.size() >= 3 && !scene_->tilt, info_.samples_say);
+    (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(log.channels[column].unit);
   }
   if (!(log.time.rate_hz > 0))
     throw input_error("E0901", scene_->file)
@@ -305,23 +283,19 @@ void SceneSource::stream_kept(std::uint64_t until, const SourceBlock& block) con
   }
 }
 
-void SceneSource::stream_recording(std::uint64_t until,
-                                   const SourceBlock& block,
-                                   Progress& progress) const {
+void SceneSource::stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
   ReadOptions reading = reading_;
   reading.hash = false;
   if (until < info_.samples) {
     // One sample more than is wanted, so that rounding cannot cut one off.
-    const double end_s =
-        reading.from_s.value_or(0) + static_cast<double>(until + 1) / info_.rate_hz;
+    const double end_s = reading.from_s.value_or(0) + static_cast<double>(until + 1) / info_.rate_hz;
     reading.to_s = std::min(reading.to_s.value_or(end_s), end_s);
   }
   SensorPath path(*scene_, injected_, info_.rate_hz);
   std::vector<std::span<const double>> out(columns_.size());
   Forward forward([&](const SampleBlock& samples) {
     if (samples.first >= until) return;
-    const auto rows =
-        static_cast<std::size_t>(std::min<std::uint64_t>(samples.rows, until - samples.first));
+    const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(samples.rows, until - samples.first));
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const std::span<const double> column(samples.channels[columns_[k]], rows);
       out[k] = k < scene_->sensors.size() ? path(k, column) : column;
@@ -331,15 +305,12 @@ void SceneSource::stream_recording(std::uint64_t until,
   read_log(scene_->recording, reading, forward, progress);
 }
 
-void SceneSource::stream_simulation(std::uint64_t until,
-                                    const SourceBlock& block,
-                                    Progress& progress) const {
+void SceneSource::stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const {
   ArraySimulator simulator(simulation_, 0);
   std::vector<std::span<const double>> out(columns_.size());
   for (std::uint64_t done = 0; done < std::min(until, info_.samples);) {
     progress.update(static_cast<double>(done) / static_cast<double>(info_.samples), "simulating");
-    const auto made = simulator.next(
-        static_cast<std::size_t>(std::min<std::uint64_t>(kSimulatedRows, until - done)));
+    const auto made = simulator.next(static_cast<std::size_t>(std::min<std::uint64_t>(kSimulatedRows, until - done)));
     for (std::size_t k = 0; k < columns_.size(); ++k) out[k] = made[columns_[k]];
     block(done, out);
     done += out[0].size();

@@ -35,8 +35,7 @@ struct Presence {
 /// value so often, and a quantity that rests between coarse steps does so for all.
 bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t samples);
 
-inline constexpr const char* kFrozenMissing =
-    "sensors that stand still where the others move: missing there";
+inline constexpr const char* kFrozenMissing = "sensors that stand still where the others move: missing there";
 /// "NAME from 120 to 240 s".
 std::string still_words(const std::string& name, const Presence& at, double rate_hz);
 
@@ -54,10 +53,7 @@ struct SourceInfo {
 };
 
 /// Of a recording or a reference (`role`) that the scene names. Throws Error(input).
-std::size_t column_of(const LogInfo& log,
-                      const std::string& channel,
-                      const std::string& scene,
-                      const char* role);
+std::size_t column_of(const LogInfo& log, const std::string& channel, const std::string& scene, const char* role);
 
 /// What a scene asks of a file is the scene's mistake, not one of the command line.
 Error of_scene(const Error& error, const std::string& file);
@@ -65,8 +61,7 @@ Error of_scene(const Error& error, const std::string& file);
 /// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
 /// stand in the same recording, then axis by axis the further axes of all sensors (as recorded).
 /// Valid during the call.
-using SourceBlock =
-    std::function<void(std::uint64_t first, std::span<const std::span<const double>>)>;
+using SourceBlock = std::function<void(std::uint64_t first, std::span<const std::span<const double>>)>;
 
 class SceneSource {
  public:

@@ -40,15 +40,13 @@ double SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen::Index at, dou
     mean_[i] += kMemory * (e - mean_[i]);
     square_[i] += kMemory * (e * e - square_[i]);
     doubted = doubted ||
-              std::abs(mean_[i]) >
-                  std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
+              std::abs(mean_[i]) > std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
               std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms;
   }
   return doubted ? away_ : 0;
 }
 
-const std::vector<double>& SensorDoubt::push(const Eigen::MatrixXd& samples,
-                                             const Eigen::VectorXd& estimates) {
+const std::vector<double>& SensorDoubt::push(const Eigen::MatrixXd& samples, const Eigen::VectorXd& estimates) {
   extra_.resize(static_cast<std::size_t>(samples.cols()));
   for (Eigen::Index k = 0; k < samples.cols(); ++k)
     extra_[static_cast<std::size_t>(k)] = instant(samples, k, estimates[k]);

@@ -14,12 +14,11 @@ namespace {
 // "characterization" is a report too; which verb reads it is the hint.
 void check_report(const Document& document, const std::string& file) {
   const DocumentEntry* format = document.find("format");
-  if (document.kind == Document::Kind::map && format != nullptr &&
-      format->value.kind == Document::Kind::text && format->value.text != "replay-report")
-    throw input_error("E0920",
-                      format->value.line > 0
-                          ? fmt::format("{}:{}:{}", file, format->value.line, format->value.column)
-                          : file)
+  if (document.kind == Document::Kind::map && format != nullptr && format->value.kind == Document::Kind::text &&
+      format->value.text != "replay-report")
+    throw input_error("E0920", format->value.line > 0
+                                   ? fmt::format("{}:{}:{}", file, format->value.line, format->value.column)
+                                   : file)
         .says("compare reads reports of a replay (format replay-report), this is another one")
         .got(format->value.text)
         .hint("the report.json of a replay is one");
@@ -27,8 +26,7 @@ void check_report(const Document& document, const std::string& file) {
 }
 
 void check_window(const MapReader& top, std::string_view key, const TimeWindow& window) {
-  if (!(window.from_s < window.to_s))
-    top.map(key).refuse("to_s", "a window goes from a time to a later one");
+  if (!(window.from_s < window.to_s)) top.map(key).refuse("to_s", "a window goes from a time to a later one");
 }
 
 // As long as the list of times; smallest and largest are the same where only one of them is written.
@@ -38,8 +36,7 @@ void complete(const MapReader& at, Timeline& track, const std::vector<double>& t
   if (track.high.empty()) track.high = track.low;
   bool right = track.high.size() == track.low.size();
   for (const auto* side : {&track.low, &track.high})
-    for (const std::vector<double>& series : *side)
-      right = right && series.size() == track.time_s.size();
+    for (const std::vector<double>& series : *side) right = right && series.size() == track.time_s.size();
   if (!right)
     throw input_error("E0982", at.where(at.node()))
         .says("a track has not one value for each of its times")
@@ -48,8 +45,7 @@ void complete(const MapReader& at, Timeline& track, const std::vector<double>& t
 
 void complete(const MapReader& at, ReplayReport::Stretch& stretch) {
   for (InputTracks& input : stretch.inputs)
-    for (Timeline* track : {&input.reference, &input.estimate, &input.error})
-      complete(at, *track, stretch.time_s);
+    for (Timeline* track : {&input.reference, &input.estimate, &input.error}) complete(at, *track, stretch.time_s);
   for (Timeline* track : {&stretch.sensor, &stretch.sensor_error, &stretch.deviations})
     complete(at, *track, stretch.time_s);
   for (ReplayReport::Stretch& close_up : stretch.close_ups) complete(at, close_up);
@@ -61,8 +57,7 @@ void complete(const MapReader& at, ReplayReport::Algorithm& algorithm) {
     algorithm.rmse = algorithm.blind->predictive_rms;
     algorithm.rmse_ci95 = algorithm.blind->predictive_ci95;
   }
-  for (Timeline* track : {&algorithm.weight_track, &algorithm.variance_track})
-    complete(at, *track, {});
+  for (Timeline* track : {&algorithm.weight_track, &algorithm.variance_track}) complete(at, *track, {});
   for (InputScore& input : algorithm.inputs) complete(at, input.window_rms, {});
 }
 
@@ -93,8 +88,7 @@ ReplayReport parse_replay_report(const Document& document, const std::string& fi
   std::set<std::string> labels;
   for (std::size_t i = 0; i < algorithms.size(); ++i) {
     complete(algorithms[i], out.algorithms[i]);
-    if (!labels.insert(out.algorithms[i].label).second)
-      algorithms[i].refuse("label", "stands twice in this report");
+    if (!labels.insert(out.algorithms[i].label).second) algorithms[i].refuse("label", "stands twice in this report");
   }
   return out;
 }

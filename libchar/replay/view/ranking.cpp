@@ -13,12 +13,9 @@ namespace libchar {
 namespace {
 
 // A number before none, a smaller one before a larger.
-bool better(double x, double y) {
-  return std::isfinite(x) && (!std::isfinite(y) || x < y);
-}
+bool better(double x, double y) { return std::isfinite(x) && (!std::isfinite(y) || x < y); }
 
-std::vector<bool> front(const ReplayResult& result,
-                        double (*cost)(const AlgorithmResult& algorithm)) {
+std::vector<bool> front(const ReplayResult& result, double (*cost)(const AlgorithmResult& algorithm)) {
   const auto& all = result.algorithms;
   const auto candidate = [&](const AlgorithmResult& a) {
     return a.ran && !a.bound && std::isfinite(a.rmse) && std::isfinite(cost(a));
@@ -40,9 +37,7 @@ std::vector<const AlgorithmResult*> ranked(const ReplayResult& result) {
   std::vector<const AlgorithmResult*> out;
   for (const AlgorithmResult& a : result.algorithms)
     if (a.ran) out.push_back(&a);
-  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
-    return better(a->rmse, b->rmse);
-  });
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) { return better(a->rmse, b->rmse); });
   return out;
 }
 
@@ -61,8 +56,8 @@ std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
     if (a.ran) continue;
     const std::string front = std::string(a.description->name) + " ";
     const std::string reason = a.why.starts_with(front) ? a.why.substr(front.size()) : a.why;
-    const auto known = std::find_if(
-        out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
+    const auto known =
+        std::find_if(out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
     if (known == out.end())
       out.push_back({reason, {a.label}});
     else
@@ -74,8 +69,7 @@ std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
 ParetoFront pareto_front(const ReplayResult& result) {
   return {front(result, [](const AlgorithmResult& a) { return a.ns_per_sample; }),
           front(result, [](const AlgorithmResult& a) {
-            return a.peak_bytes ? static_cast<double>(*a.peak_bytes)
-                                : std::numeric_limits<double>::quiet_NaN();
+            return a.peak_bytes ? static_cast<double>(*a.peak_bytes) : std::numeric_limits<double>::quiet_NaN();
           })};
 }
 
@@ -97,8 +91,7 @@ const AlgorithmResult* cheapest_equal(const ReplayResult& r) {
   const AlgorithmResult* out = nullptr;
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && !a.bound && a.as_good_as_best && a.ns_per_sample > 0 &&
-        a.rmse <= kClose * r.algorithms[*r.best].rmse &&
-        (out == nullptr || a.ns_per_sample < out->ns_per_sample))
+        a.rmse <= kClose * r.algorithms[*r.best].rmse && (out == nullptr || a.ns_per_sample < out->ns_per_sample))
       out = &a;
   return out;
 }
@@ -108,30 +101,25 @@ std::string regret_text(const ReplayResult& r, double regret) {
   // The best of a few filters may be the optimum itself.
   if (std::abs(regret) < 1e-9) return optimum;
   if (regret > 1) return fmt::format("{} times {}", brief_text(1 + regret), optimum);
-  return fmt::format(
-      "{} {} {}", percent_text(std::abs(regret)), regret >= 0 ? "above" : "below", optimum);
+  return fmt::format("{} {} {}", percent_text(std::abs(regret)), regret >= 0 ? "above" : "below", optimum);
 }
 
 // "RMSE 0.0331 rad/s (95 %: 0.0329 to 0.0333), 0.1 % above the optimum of fixed weights"
 std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
-  std::string out = fmt::format("{} {}{}",
-                                r.has_reference ? "RMSE" : "leave-one-out RMS",
-                                r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "",
-                                error_text(a.rmse, r.inputs[0].unit));
+  std::string out =
+      fmt::format("{} {}{}", r.has_reference ? "RMSE" : "leave-one-out RMS",
+                  r.inputs.size() > 1 ? "of " + r.inputs[0].name + " " : "", error_text(a.rmse, r.inputs[0].unit));
   if (std::isfinite(a.rmse_ci95.low) && std::isfinite(a.rmse_ci95.high))
-    out += fmt::format(
-        " (95 %: {} to {})", brief_text(a.rmse_ci95.low, 4), brief_text(a.rmse_ci95.high, 4));
+    out += fmt::format(" (95 %: {} to {})", brief_text(a.rmse_ci95.low, 4), brief_text(a.rmse_ci95.high, 4));
   for (std::size_t j = 1; j < std::min(a.inputs.size(), r.inputs.size()); ++j)
-    out += fmt::format(
-        ", of {} {}", r.inputs[j].name, error_text(a.inputs[j].error.rmse, r.inputs[j].unit));
+    out += fmt::format(", of {} {}", r.inputs[j].name, error_text(a.inputs[j].error.rmse, r.inputs[j].unit));
   if (std::isfinite(a.regret)) out += ", " + regret_text(r, a.regret);
   return out;
 }
 
 std::string costs_of(const AlgorithmResult& a) {
   std::string out;
-  if (std::isfinite(a.ns_per_sample))
-    out += ", " + duration_text(1e-9 * a.ns_per_sample) + " a sample";
+  if (std::isfinite(a.ns_per_sample)) out += ", " + duration_text(1e-9 * a.ns_per_sample) + " a sample";
   if (a.peak_bytes) out += ", " + bytes_text(a.peak_bytes) + " of memory";
   return out;
 }
@@ -142,14 +130,12 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
     if (!a->bound && a->as_good_as_best && a->label != best.label)
       equals.push_back(a->label + (detail::learns(r, *a) ? " (learns from a reference)" : ""));
   if (equals.empty()) {
-    const auto others =
-        std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
-          return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
-        });
-    const bool unscored =
-        std::any_of(r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) {
-          return a.ran && !a.bound && !std::isfinite(a.rmse);
-        });
+    const auto others = std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
+      return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
+    });
+    const bool unscored = std::any_of(r.algorithms.begin(), r.algorithms.end(), [](const AlgorithmResult& a) {
+      return a.ran && !a.bound && !std::isfinite(a.rmse);
+    });
     if (others == 0) return "No other method has a score.";
     return fmt::format(
         "Every other method{} is worse, by more than one per cent, and the record is long enough "
@@ -159,30 +145,21 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out = fmt::format(
-      "Within one per cent of it, or not told from it by this record: {}.", list_of(equals));
+  std::string out = fmt::format("Within one per cent of it, or not told from it by this record: {}.", list_of(equals));
   const AlgorithmResult* cheap = cheapest_equal(r);
-  if (costs && cheap != nullptr && cheap->label != best.label &&
-      cheap->ns_per_sample < 0.8 * best.ns_per_sample)
-    out += fmt::format(" Of these {} is the cheapest, {} a sample.",
-                       cheap->label,
+  if (costs && cheap != nullptr && cheap->label != best.label && cheap->ns_per_sample < 0.8 * best.ns_per_sample)
+    out += fmt::format(" Of these {} is the cheapest, {} a sample.", cheap->label,
                        duration_text(1e-9 * cheap->ns_per_sample));
   return out;
 }
 
 // The best that needs no reference, when the best of all learns from one.
-std::string without_reference_sentence(const ReplayResult& r,
-                                       const AlgorithmResult& best,
-                                       bool costs) {
+std::string without_reference_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
   if (!detail::learns(r, best)) return "";
   for (const AlgorithmResult* a : ranked(r))
     if (!a->bound && !detail::learns(r, *a) && std::isfinite(a->rmse))
-      return fmt::format(
-          "{} learns from a reference; of the methods that need none {} is best: {}{}.",
-          best.label,
-          a->label,
-          figures(r, *a),
-          costs ? costs_of(*a) : "");
+      return fmt::format("{} learns from a reference; of the methods that need none {} is best: {}{}.", best.label,
+                         a->label, figures(r, *a), costs ? costs_of(*a) : "");
   return best.label + " learns from a reference.";
 }
 
@@ -194,18 +171,16 @@ std::string taught_sentence(const ReplayResult& r) {
   for (std::size_t k = 1; k < trials.size(); ++k) {
     const AlignmentResult::Trial& trial = trials[k];
     if (trial.kept)
-      kept.push_back(fmt::format(
-          "{} {} (mean {})", trial.term, brief_text(trial.rmse, 3), brief_text(trial.of_mean, 3)));
+      kept.push_back(
+          fmt::format("{} {} (mean {})", trial.term, brief_text(trial.rmse, 3), brief_text(trial.of_mean, 3)));
     else
       idle.push_back(trial.term);
   }
-  std::string out = fmt::format(
-      "{} taught ({} to {}). One half of it judged by the other: the mean {}, learnt weights {}",
-      r.scene.learning ? "The learning window" : "The first half of the recording",
-      duration_text(r.learning->from_s),
-      duration_text(r.learning->to_s),
-      error_text(trials[0].of_mean, r.inputs[0].unit),
-      error_text(trials[0].rmse, r.inputs[0].unit));
+  std::string out =
+      fmt::format("{} taught ({} to {}). One half of it judged by the other: the mean {}, learnt weights {}",
+                  r.scene.learning ? "The learning window" : "The first half of the recording",
+                  duration_text(r.learning->from_s), duration_text(r.learning->to_s),
+                  error_text(trials[0].of_mean, r.inputs[0].unit), error_text(trials[0].rmse, r.inputs[0].unit));
   if (!kept.empty()) out += fmt::format("; taken out of the sensors in turn: {}", list_of(kept));
   if (!idle.empty()) out += fmt::format("; not worth it: {}", list_of(idle));
   return out + ".";
@@ -214,12 +189,8 @@ std::string taught_sentence(const ReplayResult& r) {
 std::string bounds_sentence(const ReplayResult& r) {
   std::vector<std::string> bounds;
   for (const AlgorithmResult* a : ranked(r))
-    if (a->bound && std::isfinite(a->rmse))
-      bounds.push_back(a->label + " " + error_text(a->rmse, r.inputs[0].unit));
-  return bounds.empty()
-             ? ""
-             : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) +
-                   ".";
+    if (a->bound && std::isfinite(a->rmse)) bounds.push_back(a->label + " " + error_text(a->rmse, r.inputs[0].unit));
+  return bounds.empty() ? "" : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) + ".";
 }
 
 /// Whether the array is worth more than its best sensor.
@@ -232,11 +203,9 @@ struct SensorSentence {
 std::string alone_sentence(const ReplayResult& r, const AlgorithmResult& best) {
   if (best.label == r.best_fusion || best.weights.size() != 1) return "";
   const std::vector<double>& w = best.weights[0];
-  const auto largest = std::max_element(
-      w.begin(), w.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return fmt::format("{} takes {} alone.",
-                     best.label,
-                     r.sensors[static_cast<std::size_t>(largest - w.begin())].name);
+  const auto largest =
+      std::max_element(w.begin(), w.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return fmt::format("{} takes {} alone.", best.label, r.sensors[static_cast<std::size_t>(largest - w.begin())].name);
 }
 
 SensorSentence sensor_sentence(const ReplayResult& r) {
@@ -248,30 +217,18 @@ SensorSentence sensor_sentence(const ReplayResult& r) {
   const bool same = r.algorithms[*r.best].label == best->label;
   const std::string name = same ? best->label : best->label + ", the best fusion,";
   const std::string whose = same ? "its error" : "the error of " + name;
-  const std::string alone = fmt::format("{}, the best single sensor ({})",
-                                        sensor.name,
-                                        error_text(sensor.error.rmse, r.inputs[0].unit));
+  const std::string alone =
+      fmt::format("{}, the best single sensor ({})", sensor.name, error_text(sensor.error.rmse, r.inputs[0].unit));
   if (ratio > 1 + kPracticalTolerance && interval.low > 1)
     return {fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: "
                         "use that sensor alone.",
-                        name,
-                        percent_text(ratio - 1),
-                        alone),
+                        name, percent_text(ratio - 1), alone),
             true};
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
-    return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.",
-                        whose,
-                        percent_text(1 - ratio),
-                        percent_text(1 - interval.high),
-                        percent_text(1 - interval.low),
-                        alone)};
-  return {fmt::format(
-      "Whether fusion pays is not resolved: {} is {} times that of {} (95 %: {} to {}).",
-      whose,
-      brief_text(ratio),
-      alone,
-      brief_text(interval.low),
-      brief_text(interval.high))};
+    return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.", whose, percent_text(1 - ratio),
+                        percent_text(1 - interval.high), percent_text(1 - interval.low), alone)};
+  return {fmt::format("Whether fusion pays is not resolved: {} is {} times that of {} (95 %: {} to {}).", whose,
+                      brief_text(ratio), alone, brief_text(interval.low), brief_text(interval.high))};
 }
 
 std::string offsets_sentence(const ReplayResult& r) {
@@ -288,8 +245,7 @@ std::string offsets_sentence(const ReplayResult& r) {
 std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   const AlgorithmResult& best = r.algorithms[*r.best];
   std::vector<std::string> out = {
-      fmt::format("Use {}: a sensor that fails or reads otherwise does not lead it astray{}.",
-                  best.label,
+      fmt::format("Use {}: a sensor that fails or reads otherwise does not lead it astray{}.", best.label,
                   costs ? costs_of(best) : "")};
   if (r.offsets_decide) {
     out.push_back("Scores do not decide: " + offsets_sentence(r));
@@ -298,10 +254,10 @@ std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   std::vector<std::string> unscored;
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && !a.bound && !std::isfinite(a.rmse)) unscored.push_back(a.label);
-  out.push_back(fmt::format(
-      "Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor "
-      "would decide between the others.",
-      list_of(unscored)));
+  out.push_back(
+      fmt::format("Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor "
+                  "would decide between the others.",
+                  list_of(unscored)));
   return out;
 }
 
@@ -317,18 +273,14 @@ std::string doubtful_sensors(const ReplayResult& r) {
 
 }  // namespace
 
-std::string optimum_of(const ReplayResult& r) {
-  return r.scene.tilt ? "tilt filters" : "fixed weights";
-}
+std::string optimum_of(const ReplayResult& r) { return r.scene.tilt ? "tilt filters" : "fixed weights"; }
 
 bool detail::learns(const ReplayResult& r, const AlgorithmResult& a) {
-  return a.description->needs.reference ||
-         (a.description->needs.reference_helps && r.learning && r.has_reference);
+  return a.description->needs.reference || (a.description->needs.reference_helps && r.learning && r.has_reference);
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
-  if (r.offsets_decide && !r.best)
-    return {"No method is recommended: " + offsets_sentence(r), doubtful_sensors(r)};
+  if (r.offsets_decide && !r.best) return {"No method is recommended: " + offsets_sentence(r), doubtful_sensors(r)};
   if (!r.best)
     return {
         "No algorithm has a score: without a reference and with these sensors nothing can be "
@@ -337,19 +289,16 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   std::vector<std::string> out =
       r.chosen_as_robust
           ? robust_sentences(r, costs)
-          : std::vector{fmt::format(
-                "Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
+          : std::vector{fmt::format("Use {}: {}{}.", best.label, figures(r, best), costs ? costs_of(best) : "")};
   if (best.availability < 0.9995)
-    out[0] += fmt::format(" It has an estimate at {} of the instants.",
-                          percent_text(best.availability, 3));
+    out[0] += fmt::format(" It has an estimate at {} of the instants.", percent_text(best.availability, 3));
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
   for (const Finding& one : worst_first(r.warnings.list())) {
     if (one.severity != Severity::bad) break;
-    out.insert(out.begin(),
-               fmt::format("Mend the samples first ({}): these figures are of them as they are.",
-                           find_finding_kind(one.code)->title));
+    out.insert(out.begin(), fmt::format("Mend the samples first ({}): these figures are of them as they are.",
+                                        find_finding_kind(one.code)->title));
     break;
   }
   SensorSentence single = sensor_sentence(r);

@@ -24,9 +24,7 @@ std::vector<const FaultAnswer*> answers_of(const AlgorithmResult& a, std::size_t
 }
 
 // A noise fault gives a sensor less weight; it stays in use.
-bool takes_out(const FoundFault& found) {
-  return found.kind != fusion::name(fusion::FaultRule::noise);
-}
+bool takes_out(const FoundFault& found) { return found.kind != fusion::name(fusion::FaultRule::noise); }
 
 std::vector<double> out_share(const ReplayResult& r, const AlgorithmResult& a) {
   if (!a.watches_faults) return {};
@@ -34,10 +32,8 @@ std::vector<double> out_share(const ReplayResult& r, const AlgorithmResult& a) {
   const double run_s = static_cast<double>(r.instants) / r.rate_hz, end_s = r.start_s + run_s;
   for (const FoundFault& found : a.faults)
     if (takes_out(found) && found.sensor < out.size())
-      out[detail::in_memory(found.sensor)] += std::max(0.0,
-                                                       std::min(found.to_s.value_or(end_s), end_s) -
-                                                           std::max(found.from_s, r.start_s)) /
-                                              run_s;
+      out[detail::in_memory(found.sensor)] +=
+          std::max(0.0, std::min(found.to_s.value_or(end_s), end_s) - std::max(found.from_s, r.start_s)) / run_s;
   return out;
 }
 
@@ -64,16 +60,14 @@ void add_algorithms(ReplayView& view, const ReplayResult& r) {
   const std::size_t divisor = track_divisor(r);
   view.algorithms.reserve(r.algorithms.size());
   for (std::size_t i = 0; i < r.algorithms.size(); ++i) {
-    AlgorithmView& added =
-        view.algorithms.emplace_back(algorithm_view(r, r.algorithms[i], divisor));
+    AlgorithmView& added = view.algorithms.emplace_back(algorithm_view(r, r.algorithms[i], divisor));
     added.on_time_front = front.time[i];
     added.on_memory_front = front.memory[i];
     if (added.result->ran && added.result->watches_faults) view.watching.push_back(&added);
   }
 }
 
-std::vector<const AlgorithmView*> views_of(const ReplayView& view,
-                                           const std::vector<const AlgorithmResult*>& results) {
+std::vector<const AlgorithmView*> views_of(const ReplayView& view, const std::vector<const AlgorithmResult*>& results) {
   std::vector<const AlgorithmView*> out;
   out.reserve(results.size());
   for (const AlgorithmResult* a : results)
@@ -93,20 +87,16 @@ InputView input_view(const ReplayView& view, std::size_t input) {
   return out;
 }
 
-void add_final_weights(std::vector<FinalRow>& out,
-                       const ReplayResult& r,
-                       const AlgorithmResult& a) {
+void add_final_weights(std::vector<FinalRow>& out, const ReplayResult& r, const AlgorithmResult& a) {
   for (std::size_t j = 0; j < a.weights.size(); ++j) {
     const bool named = a.weights.size() > 1 && j < r.inputs.size();
-    out.push_back({a.label + ": weights" + (named ? " of " + r.inputs[j].name : ""),
-                   a.weights[j],
+    out.push_back({a.label + ": weights" + (named ? " of " + r.inputs[j].name : ""), a.weights[j],
                    j == 0 && a.weight_distance > 0 ? a.weight_distance : kNone});
   }
 }
 
 void add_final_variances(std::vector<FinalRow>& out, const AlgorithmResult& a) {
-  FinalRow row{
-      a.label + ": standard deviations", {}, a.variance_error > 0 ? a.variance_error : kNone};
+  FinalRow row{a.label + ": standard deviations", {}, a.variance_error > 0 ? a.variance_error : kNone};
   for (const double v : a.variances) row.values.push_back(v >= 0 ? std::sqrt(v) : kNone);
   out.push_back(std::move(row));
 }
@@ -145,8 +135,7 @@ std::vector<std::optional<double>> noise_sd(const ReplayResult& r) {
 bool sensors_can_be_drawn(const std::vector<SensorResult>& sensors) {
   const auto scored = [](const SensorResult& s) { return s.error.rmse > 0; };
   const auto alike = [&](const SensorResult& s) { return s.unit == sensors[0].unit; };
-  return std::any_of(sensors.begin(), sensors.end(), scored) &&
-         std::all_of(sensors.begin(), sensors.end(), alike);
+  return std::any_of(sensors.begin(), sensors.end(), scored) && std::all_of(sensors.begin(), sensors.end(), alike);
 }
 
 /// Who has an estimate at so many of the instants lacks none that one would miss.
@@ -154,30 +143,24 @@ constexpr double kNearlyAlways = 0.999;
 
 ReplayFigures figures_of(const ReplayResult& r) {
   const auto any = [&](auto has) {
-    return std::any_of(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
-      return a.ran && has(a);
-    });
+    return std::any_of(r.algorithms.begin(), r.algorithms.end(),
+                       [&](const AlgorithmResult& a) { return a.ran && has(a); });
   };
   ReplayFigures out;
   out.error_over_time = any([](const auto& a) { return a.rmse > 0 && a.ns_per_sample > 0; });
-  out.error_over_memory =
-      any([](const auto& a) { return a.rmse > 0 && a.peak_bytes.value_or(0) > 0; });
+  out.error_over_memory = any([](const auto& a) { return a.rmse > 0 && a.peak_bytes.value_or(0) > 0; });
   out.weights = any([](const auto& a) { return a.weights.size() == 1; });
   out.variances = any([](const auto& a) { return !a.variances.empty(); });
-  out.faults =
-      !r.faults.empty() || any([](const auto& a) { return !a.faults.empty() || !a.leads.empty(); });
+  out.faults = !r.faults.empty() || any([](const auto& a) { return !a.faults.empty() || !a.leads.empty(); });
   out.detection = std::any_of(r.detection.begin(), r.detection.end(), [](const DetectionAt& at) {
-    return std::any_of(at.answers.begin(), at.answers.end(), [](const auto& one) {
-      return one.found_s.has_value();
-    });
+    return std::any_of(at.answers.begin(), at.answers.end(), [](const auto& one) { return one.found_s.has_value(); });
   });
   out.sensors = sensors_can_be_drawn(r.sensors);
   out.ranking = any([](const auto& a) { return a.rmse > 0; });
   out.availability = any([](const auto& a) { return a.availability < kNearlyAlways; });
   out.run = !r.tracks.whole.inputs.empty();
   out.deviations = !r.tracks.whole.deviations.empty();
-  out.time_matters =
-      any([&](const auto& a) { return 1e-9 * a.ns_per_sample * r.rate_hz > kCoreThatMatters; });
+  out.time_matters = any([&](const auto& a) { return 1e-9 * a.ns_per_sample * r.rate_hz > kCoreThatMatters; });
   return out;
 }
 
@@ -194,10 +177,7 @@ std::string fault_label(const ReplayResult& r, const SensorFault& fault) {
 }
 
 /// What a method found and nobody declared, as long as there are few.
-void add_found(std::vector<RunMark>& out,
-               const ReplayResult& r,
-               const FoundFault& found,
-               double end_s) {
+void add_found(std::vector<RunMark>& out, const ReplayResult& r, const FoundFault& found, double end_s) {
   constexpr std::size_t kMostMarks = 24;
   if (found.sensor >= r.sensors.size() || out.size() >= kMostMarks) return;
   const std::string& name = r.sensors[detail::in_memory(found.sensor)].name;
@@ -208,31 +188,21 @@ void add_found(std::vector<RunMark>& out,
   if (declared) return;
   std::string kind = found.kind;
   std::replace(kind.begin(), kind.end(), '_', ' ');
-  add_mark(
-      out, {"found", name + ": " + kind + " found", name, found.from_s, to_s}, r.start_s, end_s);
+  add_mark(out, {"found", name + ": " + kind + " found", name, found.from_s, to_s}, r.start_s, end_s);
 }
 
 std::vector<RunMark> marks_of(const ReplayResult& r, double end_s) {
   std::vector<RunMark> out;
   if (r.learning)
-    add_mark(out,
-             {"learning", "learning window", {}, r.learning->from_s, r.learning->to_s},
-             r.start_s,
-             end_s);
-  add_mark(
-      out, {"warm-up", "warm-up, not scored", {}, r.start_s, r.scored_from_s}, r.start_s, end_s);
+    add_mark(out, {"learning", "learning window", {}, r.learning->from_s, r.learning->to_s}, r.start_s, end_s);
+  add_mark(out, {"warm-up", "warm-up, not scored", {}, r.start_s, r.scored_from_s}, r.start_s, end_s);
   for (const SensorFault& fault : r.faults)
     add_mark(out,
-             {"fault",
-              fault_label(r, fault),
-              fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "",
-              fault.from_s,
-              fault.to_s},
-             r.start_s,
-             end_s);
+             {"fault", fault_label(r, fault), fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "",
+              fault.from_s, fault.to_s},
+             r.start_s, end_s);
   if (r.tracks.algorithm)
-    for (const FoundFault& found : r.algorithms[*r.tracks.algorithm].faults)
-      add_found(out, r, found, end_s);
+    for (const FoundFault& found : r.algorithms[*r.tracks.algorithm].faults) add_found(out, r, found, end_s);
   return out;
 }
 
@@ -248,9 +218,8 @@ RunView run_view(const ReplayResult& r, double end_s) {
   out.deviations = merged_bins(all, (numbers + kMostDeviations - 1) / kMostDeviations);
   out.marks = marks_of(r, end_s);
   for (const CloseUp& one : r.tracks.close_ups)
-    out.close_ups.push_back(one.fault && *one.fault < r.faults.size()
-                                ? fault_label(r, r.faults[*one.fault])
-                                : duration_text(one.from_s));
+    out.close_ups.push_back(one.fault && *one.fault < r.faults.size() ? fault_label(r, r.faults[*one.fault])
+                                                                      : duration_text(one.from_s));
   return out;
 }
 

@@ -18,9 +18,9 @@ struct AlgorithmView {
   bool best = false;    ///< of the methods
   bool learns = false;  ///< from a reference
   bool on_time_front = false, on_memory_front = false;
-  std::vector<std::string> needs;         ///< of a scene, a phrase each
-  std::string settings;                   ///< options that differ from the standard, "gamma = 0.99"
-  Timeline weight_track, variance_track;  ///< thinned to what a page can hold
+  std::vector<std::string> needs;           ///< of a scene, a phrase each
+  std::string settings;                     ///< options that differ from the standard, "gamma = 0.99"
+  Timeline weight_track, variance_track;    ///< thinned to what a page can hold
   std::vector<const FaultAnswer*> answers;  ///< one a known fault; null: it does not watch
   std::size_t alarms_without_fault = 0;     ///< raised where the scene knows of none
   /// of the run that each sensor was out (re-weighted ones are in use); empty: it does not watch
@@ -38,8 +38,8 @@ struct RunMark {
 
 /// The run over time: the reference, the best method, the best single sensor.
 struct RunView {
-  std::string method, sensor;  ///< whose; "": none
-  Timeline deviations;         ///< of sensors from their median, thinned to what a page can hold
+  std::string method, sensor;          ///< whose; "": none
+  Timeline deviations;                 ///< of sensors from their median, thinned to what a page can hold
   std::vector<std::string> close_ups;  ///< names of the result's close-ups
   std::vector<RunMark> marks;
 };
@@ -70,10 +70,10 @@ struct ReplayFigures {
   bool error_over_time = false;    ///< cost: ns per sample
   bool error_over_memory = false;  ///< cost: peak bytes
   bool weights = false, variances = false, faults = false, sensors = false;
-  bool detection = false;   ///< delays until known faults are found, over the rate of false alarms
-  bool ranking = false;     ///< a method has a score
-  bool run = false;         ///< an estimate over time
-  bool deviations = false;  ///< of the sensors from their median
+  bool detection = false;     ///< delays until known faults are found, over the rate of false alarms
+  bool ranking = false;       ///< a method has a score
+  bool run = false;           ///< an estimate over time
+  bool deviations = false;    ///< of the sensors from their median
   bool availability = false;  ///< of a method below 0.999: worth a column
   /// run time can decide between methods: one of them takes more than `kCoreThatMatters` of a core
   bool time_matters = false;

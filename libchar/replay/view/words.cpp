@@ -18,8 +18,7 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   if (n.reference_throughout) out.emplace_back("the reference of the run itself");
   if (n.reference) out.emplace_back("a reference in a learning window");
   if (n.reference_helps) out.emplace_back("nothing; a reference in a learning window helps");
-  if (n.learning_samples > 0)
-    out.push_back(fmt::format("at least {} learning instants", n.learning_samples));
+  if (n.learning_samples > 0) out.push_back(fmt::format("at least {} learning instants", n.learning_samples));
   if (n.noise_levels) out.emplace_back("noise levels");
   if (n.noise_models) out.emplace_back("noise models");
   if (n.fault_free_start) out.emplace_back("a start without faults");
@@ -28,9 +27,8 @@ std::vector<std::string> needs_in_words(const fusion::Description& description) 
   if (n.min_channels > 1) out.push_back(fmt::format("at least {} sensors", n.min_channels));
   if (n.max_channels > 0) out.push_back(fmt::format("at most {} sensors", n.max_channels));
   if (n.more_than_inputs > 0)
-    out.push_back(n.more_than_inputs == 1
-                      ? std::string("more than one sensor per input")
-                      : fmt::format("more than {} sensors per input", n.more_than_inputs));
+    out.push_back(n.more_than_inputs == 1 ? std::string("more than one sensor per input")
+                                          : fmt::format("more than {} sensors per input", n.more_than_inputs));
   if (!n.observation_matrix && !n.tilt) out.emplace_back("one input, seen alike by all");
   if (!n.accepts_missing) out.emplace_back("no missing samples");
   return out;
@@ -41,12 +39,8 @@ std::string settings_in_words(const fusion::Settings& settings) {
   for (std::size_t i = 0; i < settings.table().size(); ++i) {
     const fusion::Option& option = settings.table()[i];
     if (settings.values()[i] != option.standard)
-      out += fmt::format("{}{} = {}{}{}",
-                         out.empty() ? "" : ", ",
-                         option.name,
-                         shortest(settings.values()[i]),
-                         option.unit.empty() ? "" : " ",
-                         option.unit);
+      out += fmt::format("{}{} = {}{}{}", out.empty() ? "" : ", ", option.name, shortest(settings.values()[i]),
+                         option.unit.empty() ? "" : " ", option.unit);
   }
   return out;
 }
@@ -57,20 +51,16 @@ constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "
 
 // "0.31 ± 0.02": the digits that the error leaves.
 Cell with_error(double value, double error, double scale = 1) {
-  if (!std::isfinite(error))
-    return Cell::shown(value == 0 ? "–" : brief_text(scale * value, 3), value);
+  if (!std::isfinite(error)) return Cell::shown(value == 0 ? "–" : brief_text(scale * value, 3), value);
   const double size = scale * error;
-  const int decimals =
-      size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
-  return Cell::shown(fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals),
-                     value);
+  const int decimals = size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
+  return Cell::shown(fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals), value);
 }
 
 std::string share_text(const fusion::PartShare& part) {
   const auto percent = [](double share) { return fmt::format("{:.1f}", 100 * share); };
   if (!std::isfinite(part.ci95.low)) return percent(part.share) + " %";
-  return fmt::format(
-      "{} % ({} … {})", percent(part.share), percent(part.ci95.low), percent(part.ci95.high));
+  return fmt::format("{} % ({} … {})", percent(part.share), percent(part.ci95.low), percent(part.ci95.high));
 }
 
 std::string with_unit_of(const ReplayResult& r, const char* head) {
@@ -85,12 +75,9 @@ Table learnt_table(const ReplayResult& r, const AlignmentResult& a) {
     out.columns.push_back({axes == 1 ? "cross-axis, %" : fmt::format("cross-axis {}, %", k + 1)});
   for (std::size_t i = 0; i < a.learnt.channels.size(); ++i) {
     const fusion::ChannelAlignment& c = a.learnt.channels[i];
-    std::vector<Cell> row = {r.sensors[i].name,
-                             with_error(c.delay, c.delay_se),
-                             with_error(c.bias, c.bias_se),
+    std::vector<Cell> row = {r.sensors[i].name, with_error(c.delay, c.delay_se), with_error(c.bias, c.bias_se),
                              with_error(c.gain, c.gain_se, 100)};
-    for (std::size_t k = 0; k < axes; ++k)
-      row.push_back(with_error(c.cross[k], c.cross_se[k], 100));
+    for (std::size_t k = 0; k < axes; ++k) row.push_back(with_error(c.cross[k], c.cross_se[k], 100));
     out.add(std::move(row));
   }
   return out;
@@ -103,8 +90,7 @@ Table budget_table(const ReplayResult& r, const AlignmentResult& a) {
   for (std::size_t k = 0; k < a.budget.channels.size(); ++k) {
     const fusion::ChannelBudget& c = a.budget.channels[k];
     std::vector<Cell> row = {r.sensors[a.budgeted[k]].name, brief_text(c.rms, 4)};
-    for (const fusion::PartShare& part : c.parts)
-      row.push_back(Cell::shown(share_text(part), part.share));
+    for (const fusion::PartShare& part : c.parts) row.push_back(Cell::shown(share_text(part), part.share));
     out.add(std::move(row));
   }
   if (a.budget.instants < 1) return out;
@@ -117,42 +103,31 @@ Table budget_table(const ReplayResult& r, const AlignmentResult& a) {
 
 std::string how(const AlignmentResult& a) {
   return fmt::format("Alignment learnt from {} to {} s ({} instants; {} is the truth), {}.",
-                     brief_text(a.window.from_s, 6),
-                     brief_text(a.window.to_s, 6),
-                     a.learnt.instants,
+                     brief_text(a.window.from_s, 6), brief_text(a.window.to_s, 6), a.learnt.instants,
                      a.by_reference ? "the reference" : "the mean of the sensors",
                      a.applied ? "taken out of the sensors before they are fused"
                                : "reported only: the sensors are fused as recorded");
 }
 
 std::string effect(const ReplayResult& r, const AlignmentResult& a) {
-  if (!(a.budget.before > 0))
-    return "Too few instants of the evaluation have samples of all sensors: no error budget.";
+  if (!(a.budget.before > 0)) return "Too few instants of the evaluation have samples of all sensors: no error budget.";
   const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
   return fmt::format(
       "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples "
       "of all sensors below their limits.",
-      a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean",
-      brief_text(a.budget.before, 4),
-      unit,
-      brief_text(a.budget.after, 4),
-      unit,
-      a.budget.after / a.budget.before,
-      a.budget.instants);
+      a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean", brief_text(a.budget.before, 4), unit,
+      brief_text(a.budget.after, 4), unit, a.budget.after / a.budget.before, a.budget.instants);
 }
 
 }  // namespace
 
-std::string_view name_of(fusion::ErrorPart part) {
-  return kPartNames[static_cast<std::size_t>(part)];
-}
+std::string_view name_of(fusion::ErrorPart part) { return kPartNames[static_cast<std::size_t>(part)]; }
 
 AlignmentWords alignment_words(const ReplayResult& r, const AlignmentResult& a) {
   AlignmentWords out;
   out.sentences = {how(a), effect(r, a)};
   if (a.overlaps)
-    out.sentences.emplace_back(
-        "It is learnt and judged on the same stretch: it looks better than it is.");
+    out.sentences.emplace_back("It is learnt and judged on the same stretch: it looks better than it is.");
   for (const std::string& note : a.learnt.notes) {
     std::string sentence = note + ".";
     sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
@@ -175,49 +150,38 @@ std::string window_words(const TimeWindow& w) {
 
 std::string offset_words(const ReplayResult& r, const FoundOffset& offset) {
   const std::string& unit = r.inputs[0].unit;
-  const std::string interval = std::isfinite(offset.ci95.low)
-                                   ? fmt::format(" (95 %: {} to {})",
-                                                 brief_text(offset.ci95.low, 4),
-                                                 with_unit(offset.ci95.high, 4, unit))
-                                   : "";
+  const std::string interval =
+      std::isfinite(offset.ci95.low)
+          ? fmt::format(" (95 %: {} to {})", brief_text(offset.ci95.low, 4), with_unit(offset.ci95.high, 4, unit))
+          : "";
   std::string out = fmt::format(
       "The reference reads {}{} more than the sensors: found {}, {}, and subtracted from it. "
       "Errors "
       "do not hold this offset any more.",
-      with_unit(offset.value, 4, unit),
-      interval,
-      offset.in_learning ? "in the learning window" : "on the evaluation itself",
-      window_words(offset.window));
+      with_unit(offset.value, 4, unit), interval,
+      offset.in_learning ? "in the learning window" : "on the evaluation itself", window_words(offset.window));
   if (offset.drifts) out += " The difference drifts: elsewhere it may be another.";
   return out;
 }
 
 }  // namespace
 
-double settling_s(const ScenePreparation& p) {
-  return p.filters() ? kSettlingPeriods / p.from_hz : 0;
-}
+double settling_s(const ScenePreparation& p) { return p.filters() ? kSettlingPeriods / p.from_hz : 0; }
 
 std::vector<std::string> preparation_words(const Scene& scene) {
   const ScenePreparation& p = scene.preparation;
   const char* reference = scene.reference ? " and the reference" : "";
   std::vector<std::string> out;
   if (p.detrend != "none")
-    out.push_back(
-        fmt::format("From each sensor{} its own {} over the whole recording is subtracted.",
-                    reference,
-                    p.detrend == "mean" ? "mean" : "line of least squares"));
+    out.push_back(fmt::format("From each sensor{} its own {} over the whole recording is subtracted.", reference,
+                              p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
-  const std::string band =
-      p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
+  const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
   out.push_back(
       fmt::format("All sensors{} go through one filter: a Butterworth high-pass of second order at "
                   "{} Hz{}, causal. Its first {} are not learnt from and not scored; noise levels "
                   "are those behind it, and noise models are not used.",
-                  reference,
-                  brief_text(p.from_hz, 6),
-                  band,
-                  duration_text(settling_s(p))));
+                  reference, brief_text(p.from_hz, 6), band, duration_text(settling_s(p))));
   return out;
 }
 
@@ -226,8 +190,8 @@ std::vector<std::string> preparation_words(const ReplayResult& r) {
   if (r.reference_offset)
     out.push_back(offset_words(r, *r.reference_offset));
   else if (r.scene.reference && r.scene.reference->offset != 0)
-    out.push_back(fmt::format("From the reference {} is subtracted.",
-                              with_unit(r.scene.reference->offset, 6, r.inputs[0].unit)));
+    out.push_back(
+        fmt::format("From the reference {} is subtracted.", with_unit(r.scene.reference->offset, 6, r.inputs[0].unit)));
   return out;
 }
 

@@ -35,17 +35,13 @@ std::vector<Named> figures_in(const BenchReport& report) {
   std::vector<Named> out;
   for (const CharacterizationBench& bench : report.characterization)
     for (const EstimatorAccuracy& method : bench.methods) {
-      const std::string who =
-          "noise coefficients, " + bench.signal.name + ": " + method.name + ", ";
+      const std::string who = "noise coefficients, " + bench.signal.name + ": " + method.name + ", ";
       for (const TermAccuracy& term : method.terms)
-        add(out,
-            fmt::format("{}RMSE of {}", who, kTermNames[static_cast<std::size_t>(term.term)].key),
-            false,
+        add(out, fmt::format("{}RMSE of {}", who, kTermNames[static_cast<std::size_t>(term.term)].key), false,
             term.error);
       add(out, who + "ns a sample", true, method.ns_per_sample);
     }
-  for (const FusionBenchRow& method :
-       report.fusion ? report.fusion->rows : std::vector<FusionBenchRow>{}) {
+  for (const FusionBenchRow& method : report.fusion ? report.fusion->rows : std::vector<FusionBenchRow>{}) {
     const std::string who = "fusion: " + method.label + ", ";
     Figure excess = method.excess;
     // As a ratio: an excess of zero has none.
@@ -53,13 +49,9 @@ std::vector<Named> figures_in(const BenchReport& report) {
     add(out, who + "RMSE over yardstick", false, excess);
     add(out, who + "ns an instant", true, method.ns_per_sample);
   }
-  for (const ScalingSeries& series :
-       report.scaling ? report.scaling->series : std::vector<ScalingSeries>{})
+  for (const ScalingSeries& series : report.scaling ? report.scaling->series : std::vector<ScalingSeries>{})
     if (!series.points.empty())
-      add(out,
-          fmt::format(
-              "growth over {}: {}, at {}", series.over, series.name, series.points.back().x),
-          true,
+      add(out, fmt::format("growth over {}: {}, at {}", series.over, series.name, series.points.back().x), true,
           series.points.back().cost);
   return out;
 }
@@ -74,11 +66,7 @@ Table changes_table(const BenchChanges& changes) {
   out.title = "Against the older run";
   for (const BenchChange& c : changes.figures)
     if (c.resolved)
-      out.add({c.what,
-               figure_text(c.was),
-               figure_text(c.now),
-               fmt::format("{:.3f}", c.ratio),
-               state_of(c)});
+      out.add({c.what, figure_text(c.was), figure_text(c.now), fmt::format("{:.3f}", c.ratio), state_of(c)});
   return out;
 }
 
@@ -87,18 +75,14 @@ Table changes_table(const BenchChanges& changes) {
 std::vector<BenchChange> BenchChanges::worse(double tolerance) const {
   std::vector<BenchChange> out;
   for (const BenchChange& c : figures)
-    if (c.resolved && c.ratio > 1 + (c.is_time ? kTimeTolerance : 1) * tolerance &&
-        (same_machine || !c.is_time))
+    if (c.resolved && c.ratio > 1 + (c.is_time ? kTimeTolerance : 1) * tolerance && (same_machine || !c.is_time))
       out.push_back(c);
   return out;
 }
 
-BenchChanges bench_changes(const BenchReport& was,
-                           const BenchReport& now,
-                           const std::string& file) {
+BenchChanges bench_changes(const BenchReport& was, const BenchReport& now, const std::string& file) {
   BenchChanges out;
-  out.same_machine =
-      was.machine.processor == now.machine.processor && was.machine.cores == now.machine.cores;
+  out.same_machine = was.machine.processor == now.machine.processor && was.machine.cores == now.machine.cores;
   std::map<std::string, Named> current;
   for (Named& named : figures_in(now)) current.emplace(named.what, named);
   for (const Named& named : figures_in(was)) {
@@ -113,24 +97,19 @@ BenchChanges bench_changes(const BenchReport& was,
     out.figures.push_back(std::move(change));
   }
   if (out.figures.empty())
-    throw input_error("E0968", file)
-        .says("no figure of this run stands in it")
-        .hint("run the same files and parts");
+    throw input_error("E0968", file).says("no figure of this run stands in it").hint("run the same files and parts");
   return out;
 }
 
 std::string changes_text(const BenchChanges& changes, double tolerance) {
   const Table table = changes_table(changes);
   std::string out = table.rows.empty() ? table.title + "\n" : terminal_table(table);
-  out += fmt::format("  {} of {} figures: no difference resolved\n",
-                     changes.figures.size() - table.rows.size(),
+  out += fmt::format("  {} of {} figures: no difference resolved\n", changes.figures.size() - table.rows.size(),
                      changes.figures.size());
   if (!changes.missing.empty())
     out += fmt::format("  {} figures stand in the older run only\n", changes.missing.size());
   if (!changes.same_machine) out += "  another machine: times are shown and judge nothing\n";
-  return out + fmt::format("  worse by more than {} %: {}\n\n",
-                           100 * tolerance,
-                           changes.worse(tolerance).size());
+  return out + fmt::format("  worse by more than {} %: {}\n\n", 100 * tolerance, changes.worse(tolerance).size());
 }
 
 Json changes_json(const BenchChanges& changes, double tolerance) {
@@ -154,15 +133,12 @@ Json changes_json(const BenchChanges& changes, double tolerance) {
 namespace {
 
 std::string section_html(const BenchSection& section, std::size_t number) {
-  std::string out = fmt::format("<section class=\"channel\" id=\"part-{}\">\n<h2>{}</h2>\n",
-                                number,
-                                html_text(section.title));
-  for (const std::string& sentence : section.sentences)
-    out += "<p>" + html_text(sentence) + "</p>\n";
+  std::string out =
+      fmt::format("<section class=\"channel\" id=\"part-{}\">\n<h2>{}</h2>\n", number, html_text(section.title));
+  for (const std::string& sentence : section.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
   for (const BenchChart& chart : section.charts) out += points_figure(chart, section.title);
   if (!section.table.columns.empty()) out += html_table(section.table, {.css = "many"});
-  for (const std::string& note : section.notes)
-    out += "<p class=\"note\">" + html_text(note) + "</p>\n";
+  for (const std::string& note : section.notes) out += "<p class=\"note\">" + html_text(note) + "</p>\n";
   return out + "</section>\n";
 }
 
@@ -170,8 +146,7 @@ std::string section_html(const BenchSection& section, std::size_t number) {
 
 std::string bench_text(const BenchReport& report) {
   std::string out;
-  for (const std::string& sentence : detail::bench_verdict(report))
-    out += printable(sentence) + "\n";
+  for (const std::string& sentence : detail::bench_verdict(report)) out += printable(sentence) + "\n";
   if (!out.empty()) out += "\n";
   for (const BenchSection& section : bench_view(report)) {
     out += printable(section.title) + "\n";
@@ -184,13 +159,11 @@ std::string bench_text(const BenchReport& report) {
 
 std::string bench_markdown(const BenchReport& report) {
   std::string out = "# Benchmarks\n\n";
-  for (const std::string& sentence : detail::bench_verdict(report))
-    out += markdown_text(sentence) + "\n";
+  for (const std::string& sentence : detail::bench_verdict(report)) out += markdown_text(sentence) + "\n";
   for (const BenchSection& section : bench_view(report)) {
     out += "\n## " + markdown_text(section.title) + "\n\n";
     for (const std::string& sentence : section.sentences) out += markdown_text(sentence) + "\n";
-    if (!section.table.columns.empty())
-      out += (section.sentences.empty() ? "" : "\n") + table_text(section.table);
+    if (!section.table.columns.empty()) out += (section.sentences.empty() ? "" : "\n") + table_text(section.table);
     for (const std::string& note : section.notes) out += "\n" + markdown_text(note) + "\n";
   }
   return out;
@@ -199,26 +172,20 @@ std::string bench_markdown(const BenchReport& report) {
 std::string bench_html(const BenchReport& report) {
   const std::vector<BenchSection> sections = bench_view(report);
   std::string body = "<div class=\"verdict\">\n", contents, parts;
-  for (const std::string& sentence : detail::bench_verdict(report))
-    body += "<p>" + html_text(sentence) + "</p>\n";
+  for (const std::string& sentence : detail::bench_verdict(report)) body += "<p>" + html_text(sentence) + "</p>\n";
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    contents +=
-        fmt::format("<li><a href=\"#part-{}\">{}</a></li>\n", i + 1, html_text(sections[i].title));
+    contents += fmt::format("<li><a href=\"#part-{}\">{}</a></li>\n", i + 1, html_text(sections[i].title));
     parts += section_html(sections[i], i + 1);
   }
   body += "</div>\n<ul class=\"contents\">\n" + contents + "</ul>\n" + parts;
-  body += "<section class=\"channel\">\n<h2>Provenance</h2>\n<p><code>" +
-          html_text(command_line(report.command)) + "</code></p>\n</section>\n";
-  return html_page({"Benchmarks",
-                    report.quick ? "quick" : "run time against error",
-                    "reportPage.start({}, () => 320);\n",
-                    std::string(page_css()) + std::string(many_page_css())},
-                   body,
-                   json_in_script(document_of(bench_fields(), report)));
+  body += "<section class=\"channel\">\n<h2>Provenance</h2>\n<p><code>" + html_text(command_line(report.command)) +
+          "</code></p>\n</section>\n";
+  return html_page({"Benchmarks", report.quick ? "quick" : "run time against error",
+                    "reportPage.start({}, () => 320);\n", std::string(page_css()) + std::string(many_page_css())},
+                   body, json_in_script(document_of(bench_fields(), report)));
 }
 
-std::vector<OutputFile> bench_files(const BenchReport& report,
-                                    const std::filesystem::path& folder) {
+std::vector<OutputFile> bench_files(const BenchReport& report, const std::filesystem::path& folder) {
   std::vector<OutputFile> out = {{(folder / "bench.html").string(), bench_html(report)},
                                  {(folder / "bench.json").string(), ""},
                                  {(folder / "bench.md").string(), bench_markdown(report)}};

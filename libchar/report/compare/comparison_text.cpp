@@ -20,8 +20,7 @@ template <const ReplayReport::Algorithm* ComparedAlgorithm::*Side>
 void write_side(const Field& row, const ComparedAlgorithm& compared, std::vector<Entry>& out) {
   static const Fields<ReplayReport::Algorithm> rows =
       selected(ReplayReport::Algorithm::fields(),
-               {"status", "why", "rmse", "rmse_ci95", "regret", "ns_per_sample", "peak_bytes"},
-               Written::always);
+               {"status", "why", "rmse", "rmse_ci95", "regret", "ns_per_sample", "peak_bytes"}, Written::always);
   const ReplayReport::Algorithm* const one = compared.*Side;
   out.push_back(one == nullptr ? Entry{std::string(row.key)}
                                : part_entry(std::string(row.key), entries_of(rows, *one)));
@@ -50,9 +49,7 @@ struct Scores {
 };
 Scores scores_of(const ReplayReport::Algorithm* one) {
   if (one == nullptr || !one->ran) return {};
-  return {one->rmse,
-          one->ns_per_sample,
-          one->peak_bytes ? static_cast<double>(*one->peak_bytes) : kNone};
+  return {one->rmse, one->ns_per_sample, one->peak_bytes ? static_cast<double>(*one->peak_bytes) : kNone};
 }
 
 /// "+4.62 %", "0 %"; "–" for no number.
@@ -60,8 +57,7 @@ std::string change_text(double change) {
   if (!std::isfinite(change)) return "–";
   if (change == 0) return "0 %";
   const double percent = 100 * change;
-  return std::abs(percent) < 0.005 ? (percent > 0 ? "+0.00 %" : "-0.00 %")
-                                   : fmt::format("{:+.2f} %", percent);
+  return std::abs(percent) < 0.005 ? (percent > 0 ? "+0.00 %" : "-0.00 %") : fmt::format("{:+.2f} %", percent);
 }
 
 }  // namespace
@@ -77,21 +73,14 @@ namespace {
 
 Table compared_table(const Comparison& c) {
   const std::string score = c.a.reference ? "RMSE" : "leave-one-out RMS";
-  Table out("algorithm|" + score + " A|" + score +
-            " B|change|a sample A|B|change|memory A|B|error of B");
+  Table out("algorithm|" + score + " A|" + score + " B|change|a sample A|B|change|memory A|B|error of B");
   for (const ComparedAlgorithm& row : c.algorithms) {
     const std::string where = side_of(row);
     if (where == "skipped in both") continue;
     const Scores a = scores_of(row.a), b = scores_of(row.b);
-    out.add({row.label,
-             brief_text(a.rmse, 5),
-             brief_text(b.rmse, 5),
-             change_text(row.rmse_change),
-             time_cell(a.ns_per_sample),
-             time_cell(b.ns_per_sample),
-             change_text(row.ns_change),
-             memory_cell(a.peak_bytes),
-             memory_cell(b.peak_bytes),
+    out.add({row.label, brief_text(a.rmse, 5), brief_text(b.rmse, 5), change_text(row.rmse_change),
+             time_cell(a.ns_per_sample), time_cell(b.ns_per_sample), change_text(row.ns_change),
+             memory_cell(a.peak_bytes), memory_cell(b.peak_bytes),
              where.empty() ? std::string(name_of(row.difference)) : where});
   }
   return out;
@@ -113,51 +102,37 @@ const Fields<Comparison>& comparison_fields() {
   return rows;
 }
 
-Json comparison_json(const Comparison& comparison) {
-  return document_of(comparison_fields(), comparison);
-}
+Json comparison_json(const Comparison& comparison) { return document_of(comparison_fields(), comparison); }
 
 std::string comparison_text(const Comparison& c, std::size_t width) {
-  std::string out = fmt::format("A: {}: {}\nB: {}: {}\n",
-                                printable(c.a.file),
-                                printable(c.a.scene_title()),
-                                printable(c.b.file),
-                                printable(c.b.scene_title()));
+  std::string out = fmt::format("A: {}: {}\nB: {}: {}\n", printable(c.a.file), printable(c.a.scene_title()),
+                                printable(c.b.file), printable(c.b.scene_title()));
   for (const std::string& sentence : c.unlike) out += "unlike: " + printable(sentence) + "\n";
   for (const std::string& sentence : c.remarks) out += "differs: " + printable(sentence) + "\n";
-  return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) +
-         "\n";
+  return out + "\n" + terminal_table(compared_table(c), {width}, "") + "\n" + printable(c.verdict) + "\n";
 }
 
 std::string comparison_markdown(const Comparison& c) {
-  std::string out = fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n",
-                                markdown_text(c.a.scene_title()),
-                                markdown_text(c.verdict),
-                                markdown_text(c.a.file),
-                                markdown_text(c.a.head.program),
-                                markdown_text(c.b.file),
-                                markdown_text(c.b.head.program));
+  std::string out =
+      fmt::format("# {}\n\n{}\n\nA: {}, program {}. B: {}, program {}.\n", markdown_text(c.a.scene_title()),
+                  markdown_text(c.verdict), markdown_text(c.a.file), markdown_text(c.a.head.program),
+                  markdown_text(c.b.file), markdown_text(c.b.head.program));
   const char* heads[] = {"These are not two replays of one scene:", "What else differs:"};
   const std::vector<std::string>* lists[] = {&c.unlike, &c.remarks};
   for (std::size_t i = 0; i < 2; ++i) {
     if (lists[i]->empty()) continue;
     out += fmt::format("\n{}\n\n", heads[i]);
-    for (const std::string& sentence : *lists[i])
-      out += fmt::format("- {}\n", markdown_text(sentence));
+    for (const std::string& sentence : *lists[i]) out += fmt::format("- {}\n", markdown_text(sentence));
   }
-  return out + "\n" + table_text(compared_table(c)) +
-         "\nResolved: the 95 % intervals of the two do not overlap.\n";
+  return out + "\n" + table_text(compared_table(c)) + "\nResolved: the 95 % intervals of the two do not overlap.\n";
 }
 
 namespace {
 
 Json side_json(const LotCounts& counts, const LotFigures& f) {
-  return {{"members", counts.members},
-          {"counted", counts.counted},
-          {"mean", json_number(f.mean)},
-          {"mean_ci95", interval_json(f.mean_ci95)},
-          {"spread", json_number(f.spread)},
-          {"spread_ci95", interval_json(f.spread_ci95)}};
+  return {{"members", counts.members},       {"counted", counts.counted},
+          {"mean", json_number(f.mean)},     {"mean_ci95", interval_json(f.mean_ci95)},
+          {"spread", json_number(f.spread)}, {"spread_ci95", interval_json(f.spread_ci95)}};
 }
 
 Json difference_json(const LotDifference& d) {
@@ -181,13 +156,8 @@ Json difference_json(const LotDifference& d) {
 
 std::string changed(const LotDifference& d) {
   const bool logarithm = in_logarithm(d.quantity);
-  const auto shown = [&](double value) {
-    return number_text(logarithm ? 100 * (value - 1) : value, 3);
-  };
-  return fmt::format("{} [{}, {}]{}",
-                     shown(d.change),
-                     shown(d.change_ci95.low),
-                     shown(d.change_ci95.high),
+  const auto shown = [&](double value) { return number_text(logarithm ? 100 * (value - 1) : value, 3); };
+  return fmt::format("{} [{}, {}]{}", shown(d.change), shown(d.change_ci95.low), shown(d.change_ci95.high),
                      logarithm ? " %" : " " + d.unit);
 }
 
@@ -196,11 +166,8 @@ Table differences_table(const FleetComparison& c) {
   out.columns[2].head += c.name_a;
   out.columns[3].head += c.name_b;
   for (const LotDifference& d : c.differences)
-    out.add({d.type.empty() ? d.group : d.group + " of " + d.type,
-             title_of(d.quantity),
-             number_text(d.a.mean) + " " + d.unit,
-             number_text(d.b.mean) + " " + d.unit,
-             changed(d),
+    out.add({d.type.empty() ? d.group : d.group + " of " + d.type, title_of(d.quantity),
+             number_text(d.a.mean) + " " + d.unit, number_text(d.b.mean) + " " + d.unit, changed(d),
              fmt::format("{} and {}", d.counts_a.counted, d.counts_b.counted),
              d.mean_differs && d.spread_differs ? "mean and spread"
              : d.mean_differs                   ? "mean"
@@ -219,8 +186,7 @@ std::string corrected_note(const FleetComparison& c) {
 
 }  // namespace
 
-Json fleet_comparison_json(const FleetComparison& c,
-                           const std::vector<std::string>& command,
+Json fleet_comparison_json(const FleetComparison& c, const std::vector<std::string>& command,
                            const std::vector<LogInfo>& inputs) {
   std::vector<const LogInfo*> files;
   files.reserve(inputs.size());

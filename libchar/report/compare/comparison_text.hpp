@@ -32,8 +32,7 @@ std::string side_of(const ComparedAlgorithm& row);
 // Two lots side by side, for scripts and a terminal.
 
 /// {"format":"fleet-comparison",…}
-Json fleet_comparison_json(const FleetComparison& comparison,
-                           const std::vector<std::string>& command = {},
+Json fleet_comparison_json(const FleetComparison& comparison, const std::vector<std::string>& command = {},
                            const std::vector<LogInfo>& inputs = {});
 std::string fleet_comparison_text(const FleetComparison& comparison, std::size_t width = 0);
 
@@ -56,12 +55,10 @@ enum class TableGroups {
 };
 
 /// N, B, K and the Allan deviation at some averaging times, one row per sensor and channel; what is lowest is marked.
-Table comparison_table(const CharacterizationComparison& comparison,
-                       TableGroups groups = TableGroups::summary);
+Table comparison_table(const CharacterizationComparison& comparison, TableGroups groups = TableGroups::summary);
 
 /// One page of HTML: verdict, a figure for each quantity, the table; `document` is what it can save.
-std::string comparison_html(const CharacterizationComparison& comparison,
-                            const Json& document,
+std::string comparison_html(const CharacterizationComparison& comparison, const Json& document,
                             const std::vector<std::string>& command);
 
 }  // namespace detail

@@ -31,8 +31,7 @@ std::vector<double> shown_times(const CharacterizationComparison& c) {
       return !group.times.empty() && group.times.front().tau_s <= tau_s * 1.001 &&
              group.times.back().tau_s >= tau_s * 0.999;
     };
-    if (!c.groups.empty() && std::all_of(c.groups.begin(), c.groups.end(), has))
-      decades.push_back(tau_s);
+    if (!c.groups.empty() && std::all_of(c.groups.begin(), c.groups.end(), has)) decades.push_back(tau_s);
   }
   while (decades.size() > 3) decades.erase(decades.begin() + (decades.size() % 2 == 0 ? 0 : 1));
   return decades;
@@ -100,8 +99,7 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
                            fmt::format("adev_{0}s,adev_{0}s_low95,adev_{0}s_high95", tau_s)});
   }
   for (const ComparedGroup& group : c.groups) {
-    if (groups != detail::TableGroups::all && group.within != (groups == detail::TableGroups::axes))
-      continue;
+    if (groups != detail::TableGroups::all && group.within != (groups == detail::TableGroups::axes)) continue;
     for (std::size_t i = 0; i < group.candidates.size(); ++i) {
       Cell name(i == 0 ? group.name : "");
       name.data = group.name;
@@ -110,8 +108,7 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
       for (const double tau_s : times) row.push_back(deviation_cell(group, tau_s, i));
       out.add(std::move(row));
     }
-    if (std::none_of(group.terms.begin(), group.terms.end(), [](const auto& t) { return t.limit; }))
-      continue;
+    if (std::none_of(group.terms.begin(), group.terms.end(), [](const auto& t) { return t.limit; })) continue;
     Cell name("");
     name.data = group.name;
     std::vector<Cell> row = {std::move(name), "data sheet"};
@@ -136,8 +133,7 @@ Json names_json(const ComparedGroup& group, const std::vector<std::size_t>& whic
 }
 
 Json lowest_json(const ComparedGroup& group, const detail::Lowest& lowest) {
-  return {{"lowest",
-           lowest.best ? Json(json_text(group.candidates[*lowest.best].name)) : Json(nullptr)},
+  return {{"lowest", lowest.best ? Json(json_text(group.candidates[*lowest.best].name)) : Json(nullptr)},
           {"not_distinguished", names_json(group, lowest.not_apart)}};
 }
 
@@ -169,8 +165,7 @@ Json term_json(const ComparedGroup& group, const ComparedTerm& t) {
 Json time_json(const ComparedGroup& group, const ComparedGroup::Time& time) {
   Json out = {{"tau_s", json_number(time.tau_s)}};
   out.update(lowest_json(group, time.lowest));
-  out["deviation"] =
-      list_json(time.values, [](const Coefficient& c) { return json_number(c.value); });
+  out["deviation"] = list_json(time.values, [](const Coefficient& c) { return json_number(c.value); });
   out["ci95"] = list_json(time.values, [](const Coefficient& c) {
     return c.value && c.ci95.high > 0 ? interval_json(c.ci95) : Json(nullptr);
   });
@@ -178,13 +173,12 @@ Json time_json(const ComparedGroup& group, const ComparedGroup::Time& time) {
 }
 
 Json sensor_json(const ComparedGroup::Candidate& one) {
-  return {
-      {"name", json_text(one.name)},
-      {"side", one.side},
-      {"channels", texts_json(one.channels)},
-      {"measured", one.measured},
-      {"takes_part", one.takes_part},
-      {"findings", list_json(one.findings, [](const Finding& f) { return json_text(f.code); })}};
+  return {{"name", json_text(one.name)},
+          {"side", one.side},
+          {"channels", texts_json(one.channels)},
+          {"measured", one.measured},
+          {"takes_part", one.takes_part},
+          {"findings", list_json(one.findings, [](const Finding& f) { return json_text(f.code); })}};
 }
 
 Json group_json(const ComparedGroup& group) {
@@ -196,13 +190,12 @@ Json group_json(const ComparedGroup& group) {
           {"sensors", list_json(group.candidates, sensor_json)},
           {"terms", list_json(group.terms, [&](const auto& t) { return term_json(group, t); })},
           {"times", list_json(group.times, [&](const auto& t) { return time_json(group, t); })},
-          {"ranges",
-           list_json(group.ranges,
-                     [&](const ComparedGroup::Range& r) {
-                       return Json({{"from_s", json_number(r.from_s)},
-                                    {"to_s", json_number(r.to_s)},
-                                    {"lowest", names_json(group, r.lowest)}});
-                     })},
+          {"ranges", list_json(group.ranges,
+                               [&](const ComparedGroup::Range& r) {
+                                 return Json({{"from_s", json_number(r.from_s)},
+                                              {"to_s", json_number(r.to_s)},
+                                              {"lowest", names_json(group, r.lowest)}});
+                               })},
           {"sentence", json_text(group.sentence)},
           {"terms_sentence", json_text(group.terms_sentence)}};
 }
@@ -213,9 +206,7 @@ Json compared_side_json(const ReportedCharacterization& s) {
           {"format", s.format},
           {"program", s.program.empty() ? Json(nullptr) : Json(json_text(s.program))},
           {"recording", json_text(s.recording)},
-          {"findings", list_json(s.findings, [](const Finding& one) {
-             return document_of(finding_fields(), one);
-           })}};
+          {"findings", list_json(s.findings, [](const Finding& one) { return document_of(finding_fields(), one); })}};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -254,8 +245,8 @@ std::string comparison_markdown(const CharacterizationComparison& c) {
   out += "\n" + table_text(detail::comparison_table(c)) + "\n";
   for (const ReportedCharacterization& side : c.sides)
     out += fmt::format("- {}: {}\n", markdown_text(side.name), markdown_text(side.file));
-  const std::pair<const char*, const std::vector<std::string>*> lists[] = {
-      {"What differs otherwise:", &c.remarks}, {"What is known of them:", &c.known}};
+  const std::pair<const char*, const std::vector<std::string>*> lists[] = {{"What differs otherwise:", &c.remarks},
+                                                                           {"What is known of them:", &c.known}};
   for (const auto& [head, lines] : lists) {
     if (lines->empty()) continue;
     out += fmt::format("\n{}\n\n", head);
@@ -270,17 +261,13 @@ namespace {
 std::string figure_html(const ComparedGroup& group, bool with_sentence) {
   const Chart chart = detail::compared_chart(group);
   if (chart.series.empty()) return "";
-  return "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 160, .shape = 0.5}) +
-         "<figcaption>" +
-         html_text(with_sentence ? group.name + ": " + group.sentence : group.name) +
-         "</figcaption></figure>\n";
+  return "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 160, .shape = 0.5}) + "<figcaption>" +
+         html_text(with_sentence ? group.name + ": " + group.sentence : group.name) + "</figcaption></figure>\n";
 }
 
-std::string sides_html(const CharacterizationComparison& c,
-                       const std::vector<std::string>& command) {
+std::string sides_html(const CharacterizationComparison& c, const std::vector<std::string>& command) {
   Table facts("sensor|file|recording");
-  for (const ReportedCharacterization& side : c.sides)
-    facts.add({side.name, side.file, side.recording});
+  for (const ReportedCharacterization& side : c.sides) facts.add({side.name, side.file, side.recording});
   Table program("|");
   add_program(program, command);
   return "<section class=\"channel\">\n<h2>Where the numbers come from</h2>\n" + html_table(facts) +
@@ -289,12 +276,10 @@ std::string sides_html(const CharacterizationComparison& c,
 
 }  // namespace
 
-std::string detail::comparison_html(const CharacterizationComparison& c,
-                                    const Json& document,
+std::string detail::comparison_html(const CharacterizationComparison& c, const Json& document,
                                     const std::vector<std::string>& command) {
   std::string body = "<section id=\"overview\">\n";
-  for (const std::string& line : lines_of(c.verdict))
-    body += "<p class=\"verdict\">" + html_text(line) + "</p>\n";
+  for (const std::string& line : lines_of(c.verdict)) body += "<p class=\"verdict\">" + html_text(line) + "</p>\n";
   body += bullet_list(c.known, "cautions") + "</section>\n";
   body += "<section class=\"channel\">\n<h2>Which is lowest</h2>\n" +
           html_table(detail::comparison_table(c), {.css = "many"}) + "</section>\n";
@@ -304,24 +289,19 @@ std::string detail::comparison_html(const CharacterizationComparison& c,
     (folds ? rest : first) += figure_html(group, folds);
   }
   body += "<section class=\"channel\">\n<h2>Allan deviation</h2>\n" + first +
-          (rest.empty() ? ""
-                        : folded("Each axis",
-                                 html_table(detail::comparison_table(c, detail::TableGroups::axes),
-                                            {.css = "many"}) +
-                                     rest)) +
+          (rest.empty()
+               ? ""
+               : folded("Each axis",
+                        html_table(detail::comparison_table(c, detail::TableGroups::axes), {.css = "many"}) + rest)) +
           "</section>\n";
   if (!c.remarks.empty())
-    body += "<section class=\"channel\">\n<h2>What differs otherwise</h2>\n" +
-            bullet_list(c.remarks, "plain") + "</section>\n";
+    body += "<section class=\"channel\">\n<h2>What differs otherwise</h2>\n" + bullet_list(c.remarks, "plain") +
+            "</section>\n";
   std::string names;
-  for (const ReportedCharacterization& side : c.sides)
-    names += (names.empty() ? "" : ", ") + side.name;
-  return html_page({"Sensors compared",
-                    names,
-                    "reportPage.start({}, () => 320);\n",
+  for (const ReportedCharacterization& side : c.sides) names += (names.empty() ? "" : ", ") + side.name;
+  return html_page({"Sensors compared", names, "reportPage.start({}, () => 320);\n",
                     std::string(page_css()) + std::string(many_page_css())},
-                   body + sides_html(c, command),
-                   json_in_script(document));
+                   body + sides_html(c, command), json_in_script(document));
 }
 
 }  // namespace libchar

@@ -14,8 +14,8 @@ namespace libchar {
 namespace {
 
 std::string drawn(const Chart& chart, const DrawingOptions& options, const std::string& caption) {
-  return "<figure class=\"curves\">\n" + draw_figure(chart, options) + "<figcaption>" +
-         html_text(caption) + "</figcaption>\n</figure>\n";
+  return "<figure class=\"curves\">\n" + draw_figure(chart, options) + "<figcaption>" + html_text(caption) +
+         "</figcaption>\n</figure>\n";
 }
 
 /// Over the whole page; two side by side.
@@ -56,8 +56,7 @@ FigureSeries series_of(Ink ink, std::size_t dash, std::vector<double> x, std::ve
 
 }  // namespace
 
-FigureSeries allan_series(
-    const AllanCurve& allan, std::size_t k, const std::string& name, bool strong, double factor) {
+FigureSeries allan_series(const AllanCurve& allan, std::size_t k, const std::string& name, bool strong, double factor) {
   // Dashes repeat more slowly than colours.
   FigureSeries out = series_of(static_cast<Ink>(k % kSeriesInks), k / kSeriesInks, {}, {});
   out.name = out.tip = name;
@@ -70,9 +69,7 @@ FigureSeries allan_series(
   return out;
 }
 
-std::string curves_figure(std::vector<FigureSeries> curves,
-                          const std::string& y_title,
-                          const std::string& about) {
+std::string curves_figure(std::vector<FigureSeries> curves, const std::string& y_title, const std::string& about) {
   constexpr std::size_t kMostNamed = 16;
   LogExtent x, y;
   for (const FigureSeries& c : curves)
@@ -88,8 +85,7 @@ std::string curves_figure(std::vector<FigureSeries> curves,
       c.name.clear();
       ++more;
     }
-  std::stable_partition(
-      curves.begin(), curves.end(), [](const FigureSeries& c) { return c.look.width < 2; });
+  std::stable_partition(curves.begin(), curves.end(), [](const FigureSeries& c) { return c.look.width < 2; });
   Chart chart;
   chart.about = about;
   chart.x = x.axis("averaging time τ, s");
@@ -120,9 +116,8 @@ FigureSeries front_line(const BenchChart& chart, bool told) {
 
 void add_point(Chart& chart, const BenchPoint& p) {
   FigureMark mark{p.x, p.y, p.name, {}, p.told};
-  mark.look = {.ink = p.is_ours ? Ink::blue : Ink::vermilion,
-               .marker = FigureMarker::circle,
-               .size = p.on_front ? 2.6 : 1.8};
+  mark.look = {
+      .ink = p.is_ours ? Ink::blue : Ink::vermilion, .marker = FigureMarker::circle, .size = p.on_front ? 2.6 : 1.8};
   const auto known = [](const Interval& i) { return i.low > 0 && std::isfinite(i.high); };
   if (known(p.x95)) chart.whiskers.push_back({p.x95.low, p.y, p.x95.high, p.y, mark.look.ink});
   if (known(p.y95)) chart.whiskers.push_back({p.x, p.y95.low, p.x, p.y95.high, mark.look.ink});
@@ -145,8 +140,7 @@ std::string points_figure(const BenchChart& bench, const std::string& about) {
   chart.x = x.axis(bench.x);
   chart.y = y.axis(bench.y);
   chart.series = {front_line(bench, false), front_line(bench, true)};
-  return drawn(chart,
-               kWide,
+  return drawn(chart, kWide,
                "Lower and further left is better. Dashed: the front, on which nobody is better in "
                "both; large: on it. Lines: 95 % intervals. Blue: this program; orange: recipes of "
                "others. Open: told which terms there are, with a front of their own.");
@@ -155,9 +149,7 @@ std::string points_figure(const BenchChart& bench, const std::string& about) {
 namespace {
 
 /// Of a place on the axis of a lot.
-double value_at(const LotAxis& axis, double place) {
-  return axis.logarithm ? std::exp(place) : place;
-}
+double value_at(const LotAxis& axis, double place) { return axis.logarithm ? std::exp(place) : place; }
 
 /// Ends with a margin; a limit near the values belongs into the picture, one far away would squeeze
 /// them.
@@ -172,8 +164,7 @@ FigureAxis lot_axis(const LotAxis& axis, double low, double high) {
     high += half;
   }
   const double margin = 0.03 * (high - low);
-  return axis_between(
-      axis.title, axis.logarithm, value_at(axis, low - margin), value_at(axis, high + margin));
+  return axis_between(axis.title, axis.logarithm, value_at(axis, low - margin), value_at(axis, high + margin));
 }
 
 /// The limit where it is out of the picture.
@@ -181,8 +172,7 @@ std::string beyond_text(const LotAxis& axis, const FigureAxis& shown) {
   if (!axis.limit) return "";
   const double limit = value_at(axis, *axis.limit);
   if (limit >= shown.low && limit <= shown.high) return "";
-  return fmt::format(
-      "The limit, {}, is further {}. ", number_text(limit, 3), limit > shown.high ? "up" : "down");
+  return fmt::format("The limit, {}, is further {}. ", number_text(limit, 3), limit > shown.high ? "up" : "down");
 }
 
 FigureMark word_at(double x, double y, const std::string& word) {
@@ -192,34 +182,24 @@ FigureMark word_at(double x, double y, const std::string& word) {
 /// What the zone rules found, and whether that is more than chance brings.
 std::string zones_text(const ControlChart& chart, std::size_t values) {
   if (!(chart.sigma > 0)) return "All values are alike.";
-  const char* const names[kZoneRules] = {"beyond 3 σ (dashed)",
-                                         "two of three beyond 2 σ",
-                                         "four of five beyond 1 σ",
+  const char* const names[kZoneRules] = {"beyond 3 σ (dashed)", "two of three beyond 2 σ", "four of five beyond 1 σ",
                                          "eight in a row on one side"};
   std::string list, alarms;
   for (std::size_t r = 0; r < kZoneRules; ++r) {
     const ZoneFinding& found = chart.zones.rule[r];
-    list += fmt::format("{}{} {} ({})",
-                        r == 0 ? "" : ", ",
-                        names[r],
-                        count_text(found.signals),
+    list += fmt::format("{}{} {} ({})", r == 0 ? "" : ", ", names[r], count_text(found.signals),
                         number_text(found.by_chance, 2));
     if (found.alarm)
-      alarms +=
-          fmt::format("{}{} ({})", alarms.empty() ? "" : ", ", names[r], probability_text(found.p));
+      alarms += fmt::format("{}{} ({})", alarms.empty() ? "" : ", ", names[r], probability_text(found.p));
   }
-  const std::string end =
-      alarms.empty()
-          ? fmt::format(
-                "No alarm: {} % of charts of as many values show some signal though nothing "
-                "changed.",
-                number_text(100 * chart.zones.any_by_chance, 2))
-          : "Alarm, more than chance brings: " + alarms + ".";
-  return fmt::format(
-      "{} values, mean and σ of the moving range. Signals (expected by chance): {}. {}",
-      count_text(values),
-      list,
-      end);
+  const std::string end = alarms.empty()
+                              ? fmt::format(
+                                    "No alarm: {} % of charts of as many values show some signal though nothing "
+                                    "changed.",
+                                    number_text(100 * chart.zones.any_by_chance, 2))
+                              : "Alarm, more than chance brings: " + alarms + ".";
+  return fmt::format("{} values, mean and σ of the moving range. Signals (expected by chance): {}. {}",
+                     count_text(values), list, end);
 }
 
 /// The values, or where very many lie.
@@ -241,16 +221,12 @@ FigureSeries charted(const ControlChart& chart, const LotAxis& axis) {
 }
 
 /// Drawings stay small: of very many the furthest.
-void add_beyond(Chart& out,
-                const ControlChart& chart,
-                const LotAxis& axis,
-                const std::vector<std::string>& names) {
+void add_beyond(Chart& out, const ControlChart& chart, const LotAxis& axis, const std::vector<std::string>& names) {
   constexpr std::size_t kMostMarks = 150;
   std::vector<std::size_t> order(chart.beyond.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(chart.beyond[a].value - chart.centre) >
-           std::abs(chart.beyond[b].value - chart.centre);
+    return std::abs(chart.beyond[a].value - chart.centre) > std::abs(chart.beyond[b].value - chart.centre);
   });
   if (order.size() > kMostMarks) order.resize(kMostMarks);
   for (const std::size_t i : order) {
@@ -292,16 +268,12 @@ std::string histogram_figure(const Histogram& h, const LotAxis& axis, const std:
   upright(axis.mean, Ink::green, "mean");
   upright(axis.limit, Ink::vermilion, "limit");
   std::string caption = beyond_text(axis, chart.x) + "How many devices have which value";
-  if (h.below + h.above > 0)
-    caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
+  if (h.below + h.above > 0) caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
   return drawn(chart, kHalf, caption + ".");
 }
 
-std::string control_figure(const ControlChart& control,
-                           std::size_t values,
-                           const LotAxis& axis,
-                           const std::vector<std::string>& beyond,
-                           const std::vector<ChartBound>& bounds,
+std::string control_figure(const ControlChart& control, std::size_t values, const LotAxis& axis,
+                           const std::vector<std::string>& beyond, const std::vector<ChartBound>& bounds,
                            const std::string& about) {
   Chart chart;
   chart.about = about;

@@ -16,17 +16,12 @@
 namespace libchar {
 
 /// The points of the curve that can be relied on, times a factor; the k-th of many, told apart.
-FigureSeries allan_series(const AllanCurve& allan,
-                          std::size_t k,
-                          const std::string& name,
-                          bool strong,
+FigureSeries allan_series(const AllanCurve& allan, std::size_t k, const std::string& name, bool strong,
                           double factor = 1);
 
 /// Many curves on one pair of logarithmic axes: the legend has the first of them. `about`: for
 /// readers who cannot see it.
-std::string curves_figure(std::vector<FigureSeries> curves,
-                          const std::string& y_title,
-                          const std::string& about);
+std::string curves_figure(std::vector<FigureSeries> curves, const std::string& y_title, const std::string& about);
 
 /// Named points with intervals, and the front of those that nobody beats in both.
 std::string points_figure(const BenchChart& chart, const std::string& about);
@@ -39,9 +34,7 @@ struct LotAxis {
   std::optional<double> limit;  ///< of a data sheet
 };
 
-std::string histogram_figure(const Histogram& histogram,
-                             const LotAxis& axis,
-                             const std::string& about);
+std::string histogram_figure(const Histogram& histogram, const LotAxis& axis, const std::string& about);
 
 /// Where another batch begins.
 struct ChartBound {
@@ -49,11 +42,8 @@ struct ChartBound {
   std::string name;
 };
 /// `beyond`: names of the values outside of the limits.
-std::string control_figure(const ControlChart& chart,
-                           std::size_t values,
-                           const LotAxis& axis,
-                           const std::vector<std::string>& beyond,
-                           const std::vector<ChartBound>& bounds,
+std::string control_figure(const ControlChart& chart, std::size_t values, const LotAxis& axis,
+                           const std::vector<std::string>& beyond, const std::vector<ChartBound>& bounds,
                            const std::string& about);
 
 // Cells and figures of a fleet's quantities.

@@ -4,13 +4,9 @@
 #include "libchar/report/detail/html/html_tables.hpp"
 
 namespace libchar {
-std::string html_text(std::string_view text) {
-  return markup_entities(printable(text));
-}
+std::string html_text(std::string_view text) { return markup_entities(printable(text)); }
 
-std::string html_attribute(std::string_view text) {
-  return markup_entities(printable(text));
-}
+std::string html_attribute(std::string_view text) { return markup_entities(printable(text)); }
 
 std::string html_address(std::string_view path) {
   static constexpr std::string_view kPlain = "-._~/";
@@ -53,8 +49,7 @@ std::string json_in_script(const Json& document) {
 
 std::string html_comment(std::string_view text) {
   std::string out(text);
-  for (std::size_t at = 0; (at = out.find("--", at)) != std::string::npos;)
-    out.replace(at, 2, "- -");
+  for (std::size_t at = 0; (at = out.find("--", at)) != std::string::npos;) out.replace(at, 2, "- -");
   return out;
 }
 

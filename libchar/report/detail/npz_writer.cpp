@@ -12,8 +12,7 @@
 namespace libchar {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "arrays are written as they are in memory");
+static_assert(std::endian::native == std::endian::little, "arrays are written as they are in memory");
 
 constexpr std::size_t kNpyBlock = 64;
 constexpr std::size_t kPieceOfTexts = std::size_t{1} << 16U;
@@ -26,13 +25,8 @@ void append(std::string& to, std::uint64_t value, int bytes) {
 }
 
 /// What local and central headers have in common: version, UTF-8 name, stored, 1980-01-01, checksum, sizes, lengths of name and extension.
-void append_member(std::string& to,
-                   std::uint32_t crc,
-                   std::uint64_t bytes,
-                   std::size_t name,
-                   std::size_t extension,
-                   bool large,
-                   bool far = false) {
+void append_member(std::string& to, std::uint32_t crc, std::uint64_t bytes, std::size_t name, std::size_t extension,
+                   bool large, bool far = false) {
   append(to, large || far ? kWideVersion : kVersion, 2);
   append(to, 0x0800, 2);
   append(to, 0, 2);
@@ -62,8 +56,7 @@ std::string as_extension(const std::string& values) {
 }
 
 std::string npy_header(const std::string& type, std::size_t count) {
-  std::string text =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", type, count);
+  std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", type, count);
   const std::size_t total = (10 + text.size() + 1 + kNpyBlock - 1) / kNpyBlock * kNpyBlock;
   text.resize(total - 11, ' ');
   text += '\n';
@@ -82,8 +75,7 @@ std::span<const std::byte> as_span(std::string_view bytes) {
 }
 
 std::u32string wide_text(const std::string& text) {
-  const std::string valid =
-      first_invalid_utf8(text) == std::string_view::npos ? text : printable(text);
+  const std::string valid = first_invalid_utf8(text) == std::string_view::npos ? text : printable(text);
   std::u32string out;
   for (std::size_t i = 0; i < valid.size();) {
     std::uint32_t code = 0;
@@ -101,11 +93,8 @@ void NpzWriter::put(std::string_view bytes) {
   take_(bytes);
 }
 
-void NpzWriter::add_array(const std::string& name,
-                          const std::string& type,
-                          std::size_t count,
-                          std::uint64_t bytes_of_data,
-                          const GiveData& give) {
+void NpzWriter::add_array(const std::string& name, const std::string& type, std::size_t count,
+                          std::uint64_t bytes_of_data, const GiveData& give) {
   const std::string file = name + ".npy", header = npy_header(type, count);
   const std::uint64_t bytes = header.size() + bytes_of_data;
   std::uint32_t crc = crc32_of(as_span(header));
@@ -121,10 +110,7 @@ void NpzWriter::add_array(const std::string& name,
   members_.push_back(std::move(member));
 }
 
-void NpzWriter::add_bytes(const std::string& name,
-                          const std::string& type,
-                          std::size_t count,
-                          std::string_view data) {
+void NpzWriter::add_bytes(const std::string& name, const std::string& type, std::size_t count, std::string_view data) {
   add_array(name, type, count, data.size(), [&](const auto& take) { take(data); });
 }
 
@@ -140,8 +126,7 @@ void NpzWriter::add(const std::string& name, std::span<const std::uint8_t> value
   add_bytes(name, "|u1", values.size(), bytes_of(values));
 }
 
-void NpzWriter::add(const std::string& name,
-                    std::size_t count,
+void NpzWriter::add(const std::string& name, std::size_t count,
                     const std::function<const std::string&(std::size_t)>& text) {
   std::size_t width = 1;
   for (std::size_t i = 0; i < count; ++i) width = std::max(width, wide_text(text(i)).size());
@@ -167,8 +152,7 @@ void NpzWriter::finish() {
     if (far) append(extension, member.at, 8);
     std::string entry = "PK\x01\x02";
     append(entry, large || far ? kWideVersion : kVersion, 2);
-    append_member(
-        entry, member.crc, member.bytes, member.name.size(), extension.size(), large, far);
+    append_member(entry, member.crc, member.bytes, member.name.size(), extension.size(), large, far);
     append(entry, 0, 2);  // comment
     append(entry, 0, 2);  // disk
     append(entry, 0, 2);  // attributes

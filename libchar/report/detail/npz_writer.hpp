@@ -25,9 +25,7 @@ class NpzWriter {
   void add(const std::string& name, std::span<const std::uint8_t> values);
   /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped. Asked for several times: the array is four bytes for each character
   /// of the longest, and is never in memory as a whole.
-  void add(const std::string& name,
-           std::size_t count,
-           const std::function<const std::string&(std::size_t)>& text);
+  void add(const std::string& name, std::size_t count, const std::function<const std::string&(std::size_t)>& text);
   /// The directory of the archive; nothing may follow.
   void finish();
 
@@ -40,15 +38,9 @@ class NpzWriter {
   /// Whoever has the data gives them to whoever asks, a piece after the other, twice: for the checksum, which stands in front, and to be
   /// written.
   using GiveData = std::function<void(const std::function<void(std::string_view)>&)>;
-  void add_array(const std::string& name,
-                 const std::string& type,
-                 std::size_t count,
-                 std::uint64_t bytes,
+  void add_array(const std::string& name, const std::string& type, std::size_t count, std::uint64_t bytes,
                  const GiveData& give);
-  void add_bytes(const std::string& name,
-                 const std::string& type,
-                 std::size_t count,
-                 std::string_view data);
+  void add_bytes(const std::string& name, const std::string& type, std::size_t count, std::string_view data);
   void finish_directory(std::uint64_t at, std::uint64_t size);
   void put(std::string_view bytes);
 

@@ -44,13 +44,11 @@ const Fields<LimitJudgement>& judgement_fields() {
       field<&T::channel>("channel"),
       field<&T::term>("term", {.words = term_words()}),
       field<&T::most>("limit"),
-      computed<[](const T& j) {
-        return term_unit(kTermNames[static_cast<std::size_t>(j.term)].key, j.unit);
-      }>("unit"),
+      computed<[](const T& j) { return term_unit(kTermNames[static_cast<std::size_t>(j.term)].key, j.unit); }>("unit"),
       field<&T::text>("limit_as_given"),
       field<&T::measured, &Coefficient::value>("value"),
-      field<&T::measured, &Coefficient::ci95>(
-          "ci95", {.known = when<[](const T& j) { return j.measured.value.has_value(); }>}),
+      field<&T::measured, &Coefficient::ci95>("ci95",
+                                              {.known = when<[](const T& j) { return j.measured.value.has_value(); }>}),
       field<&T::measured, &Coefficient::upper95>("upper95"),
       field<&T::measured, &Coefficient::status>("status"),
       field<&T::status>("judgement"),
@@ -116,9 +114,7 @@ Json texts_json(const std::vector<std::string>& texts) {
   return out;
 }
 
-Json json_frame(std::string_view format) {
-  return {{"format", format}, {"version", 1}};
-}
+Json json_frame(std::string_view format) { return {{"format", format}, {"version", 1}}; }
 
 Json interval_json(const Interval& interval) {
   if (std::isnan(interval.low) || std::isnan(interval.high)) return nullptr;

@@ -22,19 +22,17 @@ constexpr std::size_t kFailedOnPage = 100;
 
 std::vector<std::string> known_words(const FleetLot& lot) {
   std::vector<std::string> out;
-  for (const Finding& one : lot.findings)
-    out.push_back(std::string(name_of(one.severity)) + ": " + one.sentence);
+  for (const Finding& one : lot.findings) out.push_back(std::string(name_of(one.severity)) + ": " + one.sentence);
   return out;
 }
 
 std::string facts(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" +
-         bullet_list(lot.notes, "cautions") + bullet_list(known_words(lot), "cautions");
+  return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" + bullet_list(lot.notes, "cautions") +
+         bullet_list(known_words(lot), "cautions");
 }
 
-std::string recordings_part(const FleetReport& report,
-                            const std::vector<std::size_t>& recordings,
+std::string recordings_part(const FleetReport& report, const std::vector<std::size_t>& recordings,
                             const std::string& title) {
   if (recordings.empty()) return "";
   Table out("device|log|why");
@@ -42,29 +40,21 @@ std::string recordings_part(const FleetReport& report,
     const DeviceRecord& one = report.records[r];
     out.add({one.device, one.log, one.problem});
   }
-  return folded(
-      html_text(title),
-      html_table(out,
-                 {.css = "many", .of = recordings.size(), .rest = "the list of devices below"}));
+  return folded(html_text(title),
+                html_table(out, {.css = "many", .of = recordings.size(), .rest = "the list of devices below"}));
 }
 
 std::string failed_part(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  return recordings_part(report,
-                         lot.failed,
-                         plural(lot.failed.size(), "recording") + " could not be characterized") +
-         recordings_part(report,
-                         lot.awaited,
-                         plural(lot.awaited.size(), "recording") + " without a result yet");
+  return recordings_part(report, lot.failed, plural(lot.failed.size(), "recording") + " could not be characterized") +
+         recordings_part(report, lot.awaited, plural(lot.awaited.size(), "recording") + " without a result yet");
 }
 
 Cell reasons_cell(const std::vector<std::string>& reasons) {
   constexpr std::size_t kMost = 5;
   Cell out;
-  for (std::size_t i = 0; i < std::min(kMost, reasons.size()); ++i)
-    out.lines.emplace_back(reasons[i]);
-  if (reasons.size() > kMost)
-    out.lines.emplace_back(fmt::format("and {} more", reasons.size() - kMost));
+  for (std::size_t i = 0; i < std::min(kMost, reasons.size()); ++i) out.lines.emplace_back(reasons[i]);
+  if (reasons.size() > kMost) out.lines.emplace_back(fmt::format("and {} more", reasons.size() - kMost));
   return out;
 }
 
@@ -73,10 +63,7 @@ std::string worst_table(const FleetReport& report, std::size_t first, std::size_
   for (std::size_t i = first; i < end; ++i) {
     const WorstDevice& w = report.lot->worst[i];
     const DeviceRecord& r = report.records[w.recording];
-    out.add({report_cell(r.device, r.report),
-             r.type,
-             batch_of(*report.lot, w.recording),
-             reasons_cell(w.reasons)});
+    out.add({report_cell(r.device, r.report), r.type, batch_of(*report.lot, w.recording), reasons_cell(w.reasons)});
   }
   return html_table(out, {.css = "many"});
 }
@@ -85,10 +72,8 @@ std::string worst_part(const FleetReport& report) {
   constexpr std::size_t kOpen = 20;
   const std::size_t count = report.lot->worst.size(), open = std::min(kOpen, count);
   if (count == 0) return "";
-  std::string out =
-      "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
-  if (count > open)
-    out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
+  std::string out = "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
+  if (count > open) out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
   return out +
          "<p class=\"note\">By how improbable the reason is: so large a deviation from the "
          "others, of any device of the fleet; or so high a value of a device that stands at its "
@@ -135,9 +120,9 @@ std::string figures_part(const FleetReport& report) {
       body += figures;
     }
     if (!body.empty())
-      out += "<details class=\"channel\"" + std::string(out.empty() ? " open" : "") +
-             ">\n<summary>" + html_text(group_title(first, lot)) + " <span class=\"unit\">" +
-             html_text(first.channel_unit) + "</span></summary>\n" + body + "</details>\n";
+      out += "<details class=\"channel\"" + std::string(out.empty() ? " open" : "") + ">\n<summary>" +
+             html_text(group_title(first, lot)) + " <span class=\"unit\">" + html_text(first.channel_unit) +
+             "</span></summary>\n" + body + "</details>\n";
   }
   if (out.empty()) return "";
   if (left_out > 0)
@@ -145,31 +130,25 @@ std::string figures_part(const FleetReport& report) {
         "<p class=\"note\">Figures of {} more quantities are left out; their numbers stand in "
         "lot.json.</p>\n",
         left_out);
-  return "<section id=\"channels\">\n<h2>Distributions and control charts</h2>\n" + out +
-         "</section>\n";
+  return "<section id=\"channels\">\n<h2>Distributions and control charts</h2>\n" + out + "</section>\n";
 }
 
-bool has_several_recordings(const FleetLot& lot) {
-  return lot.order.size() > lot.devices;
-}
+bool has_several_recordings(const FleetLot& lot) { return lot.order.size() > lot.devices; }
 
 bool says_anything(const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [](const auto& word) { return !word.empty(); });
 }
 
 bool anything_is_the_matter(const FleetLot& lot) {
-  const auto any = [](const std::vector<bool>& of) {
-    return std::find(of.begin(), of.end(), true) != of.end();
-  };
+  const auto any = [](const std::vector<bool>& of) { return std::find(of.begin(), of.end(), true) != of.end(); };
   return any(lot.stands_out) || any(lot.fails) || !lot.failed.empty() || !lot.awaited.empty();
 }
 
 std::string devices_part(const FleetLot& lot) {
   Table devices("device");
-  for (const auto& [head, shown] : {std::pair("recording", has_several_recordings(lot)),
-                                    std::pair("type", says_anything(lot.types)),
-                                    std::pair("batch", says_anything(lot.batches)),
-                                    std::pair("what is the matter", anything_is_the_matter(lot))})
+  for (const auto& [head, shown] :
+       {std::pair("recording", has_several_recordings(lot)), std::pair("type", says_anything(lot.types)),
+        std::pair("batch", says_anything(lot.batches)), std::pair("what is the matter", anything_is_the_matter(lot))})
     if (shown) devices.columns.push_back({head});
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
@@ -197,8 +176,7 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
     const DeviceRecord& one = records[r];
     none = none && one.report.empty();
     const bool ends = one.report.ends_with(one.device);
-    const std::string start =
-        ends ? one.report.substr(0, one.report.size() - one.device.size()) : "";
+    const std::string start = ends ? one.report.substr(0, one.report.size() - one.device.size()) : "";
     if (!before) before = start;
     simple = simple && ends && start == *before && !one.report.empty();
   }
@@ -257,9 +235,7 @@ std::string channels_part(const FleetReport& report) {
 
 std::string curves_part(const FleetReport& report) {
   const std::string figures = allan_figures(report);
-  return figures.empty()
-             ? ""
-             : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures + "</section>\n";
+  return figures.empty() ? "" : "<section class=\"channel\">\n<h2>Allan curves</h2>\n" + figures + "</section>\n";
 }
 
 /// What the list of devices shows: columns, types and batches by number.
@@ -291,9 +267,7 @@ Json index_json(const FleetReport& report) {
 
 /// A table is too large for memory.
 WrittenFile written_table(const FleetReport& report,
-                          void (*write)(std::span<const DeviceRecord>,
-                                        const FleetLot&,
-                                        const TakeBytes&),
+                          void (*write)(std::span<const DeviceRecord>, const FleetLot&, const TakeBytes&),
                           WholeFile& file) {
   Sha256 hash;
   write(report.records, *report.lot, [&](std::string_view piece) {
@@ -321,17 +295,15 @@ std::string failed_text(const FleetReport& report) {
 
 std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
-  const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) +
-                           quantities_part(lot) + "</section>\n" + worst_part(report) +
-                           channels_part(report) + curves_part(report) + figures_part(report) +
-                           devices_part(*report.lot) +
+  const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) + quantities_part(lot) +
+                           "</section>\n" + worst_part(report) + channels_part(report) + curves_part(report) +
+                           figures_part(report) + devices_part(*report.lot) +
                            many_provenance(report.recordings, report.command);
   PageParts parts;
   parts.title = "A lot of sensors";
   parts.subject = report.name.empty() ? plural(lot.devices, "device") : report.name;
   parts.script = std::string(fleet_page_js());
-  parts.style =
-      std::string(page_css()) + std::string(many_page_css()) + std::string(fleet_page_css());
+  parts.style = std::string(page_css()) + std::string(many_page_css()) + std::string(fleet_page_css());
   parts.all_numbers = false;
   return html_page(parts, body, json_in_script(index_json(report)));
 }
@@ -362,8 +334,7 @@ std::vector<std::string> fleet_report_files(const std::filesystem::path& folder)
   return out;
 }
 
-std::vector<std::string> write_fleet_report(const FleetReport& report,
-                                            const std::filesystem::path& folder,
+std::vector<std::string> write_fleet_report(const FleetReport& report, const std::filesystem::path& folder,
                                             bool force) {
   const std::vector<std::string> paths = fleet_report_files(folder);
   check_outputs(paths, folder, {}, force);

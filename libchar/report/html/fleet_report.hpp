@@ -26,14 +26,10 @@ namespace libchar {
 using TakeBytes = std::function<void(std::string_view)>;
 
 /// In the order of the lot. What is not known is an empty cell.
-void write_coefficients_csv(std::span<const DeviceRecord> records,
-                            const FleetLot& lot,
-                            const TakeBytes& take);
+void write_coefficients_csv(std::span<const DeviceRecord> records, const FleetLot& lot, const TakeBytes& take);
 
 /// The same columns; what is not known is NaN. The status of a quantity is a place in the array `status_words`.
-void write_coefficients_npz(std::span<const DeviceRecord> records,
-                            const FleetLot& lot,
-                            const TakeBytes& take);
+void write_coefficients_npz(std::span<const DeviceRecord> records, const FleetLot& lot, const TakeBytes& take);
 
 struct FleetReport {
   std::span<const DeviceRecord> records;
@@ -51,9 +47,7 @@ std::vector<std::string> fleet_report_files(const std::filesystem::path& folder)
 /// Writes them, all or none; their paths. A hundred thousand devices of six channels are half a
 /// gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output)
 /// as write_outputs does.
-std::vector<std::string> write_fleet_report(const FleetReport& report,
-                                            const std::filesystem::path& folder,
-                                            bool force);
+std::vector<std::string> write_fleet_report(const FleetReport& report, const std::filesystem::path& folder, bool force);
 Json fleet_json(const FleetReport& report);
 std::string fleet_html(const FleetReport& report);
 /// `worst`: devices named at most.

@@ -28,7 +28,6 @@ void add_times(Json& document, const Characterization& result);
 
 /// report.html, report.json, curves.csv and a sensor model CHANNEL.sensor.yaml for each channel that
 /// was fitted, with their paths in `folder`: what `write_outputs` takes.
-std::vector<OutputFile> report_files(const CharacterizationView& view,
-                                     const std::filesystem::path& folder);
+std::vector<OutputFile> report_files(const CharacterizationView& view, const std::filesystem::path& folder);
 
 }  // namespace libchar

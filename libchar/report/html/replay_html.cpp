@@ -34,15 +34,11 @@ std::string marked_text(const ReplayView& view) {
     fault |= mark.kind == "fault";
     found |= mark.kind == "found";
     if (mark.sensor.empty())
-      out = joined_sentences(out,
-                             fmt::format("Grey: {} ({} … {}).",
-                                         mark.label,
-                                         duration_text(mark.from_s),
-                                         duration_text(mark.to_s)));
+      out = joined_sentences(
+          out, fmt::format("Grey: {} ({} … {}).", mark.label, duration_text(mark.from_s), duration_text(mark.to_s)));
   }
   if (found)
-    out = joined_sentences(
-        fmt::format("Pale stretches: what {} found, and nobody declared.", view.run.method), out);
+    out = joined_sentences(fmt::format("Pale stretches: what {} found, and nobody declared.", view.run.method), out);
   return joined_sentences(fault ? "Coloured stretches: faults as the scene tells them." : "", out);
 }
 
@@ -52,32 +48,24 @@ std::string signal_caption(const ReplayView& view) {
   out += view.run.method;
   if (!view.run.sensor.empty()) out += ", and " + view.run.sensor + ", the best single sensor";
   const std::size_t stretches = r.tracks.whole.inputs[0].estimate.time_s.size();
-  out += stretches < r.instants
-             ? fmt::format(
-                   ": smallest and largest in each of {} stretches of {}; closer in, every "
-                   "instant where the buttons lead.",
-                   stretches,
-                   duration_text(view.duration_s / static_cast<double>(stretches)))
-             : ", at every instant.";
+  out += stretches < r.instants ? fmt::format(
+                                      ": smallest and largest in each of {} stretches of {}; closer in, every "
+                                      "instant where the buttons lead.",
+                                      stretches, duration_text(view.duration_s / static_cast<double>(stretches)))
+                                : ", at every instant.";
   return joined_sentences(out, marked_text(view));
 }
 
 std::string run_plots_of(const ReplayView& view, std::size_t j) {
   const ReplayResult& r = *view.result;
   const std::string unit = usual_unit(r.inputs[j].unit);
-  std::string out = plot_figure("signal",
-                                j,
-                                {r.inputs[j].name + " over the run",
-                                 r.inputs[j].name,
-                                 unit,
-                                 j == 0 ? signal_caption(view) : marked_text(view)},
-                                view.title);
+  std::string out = plot_figure(
+      "signal", j,
+      {r.inputs[j].name + " over the run", r.inputs[j].name, unit, j == 0 ? signal_caption(view) : marked_text(view)},
+      view.title);
   if (r.has_reference)
-    out += plot_figure("error",
-                       j,
-                       {"Error: estimate − reference" + of_input(r, j),
-                        "error",
-                        unit,
+    out += plot_figure("error", j,
+                       {"Error: estimate − reference" + of_input(r, j), "error", unit,
                         "The same stretches. What is beyond the frame of the fused estimate's "
                         "error is cut off where it would hide it."},
                        view.title);
@@ -89,16 +77,12 @@ std::string window_plots(const ReplayView& view) {
   std::string out;
   for (std::size_t j = 0; j < view.inputs.size(); ++j)
     if (view.inputs[j].has_window_rms)
-      out += plot_figure(
-          "window",
-          j,
-          {"RMS of the error in a window" + of_input(r, j),
-           "window RMS",
-           usual_unit(r.inputs[j].unit),
-           fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
-                       "in each bin of the plot.",
-                       duration_text(r.window_s))},
-          view.title);
+      out += plot_figure("window", j,
+                         {"RMS of the error in a window" + of_input(r, j), "window RMS", usual_unit(r.inputs[j].unit),
+                          fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
+                                      "in each bin of the plot.",
+                                      duration_text(r.window_s))},
+                         view.title);
   return out;
 }
 
@@ -108,11 +92,8 @@ std::string allan_plots(const ReplayView& view) {
   for (std::size_t j = 0; j < view.inputs.size(); ++j)
     if (view.inputs[j].has_allan)
       out += plot_figure(
-          "error-allan",
-          j,
-          {"Allan deviation of the error" + of_input(r, j),
-           "overlapping Allan deviation",
-           usual_unit(r.inputs[j].unit),
+          "error-allan", j,
+          {"Allan deviation of the error" + of_input(r, j), "overlapping Allan deviation", usual_unit(r.inputs[j].unit),
            "What averaging would remove falls with τ; what stays level or rises is drift."},
           view.title);
   return out;
@@ -122,14 +103,11 @@ std::string allan_plots(const ReplayView& view) {
 constexpr std::size_t kMostLines = 24;
 
 std::string lines_drawn(const ReplayResult& r, const char* which) {
-  return r.sensors.size() <= kMostLines
-             ? "A line a sensor; band: smallest and largest in each bin."
-             : fmt::format(
-                   "A line a sensor, of {} sensors the {} with the {} at the end; band: "
-                   "smallest and largest in each bin.",
-                   r.sensors.size(),
-                   kMostLines,
-                   which);
+  return r.sensors.size() <= kMostLines ? "A line a sensor; band: smallest and largest in each bin."
+                                        : fmt::format(
+                                              "A line a sensor, of {} sensors the {} with the {} at the end; band: "
+                                              "smallest and largest in each bin.",
+                                              r.sensors.size(), kMostLines, which);
 }
 
 std::string track_plots(const ReplayView& view) {
@@ -138,19 +116,13 @@ std::string track_plots(const ReplayView& view) {
   const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
   std::string out;
   if (view.figures.weights)
-    out += plot_figure(
-        "weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
+    out += plot_figure("weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
   if (view.figures.variances)
     out += plot_figure(
-        "variances",
-        0,
-        {"Noise variances as estimated",
-         "variance",
-         unit.empty() ? "" : "(" + unit + ")²",
+        "variances", 0,
+        {"Noise variances as estimated", "variance", unit.empty() ? "" : "(" + unit + ")²",
          lines_drawn(r, "smallest variances") +
-             (r.has_reference
-                  ? " Dotted: mean square error of the sensor over the run, its bias included."
-                  : "")},
+             (r.has_reference ? " Dotted: mean square error of the sensor over the run, its bias included." : "")},
         name);
   return out;
 }
@@ -162,24 +134,17 @@ std::string cost_figures(const ReplayView& view) {
   const std::string name = score_name(*view.result), unit = score_unit(*view.result);
   std::string plots;
   if (view.figures.error_over_time)
-    plots += plot_figure(
-        "cost-time",
-        0,
-        {"Error against run time",
-         name,
-         unit,
-         "Lower and further left is better. Dashed: the Pareto front, on which no method is "
-         "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
-         "methods."},
-        view.title);
-  if (view.figures.error_over_memory)
-    plots += plot_figure("cost-memory",
-                         0,
-                         {"Error against memory",
-                          name,
-                          unit,
-                          "Peak of the memory held from the heap, over learning and run."},
+    plots += plot_figure("cost-time", 0,
+                         {"Error against run time", name, unit,
+                          "Lower and further left is better. Dashed: the Pareto front, on which no method is "
+                          "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
+                          "methods."},
                          view.title);
+  if (view.figures.error_over_memory)
+    plots += plot_figure(
+        "cost-memory", 0,
+        {"Error against memory", name, unit, "Peak of the memory held from the heap, over learning and run."},
+        view.title);
   return plots;
 }
 
@@ -191,11 +156,8 @@ std::string run_section(const ReplayView& view) {
   for (std::size_t j = 0; j < std::min(r.inputs.size(), r.tracks.whole.inputs.size()); ++j)
     plots += run_plots_of(view, j);
   if (view.figures.deviations)
-    plots += plot_figure("deviations",
-                         0,
-                         {"Each sensor, from the median of all",
-                          "sensor − median",
-                          usual_unit(r.sensors[0].unit),
+    plots += plot_figure("deviations", 0,
+                         {"Each sensor, from the median of all", "sensor − median", usual_unit(r.sensors[0].unit),
                           "No reference tells an error; this shows which sensors go their own way. "
                           "What all share is not seen."},
                          view.title);
@@ -210,11 +172,8 @@ std::string ranking_figure(const ReplayView& view) {
   if (!view.figures.ranking) return "";
   const ReplayResult& r = *view.result;
   return "<div class=\"ranked\">\n" +
-         plot_figure("ranking",
-                     0,
-                     {score_name(r) + " of each method",
-                      score_name(r),
-                      score_unit(r),
+         plot_figure("ranking", 0,
+                     {score_name(r) + " of each method", score_name(r), score_unit(r),
                       "Whiskers: 95 % interval, none where the error walks or drifts. Shaded: as "
                       "good as the best, by a difference below 1 % or not resolved by this record. "
                       "Hollow: bounds, which look at the reference of the run itself."},
@@ -225,11 +184,8 @@ std::string ranking_figure(const ReplayView& view) {
 std::string detection_figure(const ReplayView& view) {
   if (!view.figures.detection) return "";
   return "<div class=\"plots\">\n" +
-         plot_figure("detection",
-                     0,
-                     {"Delay against false alarms",
-                      "delay",
-                      "s",
+         plot_figure("detection", 0,
+                     {"Delay against false alarms", "delay", "s",
                       "How long each known fault lasts until the detector finds it, when the array "
                       "may raise one false alarm in the time on the axis (false_alarm_s). No "
                       "point: not found while it lasted."},
@@ -241,11 +197,8 @@ std::string detection_figure(const ReplayView& view) {
 std::string faults_figure(const ReplayView& view) {
   if (!view.figures.faults) return "";
   return std::string(kChoicePlace) + "<div class=\"over-time faults\">\n" +
-         plot_figure("faults",
-                     0,
-                     {"Faults and findings",
-                      "sensor",
-                      "",
+         plot_figure("faults", 0,
+                     {"Faults and findings", "sensor", "",
                       "Broad grey bars: faults as the scene tells them, with the delay until they "
                       "were found. Narrow bars: the sensor was out, and which finding put it "
                       "there; hollow ones: re-weighted for its noise, still in use. Row leads: a "
@@ -272,11 +225,8 @@ std::string sensors_figure(const ReplayView& view) {
   if (!view.figures.sensors) return "";
   const std::string unit = usual_unit(view.result->sensors[0].unit);
   return "<div class=\"plots\">\n" +
-         plot_figure("sensors",
-                     0,
-                     {"Error of each sensor",
-                      "RMSE",
-                      unit,
+         plot_figure("sensors", 0,
+                     {"Error of each sensor", "RMSE", unit,
                       "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: "
                       "noise of a sample as the algorithms were told. A sensor far above its noise "
                       "failed, saturated or is not calibrated."},
@@ -295,8 +245,7 @@ std::string cost_section(const ReplayView& view) {
          fmt::format(
              "<p>At {} Hz every method takes less than {} of one core: run time decides "
              "nothing here.</p>\n",
-             brief_text(view.result->rate_hz, 6),
-             percent_text(kCoreThatMatters)) +
+             brief_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
          folded("Error against run time and memory", all) + "</section>\n";
 }
 
@@ -326,10 +275,9 @@ std::string scores_note(const ReplayView& view) {
 // Costs are worth a word only where they could decide.
 std::string overview(const ReplayView& view) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
-  for (const std::string& sentence : view.shown_verdict)
-    out += "<p>" + html_text(sentence) + "</p>\n";
-  return out + "</div>\n<p class=\"facts\">" +
-         html_text(fmt::format("{}", fmt::join(run_facts(view), " "))) + "</p>\n</section>\n";
+  for (const std::string& sentence : view.shown_verdict) out += "<p>" + html_text(sentence) + "</p>\n";
+  return out + "</div>\n<p class=\"facts\">" + html_text(fmt::format("{}", fmt::join(run_facts(view), " "))) +
+         "</p>\n</section>\n";
 }
 
 std::string headed_list(const char* head, const std::vector<std::string>& items, const char* css) {
@@ -343,9 +291,9 @@ std::string shown(const Table& table, const PageTable& look = {}) {
 std::string skipped_part(const ReplayView& view) {
   std::size_t methods = 0;
   for (const SkippedAlgorithms& one : view.skipped) methods += one.labels.size();
-  return methods == 0 ? ""
-                      : folded("Skipped: " + plural(methods, "method"),
-                               bullet_list(skipped_words(view), "plain skipped"));
+  return methods == 0
+             ? ""
+             : folded("Skipped: " + plural(methods, "method"), bullet_list(skipped_words(view), "plain skipped"));
 }
 
 std::string ranking_section(const ReplayView& view) {
@@ -353,8 +301,7 @@ std::string ranking_section(const ReplayView& view) {
   std::string inputs;
   for (const Table& table : input_tables(view)) inputs += html_table(table, kLook);
   return "<section class=\"part\" id=\"ranking\">\n<h2>Ranking</h2>\n" + ranking_figure(view) +
-         html_table(algorithms_table(view), kLook) + scores_note(view) + inputs +
-         skipped_part(view) + "</section>\n";
+         html_table(algorithms_table(view), kLook) + scores_note(view) + inputs + skipped_part(view) + "</section>\n";
 }
 
 std::string needs(const ReplayView& view) {
@@ -366,17 +313,16 @@ std::string faults(const ReplayView& view) {
   const std::string figure = faults_figure(view);
   const std::string table = shown(faults_table(view), {.most = 60, .rest = "report.json"});
   if (figure.empty() && table.empty()) return "";
-  return "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + figure + table +
-         shown(out_share_table(view)) + "</section>\n";
+  return "<section class=\"part\" id=\"faults\">\n<h2>Faults</h2>\n" + figure + table + shown(out_share_table(view)) +
+         "</section>\n";
 }
 
 std::string weights(const ReplayView& view) {
   const Table table = weights_table(view);
-  return table.rows.empty()
-             ? ""
-             : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels of "
-               "the run</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
-                   html_table(table) + "</section>\n";
+  return table.rows.empty() ? ""
+                            : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels of "
+                              "the run</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
+                                  html_table(table) + "</section>\n";
 }
 
 std::string sensors(const ReplayView& view) {
@@ -402,23 +348,20 @@ std::string provenance(const ReplayView& view) {
   std::string out =
       "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
       "class=\"two-columns\">\n<div>\n" +
-      inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) +
-      "</div>\n" + headed_list("What the algorithms remark", remark_words(view), "cautions") +
-      "</div>\n</div>\n";
+      inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) + "</div>\n" +
+      headed_list("What the algorithms remark", remark_words(view), "cautions") + "</div>\n</div>\n";
   if (!r.plan.empty())
-    out += "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
-           bullet_list(r.plan, "plain") +
-           fmt::format(
-               "<p class=\"note\">Done: {} passes over the samples, {} instants learnt, {} "
-               "fused{}; both "
-               "summed over algorithms.</p>\n",
-               r.work.passes,
-               count_text(r.work.learnt),
-               count_text(r.work.steps),
-               r.work.blind_steps > 0 ? ", " + count_text(r.work.blind_steps) +
-                                            " more for the scores without a reference"
-                                      : "") +
-           "</details>\n";
+    out +=
+        "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
+        bullet_list(r.plan, "plain") +
+        fmt::format(
+            "<p class=\"note\">Done: {} passes over the samples, {} instants learnt, {} "
+            "fused{}; both "
+            "summed over algorithms.</p>\n",
+            r.work.passes, count_text(r.work.learnt), count_text(r.work.steps),
+            r.work.blind_steps > 0 ? ", " + count_text(r.work.blind_steps) + " more for the scores without a reference"
+                                   : "") +
+        "</details>\n";
   return out + settings_details(json_of(r.settings)) + "</section>\n";
 }
 
@@ -427,18 +370,14 @@ std::string provenance(const ReplayView& view) {
 std::string replay_html(const ReplayView& view) {
   Json document = replay_json(view);
   document.erase("measured");
-  return html_page({"Sensor fusion",
-                    view.title,
-                    std::string(replay_page_js()),
+  return html_page({"Sensor fusion", view.title, std::string(replay_page_js()),
                     std::string(page_css()) + std::string(replay_page_css())},
-                   overview(view) + run_section(view) + ranking_section(view) + faults(view) +
-                       time_section(view) + weights(view) + alignment_html(view) + sensors(view) +
-                       cost_section(view) + needs(view) + provenance(view),
+                   overview(view) + run_section(view) + ranking_section(view) + faults(view) + time_section(view) +
+                       weights(view) + alignment_html(view) + sensors(view) + cost_section(view) + needs(view) +
+                       provenance(view),
                    json_in_script(document));
 }
 
-std::string replay_html(const ReplayResult& result) {
-  return replay_html(replay_view(result));
-}
+std::string replay_html(const ReplayResult& result) { return replay_html(replay_view(result)); }
 
 }  // namespace libchar

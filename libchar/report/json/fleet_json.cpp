@@ -31,20 +31,17 @@ void add_figures(Json& out, const std::optional<LotFigures>& f) {
 
 Json device_json(const FleetReport& report, std::size_t recording) {
   const DeviceRecord& r = report.records[recording];
-  return {
-      {"device", json_text(r.device)},
-      {"type", json_text(r.type)},
-      {"batch", json_text(batch_of(*report.lot, recording))},
-      {"report", r.report.empty() ? Json(nullptr) : Json(json_text(r.report + "/report.html"))}};
+  return {{"device", json_text(r.device)},
+          {"type", json_text(r.type)},
+          {"batch", json_text(batch_of(*report.lot, recording))},
+          {"report", r.report.empty() ? Json(nullptr) : Json(json_text(r.report + "/report.html"))}};
 }
 
 Json problems_json(const FleetReport& report, const std::vector<std::size_t>& recordings) {
   Json out = Json::array();
   for (std::size_t i = 0; i < std::min(kMostFailed, recordings.size()); ++i) {
     const DeviceRecord& r = report.records[recordings[i]];
-    out.push_back({{"device", json_text(r.device)},
-                   {"log", json_text(r.log)},
-                   {"problem", json_text(r.problem)}});
+    out.push_back({{"device", json_text(r.device)}, {"log", json_text(r.log)}, {"problem", json_text(r.problem)}});
   }
   return out;
 }
@@ -63,16 +60,13 @@ Json batches_json(const QuantityLot& q) {
 }
 
 Json zones_json(const ZoneFindings& zones) {
-  Json out = {{"alarm", zones.alarm},
-              {"any_by_chance", json_number(zones.any_by_chance)},
-              {"rules", Json::object()}};
+  Json out = {{"alarm", zones.alarm}, {"any_by_chance", json_number(zones.any_by_chance)}, {"rules", Json::object()}};
   for (std::size_t r = 0; r < kZoneRules; ++r) {
     const ZoneFinding& found = zones.rule[r];
-    out["rules"][std::string(name_of(static_cast<ZoneRule>(r)))] = {
-        {"signals", found.signals},
-        {"by_chance", json_number(found.by_chance)},
-        {"p", json_number(found.p)},
-        {"alarm", found.alarm}};
+    out["rules"][std::string(name_of(static_cast<ZoneRule>(r)))] = {{"signals", found.signals},
+                                                                    {"by_chance", json_number(found.by_chance)},
+                                                                    {"p", json_number(found.p)},
+                                                                    {"alarm", found.alarm}};
   }
   return out;
 }
@@ -137,14 +131,13 @@ Json outliers_json(const FleetReport& report, const QuantityLot& q) {
   for (std::size_t i = 0; i < std::min(kOutliersInJson, q.outliers.size()); ++i) {
     const FleetOutlier& o = q.outliers[i];
     const DeviceRecord& r = report.records[o.recording];
-    out.push_back(
-        {{"device", json_text(r.device)},
-         {"channel", o.all_channels ? Json(nullptr) : Json(json_text(r.channels[o.channel].name))},
-         {"value", json_number(o.value)},
-         {"ratio", in_logarithm(q.quantity) ? json_number(o.ratio) : Json(nullptr)},
-         {"deviation", json_number(o.deviation)},
-         {"p", json_number(o.p)},
-         {"sentence", json_text(o.sentence)}});
+    out.push_back({{"device", json_text(r.device)},
+                   {"channel", o.all_channels ? Json(nullptr) : Json(json_text(r.channels[o.channel].name))},
+                   {"value", json_number(o.value)},
+                   {"ratio", in_logarithm(q.quantity) ? json_number(o.ratio) : Json(nullptr)},
+                   {"deviation", json_number(o.deviation)},
+                   {"p", json_number(o.p)},
+                   {"sentence", json_text(o.sentence)}});
   }
   return out;
 }
@@ -237,8 +230,7 @@ Json fleet_json(const FleetReport& report) {
     one["reasons"] = texts_json(w.reasons);
     out["worst"].push_back(std::move(one));
   }
-  out["quantities"] =
-      list_json(lot.quantities, [&](const QuantityLot& q) { return quantity_json(report, q); });
+  out["quantities"] = list_json(lot.quantities, [&](const QuantityLot& q) { return quantity_json(report, q); });
   return out;
 }
 

@@ -30,22 +30,18 @@ DerivedNumbers derived_of(const ChannelView& view) {
   return out;
 }
 
-QualityOfChannel quality_of(const ChannelResult& c) {
-  return {{c.channel, c.quality}, c.digital, c.lines};
-}
+QualityOfChannel quality_of(const ChannelResult& c) { return {{c.channel, c.quality}, c.digital, c.lines}; }
 
 // Enough digits for a picture.
 std::vector<double> for_drawing(const std::vector<double>& values, int digits) {
   std::vector<double> out;
-  for (const double value : values)
-    out.push_back(std::isfinite(value) ? rounded(value, digits) : value);
+  for (const double value : values) out.push_back(std::isfinite(value) ? rounded(value, digits) : value);
   return out;
 }
 
 TraceOfChannel trace_of(const ChannelView& view) {
   const ChannelResult& channel = *view.result;
-  TraceOfChannel out{
-      channel.channel.name, channel.trace_unit, channel.trace, view.marks, channel.channel.rate_hz};
+  TraceOfChannel out{channel.channel.name, channel.trace_unit, channel.trace, view.marks, channel.channel.rate_hz};
   Trace& trace = out.trace;
   double least = INFINITY, most = -INFINITY;
   for (std::size_t i = 0; i < trace.low.size(); ++i) {
@@ -67,12 +63,9 @@ SummaryOfChannel summary_of(const ChannelView& view) {
 Json verification_json(const ChannelView& view) {
   const ChannelResult& c = *view.result;
   if (c.verification == nullptr) return nullptr;
-  return document_of(
-      verification_fields(),
-      {c.channel.name,
-       *c.verification,
-       allan_of_channel(c.channel, c.verification->allan),
-       spectrum_of_channel(c.channel, c.verification->spectrum, view.verification_ci95)});
+  return document_of(verification_fields(),
+                     {c.channel.name, *c.verification, allan_of_channel(c.channel, c.verification->allan),
+                      spectrum_of_channel(c.channel, c.verification->spectrum, view.verification_ci95)});
 }
 
 // A channel that could not be fitted keeps its place: null, its findings say why.
@@ -87,17 +80,14 @@ Json fit_or_reason(const ChannelView& view) {
 
 AllanOfChannel allan_of(const ChannelView& view) {
   const ChannelResult& c = *view.result;
-  AllanOfChannel out =
-      allan_of_channel(c.channel, c.allan, view.allan_model ? &*view.allan_model : nullptr);
+  AllanOfChannel out = allan_of_channel(c.channel, c.allan, view.allan_model ? &*view.allan_model : nullptr);
   out.noise_types = c.noise_types;
   for (const auto& value : view.data_sheet) out.data_sheet.push_back(value.value_or(kNone));
   return out;
 }
 
 SpectrumOfChannel spectrum_of(const ChannelView& view) {
-  return spectrum_of_channel(view.result->channel,
-                             view.result->spectrum,
-                             view.spectrum_ci95,
+  return spectrum_of_channel(view.result->channel, view.result->spectrum, view.spectrum_ci95,
                              view.spectrum_model ? &*view.spectrum_model : nullptr);
 }
 
@@ -142,12 +132,10 @@ Json json_without_times(const CharacterizationView& view) {
   out["trace"] = {{"rate_hz", json_number(result.log.time.rate_hz)}, {"channels", Json::array()}};
   for (const ChannelView& v : view.channels)
     out["trace"]["channels"].push_back(document_of(trace_fields(), trace_of(v)));
-  if (std::any_of(result.channels.begin(), result.channels.end(), [](const ChannelResult& c) {
-        return c.verification != nullptr;
-      })) {
+  if (std::any_of(result.channels.begin(), result.channels.end(),
+                  [](const ChannelResult& c) { return c.verification != nullptr; })) {
     out["verification"] = {{"channels", Json::array()}};
-    for (const ChannelView& v : view.channels)
-      out["verification"]["channels"].push_back(verification_json(v));
+    for (const ChannelView& v : view.channels) out["verification"]["channels"].push_back(verification_json(v));
   }
   if (result.limits) out["limits"] = document_of(limit_report_fields(), *result.limits);
   return out;
@@ -159,21 +147,17 @@ Json json_report(const CharacterizationView& view) {
   return out;
 }
 
-Json json_report(const Characterization& result) {
-  return json_report(characterization_view(result));
-}
+Json json_report(const Characterization& result) { return json_report(characterization_view(result)); }
 
 void add_times(Json& document, const Characterization& result) {
   if (std::isfinite(result.seconds))
     document["measured"] = {{"seconds", result.seconds}, {"work", work_json(result.work)}};
 }
 
-std::vector<OutputFile> report_files(const CharacterizationView& view,
-                                     const std::filesystem::path& folder) {
+std::vector<OutputFile> report_files(const CharacterizationView& view, const std::filesystem::path& folder) {
   const Characterization& result = *view.result;
   Json document = json_without_times(view);
-  std::vector<OutputFile> outputs = {
-      {(folder / "report.html").string(), html_report(view, document)}};
+  std::vector<OutputFile> outputs = {{(folder / "report.html").string(), html_report(view, document)}};
   add_times(document, result);
   outputs.push_back({(folder / "report.json").string(), ""});
   outputs.push_back({(folder / "curves.csv").string(), csv_curves(view)});
@@ -181,8 +165,7 @@ std::vector<OutputFile> report_files(const CharacterizationView& view,
   for (const ChannelResult& c : result.channels) {
     if (!c.fit) continue;
     const std::string name = unused_file_name_for(c.channel.name, taken);
-    outputs.push_back({(folder / (name + ".sensor.yaml")).string(),
-                       model_yaml(sensor_model_from(c, result.log))});
+    outputs.push_back({(folder / (name + ".sensor.yaml")).string(), model_yaml(sensor_model_from(c, result.log))});
   }
   name_files(document, outputs);
   outputs[1].text = dump_json(document);

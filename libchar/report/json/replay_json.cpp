@@ -35,8 +35,7 @@ int digits_of(const Timeline& track) {
       }
   const double largest = std::fmax(std::fabs(low), std::fabs(high));
   return high > low && std::isfinite(largest / (high - low))
-             ? std::clamp(
-                   4 + static_cast<int>(std::ceil(std::log10(largest / (high - low)))), 4, 15)
+             ? std::clamp(4 + static_cast<int>(std::ceil(std::log10(largest / (high - low)))), 4, 15)
              : kDigitsOfTrack;
 }
 
@@ -47,14 +46,10 @@ Timeline rounded_track(Timeline track, int digits, int digits_of_time = kDigitsO
   return track;
 }
 
-Timeline drawn(const Timeline& track) {
-  return rounded_track(track, kDigitsOfTrack, kDigitsOfTrack);
-}
+Timeline drawn(const Timeline& track) { return rounded_track(track, kDigitsOfTrack, kDigitsOfTrack); }
 
 // One series of a run.
-Timeline close(const Timeline& track) {
-  return rounded_track(track, digits_of(track));
-}
+Timeline close(const Timeline& track) { return rounded_track(track, digits_of(track)); }
 
 ReplayReport::Stretch stretch_of(const RunStretch& run, const Timeline& deviations) {
   ReplayReport::Stretch out;
@@ -74,8 +69,7 @@ ReplayReport::Stretch run_of(const ReplayView& view) {
   out.sensor_name = view.run.sensor;
   for (std::size_t i = 0; i < tracks.close_ups.size(); ++i) {
     const CloseUp& one = tracks.close_ups[i];
-    ReplayReport::Stretch& added =
-        out.close_ups.emplace_back(stretch_of(one.run, one.run.deviations));
+    ReplayReport::Stretch& added = out.close_ups.emplace_back(stretch_of(one.run, one.run.deviations));
     added.label = view.run.close_ups[i];
     added.from_s = one.from_s;
     added.to_s = one.to_s;
@@ -110,10 +104,7 @@ ReplayReport::Algorithm algorithm_of(const ReplayResult& result, const Algorithm
   out.learns = view.learns;
   out.accepts_missing = description.needs.accepts_missing;
   for (const FoundFault& fault : out.faults)
-    out.found.push_back({sensor_name(result, detail::in_memory(fault.sensor)),
-                         fault.kind,
-                         kNone,
-                         fault.from_s,
+    out.found.push_back({sensor_name(result, detail::in_memory(fault.sensor)), fault.kind, kNone, fault.from_s,
                          fault.to_s.value_or(kNone)});
   out.out_share = view.out_share;
   for (std::size_t k = 0; k < out.settings.table().size(); ++k)
@@ -146,8 +137,7 @@ ReplayReport::Sensor channel_of(const ReplayResult& result, std::size_t i) {
 
 ReplayReport::Alignment alignment_of(const ReplayResult& result) {
   ReplayReport::Alignment out{*result.alignment, {}, {}};
-  for (std::size_t i = 0; i < out.learnt.channels.size(); ++i)
-    out.sensors.push_back(channel_of(result, i));
+  for (std::size_t i = 0; i < out.learnt.channels.size(); ++i) out.sensors.push_back(channel_of(result, i));
   for (std::size_t k = 0; k < out.budget.channels.size(); ++k) {
     ReplayReport::Sensor& sensor = out.budgeted_sensors.emplace_back();
     sensor.sensor = result.sensors[out.budgeted[k]].name;
@@ -183,20 +173,14 @@ std::string paragraph(const std::vector<std::string>& sentences) {
 void add_facts(ReplayReport& out, const ReplayView& view) {
   const ReplayResult& result = *view.result;
   const Scene& scene = result.scene;
-  out.scene = {scene.name,
-               scene.file,
-               scene.simulate.has_value(),
-               scene.simulate ? scene.simulate->seed : 0,
+  out.scene = {scene.name, scene.file, scene.simulate.has_value(), scene.simulate ? scene.simulate->seed : 0,
                view.simulation_identity};
   if (result.has_reference) out.reference = reference_of(result);
   out.preparation = scene.preparation;
   if (result.alignment) out.alignment = alignment_of(result);
   for (const SensorFault& fault : result.faults)
-    out.faults.push_back({sensor_name(result, detail::in_memory(fault.sensor)),
-                          std::string(name_of(fault.kind)),
-                          fault.value,
-                          fault.from_s,
-                          fault.to_s});
+    out.faults.push_back({sensor_name(result, detail::in_memory(fault.sensor)), std::string(name_of(fault.kind)),
+                          fault.value, fault.from_s, fault.to_s});
 }
 
 }  // namespace
@@ -213,8 +197,7 @@ ReplayReport replay_report(const ReplayView& view) {
   for (const AlgorithmView* algorithm : view.ranked) out.ranked.push_back(algorithm->result->label);
   out.marks = view.run.marks;
   if (view.figures.run) out.run = run_of(view);
-  for (const AlgorithmView& algorithm : view.algorithms)
-    out.algorithms.push_back(algorithm_of(result, algorithm));
+  for (const AlgorithmView& algorithm : view.algorithms) out.algorithms.push_back(algorithm_of(result, algorithm));
   return out;
 }
 
@@ -239,9 +222,7 @@ Json replay_json(const ReplayView& view) {
   return out;
 }
 
-Json replay_json(const ReplayResult& result) {
-  return replay_json(replay_view(result));
-}
+Json replay_json(const ReplayResult& result) { return replay_json(replay_view(result)); }
 
 const Fields<fusion::Entry>& algorithm_entry_fields() {
   using T = fusion::Entry;
@@ -260,8 +241,7 @@ const Fields<fusion::Entry>& algorithm_entry_fields() {
       computed<[](const T& e) { return e.description->title; }>("title"),
       computed<[](const T& e) { return e.description->source; }>("source"),
       computed<[](const T& e) { return e.description->complexity; }>("complexity"),
-      computed<[](const T& e) { return e.description->learning_complexity; }>(
-          "learning_complexity"),
+      computed<[](const T& e) { return e.description->learning_complexity; }>("learning_complexity"),
       computed<[](const T& e) { return needs_in_words(*e.description); }>("needs"),
       computed<[](const T& e) { return e.description->needs.accepts_missing; }>("accepts_missing"),
       computed_list<[](const T& e) { return e.options; }>("options", options),
@@ -271,8 +251,7 @@ const Fields<fusion::Entry>& algorithm_entry_fields() {
 
 Json algorithms_json() {
   Json out = Json::array();
-  for (const fusion::Entry& entry : fusion::algorithms())
-    out.push_back(document_of(algorithm_entry_fields(), entry));
+  for (const fusion::Entry& entry : fusion::algorithms()) out.push_back(document_of(algorithm_entry_fields(), entry));
   return out;
 }
 

@@ -18,14 +18,10 @@
 namespace libchar {
 namespace {
 
-std::string file_of(const std::string& name) {
-  return name + ".schema.json";
-}
+std::string file_of(const std::string& name) { return name + ".schema.json"; }
 
 Json titled(const std::string& name, const char* title) {
-  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-          {"$id", file_of(name)},
-          {"title", title}};
+  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", file_of(name)}, {"title", title}};
 }
 
 void add_file(Json& all, const std::string& name, const char* title, const Json& schema) {
@@ -36,14 +32,12 @@ void add_file(Json& all, const std::string& name, const char* title, const Json&
 // What the program prints: the part may stand in other documents without the head.
 void add_document(Json& all, const std::string& name, const char* title, Json part) {
   Json& out = all[file_of(name)] = titled(name, title);
-  out["allOf"] = {{{"$ref", file_of("head") + "#/$defs/head"}},
-                  {{"$ref", file_of(name) + "#/$defs/part"}}};
+  out["allOf"] = {{{"$ref", file_of("head") + "#/$defs/head"}}, {{"$ref", file_of(name) + "#/$defs/part"}}};
   out["$defs"]["part"] = std::move(part);
 }
 
 Json of_format(const char* name, Json properties) {
-  Json out = {
-      {"type", "object"}, {"required", {"format", "version"}}, {"properties", Json::object()}};
+  Json out = {{"type", "object"}, {"required", {"format", "version"}}, {"properties", Json::object()}};
   out["properties"]["format"] = {{"const", name}};
   out["properties"]["version"] = {{"const", 1}};
   for (const auto& [key, schema] : properties.items()) {
@@ -62,15 +56,12 @@ Json of_format(const char* name, std::span<const Field> rows) {
   return out;
 }
 
-Json list_of_schema(Json items) {
-  return {{"type", "array"}, {"items", std::move(items)}};
-}
+Json list_of_schema(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
 
 Json head_schema() {
   Json out = schema_of(document_head_fields().rows);
   out["properties"]["measured"] = {
-      {"type", "object"},
-      {"description", "what differs between two runs of one command, and counts of what was done"}};
+      {"type", "object"}, {"description", "what differs between two runs of one command, and counts of what was done"}};
   return out;
 }
 
@@ -101,18 +92,17 @@ void add_files(Json& properties) {
 
 Json characterization_schema() {
   const Json text = {{"type", "string"}};
-  Json out = of_format(
-      "characterization",
-      {{"config", {{"type", "object"}, {"description", "options of the program and the library"}}},
-       {"verdict", text},
-       {"summary", channels_schema(summary_fields().rows, {{"rating", text}})},
-       {"recording", schema_of(recording_rows())},
-       {"allan", {{"$ref", file_of("allan") + "#/$defs/part"}}},
-       {"spectrum", {{"$ref", file_of("spectrum") + "#/$defs/part"}}},
-       {"fit", {{"$ref", file_of("noise-fit") + "#/$defs/part"}}},
-       {"quality", channels_schema(quality_fields().rows)},
-       {"trace",
-        channels_schema(trace_fields().rows, {{"rate_hz", {{"type", {"number", "null"}}}}})}});
+  Json out =
+      of_format("characterization",
+                {{"config", {{"type", "object"}, {"description", "options of the program and the library"}}},
+                 {"verdict", text},
+                 {"summary", channels_schema(summary_fields().rows, {{"rating", text}})},
+                 {"recording", schema_of(recording_rows())},
+                 {"allan", {{"$ref", file_of("allan") + "#/$defs/part"}}},
+                 {"spectrum", {{"$ref", file_of("spectrum") + "#/$defs/part"}}},
+                 {"fit", {{"$ref", file_of("noise-fit") + "#/$defs/part"}}},
+                 {"quality", channels_schema(quality_fields().rows)},
+                 {"trace", channels_schema(trace_fields().rows, {{"rate_hz", {{"type", {"number", "null"}}}}})}});
   Json& more = out["properties"];
   more["still"] = schema_of(still_fields().rows);
   more["verification"] = channels_schema(verification_fields().rows);
@@ -124,8 +114,7 @@ Json characterization_schema() {
 
 Json replay_schema() {
   Json out = of_format("replay-report", ReplayReport::fields().rows);
-  out["properties"]["config"] = {{"type", "object"},
-                                 {"description", "options of the program and the library"}};
+  out["properties"]["config"] = {{"type", "object"}, {"description", "options of the program and the library"}};
   add_files(out["properties"]);
   for (const char* key : {"config", "files", "files_sha256"}) out["required"].push_back(key);
   return out;
@@ -196,59 +185,34 @@ Json sidecar_schema() {
 
 Json schemas() {
   Json all = Json::object();
-  add_file(all,
-           "head",
-           "The head of every document of the program",
-           {{"$defs", {{"head", head_schema()}}}});
-  add_document(all,
-               "inspect",
-               "What is in logs",
+  add_file(all, "head", "The head of every document of the program", {{"$defs", {{"head", head_schema()}}}});
+  add_document(all, "inspect", "What is in logs",
                of_format("inspect", {{"recordings", list_of_schema(schema_of(recording_rows()))}}));
   add_document(all, "allan", "Deviations of the Allan family", schema_of(allan_fields().rows));
   add_document(all, "spectrum", "Spectra", schema_of(spectrum_fields().rows));
-  add_document(all,
-               "noise-fit",
-               "Noise coefficients",
+  add_document(all, "noise-fit", "Noise coefficients",
                of_format("noise-fit",
-                         {{"density_sides", {{"const", "two"}}},
-                          {"channels", list_of_schema(fit_channel_schema())}}));
-  add_document(
-      all, "characterization", "report.json of a characterization", characterization_schema());
+                         {{"density_sides", {{"const", "two"}}}, {"channels", list_of_schema(fit_channel_schema())}}));
+  add_document(all, "characterization", "report.json of a characterization", characterization_schema());
   add_document(all, "replay-report", "report.json of a replay", replay_schema());
   add_document(all, "replay-comparison", "Two replays side by side", comparison_schema());
   add_document(all, "fuse", "A log fused", fuse_schema());
   add_document(
-      all,
-      "fusion-algorithms",
-      "Fusion algorithms with what they need",
-      of_format("fusion-algorithms",
-                {{"algorithms", list_of_schema(schema_of(algorithm_entry_fields().rows))}}));
+      all, "fusion-algorithms", "Fusion algorithms with what they need",
+      of_format("fusion-algorithms", {{"algorithms", list_of_schema(schema_of(algorithm_entry_fields().rows))}}));
   add_document(all, "explanation", "What findings and errors mean", explanation_schema());
   add_file(all, "bench", "bench.json of benchmarks", bench_schema());
-  add_file(
-      all, "sensor-model", "A sensor model: CHANNEL.sensor.yaml (docs/models.md)", model_schema());
-  add_document(
-      all,
-      "models",
-      "Sensor models",
-      of_format("models", {{"models", list_of_schema({{"$ref", file_of("sensor-model")}})}}));
+  add_file(all, "sensor-model", "A sensor model: CHANNEL.sensor.yaml (docs/models.md)", model_schema());
+  add_document(all, "models", "Sensor models",
+               of_format("models", {{"models", list_of_schema({{"$ref", file_of("sensor-model")}})}}));
   add_file(all, "noise-limits", "What a data sheet allows (docs/recordings.md)", limits_schema());
-  add_file(all,
-           "sidecar",
-           "What stands beside a raw binary log: LOG.json or LOG.yaml (docs/formats.md)",
+  add_file(all, "sidecar", "What stands beside a raw binary log: LOG.json or LOG.yaml (docs/formats.md)",
            sidecar_schema());
-  add_file(all,
-           "device-record",
-           "A line of a fleet's results: what a lot needs to know of one characterized device",
+  add_file(all, "device-record", "A line of a fleet's results: what a lot needs to know of one characterized device",
            schema_of(device_record_fields().rows));
-  add_file(all,
-           "scene",
-           "A scene: a recording, or a simulation, and what is known of it (docs/scenes.md)",
+  add_file(all, "scene", "A scene: a recording, or a simulation, and what is known of it (docs/scenes.md)",
            scene_schema());
-  add_file(all,
-           "fusion",
-           "What a replay learnt: fusion.yaml (docs/fuse.md)",
-           schema_of(fusion_fields().rows, true));
+  add_file(all, "fusion", "What a replay learnt: fusion.yaml (docs/fuse.md)", schema_of(fusion_fields().rows, true));
   return all;
 }
 

@@ -22,8 +22,7 @@ std::string replay_text(const ReplayView& view, std::size_t width) {
   std::string text = printable(view.title) + ": ";
   for (const std::string& fact : run_facts(view)) text += printable(fact) + "\n";
   text += "\n" + terminal_table(algorithms_table(view), {width}, "") + kStarNote + "\n";
-  for (const std::string& skipped : skipped_words(view))
-    text += "skipped " + printable(skipped) + "\n";
+  for (const std::string& skipped : skipped_words(view)) text += "skipped " + printable(skipped) + "\n";
   text += alignment_text(view, {width});
   text += "\n" + printable(fmt::format("{}", fmt::join(view.shown_verdict, " "))) + "\n";
   return text;
@@ -32,12 +31,8 @@ std::string replay_text(const ReplayView& view, std::size_t width) {
 namespace {
 
 std::string option_text(const fusion::Option& option) {
-  return fmt::format("{:<28}   {} = {}{}  {}\n",
-                     "",
-                     option.name,
-                     brief_text(option.standard, 6),
-                     option.unit.empty() ? "" : " " + std::string(option.unit),
-                     option.meaning);
+  return fmt::format("{:<28}   {} = {}{}  {}\n", "", option.name, brief_text(option.standard, 6),
+                     option.unit.empty() ? "" : " " + std::string(option.unit), option.meaning);
 }
 
 }  // namespace
@@ -54,8 +49,7 @@ std::string algorithms_text() {
     text += fmt::format("{:<28} {}\n", entry.description->name, entry.description->title);
     for (const std::string& need : needs_in_words(*entry.description))
       text += fmt::format("{:<28}   needs {}\n", "", need);
-    for (const fusion::Option& option : entry.options.first(entry.own_options))
-      text += option_text(option);
+    for (const fusion::Option& option : entry.options.first(entry.own_options)) text += option_text(option);
   }
   if (watched.empty()) return text;
   text += fmt::format("\n  beside their own options {} have\n", fmt::join(watched, ", "));
@@ -78,8 +72,7 @@ std::string several_inputs(const ReplayView& view) {
 std::string faults_section(const ReplayView& view) {
   if (view.result->faults.empty()) return "";
   const Table detection = detection_table(view);
-  return section("Faults", faults_table(view)) +
-         (detection.rows.empty() ? "" : "\n" + table_text(detection));
+  return section("Faults", faults_table(view)) + (detection.rows.empty() ? "" : "\n" + table_text(detection));
 }
 
 std::string markdown_list(const char* head, const std::vector<std::string>& items) {
@@ -103,20 +96,16 @@ std::vector<std::string> warning_words(const ReplayView& view) {
 }  // namespace
 
 std::string replay_markdown(const ReplayView& view) {
-  std::string out =
-      fmt::format("# {}\n\n{}\n\n",
-                  markdown_text(view.title),
-                  markdown_text(fmt::format("{}", fmt::join(view.shown_verdict, " "))));
+  std::string out = fmt::format("# {}\n\n{}\n\n", markdown_text(view.title),
+                                markdown_text(fmt::format("{}", fmt::join(view.shown_verdict, " "))));
   out += markdown_text(fmt::format("{}", fmt::join(run_facts(view), " "))) + "\n\n" +
          table_text(algorithms_table(view)) + "\n" + markdown_text(kStarNote) + "\n";
-  return out + markdown_list("Skipped", skipped_words(view)) + several_inputs(view) +
-         alignment_markdown(view) + section("Sensors", sensors_table(view)) + faults_section(view) +
+  return out + markdown_list("Skipped", skipped_words(view)) + several_inputs(view) + alignment_markdown(view) +
+         section("Sensors", sensors_table(view)) + faults_section(view) +
          markdown_list("Warnings", warning_words(view));
 }
 
-std::string replay_markdown(const ReplayResult& result) {
-  return replay_markdown(replay_view(result));
-}
+std::string replay_markdown(const ReplayResult& result) { return replay_markdown(replay_view(result)); }
 
 namespace {
 
@@ -124,9 +113,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return percent_text(share(part, whole), 3);
-}
+std::string percent(std::uint64_t part, std::uint64_t whole) { return percent_text(share(part, whole), 3); }
 
 struct ReportedUse {
   std::string name, channel, unit;
@@ -136,10 +123,7 @@ struct ReportedUse {
 std::vector<ReportedUse> uses_of(const FuseResult& result) {
   std::vector<ReportedUse> out;
   for (const FusedSensor& sensor : result.sensors)
-    out.push_back({sensor.name,
-                   sensor.channel,
-                   sensor.unit,
-                   share(sensor.missing, result.instants),
+    out.push_back({sensor.name, sensor.channel, sensor.unit, share(sensor.missing, result.instants),
                    share(sensor.out, result.instants)});
   return out;
 }
@@ -147,10 +131,7 @@ std::vector<ReportedUse> uses_of(const FuseResult& result) {
 std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
   std::vector<ReplayReport::Fault> out;
   for (const FoundFault& fault : result.faults)
-    out.push_back({result.sensors[detail::in_memory(fault.sensor)].name,
-                   fault.kind,
-                   kNone,
-                   fault.from_s,
+    out.push_back({result.sensors[detail::in_memory(fault.sensor)].name, fault.kind, kNone, fault.from_s,
                    fault.to_s.value_or(kNone)});
   return out;
 }
@@ -158,29 +139,21 @@ std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
 }  // namespace
 
 std::string fuse_text(const FuseResult& result, const std::vector<std::string>& files) {
-  std::string out = fmt::format("{}: {} instants at {} Hz fused by {}, {} with an estimate",
-                                printable(result.log.file),
-                                result.instants,
-                                brief_text(result.rate_hz, 6),
-                                result.algorithm.label,
+  std::string out = fmt::format("{}: {} instants at {} Hz fused by {}, {} with an estimate", printable(result.log.file),
+                                result.instants, brief_text(result.rate_hz, 6), result.algorithm.label,
                                 percent(result.estimates, result.instants));
   out += result.deviations == 0
              ? fmt::format("; {} states no standard deviation\n", result.algorithm.label)
-             : fmt::format(", {} with a standard deviation\n",
-                           percent(result.deviations, result.instants));
+             : fmt::format(", {} with a standard deviation\n", percent(result.deviations, result.instants));
   for (const FusedSensor& sensor : result.sensors) {
     if (sensor.missing == 0 && sensor.out == 0) continue;
-    out += fmt::format("{}: missing {} of the time",
-                       printable(sensor.name),
-                       percent(sensor.missing, result.instants));
-    out += sensor.out > 0 ? fmt::format(", taken out {}\n", percent(sensor.out, result.instants))
-                          : "\n";
+    out += fmt::format("{}: missing {} of the time", printable(sensor.name), percent(sensor.missing, result.instants));
+    out += sensor.out > 0 ? fmt::format(", taken out {}\n", percent(sensor.out, result.instants)) : "\n";
   }
   for (const LearntInput& input : result.inputs)
     if (input.reference_offset)
       out += fmt::format("{}: as the sensors read it; the reference of the replay read {} more\n",
-                         printable(input.name),
-                         with_unit(*input.reference_offset, 4, input.unit));
+                         printable(input.name), with_unit(*input.reference_offset, 4, input.unit));
   out += "wrote";
   for (const std::string& file : files) out += " " + printable(file);
   return out + "\n";
@@ -219,8 +192,7 @@ const Fields<FuseResult>& fuse_fields() {
   return rows;
 }
 
-Json fuse_json(const FuseResult& result,
-               const std::vector<std::string>& command,
+Json fuse_json(const FuseResult& result, const std::vector<std::string>& command,
                const std::vector<std::string>& files) {
   Json out = document_head("fuse", command, {&result.log}, result.warnings);
   out.update(document_of(fuse_fields(), result));

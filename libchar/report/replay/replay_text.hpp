@@ -30,8 +30,7 @@ std::string replay_markdown(const ReplayResult& result);
 std::string fuse_text(const FuseResult& result, const std::vector<std::string>& files);
 
 /// The keys of docs/fuse.md. `command`: as typed.
-Json fuse_json(const FuseResult& result,
-               const std::vector<std::string>& command,
+Json fuse_json(const FuseResult& result, const std::vector<std::string>& command,
                const std::vector<std::string>& files);
 
 // report.html of a replay.
@@ -57,7 +56,7 @@ Json replay_json(const ReplayResult& result);
 Json algorithms_json();
 
 /// What a clock or the heap measured, and what follows from it.
-inline constexpr const char* kMeasuredKeys[] = {
-    "measured", "verdict_with_costs", "ns_per_sample", "learning_s", "peak_bytes", "on_front"};
+inline constexpr const char* kMeasuredKeys[] = {"measured",   "verdict_with_costs", "ns_per_sample",
+                                                "learning_s", "peak_bytes",         "on_front"};
 
 }  // namespace libchar

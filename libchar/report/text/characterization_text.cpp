@@ -20,29 +20,20 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
   const std::string length =
-      rate > 0 ? fmt::format("{} Hz, {}",
-                             brief_text(rate, 6),
-                             duration_text(static_cast<double>(log.samples) / rate))
+      rate > 0 ? fmt::format("{} Hz, {}", brief_text(rate, 6), duration_text(static_cast<double>(log.samples) / rate))
                : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
-  std::string text = fmt::format("{}: {} channel{}, {}, {} gap{}\n",
-                                 printable(log.file),
-                                 log.channels.size(),
-                                 log.channels.size() == 1 ? "" : "s",
-                                 length,
-                                 log.time.gaps,
-                                 log.time.gaps == 1 ? "" : "s");
+  std::string text =
+      fmt::format("{}: {} channel{}, {}, {} gap{}\n", printable(log.file), log.channels.size(),
+                  log.channels.size() == 1 ? "" : "s", length, log.time.gaps, log.time.gaps == 1 ? "" : "s");
   if (result.still) text += printable(result.still->sentence) + "\n";
   for (const ChannelView& channel : view.channels) {
     const ChannelResult& c = *channel.result;
     text += "\n" + (c.fit ? fit_text(c.channel, *c.fit, look) : printable(c.channel.name) + "\n");
     const Rating rating = channel.judgement.rating;
-    text +=
-        fmt::format("  {} {}\n",
-                    tinted(fmt::format("{}:", rating_word(rating)), tint_of(rating), look.colours),
-                    printable(channel.summary));
+    text += fmt::format("  {} {}\n", tinted(fmt::format("{}:", rating_word(rating)), tint_of(rating), look.colours),
+                        printable(channel.summary));
     if (c.verification)
-      for (const std::string& sentence : c.verification->sentences)
-        text += fmt::format("  {}\n", printable(sentence));
+      for (const std::string& sentence : c.verification->sentences) text += fmt::format("  {}\n", printable(sentence));
     text += findings_text(channel.judgement.findings, 5, look.colours);
   }
   if (result.limits) text += limits_text(*result.limits, look);
@@ -54,37 +45,31 @@ std::string characterization_text(const Characterization& result, const TextLook
 }
 
 std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook& look) {
-  std::string text = fmt::format("{}{}\n",
-                                 printable(channel.name),
-                                 shown_unit(channel.unit).empty() || channel.unit.empty()
-                                     ? ""
-                                     : fmt::format(" [{}]", printable(channel.unit)));
+  std::string text = fmt::format(
+      "{}{}\n", printable(channel.name),
+      shown_unit(channel.unit).empty() || channel.unit.empty() ? "" : fmt::format(" [{}]", printable(channel.unit)));
   text += terminal_table(coefficients_table(fit, channel.unit), look);
   if (!fit.band.whole)
     text +=
         "  best possible, record for 10 %: of a record whose whole spectrum the terms describe, "
         "not "
         "this band alone\n";
-  if (const Table laws = power_laws_table(fit); !laws.rows.empty())
-    text += "  " + terminal_table(laws, look);
+  if (const Table laws = power_laws_table(fit); !laws.rows.empty()) text += "  " + terminal_table(laws, look);
   if (fit.bandwidth_hz) {
     const int digits = digits_of(*fit.bandwidth_hz, *fit.bandwidth_ci95);
-    text += fmt::format("  low-pass corner {} Hz ({})\n",
-                        number_text(*fit.bandwidth_hz, digits),
+    text += fmt::format("  low-pass corner {} Hz ({})\n", number_text(*fit.bandwidth_hz, digits),
                         interval_text(*fit.bandwidth_ci95, digits));
   }
   // A curve without uncertainties is scaled to its own scatter: its chi-square says nothing.
   const bool judged = fit.goodness.p < 1 || fit.goodness.chi2 != fit.goodness.dof;
   text += "  " + fit.method;
   if (judged)
-    text += fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}",
-                        brief_text(fit.goodness.chi2, 4),
-                        brief_text(fit.goodness.dof, 4),
-                        brief_text(fit.goodness.p, 2));
+    text +=
+        fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}",
+                    brief_text(fit.goodness.chi2, 4), brief_text(fit.goodness.dof, 4), brief_text(fit.goodness.p, 2));
   text += "\n";
   if (fit.second_opinion)
-    text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n",
-                        fit.second_opinion->sentence);
+    text += fmt::format("  second opinion (covariance-weighted Allan fit): {}\n", fit.second_opinion->sentence);
   for (const Remedy& remedy : fit.remedies)
     text += fmt::format("  remedy {}: {} – because {}\n", remedy.kind, remedy.action, remedy.alarm);
   return text;
@@ -95,8 +80,7 @@ namespace {
 // Enough digits to see a thousandth of the noise beside a large offset.
 std::string beside_noise(double value, double noise) {
   const double ratio = noise > 0 ? std::abs(value) / noise : 1;
-  return brief_text(
-      value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
+  return brief_text(value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
 }
 
 std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {
@@ -115,8 +99,7 @@ std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {
           beside_noise(q.maximum, noise),
           q.resolution ? brief_text(*q.resolution, 4) : "-",
           std::to_string(q.saturated),
-          Cell::shown(q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3),
-                      q.difference_kurtosis)};
+          Cell::shown(q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3), q.difference_kurtosis)};
 }
 
 Table channel_table(const Inspection& inspection) {
@@ -133,24 +116,18 @@ std::string some_fields(const LogTopic& topic) {
   constexpr std::size_t kShown = 4;
   for (std::size_t i = 0; i < std::min(kShown, topic.fields.size()); ++i)
     text += (i == 0 ? "" : ", ") + printable(topic.fields[i].name, 40);
-  if (topic.fields.size() > kShown)
-    text += fmt::format(" and {} more", topic.fields.size() - kShown);
+  if (topic.fields.size() > kShown) text += fmt::format(" and {} more", topic.fields.size() - kShown);
   return text;
 }
 
 std::vector<Cell> topic_row(const LogTopic& topic) {
-  return {printable(topic.name, 60),
-          topic.type.empty() ? "-" : printable(topic.type, 40),
-          std::to_string(topic.rows),
-          topic.rate_hz > 0 ? brief_text(topic.rate_hz, 4) + " Hz" : "-",
-          some_fields(topic)};
+  return {printable(topic.name, 60), topic.type.empty() ? "-" : printable(topic.type, 40), std::to_string(topic.rows),
+          topic.rate_hz > 0 ? brief_text(topic.rate_hz, 4) + " Hz" : "-", some_fields(topic)};
 }
 
 // What sensors write first, what cannot be read last.
 Table topic_table(const LogInfo& info) {
-  const auto rank = [](const LogTopic& topic) {
-    return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1;
-  };
+  const auto rank = [](const LogTopic& topic) { return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1; };
   Table out("topic|type|rows|rate|fields");
   for (const int wanted : {0, 1, 2})
     for (const LogTopic& topic : info.topics)
@@ -168,8 +145,7 @@ std::string remarks(const Inspection& inspection) {
   std::vector<Alike> kinds;
   for (std::size_t c = 0; c < inspection.quality.size(); ++c)
     for (const Finding& one : inspection.quality[c].findings) {
-      auto kind = std::find_if(
-          kinds.begin(), kinds.end(), [&](const Alike& k) { return k.first->code == one.code; });
+      auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const Alike& k) { return k.first->code == one.code; });
       if (kind == kinds.end()) kind = kinds.insert(kinds.end(), {&one, {}});
       kind->same = kind->same && kind->first->sentence == one.sentence;
       kind->channels.push_back(printable(inspection.info.channels[c].name, 40));
@@ -190,13 +166,11 @@ std::string inspection_text(const Inspection& inspection, std::size_t width) {
   const LogInfo& info = inspection.info;
   std::string text = summary_line(info) + "\n";
   std::string dialect = info.format;
-  for (const std::string& fact : info.dialect)
-    dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
+  for (const std::string& fact : info.dialect) dialect += (dialect == info.format ? ": " : "; ") + printable(fact);
   text += "  read as " + dialect + "\n";
   for (const std::string& guess : info.guesses) text += "  guessed: " + printable(guess) + "\n";
   for (const Finding& warning : info.warnings.list())
-    text += fmt::format("  {}: {}\n",
-                        warning.severity == Severity::note ? "note" : "warning",
+    text += fmt::format("  {}: {}\n", warning.severity == Severity::note ? "note" : "warning",
                         sentence_of(warning) + detail::help_of(warning));
   text += terminal_table(is_listing(info) ? topic_table(info) : channel_table(inspection), {width});
   return text + remarks(inspection);

@@ -32,19 +32,11 @@ struct TableColumn {
   std::variant<TextOf, CountOf, NumberOf, StatusOf> of;
 };
 
-TableColumn text(std::string name, TextOf of) {
-  return {std::move(name), of};
-}
-TableColumn counted(std::string name, CountOf of) {
-  return {std::move(name), of};
-}
-TableColumn number(std::string name, NumberOf of) {
-  return {std::move(name), std::move(of)};
-}
+TableColumn text(std::string name, TextOf of) { return {std::move(name), of}; }
+TableColumn counted(std::string name, CountOf of) { return {std::move(name), of}; }
+TableColumn number(std::string name, NumberOf of) { return {std::move(name), std::move(of)}; }
 
-TableColumn number_of(DeviceQuantity quantity,
-                      const char* suffix,
-                      double (*of)(const RecordedValue&)) {
+TableColumn number_of(DeviceQuantity quantity, const char* suffix, double (*of)(const RecordedValue&)) {
   return number(std::string(name_of(quantity)) + suffix, [quantity, of](const TableRow& r) {
     const RecordedValue* value = r.channel->find(quantity);
     return value == nullptr ? kNone : of(*value);
@@ -52,15 +44,12 @@ TableColumn number_of(DeviceQuantity quantity,
 }
 
 /// In the unit of the value: the record has that of the logarithm where the quantity is compared as one.
-double absolute_sd(const RecordedValue& v) {
-  return in_logarithm(v.quantity) ? v.value * v.sd : v.sd;
-}
+double absolute_sd(const RecordedValue& v) { return in_logarithm(v.quantity) ? v.value * v.sd : v.sd; }
 
 std::vector<TableRow> table_rows(std::span<const DeviceRecord> records, const FleetLot& lot) {
   std::vector<TableRow> out;
   for (const std::size_t r : lot.order)
-    for (const RecordedChannel& c : records[r].channels)
-      out.push_back({&records[r], &batch_of(lot, r), &c});
+    for (const RecordedChannel& c : records[r].channels) out.push_back({&records[r], &batch_of(lot, r), &c});
   return out;
 }
 
@@ -78,12 +67,9 @@ std::vector<TableColumn> table_columns(const std::vector<TableRow>& rows) {
       text("log", [](const TableRow& r) -> const std::string& { return r.record->log; }),
       text("channel", [](const TableRow& r) -> const std::string& { return r.channel->name; }),
       text("unit", [](const TableRow& r) -> const std::string& { return r.channel->unit; }),
-      number("temperature_c",
-             [](const TableRow& r) { return r.record->temperature_c.value_or(kNone); }),
-      number("rate_hz",
-             [](const TableRow& r) { return r.channel->fitted ? r.channel->rate_hz : kNone; }),
-      number("duration_s",
-             [](const TableRow& r) { return r.channel->fitted ? r.channel->duration_s : kNone; }),
+      number("temperature_c", [](const TableRow& r) { return r.record->temperature_c.value_or(kNone); }),
+      number("rate_hz", [](const TableRow& r) { return r.channel->fitted ? r.channel->rate_hz : kNone; }),
+      number("duration_s", [](const TableRow& r) { return r.channel->fitted ? r.channel->duration_s : kNone; }),
       counted("samples", [](const TableRow& r) { return r.channel->samples; }),
       counted("missing", [](const TableRow& r) { return r.channel->missing; }),
       number("p", [](const TableRow& r) { return r.channel->p; }),
@@ -93,11 +79,9 @@ std::vector<TableColumn> table_columns(const std::vector<TableRow>& rows) {
     out.push_back({std::string(word) + "_status", StatusOf{quantity}});
     out.push_back(number_of(quantity, "", [](const RecordedValue& v) { return v.value; }));
     out.push_back(number_of(quantity, "_low95", [](const RecordedValue& v) { return v.ci95.low; }));
-    out.push_back(
-        number_of(quantity, "_high95", [](const RecordedValue& v) { return v.ci95.high; }));
+    out.push_back(number_of(quantity, "_high95", [](const RecordedValue& v) { return v.ci95.high; }));
     out.push_back(number_of(quantity, "_sd", absolute_sd));
-    out.push_back(
-        number_of(quantity, "_upper95", [](const RecordedValue& v) { return v.upper95; }));
+    out.push_back(number_of(quantity, "_upper95", [](const RecordedValue& v) { return v.upper95; }));
   }
   return out;
 }
@@ -119,9 +103,7 @@ struct CsvCellOf {
     const double value = of(row);
     return std::isnan(value) ? "" : shortest(value);
   }
-  std::string operator()(const StatusOf& of) const {
-    return std::string(name_of(status_in(row, of.quantity)));
-  }
+  std::string operator()(const StatusOf& of) const { return std::string(name_of(status_in(row, of.quantity))); }
 };
 
 struct NpzArrayOf {
@@ -142,9 +124,8 @@ struct NpzArrayOf {
   void operator()(CountOf of) const { out.add(name, all<std::uint64_t>(of)); }
   void operator()(const NumberOf& of) const { out.add(name, all<double>(of)); }
   void operator()(const StatusOf& of) const {
-    out.add(name, all<std::uint8_t>([&](const TableRow& row) {
-              return static_cast<std::uint8_t>(status_in(row, of.quantity));
-            }));
+    out.add(name, all<std::uint8_t>(
+                      [&](const TableRow& row) { return static_cast<std::uint8_t>(status_in(row, of.quantity)); }));
   }
 };
 
@@ -152,9 +133,7 @@ constexpr std::size_t kPiece = std::size_t{1} << 20U;
 
 }  // namespace
 
-void write_coefficients_csv(std::span<const DeviceRecord> records,
-                            const FleetLot& lot,
-                            const TakeBytes& take) {
+void write_coefficients_csv(std::span<const DeviceRecord> records, const FleetLot& lot, const TakeBytes& take) {
   const std::vector<TableRow> rows = table_rows(records, lot);
   const std::vector<TableColumn> columns = table_columns(rows);
   std::string piece;
@@ -173,17 +152,13 @@ void write_coefficients_csv(std::span<const DeviceRecord> records,
   take(piece);
 }
 
-void write_coefficients_npz(std::span<const DeviceRecord> records,
-                            const FleetLot& lot,
-                            const TakeBytes& take) {
+void write_coefficients_npz(std::span<const DeviceRecord> records, const FleetLot& lot, const TakeBytes& take) {
   const std::vector<TableRow> rows = table_rows(records, lot);
   NpzWriter out(take);
-  for (const TableColumn& column : table_columns(rows))
-    std::visit(NpzArrayOf{out, column.name, rows}, column.of);
+  for (const TableColumn& column : table_columns(rows)) std::visit(NpzArrayOf{out, column.name, rows}, column.of);
   static_assert(static_cast<int>(Status::detected) == 0, "the words are in the order of the enum");
   const std::vector<std::string> words = words_of<Status>();
-  out.add(
-      "status_words", words.size(), [&](std::size_t i) -> const std::string& { return words[i]; });
+  out.add("status_words", words.size(), [&](std::size_t i) -> const std::string& { return words[i]; });
   out.finish();
 }
 

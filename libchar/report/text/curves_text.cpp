@@ -24,17 +24,9 @@ std::string allan_csv(const std::vector<Channel>& channels, const std::vector<Al
     for (const AllanPoint& p : curves[c].points) {
       const bool stated = !deviation_row(curves[c].type).without_interval();
       const auto known = [&](double value) { return stated ? value : kNone; };
-      text += csv_line(channels[c].name,
-                       deviation_unit(curves[c].type, channels[c].unit),
-                       p.tau_s,
-                       p.deviation,
-                       known(p.ci68.low),
-                       known(p.ci68.high),
-                       known(p.ci95.low),
-                       known(p.ci95.high),
-                       known(p.edf),
-                       p.terms,
-                       name_of(curves[c].type));
+      text += csv_line(channels[c].name, deviation_unit(curves[c].type, channels[c].unit), p.tau_s, p.deviation,
+                       known(p.ci68.low), known(p.ci68.high), known(p.ci95.low), known(p.ci95.high), known(p.edf),
+                       p.terms, name_of(curves[c].type));
     }
   return text;
 }
@@ -45,15 +37,13 @@ namespace {
 std::vector<DeviationType> types_of(const std::vector<AllanCurve>& curves) {
   std::vector<DeviationType> types;
   for (const AllanCurve& curve : curves)
-    if (std::find(types.begin(), types.end(), curve.type) == types.end())
-      types.push_back(curve.type);
+    if (std::find(types.begin(), types.end(), curve.type) == types.end()) types.push_back(curve.type);
   return types;
 }
 
 }  // namespace
 
-Json allan_json(const std::vector<Channel>& channels,
-                const std::vector<AllanCurve>& curves,
+Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
                 const std::vector<std::vector<Finding>>& findings) {
   const std::vector<DeviationType> types = types_of(curves);
   AllanDocument out;
@@ -72,8 +62,7 @@ std::string spectra_csv(const LogSpectra& spectra) {
   std::string text = "frequency_hz";
   std::vector<double> axis;  // of channels with a rate of their own too
   for (const ChannelResult& c : spectra.channels) {
-    text += "," + csv_cell(fmt::format(
-                      "{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
+    text += "," + csv_cell(fmt::format("{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
     const std::vector<double> before = std::exchange(axis, {}), &own = c.spectrum.frequency_hz;
     std::set_union(before.begin(), before.end(), own.begin(), own.end(), std::back_inserter(axis));
   }
@@ -95,12 +84,7 @@ std::string lines_csv(const LogSpectra& spectra) {
   std::string text = "channel,unit,frequency_hz,amplitude,excess,width_hz\n";
   for (const ChannelResult& c : spectra.channels)
     for (const SpectralLine& line : c.lines)
-      text += csv_line(c.channel.name,
-                       c.channel.unit,
-                       line.frequency_hz,
-                       line.amplitude,
-                       line.excess,
-                       line.width_hz);
+      text += csv_line(c.channel.name, c.channel.unit, line.frequency_hz, line.amplitude, line.excess, line.width_hz);
   return text;
 }
 
@@ -115,8 +99,7 @@ Json spectra_json(const LogSpectra& spectra, const CharacterizeOptions& options)
   document["rate_hz"] = spectra.log.time.rate_hz;
   document["channels"] = Json::array();
   for (const ChannelResult& c : spectra.channels) {
-    SpectrumOfChannel one =
-        spectrum_of_channel(c.channel, c.spectrum, spectrum_intervals(c.spectrum, 0.95));
+    SpectrumOfChannel one = spectrum_of_channel(c.channel, c.spectrum, spectrum_intervals(c.spectrum, 0.95));
     one.with_lines = options.wanted.lines;
     one.lines = c.lines;
     one.findings = findings_of(c);
@@ -131,9 +114,7 @@ Json channel_head(const Channel& channel) {
   return {{"name", json_text(channel.name)}, {"unit", json_text(channel.unit)}};
 }
 
-double middle_s(const DynamicWindow& window) {
-  return (window.from_s + window.to_s) / 2;
-}
+double middle_s(const DynamicWindow& window) { return (window.from_s + window.to_s) / 2; }
 
 }  // namespace
 
@@ -141,14 +122,8 @@ std::string hat_csv(const LogHat& hat) {
   std::string text = "channel,unit,tau_s,deviation,variance,variance_sd,status,terms\n";
   for (std::size_t c = 0; c < hat.channels.size(); ++c)
     for (const HatPoint& p : hat.hat.devices[c])
-      text += csv_line(hat.channels[c].name,
-                       hat.channels[c].unit,
-                       p.tau_s,
-                       p.deviation,
-                       p.variance,
-                       p.variance_sd,
-                       name_of(p.status),
-                       p.terms);
+      text += csv_line(hat.channels[c].name, hat.channels[c].unit, p.tau_s, p.deviation, p.variance, p.variance_sd,
+                       name_of(p.status), p.terms);
   return text;
 }
 
@@ -177,21 +152,14 @@ std::string dynamic_csv(const LogDynamic& dynamic) {
   for (std::size_t c = 0; c < dynamic.channels.size(); ++c)
     for (const DynamicWindow& window : dynamic.deviations[c].windows)
       for (const AllanPoint& p : window.curve.points)
-        text += csv_line(dynamic.channels[c].name,
-                         dynamic.channels[c].unit,
-                         middle_s(window),
-                         window.from_s,
-                         window.to_s,
-                         p.tau_s,
-                         p.deviation,
-                         p.terms);
+        text += csv_line(dynamic.channels[c].name, dynamic.channels[c].unit, middle_s(window), window.from_s,
+                         window.to_s, p.tau_s, p.deviation, p.terms);
   return text;
 }
 
 Json dynamic_json(const LogDynamic& dynamic) {
   Json out = json_frame("dynamic-allan");
-  out["type"] =
-      name_of(dynamic.deviations.empty() ? DeviationType::oadev : dynamic.deviations[0].type);
+  out["type"] = name_of(dynamic.deviations.empty() ? DeviationType::oadev : dynamic.deviations[0].type);
   out["channels"] = Json::array();
   for (std::size_t c = 0; c < dynamic.channels.size(); ++c) {
     Json channel = channel_head(dynamic.channels[c]);
@@ -225,23 +193,13 @@ std::string cross_csv(const LogCrossSpectrum& cross) {
   const auto head = [&](const std::string& name, const std::string& of) {
     return csv_cell(fmt::format("{}[{}]", name, of));
   };
-  std::string text = fmt::format(
-      "frequency_hz,{},{},{},phase_rad,phase_sd_rad,{},{},coherence,coherence_unbiased\n",
-      head("real", unit),
-      head("imaginary", unit),
-      head("magnitude", unit),
-      head(cross.first.name, spectrum_unit(Scaling::psd, cross.first.unit)),
-      head(cross.second.name, spectrum_unit(Scaling::psd, cross.second.unit)));
+  std::string text = fmt::format("frequency_hz,{},{},{},phase_rad,phase_sd_rad,{},{},coherence,coherence_unbiased\n",
+                                 head("real", unit), head("imaginary", unit), head("magnitude", unit),
+                                 head(cross.first.name, spectrum_unit(Scaling::psd, cross.first.unit)),
+                                 head(cross.second.name, spectrum_unit(Scaling::psd, cross.second.unit)));
   for (std::size_t k = 0; k < c.density.size(); ++k)
-    text += csv_line(c.frequency_hz[k],
-                     c.density[k].real(),
-                     c.density[k].imag(),
-                     std::abs(c.density[k]),
-                     std::arg(c.density[k]),
-                     c.phase_sd_rad[k],
-                     c.first[k],
-                     c.second[k],
-                     c.coherence[k],
+    text += csv_line(c.frequency_hz[k], c.density[k].real(), c.density[k].imag(), std::abs(c.density[k]),
+                     std::arg(c.density[k]), c.phase_sd_rad[k], c.first[k], c.second[k], c.coherence[k],
                      c.coherence_unbiased[k]);
   return text;
 }
@@ -250,9 +208,7 @@ std::string coherence_csv(const LogCrossSpectrum& cross) {
   const CrossSpectrum& c = cross.cross;
   std::string text = "frequency_hz,coherence,coherence_unbiased,significant\n";
   for (std::size_t k = 0; k < c.coherence.size(); ++k)
-    text += csv_line(c.frequency_hz[k],
-                     c.coherence[k],
-                     c.coherence_unbiased[k],
+    text += csv_line(c.frequency_hz[k], c.coherence[k], c.coherence_unbiased[k],
                      c.coherence[k] > c.significant_coherence ? 1 : 0);
   return text;
 }
@@ -292,8 +248,7 @@ std::string spectrograms_csv(const LogSpectrograms& spectrograms) {
     const std::string unit = spectrum_unit(s.scaling, spectrograms.channels[c].unit);
     for (std::size_t i = 0; i < s.time_s.size(); ++i)
       for (std::size_t k = 0; k < s.value[i].size(); ++k)
-        text += csv_line(
-            spectrograms.channels[c].name, unit, s.time_s[i], s.frequency_hz[k], s.value[i][k]);
+        text += csv_line(spectrograms.channels[c].name, unit, s.time_s[i], s.frequency_hz[k], s.value[i][k]);
   }
   return text;
 }
@@ -327,9 +282,7 @@ Json spectrograms_json(const LogSpectrograms& spectrograms) {
 
 namespace {
 
-Interval or_none(const std::optional<Interval>& interval) {
-  return interval.value_or(Interval{kNone, kNone});
-}
+Interval or_none(const std::optional<Interval>& interval) { return interval.value_or(Interval{kNone, kNone}); }
 
 void add_allan(std::string& out, const ChannelView& view) {
   const ChannelResult& c = *view.result;
@@ -337,21 +290,9 @@ void add_allan(std::string& out, const ChannelView& view) {
     const AllanPoint& p = c.allan.points[i];
     const auto known = [&](double value) { return p.edf > 0 ? value : kNone; };
     const Interval model = view.allan_model ? or_none(view.allan_model->intervals[i]) : or_none({});
-    out += csv_line(name_of(c.allan.type),
-                    c.channel.name,
-                    c.channel.unit,
-                    "s",
-                    p.tau_s,
-                    p.deviation,
-                    known(p.ci68.low),
-                    known(p.ci68.high),
-                    known(p.ci95.low),
-                    known(p.ci95.high),
-                    known(p.edf),
-                    p.terms,
-                    view.allan_model ? view.allan_model->values[i] : std::nullopt,
-                    model.low,
-                    model.high);
+    out += csv_line(name_of(c.allan.type), c.channel.name, c.channel.unit, "s", p.tau_s, p.deviation, known(p.ci68.low),
+                    known(p.ci68.high), known(p.ci95.low), known(p.ci95.high), known(p.edf), p.terms,
+                    view.allan_model ? view.allan_model->values[i] : std::nullopt, model.low, model.high);
   }
 }
 
@@ -362,21 +303,9 @@ void add_spectrum(std::string& out, const ChannelView& view) {
   const std::string unit = spectrum_unit(s.scaling, c.channel.unit);
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const Interval ci68 = or_none(view.spectrum_ci68[i]), ci95 = or_none(view.spectrum_ci95[i]);
-    out += csv_line(curve,
-                    c.channel.name,
-                    unit,
-                    "Hz",
-                    s.frequency_hz[i],
-                    s.value[i],
-                    ci68.low,
-                    ci68.high,
-                    ci95.low,
-                    ci95.high,
-                    i < s.dof.size() && s.dof[i] > 0 ? s.dof[i] : kNone,
-                    "",
-                    view.spectrum_model ? view.spectrum_model->values[i] : std::nullopt,
-                    "",
-                    "");
+    out += csv_line(curve, c.channel.name, unit, "Hz", s.frequency_hz[i], s.value[i], ci68.low, ci68.high, ci95.low,
+                    ci95.high, i < s.dof.size() && s.dof[i] > 0 ? s.dof[i] : kNone, "",
+                    view.spectrum_model ? view.spectrum_model->values[i] : std::nullopt, "", "");
   }
 }
 
@@ -393,8 +322,6 @@ std::string csv_curves(const CharacterizationView& view) {
   return out;
 }
 
-std::string csv_curves(const Characterization& result) {
-  return csv_curves(characterization_view(result));
-}
+std::string csv_curves(const Characterization& result) { return csv_curves(characterization_view(result)); }
 
 }  // namespace libchar

@@ -17,8 +17,7 @@ std::string allan_csv(const std::vector<Channel>& channels, const std::vector<Al
 
 /// Channel by channel, without models; where there are several types, `types` and the `type` of each entry.
 /// `findings`: of each channel, none where it is shorter.
-Json allan_json(const std::vector<Channel>& channels,
-                const std::vector<AllanCurve>& curves,
+Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
                 const std::vector<std::vector<Finding>>& findings = {});
 
 // The spectra of a log as tables and as a document (docs/json.md).

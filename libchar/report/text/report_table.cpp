@@ -19,14 +19,12 @@ std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterizati
   for (const ReportedChannel& channel : report.channels) {
     names.push_back(channel.name);
     if (!channel.fitted) continue;
-    if (patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) {
-          return matches(p, channel.name);
-        }))
+    if (patterns.empty() ||
+        std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) { return matches(p, channel.name); }))
       out.push_back(&channel);
   }
   for (const std::string& pattern : patterns)
-    if (std::none_of(
-            names.begin(), names.end(), [&](const auto& name) { return matches(pattern, name); }))
+    if (std::none_of(names.begin(), names.end(), [&](const auto& name) { return matches(pattern, name); }))
       throw usage_error("E0985", report.file)
           .says("no channel of the report has this name")
           .got(pattern)
@@ -49,16 +47,14 @@ std::vector<const ReplayReport::Algorithm*> best_first(const ReplayReport& repor
 
 }  // namespace
 
-std::string coefficient_table(const ReportedCharacterization& report,
-                              const std::vector<std::string>& channels,
+std::string coefficient_table(const ReportedCharacterization& report, const std::vector<std::string>& channels,
                               TableFormat format) {
   Table out("channel|", "channel|unit");
   for (const ReportedChannel* channel : chosen_channels(report, channels)) {
     Table one = coefficients_table(channel->term, channel->unit);
     one.drop("best possible");
     one.drop("record for 10 %");
-    if (out.columns.size() == 2)
-      out.columns.insert(out.columns.end(), one.columns.begin(), one.columns.end());
+    if (out.columns.size() == 2) out.columns.insert(out.columns.end(), one.columns.begin(), one.columns.end());
     for (Table::Row& row : one.rows) {
       row.cells.back().lines.resize(std::min<std::size_t>(row.cells.back().lines.size(), 1));
       if (std::isfinite(row.cells[2].value)) row.cells[1].low = "95 % upper limit";
@@ -72,20 +68,14 @@ std::string coefficient_table(const ReportedCharacterization& report,
 }
 
 std::string ranking_table(const ReplayReport& report, TableFormat format) {
-  Table out("algorithm||||regret|a sample|memory",
-            "algorithm|bound||unit|regret|ns_per_sample|peak_bytes");
+  Table out("algorithm||||regret|a sample|memory", "algorithm|bound||unit|regret|ns_per_sample|peak_bytes");
   const std::string unit = report.inputs.empty() ? "" : report.inputs[0].unit;
   out.columns[2] = score_column(report.reference.has_value(), unit);
   for (const ReplayReport::Algorithm* a : best_first(report)) {
     Cell name(a->label);
     if (a->bound) name.sign = "(bound)";
-    out.add({name,
-             a->bound ? "true" : "false",
-             Cell::number(a->rmse, a->rmse_ci95),
-             unit,
-             regret_cell(a->regret),
-             time_cell(a->ns_per_sample),
-             memory_cell(a->peak_bytes ? static_cast<double>(*a->peak_bytes) : kNone)});
+    out.add({name, a->bound ? "true" : "false", Cell::number(a->rmse, a->rmse_ci95), unit, regret_cell(a->regret),
+             time_cell(a->ns_per_sample), memory_cell(a->peak_bytes ? static_cast<double>(*a->peak_bytes) : kNone)});
   }
   return table_text(out, format);
 }

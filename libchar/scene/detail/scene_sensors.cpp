@@ -16,8 +16,7 @@ namespace libchar {
 namespace {
 
 const std::string kNeedsModel = "a simulated sensor needs a model";
-const std::string kModelHint =
-    "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor";
+const std::string kModelHint = "model: FILE.sensor.yaml, the keys of a model, or none for a perfect sensor";
 
 // The channel that an entry of the list means; empty: it says none.
 std::string channel_word(const Document& entry) {
@@ -34,8 +33,7 @@ std::vector<std::string> reference_words(const MapReader& top) {
   const DocumentEntry* channels = reference->value.find("channels");
   const Document& node = channels != nullptr ? channels->value : reference->value;
   std::vector<std::string> out;
-  for (const Document& name : is_scalar(node) ? std::vector<Document>{node} : node.list)
-    out.push_back(name.text);
+  for (const Document& name : is_scalar(node) ? std::vector<Document>{node} : node.list) out.push_back(name.text);
   return out;
 }
 
@@ -46,8 +44,7 @@ class SensorsReader {
 
   SensorIndex read() {
     const auto& list = top_.list("sensors");
-    if (list.empty())
-      throw scene_refusal("E0736", top_, "sensors").says("expected at least one sensor");
+    if (list.empty()) throw scene_refusal("E0736", top_, "sensors").says("expected at least one sensor");
     if (list.size() > kMostSensors) refuse_number(list.size());
     match_patterns(list);
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -116,18 +113,15 @@ class SensorsReader {
     read_fields(sensor_fields(), at, sensor);
     sensor.name = at.text(named);
     sensor.channel = at.text_or("channel", sensor.name);
-    if (at.has("channel"))
-      check_scene_text(top_, at.require("channel"), at.path_of("channel"), scene_);
-    if (sensor.h.empty())
-      throw scene_refusal("E0741", at, "h").says("expected one weight a true input");
+    if (at.has("channel")) check_scene_text(top_, at.require("channel"), at.path_of("channel"), scene_);
+    if (sensor.h.empty()) throw scene_refusal("E0741", at, "h").says("expected one weight a true input");
     if (at.has("model")) sensor.model = model(at);
     if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
     if (!(std::abs(sensor.scale) >= 1e-100 && std::abs(sensor.scale) <= 1e100))
       at.refuse("scale", "a scale beyond 1e100 or below 1e-100 leaves no room for squares");
     check_simulated(at);
     if (at.has("count")) return devices(sensor, at, place);
-    if (matched_ == nullptr || !at.has("name") || !at.has("channel"))
-      return add_matched(sensor, place);
+    if (matched_ == nullptr || !at.has("name") || !at.has("channel")) return add_matched(sensor, place);
     if (matched_->size() > 1)
       throw refusal("E0737", place)
           .says("one name for {} channels", matched_->size())
@@ -141,14 +135,12 @@ class SensorsReader {
     if (at.has("scale")) at.refuse("scale", "the samples of a simulation are used as they are");
     if (at.has("unit")) at.refuse("unit", "the unit of a simulated sensor is its model's");
     if (at.has("channel")) at.refuse("channel", "a simulated sensor's channel has its name");
-    if (!at.has("model"))
-      throw scene_refusal("E0743", at, "model").says(kNeedsModel).hint(kModelHint);
+    if (!at.has("model")) throw scene_refusal("E0743", at, "model").says(kNeedsModel).hint(kModelHint);
   }
 
   // NAME1 … NAMEn from one model.
   void devices(SceneSensor sensor, const MapReader& at, const Place& place) {
-    if (!scene_.simulate)
-      at.refuse("count", "a recording has the sensors it has", "name each of them");
+    if (!scene_.simulate) at.refuse("count", "a recording has the sensors it has", "name each of them");
     const std::uint64_t count = at.count("count");
     if (count == 0) at.refuse("count", "expected at least one device");
     if (count > kMostSensors) refuse_number(count);
@@ -184,11 +176,9 @@ class SensorsReader {
     for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
       const std::string& name = scene_.sensors[i].name;
       if (!index_.by_name.emplace(name, i).second)
-        throw refusal("E0737", index_.places[i])
-            .says("two sensors have the name {}", printable(name, 40));
+        throw refusal("E0737", index_.places[i]).says("two sensors have the name {}", printable(name, 40));
       if (!small.emplace(ascii_lower(name), i).second)
-        scene_.warnings.add("case_clash",
-                            "names of sensors differ by capitals only",
+        scene_.warnings.add("case_clash", "names of sensors differ by capitals only",
                             top_.where(*index_.places[i].node));
     }
   }
@@ -208,10 +198,7 @@ SensorIndex read_scene_sensors(const MapReader& top, const SceneFolder& folder, 
   return SensorsReader(top, folder, scene).read();
 }
 
-std::size_t sensor_index(const MapReader& at,
-                         std::string_view key,
-                         const Scene& scene,
-                         const SensorIndex& index) {
+std::size_t sensor_index(const MapReader& at, std::string_view key, const Scene& scene, const SensorIndex& index) {
   const std::string name = at.text(key);
   const auto found = index.by_name.find(name);
   if (found != index.by_name.end()) return found->second;

@@ -30,9 +30,7 @@ std::vector<std::string> keys_of(const std::string& kind) {
 }
 
 // A key that other kinds read is named as such; unknown ones are left to MapReader.
-void refuse_keys_of_other_kinds(const Document& node,
-                                const MapReader& at,
-                                const std::string& kind) {
+void refuse_keys_of_other_kinds(const Document& node, const MapReader& at, const std::string& kind) {
   for (const DocumentEntry& entry : node.map) {
     if (holds(keys_of(kind), entry.key)) continue;
     std::vector<std::string> others;
@@ -44,10 +42,8 @@ void refuse_keys_of_other_kinds(const Document& node,
     place.column = entry.column;
     const std::vector<std::string>& own = signal_keys(kind);
     throw input_error("E0739", at.where(place))
-        .says("{}: is a key of {}, and this signal is of kind {}",
-              at.path_of(entry.key),
-              others.size() > 5 ? "other kinds" : fmt::format("{}", fmt::join(others, ", ")),
-              kind)
+        .says("{}: is a key of {}, and this signal is of kind {}", at.path_of(entry.key),
+              others.size() > 5 ? "other kinds" : fmt::format("{}", fmt::join(others, ", ")), kind)
         .got(entry.key)
         .hint(own.empty() ? fmt::format("{} needs no further key", kind)
                           : fmt::format("{} reads {}", kind, fmt::join(own, ", ")));
@@ -58,15 +54,12 @@ std::vector<std::pair<double, double>> points_of(const MapReader& at) {
   std::vector<std::pair<double, double>> points;
   for (const Document& node : at.list("points")) {
     const bool pair = node.kind == Document::Kind::list && node.list.size() == 2 &&
-                      node.list[0].kind == Document::Kind::number &&
-                      node.list[1].kind == Document::Kind::number;
+                      node.list[0].kind == Document::Kind::number && node.list[1].kind == Document::Kind::number;
     if (!pair) at.refuse("points", "expected a list of [seconds, value]");
-    if (!points.empty() && node.list[0].number <= points.back().first)
-      at.refuse("points", "the times must rise");
+    if (!points.empty() && node.list[0].number <= points.back().first) at.refuse("points", "the times must rise");
     points.emplace_back(node.list[0].number, node.list[1].number);
   }
-  if (points.empty())
-    throw scene_refusal("E0736", at, "points").says("expected at least one [seconds, value]");
+  if (points.empty()) throw scene_refusal("E0736", at, "points").says("expected at least one [seconds, value]");
   return points;
 }
 
@@ -79,16 +72,13 @@ std::size_t earlier_signal(const MapReader& at, const std::vector<std::string>& 
     if (of < earlier.size()) return static_cast<std::size_t>(of);
   }
   if (earlier.empty())
-    throw scene_refusal("E0738", at, "of")
-        .says("is to name a signal before this one, and there is none");
+    throw scene_refusal("E0738", at, "of").says("is to name a signal before this one, and there is none");
   return index_of_name(at, "of", at.text("of"), earlier, "a signal that stands before this one");
 }
 
 }  // namespace
 
-SignalSpec read_signal(const Document& node,
-                       const std::string& file,
-                       const std::string& path,
+SignalSpec read_signal(const Document& node, const std::string& file, const std::string& path,
                        const std::vector<std::string>& earlier) {
   SignalSpec spec;
   if (node.kind == Document::Kind::number) {
@@ -134,19 +124,15 @@ std::uint64_t samples_of(const MapReader& at, double rate_hz) {
     throw scene_refusal("E0735", at, at.has("samples") ? "samples" : "duration_s")
         .says("a simulation has either duration_s or samples");
   const char* key = at.has("samples") ? "samples" : "duration_s";
-  const double samples = at.has("samples") ? static_cast<double>(at.count(key))
-                                           : std::round(at.number(key, kPositive) * rate_hz);
+  const double samples =
+      at.has("samples") ? static_cast<double>(at.count(key)) : std::round(at.number(key, kPositive) * rate_hz);
   if (samples < 1) at.refuse(key, "there is no sample to simulate");
-  if (samples > static_cast<double>(kMostSamples))
-    at.refuse(key, fmt::format("more than {} samples", kMostSamples));
+  if (samples > static_cast<double>(kMostSamples)) at.refuse(key, fmt::format("more than {} samples", kMostSamples));
   return static_cast<std::uint64_t>(samples);
 }
 
 // Reads the samples of a signal that comes from a log.
-void read_samples(SignalSpec& spec,
-                  const MapReader& at,
-                  const ArraySimulation& simulation,
-                  const SceneFolder& folder,
+void read_samples(SignalSpec& spec, const MapReader& at, const ArraySimulation& simulation, const SceneFolder& folder,
                   Scene& scene) {
   ReadOptions reading;
   reading.hash = false;
@@ -160,24 +146,18 @@ void read_samples(SignalSpec& spec,
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
     throw scene_refusal("E0742", at, "file")
-        .says("is a recording at {} Hz, and the simulation runs at {} Hz",
-              brief_text(rate, 6),
+        .says("is a recording at {} Hz, and the simulation runs at {} Hz", brief_text(rate, 6),
               brief_text(simulation.rate_hz, 6))
         .hint("give the simulation the rate of the recording");
   spec.samples = std::move(log.samples[0]);
   if (spec.samples.empty()) throw scene_refusal("E0742", at, "file").says("holds no sample");
   if (spec.samples.size() < simulation.samples)
-    scene.warnings.add("recorded_signal_short",
-                       "a recorded signal ends before the simulation; its last sample is held",
+    scene.warnings.add("recorded_signal_short", "a recorded signal ends before the simulation; its last sample is held",
                        at.where(at.require("file")));
 }
 
-SignalSpec signal_of(const Document& node,
-                     const std::string& path,
-                     const ArraySimulation& simulation,
-                     const std::vector<std::string>& earlier,
-                     const SceneFolder& folder,
-                     Scene& scene) {
+SignalSpec signal_of(const Document& node, const std::string& path, const ArraySimulation& simulation,
+                     const std::vector<std::string>& earlier, const SceneFolder& folder, Scene& scene) {
   SignalSpec spec = read_signal(node, folder.scene, path, earlier);
   if (spec.kind == "recording") {
     const MapReader at(node, folder.scene, path, {"kind", "name", "offset", "file", "channel"});
@@ -186,13 +166,8 @@ SignalSpec signal_of(const Document& node,
   return spec;
 }
 
-void add_truth(const MapReader& at,
-               const Document& node,
-               const std::string& path,
-               const std::string& usual_name,
-               ArraySimulation& s,
-               const SceneFolder& folder,
-               Scene& scene) {
+void add_truth(const MapReader& at, const Document& node, const std::string& path, const std::string& usual_name,
+               ArraySimulation& s, const SceneFolder& folder, Scene& scene) {
   SignalSpec spec = signal_of(node, path, s, s.truth_names, folder, scene);
   const DocumentEntry* named = node.find("name");
   std::string name = named == nullptr ? usual_name : named->value.text;
@@ -201,9 +176,7 @@ void add_truth(const MapReader& at,
     throw input_error("E0737", at.where(place))
         .says("{}.name: the name of a signal is empty or holds a zero byte", path);
   if (std::find(s.truth_names.begin(), s.truth_names.end(), name) != s.truth_names.end())
-    throw input_error("E0737", at.where(place))
-        .says("{}.name: two truth signals have one name", path)
-        .got(name);
+    throw input_error("E0737", at.where(place)).says("{}.name: two truth signals have one name", path).got(name);
   s.truth.push_back(std::move(spec));
   s.truth_names.push_back(std::move(name));
 }
@@ -213,38 +186,23 @@ void read_truth(const MapReader& at, ArraySimulation& s, const SceneFolder& fold
   const std::string path = at.path_of("truth");
   s.truth.clear();
   s.truth_names.clear();
-  if (node.kind != Document::Kind::list)
-    return add_truth(at, node, path, "truth", s, folder, scene);
-  if (node.list.empty())
-    throw scene_refusal("E0736", at, "truth").says("expected at least one signal");
+  if (node.kind != Document::Kind::list) return add_truth(at, node, path, "truth", s, folder, scene);
+  if (node.list.empty()) throw scene_refusal("E0736", at, "truth").says("expected at least one signal");
   for (std::size_t j = 0; j < node.list.size(); ++j)
-    add_truth(at,
-              node.list[j],
-              fmt::format("{}[{}]", path, j),
-              node.list.size() == 1 ? "truth" : fmt::format("truth{}", j + 1),
-              s,
-              folder,
-              scene);
+    add_truth(at, node.list[j], fmt::format("{}[{}]", path, j),
+              node.list.size() == 1 ? "truth" : fmt::format("truth{}", j + 1), s, folder, scene);
 }
 
 }  // namespace
 
-std::string scene_file_of(const MapReader& at,
-                          std::string_view key,
-                          const SceneFolder& folder,
-                          Scene& scene) {
-  std::string path =
-      resolve_scene_file(at.text(key), folder, at.where(at.require(key)), at.path_of(key));
-  if (std::find(scene.files.begin(), scene.files.end(), path) == scene.files.end())
-    scene.files.push_back(path);
+std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene) {
+  std::string path = resolve_scene_file(at.text(key), folder, at.where(at.require(key)), at.path_of(key));
+  if (std::find(scene.files.begin(), scene.files.end(), path) == scene.files.end()) scene.files.push_back(path);
   return path;
 }
 
-std::string scene_recording_of(const MapReader& at,
-                               std::string_view key,
-                               const SceneFolder& folder,
-                               ReadOptions& reading,
-                               Scene& scene) {
+std::string scene_recording_of(const MapReader& at, std::string_view key, const SceneFolder& folder,
+                               ReadOptions& reading, Scene& scene) {
   if (is_scalar(at.require(key))) return scene_file_of(at, key, folder, scene);
   std::vector<std::string> keys = keys_of(scene_reading_fields());
   keys.insert(keys.begin(), {"file", "resample_hz"});
@@ -252,17 +210,14 @@ std::string scene_recording_of(const MapReader& at,
   read_fields(scene_reading_fields(), map, reading);
   const auto resample_hz = map.maybe_number("resample_hz", kPositive);
   if (resample_hz && (&reading != &scene.reading || reading.rate_hz))
-    map.refuse("resample_hz",
-               reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
-                               : "a reference is interpolated in any case");
+    map.refuse("resample_hz", reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
+                                              : "a reference is interpolated in any case");
   if (resample_hz) scene.resample_hz = resample_hz;
   const std::vector<std::string> words = {"auto", "tab", "space"};
-  if (reading.delimiter.size() != 1 &&
-      std::find(words.begin(), words.end(), reading.delimiter) == words.end())
+  if (reading.delimiter.size() != 1 && std::find(words.begin(), words.end(), reading.delimiter) == words.end())
     map.refuse("delimiter", "expected auto, tab, space or one character");
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
-    throw scene_refusal("E0740", map, "to_s")
-        .says("the recording is read from a time to a later one");
+    throw scene_refusal("E0740", map, "to_s").says("the recording is read from a time to a later one");
   return scene_file_of(map, "file", folder, scene);
 }
 
@@ -274,8 +229,7 @@ ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& fol
   check_oversampling(at, s.oversampling);
   if (at.has("truth")) read_truth(at, s, folder, scene);
   if (at.has("temperature"))
-    s.temperature = signal_of(
-        at.require("temperature"), at.path_of("temperature"), s, s.truth_names, folder, scene);
+    s.temperature = signal_of(at.require("temperature"), at.path_of("temperature"), s, s.truth_names, folder, scene);
   return s;
 }
 

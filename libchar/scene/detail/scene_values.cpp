@@ -23,8 +23,7 @@ std::optional<TimeWindow> window_of(const MapReader& at, std::string_view key) {
       throw scene_refusal_at("E0740", at, node, std::string(key)).says("expected a number");
     return node.number;
   };
-  if (ends.size() != 2)
-    throw scene_refusal("E0740", at, key).says("expected [from, to] in seconds, or [from, end]");
+  if (ends.size() != 2) throw scene_refusal("E0740", at, key).says("expected [from, to] in seconds, or [from, end]");
   window.from_s = number(ends[0]);
   if (ends[1].text != "end") window.to_s = number(ends[1]);
   if (window.from_s < 0 || !(window.from_s < window.to_s))
@@ -32,9 +31,7 @@ std::optional<TimeWindow> window_of(const MapReader& at, std::string_view key) {
   return window;
 }
 
-void write_window(std::string_view key,
-                  const std::optional<TimeWindow>& window,
-                  std::vector<Entry>& out) {
+void write_window(std::string_view key, const std::optional<TimeWindow>& window, std::vector<Entry>& out) {
   if (!window) return;
   if (std::isfinite(window->to_s))
     out.push_back({std::string(key), std::vector<double>{window->from_s, window->to_s}});
@@ -42,13 +39,10 @@ void write_window(std::string_view key,
     out.push_back(word_entry(key, "[" + shortest_yaml(window->from_s) + ", end]"));
 }
 
-OrEstimate number_or_estimate(const MapReader& at,
-                              std::string_view key,
-                              const std::string& expected) {
+OrEstimate number_or_estimate(const MapReader& at, std::string_view key, const std::string& expected) {
   const Document& node = at.require(key);
   const bool estimate = node.kind == Document::Kind::text && node.text == "estimate";
-  if (node.kind == Document::Kind::text && !estimate)
-    at.refuse(key, fmt::format("expected {}, or estimate", expected));
+  if (node.kind == Document::Kind::text && !estimate) at.refuse(key, fmt::format("expected {}, or estimate", expected));
   return {estimate ? 0 : at.number(key), estimate};
 }
 

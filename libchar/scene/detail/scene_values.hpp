@@ -19,9 +19,7 @@ namespace libchar {
 
 /// [from, to]; `end` stands for the end of the recording.
 std::optional<TimeWindow> window_of(const MapReader& at, std::string_view key);
-void write_window(std::string_view key,
-                  const std::optional<TimeWindow>& window,
-                  std::vector<Entry>& out);
+void write_window(std::string_view key, const std::optional<TimeWindow>& window, std::vector<Entry>& out);
 
 /// A number, or the word for finding it out.
 struct OrEstimate {
@@ -29,9 +27,7 @@ struct OrEstimate {
   bool estimate = false;
 };
 /// `expected` in the words of its refusal ("a number of seconds").
-OrEstimate number_or_estimate(const MapReader& at,
-                              std::string_view key,
-                              const std::string& expected);
+OrEstimate number_or_estimate(const MapReader& at, std::string_view key, const std::string& expected);
 /// Nothing of zero.
 void write_or_estimate(std::string_view key, const OrEstimate& said, std::vector<Entry>& out);
 
@@ -46,26 +42,17 @@ Entry word_entry(std::string_view key, std::string word);
 Refusal scene_refusal(const char* code, const MapReader& at, std::string_view key);
 
 /// The same about a value that stands in a list.
-Refusal scene_refusal_at(const char* code,
-                         const MapReader& at,
-                         const Document& node,
-                         const std::string& path);
+Refusal scene_refusal_at(const char* code, const MapReader& at, const Document& node, const std::string& path);
 
 /// A scalar: a name, a path, a number.
 bool is_scalar(const Document& node);
 
 /// Names go into logs, reports and terminals: no zero byte, a warning about what cannot be printed.
-void check_scene_text(const MapReader& at,
-                      const Document& node,
-                      const std::string& path,
-                      Scene& scene);
+void check_scene_text(const MapReader& at, const Document& node, const std::string& path, Scene& scene);
 
 /// The word at `key`, one of `names`; else E0738 with the nearest of them.
-std::size_t index_of_name(const MapReader& at,
-                          std::string_view key,
-                          const std::string& name,
-                          const std::vector<std::string>& names,
-                          const std::string& what);
+std::size_t index_of_name(const MapReader& at, std::string_view key, const std::string& name,
+                          const std::vector<std::string>& names, const std::string& what);
 
 /// From 1 to 1024.
 void check_oversampling(const MapReader& at, std::uint64_t oversampling);
@@ -73,17 +60,11 @@ void check_oversampling(const MapReader& at, std::uint64_t oversampling);
 // ---- files ----
 
 /// The path behind `key`, checked, and noted in `scene.files`.
-std::string scene_file_of(const MapReader& at,
-                          std::string_view key,
-                          const SceneFolder& folder,
-                          Scene& scene);
+std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene);
 
 /// A path, or a map with a path and how to read the file.
-std::string scene_recording_of(const MapReader& at,
-                               std::string_view key,
-                               const SceneFolder& folder,
-                               ReadOptions& reading,
-                               Scene& scene);
+std::string scene_recording_of(const MapReader& at, std::string_view key, const SceneFolder& folder,
+                               ReadOptions& reading, Scene& scene);
 
 // The block `simulate` of a scene file.
 
@@ -92,9 +73,7 @@ std::string scene_recording_of(const MapReader& at,
 /// One signal: a map {kind, …} with the keys of its kind; a bare word is a kind, a bare number a
 /// constant. `earlier` names the signals that stand before it (`of` may be such a name or an index
 /// from 0). Samples of kind recording are left unread.
-SignalSpec read_signal(const Document& node,
-                       const std::string& file,
-                       const std::string& path,
+SignalSpec read_signal(const Document& node, const std::string& file, const std::string& path,
                        const std::vector<std::string>& earlier = {});
 
 /// The block `simulate`, without sensors and faults.
@@ -116,9 +95,6 @@ struct SensorIndex {
 SensorIndex read_scene_sensors(const MapReader& top, const SceneFolder& folder, Scene& scene);
 
 /// The sensor that `key` names.
-std::size_t sensor_index(const MapReader& at,
-                         std::string_view key,
-                         const Scene& scene,
-                         const SensorIndex& index);
+std::size_t sensor_index(const MapReader& at, std::string_view key, const Scene& scene, const SensorIndex& index);
 
 }  // namespace libchar

@@ -18,15 +18,12 @@ namespace libchar {
 
 namespace {
 
-Json any_of(Json one, Json other) {
-  return {{"anyOf", {std::move(one), std::move(other)}}};
-}
+Json any_of(Json one, Json other) { return {{"anyOf", {std::move(one), std::move(other)}}}; }
 
 }  // namespace
 
 Json scene_schema() {
-  Json out = schema_of(scene_fields().rows, true),
-       reading = schema_of(scene_reading_fields().rows, true);
+  Json out = schema_of(scene_fields().rows, true), reading = schema_of(scene_reading_fields().rows, true);
   Json& keys = out["properties"];
   const Json text = {{"type", "string"}};
   reading["properties"]["path"] = text;
@@ -35,8 +32,7 @@ Json scene_schema() {
   simulate["properties"]["truth"]["type"] = {"array", "object", "number", "string"};
   keys["simulate"] = std::move(simulate);
   keys["sensors"]["items"] = any_of(text, schema_of(sensor_fields().rows, true));
-  keys["reference"] =
-      any_of({{"type", {"string", "array", "null"}}}, schema_of(reference_fields().rows, true));
+  keys["reference"] = any_of({{"type", {"string", "array", "null"}}}, schema_of(reference_fields().rows, true));
   keys["tilt"] = schema_of(tilt_fields().rows, true);
   keys["faults"]["items"] = schema_of(fault_fields().rows, true);
   keys["simulated"] = schema_of(simulated_fields().rows, true);
@@ -62,9 +58,7 @@ Entries without_comments(Entries entries) {
 }
 
 // A recording with what its reading needs beside the file's own word.
-Entry recording_entry(const std::string& file,
-                      const ReadOptions& reading,
-                      const std::string& scene,
+Entry recording_entry(const std::string& file, const ReadOptions& reading, const std::string& scene,
                       std::optional<double> resample_hz = {}) {
   Entries more;
   if (resample_hz) more.push_back({"resample_hz", *resample_hz});
@@ -79,15 +73,12 @@ Entry recording_entry(const std::string& file,
 Entry points_entry(const std::vector<std::pair<double, double>>& points) {
   std::string text;
   for (const auto& [time, value] : points)
-    text += fmt::format(
-        "{}[{}, {}]", text.empty() ? "" : ", ", shortest_yaml(time), shortest_yaml(value));
+    text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", shortest_yaml(time), shortest_yaml(value));
   return word_entry("points", "[" + text + "]");
 }
 
 // Everything that differs from a signal of the same kind without keys.
-Entries signal_entries(const SignalSpec& s,
-                       const std::string& name,
-                       const std::vector<std::string>& truth_names,
+Entries signal_entries(const SignalSpec& s, const std::string& name, const std::vector<std::string>& truth_names,
                        const std::string& scene) {
   const std::vector<std::string>& keys = signal_keys(s.kind);
   const auto has = [&](std::string_view key) {
@@ -108,25 +99,19 @@ Entries signal_entries(const SignalSpec& s,
 
 // In the order of the table.
 Entries ordered(Entries entries, const std::vector<std::string>& keys) {
-  const auto place = [&](const Entry& entry) {
-    return std::find(keys.begin(), keys.end(), entry.key);
-  };
-  std::stable_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
-    return place(a) < place(b);
-  });
+  const auto place = [&](const Entry& entry) { return std::find(keys.begin(), keys.end(), entry.key); };
+  std::stable_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return place(a) < place(b); });
   return entries;
 }
 
 Entry simulation_entry(const ArraySimulation& s, const std::string& file) {
   const auto signal = [&](std::string key, const SignalSpec& spec, const std::string& name) {
-    return part_entry(
-        std::move(key), signal_entries(spec, name, s.truth_names, file), Entry::Form::flow);
+    return part_entry(std::move(key), signal_entries(spec, name, s.truth_names, file), Entry::Form::flow);
   };
   Entries below = entries_of(simulation_fields(), s);
   below.push_back({"samples", s.samples});
   Entries truth;
-  for (std::size_t j = 0; j < s.truth.size(); ++j)
-    truth.push_back(signal("", s.truth[j], s.truth_names[j]));
+  for (std::size_t j = 0; j < s.truth.size(); ++j) truth.push_back(signal("", s.truth[j], s.truth_names[j]));
   below.push_back(part_entry("truth", std::move(truth), Entry::Form::list));
   if (s.temperature) below.push_back(signal("temperature", *s.temperature, ""));
   return part_entry("simulate", ordered(std::move(below), keys_of(simulation_fields())));
@@ -145,14 +130,13 @@ Entry sensor_entry(const SceneSensor& sensor, bool simulated) {
 
 Entry sensors_entry(const Scene& scene) {
   Entries below;
-  for (const SceneSensor& sensor : scene.sensors)
-    below.push_back(sensor_entry(sensor, scene.simulate.has_value()));
+  for (const SceneSensor& sensor : scene.sensors) below.push_back(sensor_entry(sensor, scene.simulate.has_value()));
   return part_entry("sensors", std::move(below), Entry::Form::list);
 }
 
 Entry reference_entry(const SceneReference& r, const std::string& scene) {
-  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 &&
-      !r.estimate_offset && r.teach && r.samples == "estimate")
+  if (!r.mean && !r.recording && r.lag_s == 0 && !r.estimate_lag && r.offset == 0 && !r.estimate_offset && r.teach &&
+      r.samples == "estimate")
     return {"reference", r.channels};
   Entries below = entries_of(reference_fields(), r);
   below.push_back({"channels", r.channels});
@@ -162,8 +146,7 @@ Entry reference_entry(const SceneReference& r, const std::string& scene) {
 
 Entry tilt_entry(const Scene& scene) {
   const auto name = [&](std::size_t sensor) { return scene.sensors[sensor].name; };
-  const TiltText text{name(scene.tilt->gyroscope),
-                      name(scene.tilt->accelerometer_x),
+  const TiltText text{name(scene.tilt->gyroscope), name(scene.tilt->accelerometer_x),
                       name(scene.tilt->accelerometer_z)};
   return part_entry("tilt", entries_of(tilt_fields(), text), Entry::Form::flow);
 }
@@ -191,10 +174,8 @@ Entry faults_entry(const std::vector<SensorFault>& faults, const Scene& scene) {
 
 Entry simulated_entry(const Scene& scene) {
   Entries below = entries_of(simulated_fields(), *scene.simulated);
-  if (!scene.simulated->faults.empty())
-    below.push_back(faults_entry(scene.simulated->faults, scene));
-  if (scene.simulated->simulation)
-    below.push_back(simulation_entry(*scene.simulated->simulation, scene.file));
+  if (!scene.simulated->faults.empty()) below.push_back(faults_entry(scene.simulated->faults, scene));
+  if (scene.simulated->simulation) below.push_back(simulation_entry(*scene.simulated->simulation, scene.file));
   Entry entry = part_entry("simulated", std::move(below));
   entry.comment = "what the recording is known to hold; not injected again";
   return entry;
@@ -218,10 +199,8 @@ Entries head(const Scene& scene) {
 
 Entries scene_entries(const Scene& scene) {
   Entries out = head(scene);
-  out.push_back(
-      scene.simulate
-          ? simulation_entry(*scene.simulate, scene.file)
-          : recording_entry(scene.recording, scene.reading, scene.file, scene.resample_hz));
+  out.push_back(scene.simulate ? simulation_entry(*scene.simulate, scene.file)
+                               : recording_entry(scene.recording, scene.reading, scene.file, scene.resample_hz));
   out.push_back(sensors_entry(scene));
   if (scene.reference) out.push_back(reference_entry(*scene.reference, scene.file));
   if (scene.tilt) out.push_back(tilt_entry(scene));
@@ -236,8 +215,7 @@ Entries scene_entries(const Scene& scene) {
 }  // namespace
 
 std::string scene_yaml(const Scene& scene) {
-  return "# A recording of sensors and what is known about it: docs/scenes.md\n" +
-         yaml_of(scene_entries(scene));
+  return "# A recording of sensors and what is known about it: docs/scenes.md\n" + yaml_of(scene_entries(scene));
 }
 
 }  // namespace libchar

@@ -20,15 +20,13 @@ namespace {
 
 /// A scene has defaults for how large a signal is; on a command line a forgotten size would go unseen.
 void refuse_without_size(const std::string& text, const std::string& place) {
-  static constexpr std::pair<std::string_view, std::string_view> kSizes[] = {
-      {"sine", "amplitude"},
-      {"chirp", "amplitude"},
-      {"uniform", "amplitude"},
-      {"noise", "standard_deviation"},
-      {"random_walk", "step"}};
+  static constexpr std::pair<std::string_view, std::string_view> kSizes[] = {{"sine", "amplitude"},
+                                                                             {"chirp", "amplitude"},
+                                                                             {"uniform", "amplitude"},
+                                                                             {"noise", "standard_deviation"},
+                                                                             {"random_walk", "step"}};
   for (const auto& [kind, size] : kSizes)
-    if (text.substr(0, text.find(',')) == kind &&
-        text.find(fmt::format(",{}=", size)) == std::string::npos)
+    if (text.substr(0, text.find(',')) == kind && text.find(fmt::format(",{}=", size)) == std::string::npos)
       throw usage_error("E0721", place)
           .says("how large? {} needs its {}", kind, size)
           .got(text)
@@ -71,10 +69,7 @@ void set_times(const std::string& when, const std::string& form, SensorFault& fa
     fault.from_s = range.low;
     fault.to_s = range.high;
   } catch (const Error& error) {
-    throw usage_error("E0722", "`fault`")
-        .says(error.problem().what)
-        .got(error.problem().got)
-        .hint(form);
+    throw usage_error("E0722", "`fault`").says(error.problem().what).got(error.problem().got).hint(form);
   }
 }
 
@@ -82,8 +77,7 @@ void set_times(const std::string& when, const std::string& form, SensorFault& fa
 
 SensorFault parse_fault(const std::string& text, const std::vector<std::string>& names) {
   const std::string form = "SENSOR:KIND[=VALUE]@FROM..TO";
-  const std::size_t at = text.rfind('@'),
-                    colon = at == std::string::npos ? at : text.rfind(':', at);
+  const std::size_t at = text.rfind('@'), colon = at == std::string::npos ? at : text.rfind(':', at);
   if (colon == std::string::npos)
     throw usage_error("E0722", "`fault`")
         .says("expected " + form + " in seconds")
@@ -105,18 +99,13 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
   const std::string kind = what.substr(0, equals);
   const auto known = find_enum<FaultKind>(kind);
   if (!known)
-    throw usage_error("E0722", "`fault`")
-        .says("expected one of {}", fmt::join(words_of<FaultKind>(), ", "))
-        .got(kind);
+    throw usage_error("E0722", "`fault`").says("expected one of {}", fmt::join(words_of<FaultKind>(), ", ")).got(kind);
   fault.kind = *known;
   const auto number = [&](const std::string& word) {
     const auto value = parse_double(word);
-    if (!value)
-      throw usage_error("E0722", "`fault`").says("expected a number in " + form).got(word);
+    if (!value) throw usage_error("E0722", "`fault`").says("expected a number in " + form).got(word);
     if (std::abs(*value) > kLargestSample)
-      throw usage_error("E0722", "`fault`")
-          .says("a sample beyond " + shortest(kLargestSample) + " is none")
-          .got(word);
+      throw usage_error("E0722", "`fault`").says("a sample beyond " + shortest(kLargestSample) + " is none").got(word);
     return *value;
   };
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
@@ -127,9 +116,7 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
         .hint(form);
   if (!valueless) fault.value = number(what.substr(equals + 1));
   if ((fault.kind == FaultKind::saturation || fault.kind == FaultKind::noise) && fault.value < 0)
-    throw usage_error("E0722", "`fault`")
-        .says(kind + " needs a value of at least 0")
-        .got(what.substr(equals + 1));
+    throw usage_error("E0722", "`fault`").says(kind + " needs a value of at least 0").got(what.substr(equals + 1));
   set_times(when, form, fault);
   return fault;
 }

@@ -49,12 +49,8 @@ constexpr std::size_t kMostVectors = 7;
 
 /// V vectors of sections over a block: their sum is put into (First) or added to `sums`.
 template <std::size_t V, bool First>
-inline __attribute__((always_inline)) void pass(const double* loss,
-                                                const double* weight,
-                                                double* state,
-                                                const double* values,
-                                                Four* sums,
-                                                std::size_t count) {
+inline __attribute__((always_inline)) void pass(const double* loss, const double* weight, double* state,
+                                                const double* values, Four* sums, std::size_t count) {
   Four x[V], q[V], w[V];
   for (std::size_t v = 0; v < V; ++v) {
     x[v] = LIBCHAR_FOUR(state + 4 * v);
@@ -78,13 +74,8 @@ inline __attribute__((always_inline)) void pass(const double* loss,
 }
 
 template <bool First>
-inline __attribute__((always_inline)) void pass_of(std::size_t vectors,
-                                                   const double* loss,
-                                                   const double* weight,
-                                                   double* state,
-                                                   const double* values,
-                                                   Four* sums,
-                                                   std::size_t count) {
+inline __attribute__((always_inline)) void pass_of(std::size_t vectors, const double* loss, const double* weight,
+                                                   double* state, const double* values, Four* sums, std::size_t count) {
   switch (vectors) {
     case 1:
       return pass<1, First>(loss, weight, state, values, sums, count);
@@ -103,13 +94,8 @@ inline __attribute__((always_inline)) void pass_of(std::size_t vectors,
   }
 }
 
-LIBCHAR_LANES void run_block_lanes(const double* loss,
-                                   const double* weight,
-                                   double* state,
-                                   std::size_t vectors,
-                                   double level,
-                                   double* values,
-                                   std::size_t count) {
+LIBCHAR_LANES void run_block_lanes(const double* loss, const double* weight, double* state, std::size_t vectors,
+                                   double level, double* values, std::size_t count) {
   std::array<Four, kSectionBlock> sums;
   std::size_t passes = (vectors + kMostVectors - 1) / kMostVectors, done = 0;
   for (bool first = true; done < vectors; first = false, --passes) {
@@ -121,8 +107,7 @@ LIBCHAR_LANES void run_block_lanes(const double* loss,
       pass_of<false>(now, loss + at, weight + at, state + at, values, sums.data(), count);
     done += now;
   }
-  for (std::size_t t = 0; t < count; ++t)
-    values[t] = ((sums[t][0] + sums[t][1]) + (sums[t][2] + sums[t][3])) - level;
+  for (std::size_t t = 0; t < count; ++t) values[t] = ((sums[t][0] + sums[t][1]) + (sums[t][2] + sums[t][3])) - level;
 }
 constexpr InLanes<run_block_lanes> run_block;
 
@@ -130,12 +115,7 @@ constexpr InLanes<run_block_lanes> run_block;
 /// same bits with and without AVX, whatever the number of values a call.
 void run_sections(const Sections& sections, double level, std::span<double> values) {
   for (std::size_t t = 0; t < values.size(); t += kSectionBlock)
-    run_block(sections.loss,
-              sections.weight,
-              sections.state,
-              sections.vectors,
-              level,
-              values.data() + t,
+    run_block(sections.loss, sections.weight, sections.state, sections.vectors, level, values.data() + t,
               std::min(kSectionBlock, values.size() - t));
 }
 
@@ -149,16 +129,13 @@ struct Rule {
   std::vector<double> node, weight;
 };
 
-double node_weight(double s) {
-  return kStep / std::numbers::pi * std::sqrt(s) / (1 + s);
-}
+double node_weight(double s) { return kStep / std::numbers::pi * std::sqrt(s) / (1 + s); }
 
 /// The Gauss rule of n nodes of the discrete measure that has `weight` at `node` (largest node
 /// first).
 Rule gauss_rule(const Rule& measure, int n) {
   const double scale = measure.node.front();
-  const Eigen::Map<const Eigen::ArrayXd> raw(measure.node.data(),
-                                             static_cast<Eigen::Index>(measure.node.size()));
+  const Eigen::Map<const Eigen::ArrayXd> raw(measure.node.data(), static_cast<Eigen::Index>(measure.node.size()));
   const Eigen::Map<const Eigen::ArrayXd> w(measure.weight.data(), raw.size());
   const Eigen::ArrayXd t = raw / scale;
   Eigen::VectorXd diagonal(n), beside(n - 1);
@@ -195,15 +172,12 @@ Rule tail(int first, int step, const Node& node) {
 }
 
 /// 1 - p_i p_j from the losses q = 1 - p: nothing cancels.
-double gap(double qi, double qj) {
-  return qi + qj - qi * qj;
-}
+double gap(double qi, double qj) { return qi + qj - qi * qj; }
 
 }  // namespace
 
 FlickerFilter design_flicker(std::uint64_t length) {
-  const double n =
-      std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
+  const double n = std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
   const int first = static_cast<int>(std::floor(-std::log(2 * n) / kStep));
   const Rule fast = gauss_rule(tail(1, 1, [](double s) { return 1 / (1 + s); }), kFastNodes);
   const Rule slow = gauss_rule(tail(first - 1, -1, [](double s) { return s; }), kSlowNodes);
@@ -248,16 +222,14 @@ std::vector<double> stationary_states(const FlickerFilter& filter, DeviateStream
   return states;
 }
 
-FlickerStream::FlickerStream(const FlickerFilter& filter)
-    : loss_(filter.loss), weight_(filter.weight) {
+FlickerStream::FlickerStream(const FlickerFilter& filter) : loss_(filter.loss), weight_(filter.weight) {
   const std::size_t whole = (loss_.size() + 3) / 4 * 4;
   loss_.resize(whole, 1.0);  // a section of weight 0
   weight_.resize(whole, 0.0);
   state_.assign(whole, 0.0);
 }
 
-FlickerStream::FlickerStream(const FlickerFilter& filter, DeviateStream& start_deviates)
-    : FlickerStream(filter) {
+FlickerStream::FlickerStream(const FlickerFilter& filter, DeviateStream& start_deviates) : FlickerStream(filter) {
   const std::vector<double> states = stationary_states(filter, start_deviates);
   for (std::size_t j = 0; j < states.size(); ++j) {
     state_[j] = weight_[j] * states[j];

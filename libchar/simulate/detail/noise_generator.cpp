@@ -30,27 +30,22 @@ constexpr std::size_t kBlock = 512;
 
 void check(const NoiseDesign& design) {
   if (!(std::isfinite(design.rate_hz) && design.rate_hz > 0))
-    throw usage_error("E0953")
-        .says("the sample rate of a noise must be positive")
-        .got(shortest(design.rate_hz));
+    throw usage_error("E0953").says("the sample rate of a noise must be positive").got(shortest(design.rate_hz));
   for (std::size_t i = 0; i < kTerms; ++i) {
     const double value = design.coefficient[i];
     const bool fits = std::isfinite(value) && (value >= 0 || static_cast<Term>(i) == Term::ramp);
     if (!fits)
       throw usage_error("E0953")
-          .says("the noise coefficient " + std::string(kTermNames[i].key) +
-                " must be a finite number, not negative")
+          .says("the noise coefficient " + std::string(kTermNames[i].key) + " must be a finite number, not negative")
           .got(shortest(value));
     if (!std::isfinite(value * std::max(design.rate_hz, 1 / design.rate_hz)))
       throw usage_error("E0953")
-          .says("the noise coefficient " + std::string(kTermNames[i].key) +
-                " is too large for this sample rate")
+          .says("the noise coefficient " + std::string(kTermNames[i].key) + " is too large for this sample rate")
           .got(shortest(value));
   }
   const bool process =
       std::isfinite(design.gauss_markov_sigma) && design.gauss_markov_sigma >= 0 &&
-      (design.gauss_markov_sigma == 0 ||
-       (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
+      (design.gauss_markov_sigma == 0 || (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
   if (!process)
     throw usage_error("E0953")
         .says(
@@ -165,14 +160,10 @@ void add_term(Quantization& noise, Out out, Scratch drawn) {
 }
 
 void add_term(Ramp& ramp, Out out, Scratch) {
-  for (double& value : out)
-    value += ramp.slope_per_s * (static_cast<double>(ramp.index++) / ramp.rate_hz);
+  for (double& value : out) value += ramp.slope_per_s * (static_cast<double>(ramp.index++) / ramp.rate_hz);
 }
 
-Flicker make_flicker(const NoiseDesign& design,
-                     double level,
-                     std::uint64_t seed,
-                     std::uint64_t sensor) {
+Flicker make_flicker(const NoiseDesign& design, double level, std::uint64_t seed, std::uint64_t sensor) {
   DeviateStream driving({seed, sensor, Purpose::flicker});
   if (design.flicker_method == "rv-truncated-iir")
     return {std::move(driving), level, TruncatedKasdin(design.truncated_taps)};
@@ -182,38 +173,25 @@ Flicker make_flicker(const NoiseDesign& design,
   return {std::move(driving), level, FlickerStream(filter, start)};
 }
 
-FilteredWhite make_filtered_white(const NoiseDesign& design,
-                                  double q,
-                                  std::uint64_t seed,
-                                  std::uint64_t sensor) {
+FilteredWhite make_filtered_white(const NoiseDesign& design, double q, std::uint64_t seed, std::uint64_t sensor) {
   const double exponent = 2 * std::numbers::pi * *design.bandwidth_hz / design.rate_hz;
   const double deviation = q * std::sqrt(std::numbers::pi * *design.bandwidth_hz);
   DeviateStream start({seed, sensor, Purpose::white_start});
-  return {DeviateStream({seed, sensor, Purpose::white}),
-          std::exp(-exponent),
-          deviation * std::sqrt(-std::expm1(-2 * exponent)),
-          deviation * start.normal()};
+  return {DeviateStream({seed, sensor, Purpose::white}), std::exp(-exponent),
+          deviation * std::sqrt(-std::expm1(-2 * exponent)), deviation * start.normal()};
 }
 
-FilteredWhite make_gauss_markov(const NoiseDesign& design,
-                                std::uint64_t seed,
-                                std::uint64_t sensor) {
+FilteredWhite make_gauss_markov(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor) {
   const double x = 1 / (design.rate_hz * design.gauss_markov_tau_s);
   DeviateStream deviates({seed, sensor, Purpose::gauss_markov});
   const double first = design.gauss_markov_sigma * deviates.normal();
-  return {std::move(deviates),
-          std::exp(-x),
-          design.gauss_markov_sigma * std::sqrt(-std::expm1(-2 * x)),
-          first};
+  return {std::move(deviates), std::exp(-x), design.gauss_markov_sigma * std::sqrt(-std::expm1(-2 * x)), first};
 }
 
-FlickerPhase make_flicker_phase(const NoiseDesign& design,
-                                std::uint64_t seed,
-                                std::uint64_t sensor) {
+FlickerPhase make_flicker_phase(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor) {
   const FlickerFilter filter = design_flicker(design.length);
   DeviateStream start({seed, sensor, Purpose::flicker_phase_start});
-  FlickerPhase out{{DeviateStream({seed, sensor, Purpose::flicker_phase}),
-                    design.flicker_phase * design.rate_hz,
+  FlickerPhase out{{DeviateStream({seed, sensor, Purpose::flicker_phase}), design.flicker_phase * design.rate_hz,
                     FlickerStream(filter, start)}};
   double first = out.phase.deviates.normal();
   std::visit([&first](auto& stream) { stream.run(std::span(&first, 1)); }, out.phase.filter);
@@ -241,12 +219,8 @@ struct NoiseGenerator::State {
 NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, std::uint64_t sensor)
     : state_(detail::hidden<State>()) {
   check(design);
-  const auto coefficient = [&design](Term term) {
-    return design.coefficient[static_cast<std::size_t>(term)];
-  };
-  const auto stream = [seed, sensor](Purpose purpose) {
-    return DeviateStream({seed, sensor, purpose});
-  };
+  const auto coefficient = [&design](Term term) { return design.coefficient[static_cast<std::size_t>(term)]; };
+  const auto stream = [seed, sensor](Purpose purpose) { return DeviateStream({seed, sensor, purpose}); };
   const double rate = design.rate_hz;
   const bool band_limited = design.sampling == Sampling::band_limited;
   if (const double q = coefficient(Term::white); q > 0) {
@@ -255,10 +229,8 @@ NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, st
     else
       state_->white = PlainWhite{stream(Purpose::white), q * std::sqrt(rate)};
   }
-  if (const double b = coefficient(Term::flicker); b > 0)
-    state_->flicker = make_flicker(design, b, seed, sensor);
-  if (const double k = coefficient(Term::walk); k > 0)
-    state_->walk = Walk{stream(Purpose::walk), k / std::sqrt(rate)};
+  if (const double b = coefficient(Term::flicker); b > 0) state_->flicker = make_flicker(design, b, seed, sensor);
+  if (const double k = coefficient(Term::walk); k > 0) state_->walk = Walk{stream(Purpose::walk), k / std::sqrt(rate)};
   if (const double qz = coefficient(Term::quantization); qz > 0) {
     DeviateStream deviates = stream(Purpose::quantization);
     const double before = deviates.normal();
@@ -274,8 +246,7 @@ NoiseGenerator::NoiseGenerator(const NoiseDesign& design, std::uint64_t seed, st
 // What the past has left in y = a y + (1 - a) u. White: (1-a) sum_k a^k u_{-1-k} has variance
 // (1-a)/(1+a) of u. Quantization: (1-a) Qz/dt [w_{-1} - (1-a) sum_k a^k w_{-2-k}], whose w_{-1} is
 // the one that the first sample subtracts.
-double NoiseGenerator::State::past_in_low_pass(const NoiseDesign& design,
-                                               DeviateStream deviates) const {
+double NoiseGenerator::State::past_in_low_pass(const NoiseDesign& design, DeviateStream deviates) const {
   if (!design.bandwidth_hz || design.sampling == Sampling::band_limited) return 0;
   const double half = std::numbers::pi * *design.bandwidth_hz / design.rate_hz;
   const double pass = -std::expm1(-2 * half);       // 1 - a
@@ -283,14 +254,11 @@ double NoiseGenerator::State::past_in_low_pass(const NoiseDesign& design,
   double past = 0;
   if (white) past += white->level * share * deviates.normal();
   deviates.seek(1);
-  if (quantization)
-    past += quantization->level * pass * (quantization->before - share * deviates.normal());
+  if (quantization) past += quantization->level * pass * (quantization->before - share * deviates.normal());
   return past;
 }
 
-double NoiseGenerator::low_pass_start() const {
-  return state_->low_pass_start;
-}
+double NoiseGenerator::low_pass_start() const { return state_->low_pass_start; }
 
 bool NoiseGenerator::adds_after() const {
   return state_->filtered_white || (state_->quantization && state_->quantization_after);

@@ -23,8 +23,7 @@ struct NoiseDesign {
   Mixture coefficient{};  ///< Q, B, K, Qz, R themselves (not squared); a term of 0 costs nothing
   /// of a first-order Gauss-Markov process beside them, stationary from the first sample on; sigma 0: none
   double gauss_markov_sigma = 0, gauss_markov_tau_s = 0;
-  double flicker_phase =
-      0;  ///< F: F times the differences of unit flicker over the sampling interval
+  double flicker_phase = 0;  ///< F: F times the differences of unit flicker over the sampling interval
   double rate_hz = 1;
   /// corner of the first-order low-pass; needed when band_limited
   std::optional<double> bandwidth_hz;

@@ -48,8 +48,8 @@ class HeldNoise {
 
   void add(std::span<double> out) {
     for (double& sample : out) {
-      const auto due = 1 + static_cast<std::uint64_t>(std::ceil(
-                               static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
+      const auto due =
+          1 + static_cast<std::uint64_t>(std::ceil(static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
       for (; renewals_ < due; ++renewals_) {
         value_ = 0;
         noise_.add({&value_, 1}, {});
@@ -59,10 +59,7 @@ class HeldNoise {
   }
 
  private:
-  static NoiseDesign design(const SensorModel& m,
-                            Term term,
-                            double hold_s,
-                            const ChainOptions& options) {
+  static NoiseDesign design(const SensorModel& m, Term term, double hold_s, const ChainOptions& options) {
     NoiseDesign design = noise_design(m, options);
     design.coefficient = {};
     design.gauss_markov_sigma = design.flicker_phase = 0;
@@ -101,14 +98,11 @@ struct SensorChain::State {
       : model(m), options(o), noise(noise_design(m, o), o.seed, o.sensor) {
     draw.scale_factor = drawn(m.scale_factor.value, m.scale_factor.spread, o, Purpose::scale_draw);
     draw.bias = drawn(m.bias.value, m.bias.spread, o, Purpose::bias_draw);
-    if (m.white_hold_s && m[Term::white].value)
-      held.emplace_back(m, Term::white, *m.white_hold_s, o);
-    if (m.flicker_hold_s && m[Term::flicker].value)
-      held.emplace_back(m, Term::flicker, *m.flicker_hold_s, o);
+    if (m.white_hold_s && m[Term::white].value) held.emplace_back(m, Term::white, *m.white_hold_s, o);
+    if (m.flicker_hold_s && m[Term::flicker].value) held.emplace_back(m, Term::flicker, *m.flicker_hold_s, o);
     if (m.noise_shape.kind != NoiseShape::Kind::none)
       shaped.emplace(m.noise_shape, o.rate_hz, [this](std::span<double> out) { add_noise(out); });
-    if (m.bandwidth_hz)
-      low_pass_memory = std::exp(-2 * std::numbers::pi * *m.bandwidth_hz / o.rate_hz);
+    if (m.bandwidth_hz) low_pass_memory = std::exp(-2 * std::numbers::pi * *m.bandwidth_hz / o.rate_hz);
   }
 
   void add_noise(std::span<double> samples) {
@@ -123,12 +117,10 @@ struct SensorChain::State {
   };
   Coefficients at(double dt, double lagged) const {
     const SensorModel& m = model;
-    return {
-        draw.scale_factor * (1 + dt * (m.scale_factor.tc1_per_k + dt * m.scale_factor.tc2_per_k2)),
-        m.nonlinearity.quadratic * (1 + m.nonlinearity.quadratic_tc_per_k * dt),
-        m.nonlinearity.cubic * (1 + m.nonlinearity.cubic_tc_per_k * dt),
-        draw.bias + lagged * (m.bias.tc1_per_k +
-                              lagged * (m.bias.tc2_per_k2 + lagged * m.bias.tc3_per_k3))};
+    return {draw.scale_factor * (1 + dt * (m.scale_factor.tc1_per_k + dt * m.scale_factor.tc2_per_k2)),
+            m.nonlinearity.quadratic * (1 + m.nonlinearity.quadratic_tc_per_k * dt),
+            m.nonlinearity.cubic * (1 + m.nonlinearity.cubic_tc_per_k * dt),
+            draw.bias + lagged * (m.bias.tc1_per_k + lagged * (m.bias.tc2_per_k2 + lagged * m.bias.tc3_per_k3))};
   }
   static double deterministic(const Coefficients& c, double x) {
     return x * (c.scale + x * (c.quadratic + x * c.cubic)) + c.bias;
@@ -136,8 +128,7 @@ struct SensorChain::State {
 
   double lag(double temperature) {
     if (!(model.bias.lag_s > 0)) return temperature;
-    double& state =
-        lagged_temperature ? *lagged_temperature : lagged_temperature.emplace(temperature);
+    double& state = lagged_temperature ? *lagged_temperature : lagged_temperature.emplace(temperature);
     if (!std::isnan(temperature))
       state -= std::expm1(-1 / (model.bias.lag_s * options.rate_hz)) * (temperature - state);
     return state;
@@ -164,8 +155,7 @@ struct SensorChain::State {
     for (const DeterministicTerm& term : model.deterministic) {
       for (std::size_t i = 0; i < y.size(); ++i) {
         const double index = first + static_cast<double>(i), t = index / options.rate_hz;
-        if (term.kind == Kind::step)
-          y[i] += index >= std::round(term.at_s * options.rate_hz) ? term.size : 0;
+        if (term.kind == Kind::step) y[i] += index >= std::round(term.at_s * options.rate_hz) ? term.size : 0;
         if (term.kind == Kind::warm_up) y[i] += term.size * std::exp(-t / term.tau_s);
         if (term.kind == Kind::ramp) y[i] += term.per_s * t;
       }
@@ -219,9 +209,7 @@ void SensorChain::run(std::span<double> samples, std::span<const double> tempera
   s.output_blocks(samples);
 }
 
-DeviceDraw SensorChain::draw() const {
-  return state_->draw;
-}
+DeviceDraw SensorChain::draw() const { return state_->draw; }
 
 // y = h * u by overlap-save: blocks of n samples, of which the first taps - 1 are those of the block before.
 // boxcar: h = 1/m, m times; bartlett: its convolution with itself; measured: frequency sampling, h
@@ -246,8 +234,7 @@ std::size_t power_of_two(double at_least) {
 std::vector<double> triangle(std::size_t m) {
   std::vector<double> h(2 * m - 1);
   const double scale = 1 / (static_cast<double>(m) * static_cast<double>(m));
-  for (std::size_t i = 0; i < h.size(); ++i)
-    h[i] = scale * static_cast<double>(i < m ? i + 1 : h.size() - i);
+  for (std::size_t i = 0; i < h.size(); ++i) h[i] = scale * static_cast<double>(i < m ? i + 1 : h.size() - i);
   return h;
 }
 
@@ -332,9 +319,7 @@ struct ShapeFilter::State {
   }
 };
 
-ShapeFilter::ShapeFilter(const NoiseShape& shape,
-                         double rate_hz,
-                         std::function<void(std::span<double>)> source)
+ShapeFilter::ShapeFilter(const NoiseShape& shape, double rate_hz, std::function<void(std::span<double>)> source)
     : state_(detail::hidden<State>(shape_taps(shape, rate_hz), std::move(source))) {}
 
 void ShapeFilter::add(std::span<double> out) {

@@ -45,9 +45,7 @@ class ShapeFilter {
  public:
   /// `source` adds the next samples to zeros. It is asked for one response's length before the
   /// first sample, so that the output is in its steady state from the first sample on.
-  ShapeFilter(const NoiseShape& shape,
-              double rate_hz,
-              std::function<void(std::span<double>)> source);
+  ShapeFilter(const NoiseShape& shape, double rate_hz, std::function<void(std::span<double>)> source);
   /// Adds the next filtered samples; the same whatever the pieces.
   void add(std::span<double> out);
 

@@ -60,13 +60,11 @@ void keep_to_room() {
 }  // namespace
 
 void* allocated(std::size_t values, std::size_t bytes_each) {
-  void* memory = values <= std::numeric_limits<std::ptrdiff_t>::max() / bytes_each
-                     ? fftw_malloc(values * bytes_each)
-                     : nullptr;
+  void* memory =
+      values <= std::numeric_limits<std::ptrdiff_t>::max() / bytes_each ? fftw_malloc(values * bytes_each) : nullptr;
   if (memory == nullptr && values < kLong / bytes_each) throw std::bad_alloc();
   if (memory == nullptr)
-    throw numeric_error("E0403").says("not enough memory for a Fourier transform of {} values",
-                                      values);
+    throw numeric_error("E0403").says("not enough memory for a Fourier transform of {} values", values);
   return memory;
 }
 

@@ -68,8 +68,7 @@ void Pass::window(std::size_t r, bool odd, Row low, Row centre, Row high) {
   const std::size_t at = place(r, odd), next = scratch_.second();
   const Neighbours x{low.x, centre.x, high.x};
   const Neighbours y{low.x + next, centre.x + next, high.x + next};
-  if (work_.first != nullptr && work_.first == work_.second)
-    return add_windowed(x, y, bins_, work_.first + at);
+  if (work_.first != nullptr && work_.first == work_.second) return add_windowed(x, y, bins_, work_.first + at);
   if (work_.first != nullptr) add_windowed(x, bins_, work_.first + at);
   if (work_.second != nullptr) add_windowed(y, bins_, work_.second + at);
 }
@@ -78,8 +77,7 @@ void Pass::window(std::size_t r, bool odd, Row low, Row centre, Row high) {
 void Pass::window_first_row(Row last_odd, Row even, Row odd) {
   const Row below{scratch_.spare(0)};
   for (const std::size_t segment : {std::size_t{0}, scratch_.second()}) {
-    for (std::size_t m2 = bins_ - 1; m2 > 0; --m2)
-      put(below.x + segment, m2, value_at(last_odd.x + segment, m2 - 1));
+    for (std::size_t m2 = bins_ - 1; m2 > 0; --m2) put(below.x + segment, m2, value_at(last_odd.x + segment, m2 - 1));
     put(below.x + segment, 0, std::conj(value_at(odd.x + segment, 0)));
   }
   window(0, false, below, even, odd);
@@ -97,8 +95,7 @@ void Pass::window_first_row(Row last_odd, Row even, Row odd) {
 Pass::Row Pass::moved_up(Row first) {
   const Row above{scratch_.spare(1)};
   for (const std::size_t segment : {std::size_t{0}, scratch_.second()}) {
-    for (std::size_t m2 = 0; m2 + 1 < bins_; ++m2)
-      put(above.x + segment, m2, value_at(first.x + segment, m2 + 1));
+    for (std::size_t m2 = 0; m2 + 1 < bins_; ++m2) put(above.x + segment, m2, value_at(first.x + segment, m2 + 1));
     put(above.x + segment, bins_ - 1, segment == 0 ? first_top_ : second_top_);
   }
   return above;

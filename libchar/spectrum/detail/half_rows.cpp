@@ -26,10 +26,7 @@ constexpr Four kSigns = {-1, 1, -1, 1};
 
 }  // namespace
 
-LIBCHAR_LANES void gather_columns_lanes(const HalfPair& pair,
-                                        const ColumnStep& step,
-                                        double* even,
-                                        double* odd) {
+LIBCHAR_LANES void gather_columns_lanes(const HalfPair& pair, const ColumnStep& step, double* even, double* odd) {
   const double *a = pair.a + step.column, *b = pair.b + step.column;
   const std::size_t width = 2 * step.count;
   for (std::size_t t1 = 0; t1 < step.n1; ++t1, a += step.n2, b += step.n2) {
@@ -52,9 +49,7 @@ void gather_columns(const HalfPair& pair, const ColumnStep& step, double* even, 
   return InLanes<gather_columns_lanes>()(pair, step, even, odd);
 }
 
-LIBCHAR_LANES void scatter_columns_lanes(const double* from,
-                                         const ColumnStep& step,
-                                         const ColumnTurns& turns,
+LIBCHAR_LANES void scatter_columns_lanes(const double* from, const ColumnStep& step, const ColumnTurns& turns,
                                          ColumnPlaces to) {
   const std::size_t width = 2 * step.count, period = 2 * step.n1 * step.n2 / step.count,
                     block = step.column / step.count;
@@ -80,10 +75,7 @@ LIBCHAR_LANES void scatter_columns_lanes(const double* from,
   }
 }
 
-void scatter_columns(const double* from,
-                     const ColumnStep& step,
-                     const ColumnTurns& turns,
-                     ColumnPlaces to) {
+void scatter_columns(const double* from, const ColumnStep& step, const ColumnTurns& turns, ColumnPlaces to) {
   return InLanes<scatter_columns_lanes>()(from, step, turns, to);
 }
 
@@ -120,9 +112,7 @@ LIBCHAR_LANES void even_bins_lanes(const BinRow& p) {
   }
 }
 
-void even_bins(const BinRow& p) {
-  return InLanes<even_bins_lanes>()(p);
-}
+void even_bins(const BinRow& p) { return InLanes<even_bins_lanes>()(p); }
 
 LIBCHAR_LANES void odd_bins_lanes(const BinRow& p) {
   const double cr = p.start.real(), ci = p.start.imag();
@@ -137,13 +127,10 @@ LIBCHAR_LANES void odd_bins_lanes(const BinRow& p) {
   }
 }
 
-void odd_bins(const BinRow& p) {
-  return InLanes<odd_bins_lanes>()(p);
-}
+void odd_bins(const BinRow& p) { return InLanes<odd_bins_lanes>()(p); }
 
-#define LIBCHAR_WINDOWED(x, at)        \
-  (0.5 * LIBCHAR_FOUR(x.centre + at) - \
-   0.25 * (LIBCHAR_FOUR(x.low + at) + LIBCHAR_FOUR(x.high + at)))
+#define LIBCHAR_WINDOWED(x, at) \
+  (0.5 * LIBCHAR_FOUR(x.centre + at) - 0.25 * (LIBCHAR_FOUR(x.low + at) + LIBCHAR_FOUR(x.high + at)))
 
 LIBCHAR_LANES void add_windowed_lanes(const Neighbours& x, std::size_t bins, double* power) {
   for (std::size_t at = 0; at < 2 * bins; at += 8) {
@@ -156,15 +143,11 @@ void add_windowed(const Neighbours& x, std::size_t bins, double* power) {
   return InLanes<add_windowed_lanes>()(x, bins, power);
 }
 
-LIBCHAR_LANES void add_two_windowed_lanes(const Neighbours& x,
-                                          const Neighbours& y,
-                                          std::size_t bins,
-                                          double* power) {
+LIBCHAR_LANES void add_two_windowed_lanes(const Neighbours& x, const Neighbours& y, std::size_t bins, double* power) {
   for (std::size_t at = 0; at < 2 * bins; at += 8) {
     const Four re = LIBCHAR_WINDOWED(x, at), im = LIBCHAR_WINDOWED(x, at + 4);
     const Four re2 = LIBCHAR_WINDOWED(y, at), im2 = LIBCHAR_WINDOWED(y, at + 4);
-    LIBCHAR_FOUR_TO(power + at / 2) =
-        (LIBCHAR_FOUR(power + at / 2) + (re * re + im * im)) + (re2 * re2 + im2 * im2);
+    LIBCHAR_FOUR_TO(power + at / 2) = (LIBCHAR_FOUR(power + at / 2) + (re * re + im * im)) + (re2 * re2 + im2 * im2);
   }
 }
 
@@ -186,9 +169,7 @@ LIBCHAR_LANES double mean_about_first_lanes(const double* x, std::size_t n) {
   return first + total / static_cast<double>(n);
 }
 
-double mean_about_first(const double* x, std::size_t n) {
-  return InLanes<mean_about_first_lanes>()(x, n);
-}
+double mean_about_first(const double* x, std::size_t n) { return InLanes<mean_about_first_lanes>()(x, n); }
 
 namespace {
 
@@ -207,8 +188,7 @@ std::size_t columns_at_once(std::size_t h, std::size_t n2) {
 }  // namespace
 
 AlignedDoubles aligned_room(std::size_t n) {
-  return AlignedDoubles(
-      static_cast<double*>(::operator new[](n * sizeof(double), std::align_val_t{64})));
+  return AlignedDoubles(static_cast<double*>(::operator new[](n * sizeof(double), std::align_val_t{64})));
 }
 
 AlignedDoubles aligned_zeros(std::size_t n) {
@@ -251,14 +231,12 @@ RowTables::RowTables(std::size_t half)
     table.push_back(value.real());
     table.push_back(value.imag());
   };
-  for (std::size_t t1 = 0; t1 < n1; ++t1)
-    push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
+  for (std::size_t t1 = 0; t1 < n1; ++t1) push(shift, turn(static_cast<double>(t1), static_cast<double>(n1)));
   for (std::size_t odd = 0; odd < 2; ++odd) {
     fine[odd].resize(2 * count * n1);
     for (std::size_t m1 = 0; m1 < n1; ++m1)
       for (std::size_t j = 0; j < count; ++j) {
-        const Complex value = turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd),
-                                   static_cast<double>(h));
+        const Complex value = turn(static_cast<double>(j) * static_cast<double>(2 * m1 + odd), static_cast<double>(h));
         double* const four = fine[odd].data() + 2 * count * m1 + j / 4 * 8;
         four[j % 4] = value.real();
         four[4 + j % 4] = value.imag();
@@ -282,10 +260,7 @@ RowTables::RowTables(std::size_t half)
 
 // Row r has every n1-th bin of its kind. Eight rows at a time, so that what is written next to each
 // other is a line of the cache or two.
-void natural_order(const RowTables& tables,
-                   const double* sums,
-                   double top,
-                   std::vector<double>& out) {
+void natural_order(const RowTables& tables, const double* sums, double top, std::vector<double>& out) {
   constexpr std::size_t kTogether = 8;
   const std::size_t n1 = tables.n1, bins = tables.n2 / 2;
   out.resize(tables.h + 1);
@@ -306,9 +281,7 @@ ColumnScratch::ColumnScratch(const RowTables& tables)
       columns_(tables.n1, tables.count, tables.count, 1),
       values_(aligned_zeros(4 * tables.count * tables.n1)) {}
 
-void ColumnScratch::transform(const HalfPair& pair,
-                              std::size_t column,
-                              const RowsBetween& even,
+void ColumnScratch::transform(const HalfPair& pair, std::size_t column, const RowsBetween& even,
                               const RowsBetween& odd) {
   const RowTables& t = tables_;
   const ColumnStep step{t.n1, t.n2, t.count, column, t.shift.data()};
@@ -316,11 +289,9 @@ void ColumnScratch::transform(const HalfPair& pair,
   double* const odd_values = even_values + 2 * t.count * t.n1;
   gather_columns(pair, step, even_values, odd_values);
   columns_.transform(even_values);
-  scatter_columns(
-      even_values, step, {t.fine[0].data(), t.coarse.data(), false}, even.columns(column, t.count));
+  scatter_columns(even_values, step, {t.fine[0].data(), t.coarse.data(), false}, even.columns(column, t.count));
   columns_.transform(odd_values);
-  scatter_columns(
-      odd_values, step, {t.fine[1].data(), t.coarse.data(), true}, odd.columns(column, t.count));
+  scatter_columns(odd_values, step, {t.fine[1].data(), t.coarse.data(), true}, odd.columns(column, t.count));
 }
 
 RowScratch::RowScratch(const RowTables& tables)

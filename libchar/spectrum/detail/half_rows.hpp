@@ -24,16 +24,10 @@ using Complex = std::complex<double>;
 inline constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
 
 /// Places of the real and imaginary parts of value m2 of a row, and of a sum.
-inline std::size_t real_place(std::size_t m2) {
-  return m2 / 4 * 8 + kSlot[m2 % 4];
-}
-inline std::size_t sum_place(std::size_t m2) {
-  return m2 / 4 * 4 + kSlot[m2 % 4];
-}
+inline std::size_t real_place(std::size_t m2) { return m2 / 4 * 8 + kSlot[m2 % 4]; }
+inline std::size_t sum_place(std::size_t m2) { return m2 / 4 * 4 + kSlot[m2 % 4]; }
 
-inline Complex value_at(const double* row, std::size_t m2) {
-  return {row[real_place(m2)], row[real_place(m2) + 4]};
-}
+inline Complex value_at(const double* row, std::size_t m2) { return {row[real_place(m2)], row[real_place(m2) + 4]}; }
 inline void put(double* row, std::size_t m2, Complex value) {
   row[real_place(m2)] = value.real();
   row[real_place(m2) + 4] = value.imag();
@@ -55,8 +49,8 @@ struct ColumnStep {
 void gather_columns(const HalfPair& pair, const ColumnStep& step, double* even, double* odd);
 
 struct ColumnTurns {
-  const double* fine;  // [n1] exp(-2 pi i m j / h), j < count; four real and four imaginary parts;
-                       // m = m1 (even bins), m1 + 1/2 (odd ones)
+  const double* fine;    // [n1] exp(-2 pi i m j / h), j < count; four real and four imaginary parts;
+                         // m = m1 (even bins), m1 + 1/2 (odd ones)
   const double* coarse;  // exp(-2 pi i j / period) over a period of 2 h / count, interleaved
   bool odd;              // bins
 };
@@ -68,10 +62,7 @@ struct ColumnPlaces {
 };
 
 /// Turns the transformed columns and puts them back as columns of the rows to come.
-void scatter_columns(const double* from,
-                     const ColumnStep& step,
-                     const ColumnTurns& turns,
-                     ColumnPlaces to);
+void scatter_columns(const double* from, const ColumnStep& step, const ColumnTurns& turns, ColumnPlaces to);
 
 /// A row of bins of both halves: from the transform of a + i b, and of the half P before, to X of
 /// the two segments that the pair ends.
@@ -125,7 +116,7 @@ Complex turn(double numerator, double denominator);
 std::pair<std::size_t, std::size_t> rows_and_columns(std::size_t h);
 
 struct RowTables {
-  std::size_t h, n1, n2, pitch, count;  // pitch: doubles from row to row; count: columns at once
+  std::size_t h, n1, n2, pitch, count;         // pitch: doubles from row to row; count: columns at once
   std::vector<double> shift, fine[2], coarse;  // of ColumnStep and ColumnTurns; even bins, odd bins
   std::vector<double> quarter;                 // of BinRow
 
@@ -137,10 +128,7 @@ struct RowTables {
 };
 
 /// Sums by rows of bins, even ones and then odd ones, in the order of their frequencies; `top` is bin h.
-void natural_order(const RowTables& tables,
-                   const double* sums,
-                   double top,
-                   std::vector<double>& out);
+void natural_order(const RowTables& tables, const double* sums, double top, std::vector<double>& out);
 
 /// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand
 /// in the place of the samples they are made of, every step's columns half in `low` and half in
@@ -162,10 +150,7 @@ class ColumnScratch {
   explicit ColumnScratch(const RowTables& tables);
   /// Of a pair, the columns from `column` on: into rows of even and of odd bins. These may stand
   /// where the samples of the columns do.
-  void transform(const HalfPair& pair,
-                 std::size_t column,
-                 const RowsBetween& even,
-                 const RowsBetween& odd);
+  void transform(const HalfPair& pair, std::size_t column, const RowsBetween& even, const RowsBetween& odd);
 
  private:
   const RowTables& tables_;

@@ -62,8 +62,7 @@ struct HalfSegments::State {
   double before_mean = 0;
 
   State(std::size_t half, RowPools* pools)
-      : pool(pools != nullptr ? pools->of(half) : std::make_shared<RowPool>(half)),
-        z(aligned_zeros(2 * half)) {}
+      : pool(pools != nullptr ? pools->of(half) : std::make_shared<RowPool>(half)), z(aligned_zeros(2 * half)) {}
   const double* samples_of(const Half& half);
   Used push(Half a, Half b, Sums* first, Sums* second, bool remember);
 };
@@ -75,8 +74,7 @@ const double* HalfSegments::State::samples_of(const Half& half) {
   return nothing.get();
 }
 
-HalfSegments::Used HalfSegments::State::push(
-    Half a, Half b, Sums* first, Sums* second, bool remember) {
+HalfSegments::Used HalfSegments::State::push(Half a, Half b, Sums* first, Sums* second, bool remember) {
   const std::size_t h = pool->tables.h;
   const bool a_whole = a.samples != nullptr && std::isfinite(a.mean);
   const bool b_whole = b.samples != nullptr && std::isfinite(b.mean);
@@ -91,16 +89,7 @@ HalfSegments::Used HalfSegments::State::push(
     const double mean_a = a_whole ? a.mean : 0, mean_b = b_whole ? b.mean : 0;
     scratch->transform_columns({samples_a, samples_b, mean_a, mean_b});
     const HalfBins bins{z.get(), z.get() + h, pool->tables.n2, pool->tables.n1, nullptr};
-    PairWork work{mean_a,
-                  mean_b,
-                  before_mean,
-                  scratch->even(),
-                  scratch->odd(),
-                  bins,
-                  &z_top,
-                  bins,
-                  &z_top,
-                  remember};
+    PairWork work{mean_a, mean_b, before_mean, scratch->even(), scratch->odd(), bins, &z_top, bins, &z_top, remember};
     if (block_a || block_b) work.block_sums = block_sums.get();
     work.weight_a = block_a ? 1 : 0;
     work.weight_b = block_b ? 1 : 0;
@@ -124,25 +113,19 @@ HalfSegments::Used HalfSegments::State::push(
 
 bool HalfSegments::suits(const WelchOptions& options) {
   const std::size_t h = detail::in_memory(options.segment / 2);
-  return options.window == Window::hann && options.overlap == 0.5 &&
-         options.detrend == Detrend::constant && options.segment % 2 == 0 && h >= kShortest &&
-         rows_and_columns(h).first != 0;
+  return options.window == Window::hann && options.overlap == 0.5 && options.detrend == Detrend::constant &&
+         options.segment % 2 == 0 && h >= kShortest && rows_and_columns(h).first != 0;
 }
 
-HalfSegments::HalfSegments(std::size_t segment, RowPools* pools)
-    : state_(detail::hidden<State>(segment / 2, pools)) {}
+HalfSegments::HalfSegments(std::size_t segment, RowPools* pools) : state_(detail::hidden<State>(segment / 2, pools)) {}
 
-std::size_t HalfSegments::half() const {
-  return state_->pool->tables.h;
-}
+std::size_t HalfSegments::half() const { return state_->pool->tables.h; }
 
 HalfSegments::Half HalfSegments::half_at(const double* samples, bool block) const {
   return {samples, mean_about_first(samples, half()), block};
 }
 
-HalfSegments::SumsPointer HalfSegments::zero_sums() const {
-  return detail::hidden<Sums>(half());
-}
+HalfSegments::SumsPointer HalfSegments::zero_sums() const { return detail::hidden<Sums>(half()); }
 
 HalfSegments::SumsPointer HalfSegments::copy_of(const Sums& sums) const {
   SumsPointer copy = zero_sums();
@@ -165,9 +148,7 @@ bool HalfSegments::add_last(const Half& a, Sums& sums) const {
   return state_->push({a.samples, a.mean, false}, {}, &sums, nullptr, false).first;
 }
 
-void HalfSegments::forget() {
-  state_->joined = false;
-}
+void HalfSegments::forget() { state_->joined = false; }
 
 std::vector<double> HalfSegments::block_power() const {
   const State& s = *state_;

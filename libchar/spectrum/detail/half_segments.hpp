@@ -30,7 +30,7 @@ class HalfSegments {
   struct Half {
     const double* samples = nullptr;  ///< none: not there
     double mean = 0;                  ///< not finite: a sample is missing
-    bool block = false;  ///< a whole half adds the squares of its orthonormal DCT-II to the blocks'
+    bool block = false;               ///< a whole half adds the squares of its orthonormal DCT-II to the blocks'
   };
   Half half_at(const double* samples, bool block = false) const;
 

@@ -24,9 +24,7 @@ struct HalvesInPlace::Pair {
 
   bool whole_a() const { return a != nullptr && std::isfinite(mean_a); }
   bool whole_b() const { return b != nullptr && std::isfinite(mean_b); }
-  HalfBins bins(const RowTables& tables) const {
-    return {b, a, tables.n2, (tables.n1 + 1) / 2, last_row};
-  }
+  HalfBins bins(const RowTables& tables) const { return {b, a, tables.n2, (tables.n1 + 1) / 2, last_row}; }
 };
 
 HalvesInPlace::HalvesInPlace(std::size_t half, int threads)

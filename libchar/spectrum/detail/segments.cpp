@@ -34,8 +34,7 @@ struct Trend {
 };
 
 double folded(const double* lanes) {
-  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
-         ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
 // sum of d_t = x_t - first
@@ -53,8 +52,7 @@ constexpr InLanes<sum_about_lanes> sum_about;
 LIBCHAR_LANES double slope_sum_about_lanes(const double* x, std::size_t n, double first) {
   double lanes[kLanes] = {}, position[kLanes];
   const double middle = static_cast<double>(n - 1) / 2;
-  for (std::size_t lane = 0; lane < kLanes; ++lane)
-    position[lane] = static_cast<double>(lane) - middle;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) position[lane] = static_cast<double>(lane) - middle;
   std::size_t t = 0;
   for (; t + kLanes <= n; t += kLanes)
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -66,27 +64,24 @@ LIBCHAR_LANES double slope_sum_about_lanes(const double* x, std::size_t n, doubl
 }
 constexpr InLanes<slope_sum_about_lanes> slope_sum_about;
 
-LIBCHAR_LANES void subtract_and_window_lanes(
-    const double* x, const double* w, std::size_t n, double first, double mean, double* out) {
+LIBCHAR_LANES void subtract_and_window_lanes(const double* x, const double* w, std::size_t n, double first, double mean,
+                                             double* out) {
   for (std::size_t t = 0; t < n; ++t) out[t] = ((x[t] - first) - mean) * w[t];
 }
 constexpr InLanes<subtract_and_window_lanes> subtract_and_window;
 
-LIBCHAR_LANES void subtract_line_and_window_lanes(
-    const double* x, const double* w, std::size_t n, const Trend& trend, double* out) {
+LIBCHAR_LANES void subtract_line_and_window_lanes(const double* x, const double* w, std::size_t n, const Trend& trend,
+                                                  double* out) {
   const double first = trend.first, slope = trend.slope;
   const double start = trend.mean - slope * (static_cast<double>(n - 1) / 2);
   for (std::size_t t = 0; t < n; ++t)
-    out[t] =
-        ((x[t] - first) - (start + slope * static_cast<double>(static_cast<std::int64_t>(t)))) *
-        w[t];
+    out[t] = ((x[t] - first) - (start + slope * static_cast<double>(static_cast<std::int64_t>(t)))) * w[t];
 }
 constexpr InLanes<subtract_line_and_window_lanes> subtract_line_and_window;
 
 // interleaved real and imaginary parts
 LIBCHAR_LANES void add_power_lanes(const double* bins, std::size_t n, double* power) {
-  for (std::size_t k = 0; k < n; ++k)
-    power[k] += bins[2 * k] * bins[2 * k] + bins[2 * k + 1] * bins[2 * k + 1];
+  for (std::size_t k = 0; k < n; ++k) power[k] += bins[2 * k] * bins[2 * k] + bins[2 * k + 1] * bins[2 * k + 1];
 }
 constexpr InLanes<add_power_lanes> add_power;
 
@@ -97,9 +92,7 @@ constexpr InLanes<add_lanes> add;
 
 // r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap
 // near one).
-std::vector<double> window_correlation(const std::vector<double>& w,
-                                       std::size_t hop,
-                                       std::size_t lags) {
+std::vector<double> window_correlation(const std::vector<double>& w, std::size_t hop, std::size_t lags) {
   std::vector<double> r(lags + 1, 0.0);
   const std::size_t n = w.size();
   if (lags <= 32) {
@@ -121,9 +114,7 @@ std::vector<double> window_correlation(const std::vector<double>& w,
 
 // |sum_t w_t w_{t+lag} exp(-2 pi i m t / n)|^2: covariance of the powers m bins apart in two
 // segments `lag` samples apart.
-double shifted_energy(const std::vector<double>& w,
-                      std::size_t lag,
-                      std::size_t m,
+double shifted_energy(const std::vector<double>& w, std::size_t lag, std::size_t m,
                       const std::vector<std::complex<double>>& turns) {
   std::complex<double> sum = 0;
   for (std::size_t t = 0, phase = 0; t + lag < w.size(); ++t, phase = (phase + m) % w.size())
@@ -134,28 +125,22 @@ double shifted_energy(const std::vector<double>& w,
 // Correlation of the averaged powers of bins m = 1 … 8 apart. It depends on the shape of the window
 // and the overlap, not on the length: a window of at most 1024 values stands for a long one, and
 // with very many lags every sixteenth of the overlap is enough.
-std::vector<double> neighbour_correlation(Window window,
-                                          const Layout& layout,
-                                          std::uint64_t used,
+std::vector<double> neighbour_correlation(Window window, const Layout& layout, std::uint64_t used,
                                           const std::vector<std::uint64_t>& pairs) {
-  const std::size_t n = std::min<std::size_t>(layout.segment, 1024),
-                    reach = std::min<std::size_t>(8, n / 4);
+  const std::size_t n = std::min<std::size_t>(layout.segment, 1024), reach = std::min<std::size_t>(8, n / 4);
   const std::vector<double> w = window_values(window, n);
   std::vector<std::complex<double>> turns(n);
   for (std::size_t t = 0; t < n; ++t)
-    turns[t] =
-        std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(t) / static_cast<double>(n));
+    turns[t] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(t) / static_cast<double>(n));
   std::vector<double> covariance(reach + 1, 0.0);
-  for (std::size_t m = 0; m <= reach; ++m)
-    covariance[m] = static_cast<double>(used) * shifted_energy(w, 0, m, turns);
+  for (std::size_t m = 0; m <= reach; ++m) covariance[m] = static_cast<double>(used) * shifted_energy(w, 0, m, turns);
   const std::size_t stride = std::max<std::size_t>(1, pairs.size() / 16);
   for (std::size_t lag = stride; lag < pairs.size(); lag += stride) {
     const double weight = 2 * static_cast<double>(pairs[lag]) * static_cast<double>(stride);
-    const double shift = static_cast<double>(lag * layout.hop) * static_cast<double>(n) /
-                         static_cast<double>(layout.segment);
+    const double shift =
+        static_cast<double>(lag * layout.hop) * static_cast<double>(n) / static_cast<double>(layout.segment);
     for (std::size_t m = 0; m <= reach; ++m)
-      covariance[m] +=
-          weight * shifted_energy(w, static_cast<std::size_t>(std::lround(shift)), m, turns);
+      covariance[m] += weight * shifted_energy(w, static_cast<std::size_t>(std::lround(shift)), m, turns);
   }
   std::vector<double> correlation;
   for (std::size_t m = 1; m <= reach; ++m) correlation.push_back(covariance[m] / covariance[0]);
@@ -170,25 +155,20 @@ void check_options(const WelchOptions& options) {
     throw usage_error("E0201", "`overlap`")
         .says("the overlap of segments is a fraction of a segment, from 0 to below 1")
         .got("{}", options.overlap);
-  if (options.segment != 0 &&
-      (options.segment < kShortestSegment || options.segment > kLongestSegment))
+  if (options.segment != 0 && (options.segment < kShortestSegment || options.segment > kLongestSegment))
     throw usage_error("E0201", "`segment`")
-        .says(
-            "a segment has at least {} samples, and at most {}", kShortestSegment, kLongestSegment)
+        .says("a segment has at least {} samples, and at most {}", kShortestSegment, kLongestSegment)
         .got("{}", options.segment);
 }
 
 void check_rate(double rate_hz) {
   if (!(rate_hz > 0 && std::isfinite(rate_hz)))
-    throw numeric_error("E0402")
-        .says("a spectrum needs a finite sampling rate above zero")
-        .got("{}", rate_hz);
+    throw numeric_error("E0402").says("a spectrum needs a finite sampling rate above zero").got("{}", rate_hz);
 }
 
 void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::string>& notes) {
   if (dropped > 0)
-    notes.push_back(fmt::format(
-        "{} of {} segments touch a missing sample and were dropped", dropped, dropped + used));
+    notes.push_back(fmt::format("{} of {} segments touch a missing sample and were dropped", dropped, dropped + used));
 }
 
 Layout layout_of(std::uint64_t segment, double overlap) {
@@ -231,8 +211,7 @@ std::span<const std::complex<double>> Periodogram::transform(const double* x) {
   return fft_.transform();
 }
 
-Average::Average(const WelchOptions& options, const Layout& layout)
-    : options_(options), layout_(layout) {
+Average::Average(const WelchOptions& options, const Layout& layout) : options_(options), layout_(layout) {
   const std::size_t lags = (layout.segment - 1) / layout.hop;
   recent_.assign(lags, 0);
   pairs_.assign(lags + 1, 0);
@@ -255,8 +234,7 @@ void Average::add_group(std::vector<double>&& power) {
 void Average::note_segment(bool used) {
   const std::size_t lags = recent_.size();
   if (used)
-    for (std::size_t lag = 1; lag <= lags; ++lag)
-      pairs_[lag] += recent_[(next_ + lags - lag) % lags] != 0;
+    for (std::size_t lag = 1; lag <= lags; ++lag) pairs_[lag] += recent_[(next_ + lags - lag) % lags] != 0;
   if (lags > 0) {
     recent_[next_] = used;
     next_ = (next_ + 1) % lags;
@@ -265,8 +243,7 @@ void Average::note_segment(bool used) {
   ++(used ? used_ : dropped_);
 }
 
-Average::Average(const WelchOptions& options, const Layout& layout, const WelchSums& sums)
-    : Average(options, layout) {
+Average::Average(const WelchOptions& options, const Layout& layout, const WelchSums& sums) : Average(options, layout) {
   power_ = sums.power;
   pairs_ = sums.pairs;
   begin_ = sums.begin;
@@ -298,20 +275,16 @@ WelchSums Average::sums() const {
   return out;
 }
 
-void Average::join(const std::vector<double>& power,
-                   std::span<const char> straddling,
-                   const WelchSums& later) {
+void Average::join(const std::vector<double>& power, std::span<const char> straddling, const WelchSums& later) {
   for (const char used : straddling) note_segment(used != 0);
   if (!power.empty()) add_group(power);
   if (!later.power.empty()) add_group(later.power);
   const std::size_t lags = recent_.size();
   const auto before = [&](std::size_t back) { return recent_[(next_ + lags - back) % lags] != 0; };
   for (std::size_t i = 0; i < later.begin.size(); ++i)
-    for (std::size_t lag = i + 1; lag <= lags; ++lag)
-      pairs_[lag] += later.begin[i] != 0 && before(lag - i) ? 1 : 0;
+    for (std::size_t lag = i + 1; lag <= lags; ++lag) pairs_[lag] += later.begin[i] != 0 && before(lag - i) ? 1 : 0;
   for (std::size_t lag = 1; lag <= lags; ++lag) pairs_[lag] += later.pairs[lag];
-  for (std::size_t i = 0; i < later.begin.size() && begin_.size() < lags; ++i)
-    begin_.push_back(later.begin[i]);
+  for (std::size_t i = 0; i < later.begin.size() && begin_.size() < lags; ++i) begin_.push_back(later.begin[i]);
   for (const unsigned char used : later.end) {
     recent_[next_] = static_cast<char>(used);
     next_ = (next_ + 1) % lags;
@@ -349,11 +322,10 @@ void Average::check_powers() const {
 double Average::degrees_of_freedom(const std::vector<double>& window) const {
   const double count = static_cast<double>(used_);
   // Of the Hann window with itself half its length away: 1/6.
-  const auto r = window.empty() ? std::vector<double>{1, 1.0 / 6}
-                                : window_correlation(window, layout_.hop, recent_.size());
+  const auto r =
+      window.empty() ? std::vector<double>{1, 1.0 / 6} : window_correlation(window, layout_.hop, recent_.size());
   double correlated = count;
-  for (std::size_t lag = 1; lag < r.size(); ++lag)
-    correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];
+  for (std::size_t lag = 1; lag < r.size(); ++lag) correlated += 2 * static_cast<double>(pairs_[lag]) * r[lag] * r[lag];
   return 2 * count * (count / correlated);
 }
 
@@ -405,16 +377,13 @@ Spectrum Average::spectrum(const std::vector<double>& window, double rate_hz) co
   return out;
 }
 
-Spectrum Average::finish(const std::vector<double>& window,
-                         double rate_hz,
-                         std::uint64_t samples) const {
+Spectrum Average::finish(const std::vector<double>& window, double rate_hz, std::uint64_t samples) const {
   if (used_ == 0)
     throw numeric_error("E0401")
         .says(
             "a spectrum with segments of {} samples needs as many without a missing one; none was "
             "found in {} samples",
-            layout_.segment,
-            samples)
+            layout_.segment, samples)
         .hint("choose a shorter segment");
   Spectrum out = spectrum(window, rate_hz);
   note_dropped(out.dropped, out.segments, out.notes);
@@ -444,8 +413,7 @@ std::uint64_t usable_segments(const std::vector<Run>& runs, const Layout& layout
   std::uint64_t count = 0;
   for (const Run& run : runs) {
     const std::uint64_t begin = (run.begin + layout.hop - 1) / layout.hop * layout.hop;
-    if (begin + layout.segment <= run.end)
-      count += (run.end - layout.segment - begin) / layout.hop + 1;
+    if (begin + layout.segment <= run.end) count += (run.end - layout.segment - begin) / layout.hop + 1;
   }
   return count;
 }
@@ -458,8 +426,7 @@ std::uint64_t longest(const std::vector<Run>& runs) {
 
 }  // namespace
 
-std::uint64_t choose_segment(std::span<const double> record,
-                             const WelchOptions& options,
+std::uint64_t choose_segment(std::span<const double> record, const WelchOptions& options,
                              std::vector<std::string>& notes) {
   const std::uint64_t n = record.size();
   const bool given = options.segment != 0;
@@ -467,11 +434,9 @@ std::uint64_t choose_segment(std::span<const double> record,
   std::uint64_t segment = std::min(wanted, n);
   const std::vector<Run> runs = present_runs(record);
   // Half-overlapping quarters are seven; with that many the dropped ones are not missed.
-  const std::uint64_t possible =
-      segment >= kShortestSegment ? layout_of(segment, options.overlap).count(n) : 0;
+  const std::uint64_t possible = segment >= kShortestSegment ? layout_of(segment, options.overlap).count(n) : 0;
   const std::uint64_t enough = given ? 1 : std::min<std::uint64_t>(possible, 7);
-  while (segment >= kShortestSegment &&
-         usable_segments(runs, layout_of(segment, options.overlap)) < enough)
+  while (segment >= kShortestSegment && usable_segments(runs, layout_of(segment, options.overlap)) < enough)
     segment /= 2;
   if (segment < kShortestSegment) {
     // Halving may step over a last chance: any run of eight.
@@ -479,16 +444,13 @@ std::uint64_t choose_segment(std::span<const double> record,
       throw numeric_error("E0401").says(
           "a spectrum needs at least {} consecutive samples; the longest stretch without a missing "
           "one has {}",
-          kShortestSegment,
-          longest(runs));
+          kShortestSegment, longest(runs));
     segment = kShortestSegment;
   }
   if (segment < wanted)
-    notes.push_back(fmt::format("the segment was shortened from {} to {} samples: {}",
-                                wanted,
-                                segment,
-                                n < wanted ? "the record has no more"
-                                           : "too few longer ones are without a missing sample"));
+    notes.push_back(
+        fmt::format("the segment was shortened from {} to {} samples: {}", wanted, segment,
+                    n < wanted ? "the record has no more" : "too few longer ones are without a missing sample"));
   return segment;
 }
 

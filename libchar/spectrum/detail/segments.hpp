@@ -28,9 +28,7 @@ inline constexpr std::uint64_t kLongestSegment = std::uint64_t{1} << 32U;
 /// that the bits do not depend on which thread did which group, nor on how samples were pushed.
 struct Layout {
   std::size_t segment = 0, hop = 0, group = 0;
-  std::uint64_t count(std::uint64_t samples) const {
-    return samples < segment ? 0 : (samples - segment) / hop + 1;
-  }
+  std::uint64_t count(std::uint64_t samples) const { return samples < segment ? 0 : (samples - segment) / hop + 1; }
 };
 
 Layout layout_of(std::uint64_t segment, double overlap);
@@ -75,9 +73,7 @@ class Average {
   WelchSums sums() const;
   /// The segments that straddle the end of the part so far, each used or not, and those of the part
   /// behind it. `power`: of the former.
-  void join(const std::vector<double>& power,
-            std::span<const char> straddling,
-            const WelchSums& later);
+  void join(const std::vector<double>& power, std::span<const char> straddling, const WelchSums& later);
   /// No window: the periodic Hann window, half overlapping. Throws Error(numeric) where the powers
   /// are no numbers, or too small for one and the samples not constant.
   Spectrum spectrum(const std::vector<double>& window, double rate_hz) const;
@@ -103,8 +99,7 @@ class Average {
 
 /// A quarter of the record as in [RV app. A], or what the caller asked for; halved until enough
 /// segments are whole, which is noted. Throws Error(numeric) where none of 8 samples is.
-std::uint64_t choose_segment(std::span<const double> record,
-                             const WelchOptions& options,
+std::uint64_t choose_segment(std::span<const double> record, const WelchOptions& options,
                              std::vector<std::string>& notes);
 
 }  // namespace libchar::welch_detail

@@ -30,8 +30,6 @@ std::function<void()> add_options(VerbOptions& options, Session& session) {
 
 }  // namespace
 
-VerbEntry verb_count_words() {
-  return {11, "count-words", "How many words there are", add_options};
-}
+VerbEntry verb_count_words() { return {11, "count-words", "How many words there are", add_options}; }
 
 }  // namespace sensorchar

@@ -6,10 +6,8 @@
 namespace libchar::fusion {
 
 struct LastChannel {
-  static constexpr Description description{.name = "last-channel",
-                                           .title = "The last channel",
-                                           .source = "a test",
-                                           .complexity = "O(1)"};
+  static constexpr Description description{
+      .name = "last-channel", .title = "The last channel", .source = "a test", .complexity = "O(1)"};
   explicit LastChannel(const Array&) {}
   Estimate step(const Sample& y) const { return Estimate::scalar(y[y.size() - 1], std::nan("")); }
 };

@@ -18,20 +18,12 @@ Export write_names(const SensorGroup& group, const ExportOptions&) {
 }  // namespace
 
 ExportTarget names_target() {
-  return {"names",
-          "a test",
-          "names of channels",
-          "names.txt",
-          ExportNeeds::any_sensor,
-          "QBKQzR",
-          {},
-          write_names};
+  return {"names", "a test", "names of channels", "names.txt", ExportNeeds::any_sensor, "QBKQzR", {}, write_names};
 }
 
 std::span<const ExportTarget> export_targets() {
 #define LIBCHAR_LIST_TARGET(NAME) NAME##_target(),
-  static const std::vector<ExportTarget> targets = {LIBCHAR_EXPORT_TARGETS(LIBCHAR_LIST_TARGET)
-                                                        names_target()};
+  static const std::vector<ExportTarget> targets = {LIBCHAR_EXPORT_TARGETS(LIBCHAR_LIST_TARGET) names_target()};
 #undef LIBCHAR_LIST_TARGET
   return targets;
 }

@@ -67,10 +67,10 @@ class LagSum {
   }
 
   void panel(double a, double b) {
-    static constexpr std::array<double, 4> kNode = {
-        0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-    static constexpr std::array<double, 4> kWeight = {
-        0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    static constexpr std::array<double, 4> kNode = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                                    0.9602898564975363};
+    static constexpr std::array<double, 4> kWeight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                                      0.1012285362903763};
     const double centre = (a + b) / 2, half = (b - a) / 2;
     for (std::size_t i = 0; i < kNode.size(); ++i) {
       sum_ += f_(centre - half * kNode[i]) * (half * kWeight[i]);

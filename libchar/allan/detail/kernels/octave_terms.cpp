@@ -20,8 +20,7 @@ double sum_of(const double* values, std::size_t width) {
 
 }  // namespace
 
-void add_one_by_one(
-    const double* z, std::size_t n, std::size_t width, double scale, PresentTerms& tally) {
+void add_one_by_one(const double* z, std::size_t n, std::size_t width, double scale, PresentTerms& tally) {
   double lane[8] = {};
   std::uint64_t terms = 0;
   for (std::size_t i = 0; i + 2 * width <= n; ++i) {
@@ -34,16 +33,13 @@ void add_one_by_one(
     lane[i % 8] += d * d;
     ++terms;
   }
-  const double sum =
-      ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-  tally.squares += static_cast<long double>(sum) / static_cast<long double>(scale) /
-                   static_cast<long double>(scale);
+  const double sum = ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+  tally.squares += static_cast<long double>(sum) / static_cast<long double>(scale) / static_cast<long double>(scale);
   tally.terms += terms;
   tally.starts += terms;
 }
 
-void add_present(
-    const Holed& z, std::size_t n, std::size_t width, double scale, PresentTerms& tally) {
+void add_present(const Holed& z, std::size_t n, std::size_t width, double scale, PresentTerms& tally) {
   const double m = z.size * static_cast<double>(width);
   double squares = 0, shortfall = 0, imbalance = 0;
   for (std::size_t i = 0; i + 2 * width <= n; ++i) {
@@ -51,8 +47,8 @@ void add_present(
     imbalance += (b - a) / m * ((b - a) / m);
     ++tally.starts;
     if (!has_mean(a, m) || !has_mean(b, m)) continue;
-    const double d = (sum_of(z.sum + i + width, width) * scale) * (m / b) -
-                     (sum_of(z.sum + i, width) * scale) * (m / a);
+    const double d =
+        (sum_of(z.sum + i + width, width) * scale) * (m / b) - (sum_of(z.sum + i, width) * scale) * (m / a);
     squares += d * d;
     shortfall += 1 / a + 1 / b - 2 / m;
     ++tally.terms;
@@ -87,24 +83,18 @@ double block_scale(const double* z, std::size_t n) {
 
 namespace {
 
-[[gnu::always_inline]] inline double of_one(const double* z) {
-  return z[1] - z[0];
-}
-[[gnu::always_inline]] inline double of_two(const double* z) {
-  return (z[2] - z[0]) + (z[3] - z[1]);
-}
+[[gnu::always_inline]] inline double of_one(const double* z) { return z[1] - z[0]; }
+[[gnu::always_inline]] inline double of_two(const double* z) { return (z[2] - z[0]) + (z[3] - z[1]); }
 [[gnu::always_inline]] inline double of_four(const double* z) {
   return ((z[4] - z[0]) + (z[6] - z[2])) + ((z[5] - z[1]) + (z[7] - z[3]));
 }
 
 // The same for four starts at once.
 #define FOUR_OF_ONE(z) (LIBCHAR_FOUR((z) + 1) - LIBCHAR_FOUR(z))
-#define FOUR_OF_TWO(z) \
-  ((LIBCHAR_FOUR((z) + 2) - LIBCHAR_FOUR(z)) + (LIBCHAR_FOUR((z) + 3) - LIBCHAR_FOUR((z) + 1)))
+#define FOUR_OF_TWO(z) ((LIBCHAR_FOUR((z) + 2) - LIBCHAR_FOUR(z)) + (LIBCHAR_FOUR((z) + 3) - LIBCHAR_FOUR((z) + 1)))
 #define FOUR_OF_FOUR(z)                                                                            \
   (((LIBCHAR_FOUR((z) + 4) - LIBCHAR_FOUR(z)) + (LIBCHAR_FOUR((z) + 6) - LIBCHAR_FOUR((z) + 2))) + \
-   ((LIBCHAR_FOUR((z) + 5) - LIBCHAR_FOUR((z) + 1)) +                                              \
-    (LIBCHAR_FOUR((z) + 7) - LIBCHAR_FOUR((z) + 3))))
+   ((LIBCHAR_FOUR((z) + 5) - LIBCHAR_FOUR((z) + 1)) + (LIBCHAR_FOUR((z) + 7) - LIBCHAR_FOUR((z) + 3))))
 
 }  // namespace
 
@@ -127,9 +117,7 @@ LIBCHAR_LANES double squares_of_four_lanes(const double* z, std::size_t n) {
   return sum_of_lanes(lane);
 }
 
-double squares_of_four(const double* z, std::size_t n) {
-  return InLanes<squares_of_four_lanes>()(z, n);
-}
+double squares_of_four(const double* z, std::size_t n) { return InLanes<squares_of_four_lanes>()(z, n); }
 
 LIBCHAR_LANES void squares_of_one_two_four_lanes(const double* z, std::size_t n, double out[3]) {
   double one[kLanes] = {}, two[kLanes] = {}, four[kLanes] = {};
@@ -168,10 +156,7 @@ void squares_of_one_two_four(const double* z, std::size_t n, double out[3]) {
   return InLanes<squares_of_one_two_four_lanes>()(z, n, out);
 }
 
-LIBCHAR_LANES void sum_pairs_lanes(const double* z,
-                                   std::size_t pairs,
-                                   double origin,
-                                   double* pair) {
+LIBCHAR_LANES void sum_pairs_lanes(const double* z, std::size_t pairs, double origin, double* pair) {
   for (std::size_t i = 0; i < pairs; ++i) pair[i] = (z[2 * i] - origin) + (z[2 * i + 1] - origin);
 }
 
@@ -193,8 +178,6 @@ LIBCHAR_LANES bool all_finite_lanes(const double* z, std::size_t n) {
   return sum_of_lanes(lane) == 0;
 }
 
-bool all_finite(const double* z, std::size_t n) {
-  return InLanes<all_finite_lanes>()(z, n);
-}
+bool all_finite(const double* z, std::size_t n) { return InLanes<all_finite_lanes>()(z, n); }
 
 }  // namespace libchar

@@ -16,12 +16,10 @@ struct Holed {
 
 /// Terms of sums of `width` neighbours that start in z[0], z[1] …, touching nothing missing; z
 /// scaled so that squares are safe. `squares` are those of differences of sums, not of means.
-void add_one_by_one(
-    const double* z, std::size_t n, std::size_t width, double scale, PresentTerms& tally);
+void add_one_by_one(const double* z, std::size_t n, std::size_t width, double scale, PresentTerms& tally);
 
 /// The same where something may be missing: differences of means over what is present, times m.
-void add_present(
-    const Holed& z, std::size_t n, std::size_t width, double scale, PresentTerms& tally);
+void add_present(const Holed& z, std::size_t n, std::size_t width, double scale, PresentTerms& tally);
 
 /// Samples with NaN as sums of one, less `origin`, and which of them are missing.
 void split_present(const double* x, std::size_t n, double origin, double* sum, double* absent);

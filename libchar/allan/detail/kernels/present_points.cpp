@@ -56,11 +56,7 @@ Window window(const PresentSums& sums, std::size_t begin, std::size_t m) {
 
 // Terms with starts first, first + stride, … < last: differences of `order` of neighbouring
 // windows' means, order 1 (Allan) or 2 (Hadamard), of windows of m samples that the record holds.
-PresentTerms present_terms(const PresentSums& sums,
-                           int order,
-                           std::size_t m,
-                           std::size_t first,
-                           std::size_t last,
+PresentTerms present_terms(const PresentSums& sums, int order, std::size_t m, std::size_t first, std::size_t last,
                            std::size_t stride) {
   const auto factor = static_cast<double>(m);
   double squares = 0, shortfall = 0, imbalance = 0;
@@ -127,13 +123,11 @@ PresentTerms modified_terms(const PresentSums& sums, std::size_t m) {
   return total;
 }
 
-constexpr std::size_t kStarts =
-    65536;  // a piece; pieces are added in order, whatever the number of threads
+constexpr std::size_t kStarts = 65536;  // a piece; pieces are added in order, whatever the number of threads
 constexpr double kWorthSaying = 0.01;
 
 PresentTerms all_terms(const PresentSums& sums, int order, std::size_t m, std::size_t stride) {
-  const std::size_t samples = sums.present.size() - 1,
-                    span = (static_cast<std::size_t>(order) + 1) * m;
+  const std::size_t samples = sums.present.size() - 1, span = (static_cast<std::size_t>(order) + 1) * m;
   if (span > samples) return {};
   const std::size_t ends = samples - span + 1, piece = kStarts / stride * stride + stride;
   std::vector<PresentTerms> parts((ends + piece - 1) / piece);
@@ -162,34 +156,27 @@ MissingSamples octaves_below(const PresentSums& sums, std::uint64_t largest) {
     const PresentTerms terms = all_terms(sums, 1, m, 1);
     const auto factor = static_cast<double>(m);
     const double dof = white_dof(DeviationType::oadev, m, terms.terms, 1);
-    missing.add_octave(
-        factor, terms, missing.corrected(factor, terms, 2, 1 / factor, dof).variance);
+    missing.add_octave(factor, terms, missing.corrected(factor, terms, 2, 1 / factor, dof).variance);
   }
   return missing;
 }
 
 }  // namespace
 
-bool of_window_means(const DeviationRow& row) {
-  return !row.reflected && row.family == DeviationFamily::differences;
-}
+bool of_window_means(const DeviationRow& row) { return !row.reflected && row.family == DeviationFamily::differences; }
 
-std::vector<AllanPoint> points_of_present(std::span<const double> rate,
-                                          const DeviationRow& row,
-                                          const std::vector<std::uint64_t>& factors,
-                                          double dt_s) {
+std::vector<AllanPoint> points_of_present(std::span<const double> rate, const DeviationRow& row,
+                                          const std::vector<std::uint64_t>& factors, double dt_s) {
   const PresentSums sums = present_sums(rate);
   const MissingSamples missing = octaves_below(sums, factors.empty() ? 0 : factors.back());
   std::vector<AllanPoint> points(factors.size());
   parallel::for_each(0, factors.size(), [&](std::size_t k) {
     const std::size_t m = detail::in_memory(factors[k]);
     const std::size_t stride = row.overlapping ? 1 : m;
-    const PresentTerms terms =
-        row.of_sum ? modified_terms(sums, m) : all_terms(sums, row.order - 1, m, stride);
+    const PresentTerms terms = row.of_sum ? modified_terms(sums, m) : all_terms(sums, row.order - 1, m, stride);
     if (terms.terms == 0) return;
     const double dof = white_dof(row.type, m, terms.terms, stride);
-    const auto found =
-        missing.corrected(static_cast<double>(m), terms, row.divisor, white_unit(row, m), dof);
+    const auto found = missing.corrected(static_cast<double>(m), terms, row.divisor, white_unit(row, m), dof);
     if (found.variance < 0) return;
     AllanPoint& point = points[k];
     point.m = m;
@@ -210,8 +197,7 @@ void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve) 
                           " of the samples are missing: means are over those that are there, and "
                           "what the others add to the variance is taken off");
   if (without.empty()) return;
-  curve.notes.push_back("gaps leave no term at " + std::to_string(without.size()) +
-                        " averaging times from " +
+  curve.notes.push_back("gaps leave no term at " + std::to_string(without.size()) + " averaging times from " +
                         duration_text(static_cast<double>(without.front()) * curve.dt_s) + " on");
 }
 
@@ -268,11 +254,10 @@ double deviate(double ratio, double dof) {
 
 }  // namespace
 
-MissingSamples::Corrected MissingSamples::corrected(
-    double m, const PresentTerms& terms, double divisor, double unit, double dof) const {
+MissingSamples::Corrected MissingSamples::corrected(double m, const PresentTerms& terms, double divisor, double unit,
+                                                    double dof) const {
   if (terms.terms == 0) return {};
-  const long double count =
-      static_cast<long double>(divisor) * static_cast<long double>(terms.terms);
+  const long double count = static_cast<long double>(divisor) * static_cast<long double>(terms.terms);
   const long double before = terms.squares / count, c = terms.shortfall / count;
   const long double spread_here = spread(m), white = 1 + c / static_cast<long double>(unit);
   const long double less = before - c * spread_here;
@@ -284,9 +269,7 @@ MissingSamples::Corrected MissingSamples::corrected(
   if (bluer && less < kToldApart * std::sqrt(2 / dof) * before) return {};
   const long double w = 1 / (1 + std::pow(z / 2, 4)), rest = less > 0 ? 1 - w : 0;
   const long double variance = w * before / white + rest * less;
-  return {variance,
-          static_cast<double>((w / white + rest) * before / variance),
-          static_cast<double>(c * spread_here)};
+  return {variance, static_cast<double>((w / white + rest) * before / variance), static_cast<double>(c * spread_here)};
 }
 
 void MissingSamples::add_octave(double m, const PresentTerms& terms, long double variance) {

@@ -16,10 +16,8 @@ bool of_window_means(const DeviationRow& row);
 
 /// Points at the ascending `factors` from means over what is present (present_points.cpp); no
 /// terms where there is no estimate.
-std::vector<AllanPoint> points_of_present(std::span<const double> rate,
-                                          const DeviationRow& row,
-                                          const std::vector<std::uint64_t>& factors,
-                                          double dt_s);
+std::vector<AllanPoint> points_of_present(std::span<const double> rate, const DeviationRow& row,
+                                          const std::vector<std::uint64_t>& factors, double dt_s);
 
 /// Says what was taken off for missing samples, and at how many averaging times (`without`,
 /// ascending) there is no estimate.
@@ -29,9 +27,7 @@ void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve);
 // off for what is missing.
 
 /// A window of m samples has a mean when more than half of it is there.
-constexpr bool has_mean(double present, double m) {
-  return 2 * present > m;
-}
+constexpr bool has_mean(double present, double m) { return 2 * present > m; }
 
 /// What missing samples add to the mean square of d, scale by scale (present_points.cpp).
 class MissingSamples {
@@ -44,8 +40,7 @@ class MissingSamples {
   };
   /// `divisor` 2 for Allan terms, 6 for Hadamard's; `unit`: the variance of white noise of variance
   /// 1, none missing; `dof` of the terms in white noise.
-  Corrected corrected(
-      double m, const PresentTerms& terms, double divisor, double unit, double dof) const;
+  Corrected corrected(double m, const PresentTerms& terms, double divisor, double unit, double dof) const;
   /// The Allan terms of the next octave, m = 1, 2, 4 …, and the variance that was found for it; not positive: none.
   void add_octave(double m, const PresentTerms& terms, long double variance);
 

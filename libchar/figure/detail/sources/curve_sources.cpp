@@ -37,8 +37,7 @@ std::string line_statistic(const std::string& kind) {
   // "psd_one_sided" of curves.csv
   for (const Sides sides : {Sides::one, Sides::two})
     for (const EnumWord<Scaling>& row : enum_table<Scaling>)
-      if (kind == fmt::format("{}_{}_sided", row.word, name_of(sides)))
-        return spectrum_statistic(sides, row.value);
+      if (kind == fmt::format("{}_{}_sided", row.word, name_of(sides))) return spectrum_statistic(sides, row.value);
   return kind.empty() ? "Power spectral density" : kind;
 }
 
@@ -46,17 +45,14 @@ std::string line_statistic(const std::string& kind) {
 
 std::string spectrum_statistic(Sides sides, Scaling scaling) {
   std::string word(name_of(scaling));
-  std::transform(word.begin(), word.end(), word.begin(), [](char c) {
-    return static_cast<char>(c - 'a' + 'A');
-  });
+  std::transform(word.begin(), word.end(), word.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
   return (sides == Sides::one ? "One-sided " : "Two-sided ") + word;
 }
 
 std::string mark_text(Term term, double value, const std::string& unit) {
   const auto& name = kTermNames[static_cast<std::size_t>(term)];
   const std::string shown = shown_term_unit(name.key, unit == "U" ? "" : unit);
-  return fmt::format(
-      "{} = {}{}", name.letter, number_text(value, 3), shown.empty() ? "" : " " + shown);
+  return fmt::format("{} = {}{}", name.letter, number_text(value, 3), shown.empty() ? "" : " " + shown);
 }
 
 void add_allan_curves(FigureSource& out, const MapReader& document) {
@@ -65,8 +61,7 @@ void add_allan_curves(FigureSource& out, const MapReader& document) {
     if (channel.curve.points.empty()) continue;
     SourceCurve curve = source_curve(channel.name, channel.unit, channel.curve);
     curve.statistic = statistic_of(channel.type.empty() ? read.type : channel.type);
-    curve.value_unit =
-        channel.value_unit.empty() ? curve.unit : usual_figure_unit(channel.value_unit);
+    curve.value_unit = channel.value_unit.empty() ? curve.unit : usual_figure_unit(channel.value_unit);
     curve.model = channel.predicted.model;
     curve.lines = channel.predicted.asymptotes;
     curve.data_sheet = channel.data_sheet;
@@ -84,11 +79,9 @@ void add_spectra(FigureSource& out, const MapReader& document) {
     curve.channel = channel.name;
     curve.unit = usual_figure_unit(channel.unit);
     curve.is_allan = false;
-    curve.statistic =
-        sides && scaling ? spectrum_statistic(*sides, *scaling) : read.sides + " " + read.scaling;
-    curve.value_unit = channel.value_unit.empty()
-                           ? spectrum_unit(scaling.value_or(Scaling::psd), curve.unit)
-                           : channel.value_unit;
+    curve.statistic = sides && scaling ? spectrum_statistic(*sides, *scaling) : read.sides + " " + read.scaling;
+    curve.value_unit =
+        channel.value_unit.empty() ? spectrum_unit(scaling.value_or(Scaling::psd), curve.unit) : channel.value_unit;
     curve.x = channel.spectrum.frequency_hz;
     curve.y = channel.spectrum.value;
     add_ends(curve, channel.ci95);
@@ -123,14 +116,12 @@ void add_marks(SourceCurve& curve, const MapReader& channel, const NoiseFit& fit
   if (derived.plain_from_s > 0) curve.left_out.push_back({0, derived.plain_from_s});
   for (const ReadOff& point : derived.read_off_points)
     if (const auto& value = fit[point.term].value)
-      curve.marks.push_back(
-          {point.term, point.tau_s, point.deviation, mark_text(point.term, *value, curve.unit)});
+      curve.marks.push_back({point.term, point.tau_s, point.deviation, mark_text(point.term, *value, curve.unit)});
 }
 
 void add_band(SourceCurve& curve, const FitBand& band) {
   for (const Interval& out : band.left_out_hz) curve.left_out.push_back(out);
-  if (!band.whole && band.top_hz > 0)
-    curve.left_out.push_back({band.top_hz, std::numeric_limits<double>::infinity()});
+  if (!band.whole && band.top_hz > 0) curve.left_out.push_back({band.top_hz, std::numeric_limits<double>::infinity()});
 }
 
 }  // namespace
@@ -164,8 +155,7 @@ void add_traces(FigureSource& out, const MapReader& trace) {
     one.block_s = static_cast<double>(read.trace.block) / (own_hz > 0 ? own_hz : 1);
     one.low = read.trace.low;
     one.high = read.trace.high;
-    for (const TraceMark& mark : read.marks)
-      one.marks.push_back({mark.label, mark.from_s, mark.to_s});
+    for (const TraceMark& mark : read.marks) one.marks.push_back({mark.label, mark.from_s, mark.to_s});
     out.traces.push_back(std::move(one));
   }
 }
@@ -174,9 +164,7 @@ void add_simulated(FigureSource& out, const MapReader& verification) {
   for (const Document& node : verification.list("channels")) {
     if (node.kind != Document::Kind::map) continue;
     VerificationOfChannel simulated;
-    read_fields(verification_fields(),
-                MapReader(node, verification.file(), "verification.channels"),
-                simulated);
+    read_fields(verification_fields(), MapReader(node, verification.file(), "verification.channels"), simulated);
     for (SourceCurve& curve : out.curves) {
       if (curve.channel != simulated.name) continue;
       if (!curve.is_allan) {
@@ -201,10 +189,9 @@ void add_table(FigureSource& out, const std::string& file, bool is_allan) {
     curve.unit = usual_figure_unit(named.unit);
     curve.is_allan = is_allan;
     curve.statistic = is_allan ? statistic_of(named.kind) : line_statistic(named.kind);
-    curve.value_unit = is_allan ? curve.unit
-                       : named.value_unit.empty()
-                           ? spectrum_unit(Scaling::psd, curve.unit == "U" ? "" : curve.unit)
-                           : named.value_unit;
+    curve.value_unit = is_allan                   ? curve.unit
+                       : named.value_unit.empty() ? spectrum_unit(Scaling::psd, curve.unit == "U" ? "" : curve.unit)
+                                                  : named.value_unit;
     curve.x = named.curve.x;
     curve.y = named.curve.y;
     // A deviation is drawn; a table of variances holds its square.
@@ -246,8 +233,7 @@ std::pair<std::string, std::string> density_of(const std::string& unit) {
 
 void add_wide_spectra(FigureSource& out, const std::string& file) {
   const auto table = read_text_table(file, kMaxDocumentBytes);
-  if (!table || table->header.cells.size() < 2 || table->header.cells[0].text != "frequency_hz")
-    return;
+  if (!table || table->header.cells.size() < 2 || table->header.cells[0].text != "frequency_hz") return;
   std::vector<SourceCurve> curves;
   for (std::size_t c = 1; c < table->header.cells.size(); ++c) {
     const auto column = wide_column(table->header.cells[c].text);
@@ -263,8 +249,7 @@ void add_wide_spectra(FigureSource& out, const std::string& file) {
   bool two_sided = false;
   for (const TextRow& row : table->rows) {
     const auto number = [&](std::size_t c) {
-      const auto value =
-          c < row.cells.size() ? number_in(row.cells[c], table->decimal) : std::nullopt;
+      const auto value = c < row.cells.size() ? number_in(row.cells[c], table->decimal) : std::nullopt;
       if (value) return *value;
       throw input_error("E0311", fmt::format("{}:{}", file, row.line))
           .says("a number was expected in each column of the header")
@@ -285,9 +270,7 @@ void add_wide_spectra(FigureSource& out, const std::string& file) {
   }
 }
 
-SourceCurve source_curve(const std::string& channel,
-                         const std::string& unit,
-                         const AllanCurve& curve) {
+SourceCurve source_curve(const std::string& channel, const std::string& unit, const AllanCurve& curve) {
   SourceCurve out;
   out.channel = channel;
   out.unit = usual_figure_unit(unit);
@@ -306,9 +289,7 @@ SourceCurve source_curve(const std::string& channel,
   return out;
 }
 
-SourceCurve source_curve(const std::string& channel,
-                         const std::string& unit,
-                         const Spectrum& spectrum) {
+SourceCurve source_curve(const std::string& channel, const std::string& unit, const Spectrum& spectrum) {
   SourceCurve out;
   out.channel = channel;
   out.unit = usual_figure_unit(unit);
@@ -341,9 +322,7 @@ SourceCurve allan_of(const SensorModel& model, const NoiseFit& fit) {
   }
   out.lines = allan_asymptotes(fit, curve);
   for (const ReadOff& point : read_off_points(fit, curve))
-    out.marks.push_back({point.term,
-                         point.tau_s,
-                         point.deviation,
+    out.marks.push_back({point.term, point.tau_s, point.deviation,
                          mark_text(point.term, simulated_value(model[point.term]), out.unit)});
   out.statistic = "Allan deviation";
   return out;

@@ -35,12 +35,12 @@ constexpr double kDeepCut = 0.25;  ///< of half the rate
 /// Of half the rate: below it hardly a filter has more than the beginning of its slope, and a free
 /// shape would take the place of slow noise.
 constexpr double kDeepest = 0.125;
-constexpr double kPeak = 4;        ///< standard deviations that a broad peak stands above its sides
-constexpr std::size_t kSkirt = 2;  ///< bins on each side of it that hold too much of it as well
+constexpr double kPeak = 4;              ///< standard deviations that a broad peak stands above its sides
+constexpr std::size_t kSkirt = 2;        ///< bins on each side of it that hold too much of it as well
 constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
 constexpr double kNull = 0.01;  ///< of a filter's power gain
-constexpr int kMany = 3;  ///< coefficients of a polynomial that stand for a filter with a corner
+constexpr int kMany = 3;        ///< coefficients of a polynomial that stand for a filter with a corner
 constexpr double kAsWide = 0.7;
 constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
 constexpr auto kLentTerm = static_cast<std::size_t>(Term::ramp);  ///< to a Gauss-Markov process
@@ -71,10 +71,7 @@ std::vector<std::size_t> members(const std::vector<PowerBin>& bins, const Band& 
   return index;
 }
 
-void judge_band(const std::vector<PowerBin>& bins,
-                std::size_t fitted,
-                const BandOptions& options,
-                Trial& trial) {
+void judge_band(const std::vector<PowerBin>& bins, std::size_t fitted, const BandOptions& options, Trial& trial) {
   double slowest_hz = 0;
   std::size_t slow = 0;
   // The slowest coefficients of the longest transform come first in frequency, wherever they stand in the list.
@@ -96,8 +93,7 @@ void judge_band(const std::vector<PowerBin>& bins,
       top.dof += 1;
     }
   }
-  all.dof =
-      std::max(1.0, static_cast<double>(trial.index.size() - slow) - static_cast<double>(fitted));
+  all.dof = std::max(1.0, static_cast<double>(trial.index.size() - slow) - static_cast<double>(fitted));
   all.p = chi_square_tail(all.chi2, all.dof);
   top.p = chi_square_tail(top.chi2, std::max(1.0, top.dof));
   trial.band.goodness = all;
@@ -105,12 +101,8 @@ void judge_band(const std::vector<PowerBin>& bins,
   trial.band.passes = std::min(all.p, top.p) >= options.probability;
 }
 
-std::optional<Trial> tried(const std::vector<PowerBin>& bins,
-                           double rate_hz,
-                           TermSet terms,
-                           const Band& band,
-                           const BandOptions& options,
-                           const ModelPoint* start = nullptr) {
+std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, TermSet terms, const Band& band,
+                           const BandOptions& options, const ModelPoint* start = nullptr) {
   Trial trial;
   trial.band = band;
   trial.index = members(bins, band);
@@ -128,10 +120,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins,
   }
   trial.half_deviance = best.half_deviance;
   trial.theta = best.at.theta;
-  judge_band(bins,
-             count_of(only_positive(best.at.theta)) + static_cast<std::size_t>(band.orders),
-             options,
-             trial);
+  judge_band(bins, count_of(only_positive(best.at.theta)) + static_cast<std::size_t>(band.orders), options, trial);
   return trial;
 }
 
@@ -170,9 +159,7 @@ bool explains_nulls(const std::vector<PowerBin>& bins, double rate_hz, const Tri
 }
 
 /// The named filter that explains most, with the whole spectrum.
-std::optional<Trial> named_filter(const std::vector<PowerBin>& bins,
-                                  double rate_hz,
-                                  const TermSet& terms,
+std::optional<Trial> named_filter(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
                                   const BandOptions& options) {
   std::optional<Trial> best;
   for (const auto kind : {NoiseShape::Kind::boxcar, NoiseShape::Kind::bartlett})
@@ -217,8 +204,7 @@ BroadPeak highest_peak(const std::vector<PowerBin>& bins, const Trial& trial) {
       if (bin.dof < kFewestDof) break;
       sum += bin.dof * trial.ratio[to - 1];
       dof += bin.dof;
-      const double after =
-          median_of_ratio(trial.ratio, to, std::min(to + kReach, trial.ratio.size()));
+      const double after = median_of_ratio(trial.ratio, to, std::min(to + kReach, trial.ratio.size()));
       const double excess = sum / dof / std::max(before, after) - 1;
       const double deviations = excess / std::sqrt(2 / dof);
       if (excess > kLowest && deviations > best.deviations) best = {from, to, deviations};
@@ -241,9 +227,7 @@ struct Search {
     return slowest;
   }
 
-  std::optional<Trial> at(const Band& band) const {
-    return tried(bins, rate_hz, terms, band, options);
-  }
+  std::optional<Trial> at(const Band& band) const { return tried(bins, rate_hz, terms, band, options); }
 
   void keep_closest(std::optional<Trial> trial) {
     if (!trial) return;
@@ -256,8 +240,7 @@ struct Search {
     for (;; top_hz *= std::exp2(-kBandStep)) {
       Band band = cut_at(from, bins, top_hz);
       if (members(bins, band).size() < kFewestBins) return std::nullopt;
-      const int most =
-          top_hz < kDeepest * rate_hz / 2 ? std::min(1, options.most_orders) : options.most_orders;
+      const int most = top_hz < kDeepest * rate_hz / 2 ? std::min(1, options.most_orders) : options.most_orders;
       for (band.orders = 0; band.orders <= most; ++band.orders) {
         std::optional<Trial> trial = at(band);
         if (trial && trial->band.passes) return trial->band;
@@ -267,9 +250,7 @@ struct Search {
   }
 
   /// `band` with the likeliest shape of a family in it; none where its corner is not seen there.
-  std::optional<Trial> named_in(Band band,
-                                NamedShape::Family family,
-                                const std::optional<NamedShape>& start,
+  std::optional<Trial> named_in(Band band, NamedShape::Family family, const std::optional<NamedShape>& start,
                                 double hopeless) const {
     // A corner shows by what is beyond it; less damped it is a peak.
     // Two poles far apart, or a corner in the slowest coefficients, are a drift that is no noise.
@@ -277,16 +258,14 @@ struct Search {
     if (members(bins, band).size() < kFewestBins) return std::nullopt;
     TermSet offered = terms;
     offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
-    const auto shape =
-        fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, start, hopeless);
+    const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, start, hopeless);
     if (!shape || shape->damping < kDamped || shape->damping > kOverdamped ||
         shape->pole_hz < kPeriods * 4 * slowest_hz() ||
         shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz))
       return std::nullopt;
     // A shelf that is higher is an edge of something else.
     constexpr double kHighest = 4;
-    const double rise =
-        shape->zero_hz > 0 ? std::abs(std::log(shape->pole_hz / shape->zero_hz)) : 0;
+    const double rise = shape->zero_hz > 0 ? std::abs(std::log(shape->pole_hz / shape->zero_hz)) : 0;
     if (family == NamedShape::Family::shelf && rise > std::log(kHighest)) return std::nullopt;
     band.named = *shape;
     band.orders = static_cast<int>(unknowns_of(family));
@@ -297,9 +276,7 @@ struct Search {
   /// spectrum, then followed up and down.
   std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
     constexpr int kCuts = 10, kMiddle = 2;
-    const auto cut = [&](int steps) {
-      return cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * steps));
-    };
+    const auto cut = [&](int steps) { return cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * steps)); };
     constexpr double kFar = 3000;  ///< of ln L that no step from a corner of the grid makes good
     constexpr double kNever = std::numeric_limits<double>::infinity();
     Band plain = cut(kMiddle);
@@ -310,8 +287,7 @@ struct Search {
     if (!middle || !needed(*middle)) return std::nullopt;
     NamedShape shape = middle->band.named;
     for (int steps = 0; steps < kCuts; ++steps) {
-      const std::optional<Trial> trial =
-          steps == kMiddle ? middle : named_in(cut(steps), family, shape, kNever);
+      const std::optional<Trial> trial = steps == kMiddle ? middle : named_in(cut(steps), family, shape, kNever);
       if (!trial) continue;
       if (trial->band.passes) return trial;
       if (steps > kMiddle) shape = trial->band.named;
@@ -342,8 +318,7 @@ struct Search {
       if (!trial) continue;
       const bool wider = best && trial->band.top_hz > 1.01 * best->band.top_hz;
       const bool same = best && trial->band.top_hz > 0.99 * best->band.top_hz &&
-                        trial->band.orders == best->band.orders &&
-                        trial->half_deviance < best->half_deviance;
+                        trial->band.orders == best->band.orders && trial->half_deviance < best->half_deviance;
       if (!best || wider || same) best = std::move(trial);
     }
     if (!best) return std::nullopt;
@@ -419,8 +394,7 @@ struct Search {
     if (!widest) return std::nullopt;
     // The skirt of what is below rises slowly out of the noise: an octave of margin.
     widest->bottom_hz *= 2;
-    for (std::size_t j = 0; j < bins.size(); ++j)
-      widest->inside[j] = bins[j].low_hz >= widest->bottom_hz ? 1 : 0;
+    for (std::size_t j = 0; j < bins.size(); ++j) widest->inside[j] = bins[j].low_hz >= widest->bottom_hz ? 1 : 0;
     return widest;
   }
 
@@ -444,9 +418,7 @@ Band whole_band(const std::vector<PowerBin>& bins, double rate_hz) {
   return band;
 }
 
-std::vector<PowerBin> filtered(std::vector<PowerBin> bins,
-                               const NoiseShape& filter,
-                               double rate_hz) {
+std::vector<PowerBin> filtered(std::vector<PowerBin> bins, const NoiseShape& filter, double rate_hz) {
   if (filter.kind == NoiseShape::Kind::none) return bins;
   for (PowerBin& bin : bins) {
     const double ratio = mean_ratio(filter, bin, rate_hz);
@@ -482,8 +454,7 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
   Eigen::MatrixXd slopes(problem.size(), static_cast<Eigen::Index>(unknowns));
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     const auto slope = named_log_slopes(band.named, inside[static_cast<std::size_t>(j)], rate_hz);
-    for (std::size_t k = 0; k < unknowns; ++k)
-      slopes(j, static_cast<Eigen::Index>(k)) = root[j] * slope[k];
+    for (std::size_t k = 0; k < unknowns; ++k) slopes(j, static_cast<Eigen::Index>(k)) = root[j] * slope[k];
   }
   problem.shape = thin_qr(slopes).q.array().colwise() / root;
   return problem;
@@ -566,11 +537,8 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
     best = start;
   }
   if (best.family == NamedShape::Family::none) return std::nullopt;
-  const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz),
-                                     search.rate_hz,
-                                     search.terms,
-                                     NamedShape::Family::high_pass,
-                                     best);
+  const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz), search.rate_hz, search.terms,
+                                     NamedShape::Family::high_pass, best);
   if (!shape || !(shape->pole_hz * duration_s > kPeriods)) return std::nullopt;
   band.named = *shape;
   band.orders = 1;
@@ -580,8 +548,7 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   process.tau_s = 1 / (2 * std::numbers::pi * shape->pole_hz);
   TermSet offered = search.terms;
   offered[kLentTerm] = offered[kQuantizationTerm] = true;
-  if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance <
-      least + kAsGood)
+  if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance < least + kAsGood)
     return std::nullopt;
   // Below, the two ends of the record hold more power than what the high-pass lets through.
   const double corner = shape->pole_hz;
@@ -593,9 +560,7 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   return trial->band;
 }
 
-double chance_of(const Trial& trial) {
-  return std::min(trial.band.goodness.p, trial.band.top.p);
-}
+double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, trial.band.top.p); }
 
 Band passing(const Trial& trial) {
   Band band = trial.band;
@@ -603,10 +568,7 @@ Band passing(const Trial& trial) {
   return band;
 }
 
-Band passing_band(const std::vector<PowerBin>& bins,
-                  double rate_hz,
-                  const TermSet& terms,
-                  const BandOptions& options) {
+Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const BandOptions& options) {
   Band whole = whole_band(bins, rate_hz);
   whole.tau_s = options.tau_s;
   Search search{bins, rate_hz, terms, options, std::nullopt};
@@ -615,15 +577,13 @@ Band passing_band(const std::vector<PowerBin>& bins,
   const double slowest_hz = search.slowest_hz();
   const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};
   if (shelf.rising > options.high_pass)
-    if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz))
-      return *falling;
+    if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
   if (chance_of(*unshaped) >= options.probability_unshaped && !(shelf.largest > options.shelf))
     return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;
   const std::optional<Trial> quantized = search.at(with_quantization);
-  if (quantized && chance_of(*quantized) >= options.probability_unshaped)
-    return passing(*quantized);
+  if (quantized && chance_of(*quantized) >= options.probability_unshaped) return passing(*quantized);
   if (const auto named = named_filter(bins, rate_hz, terms, options);
       named && named->band.passes && explains_nulls(bins, rate_hz, *named))
     return named->band;
@@ -635,30 +595,22 @@ Band passing_band(const std::vector<PowerBin>& bins,
     if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   const bool simple = best && best->orders < kMany;
-  const std::optional<Band> named =
-      simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
+  const std::optional<Band> named = simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
   if (named && (!simple || named->top_hz > kAsWide * best->top_hz)) return *named;
   if (!best || best->top_hz < rate_hz / 2 * 0.99) best = search.wider_between_peaks(whole, best);
   // One clean record in a hundred is here by chance, and where the chance is in its slow part only
   // a deep cut takes it away. Filters and motion are told from chance by far less than a millionth.
-  const Trial& plain =
-      quantized && chance_of(*quantized) > chance_of(*unshaped) ? *quantized : *unshaped;
+  const Trial& plain = quantized && chance_of(*quantized) > chance_of(*unshaped) ? *quantized : *unshaped;
   const double chance = chance_of(plain), left = best ? best->top_hz / (rate_hz / 2) : 0;
-  if ((chance >= options.misfit && left < kDeepCut) ||
-      (chance >= options.clear_misfit && left < kDeepest))
+  if ((chance >= options.misfit && left < kDeepCut) || (chance >= options.clear_misfit && left < kDeepest))
     return passing(plain);
   if (best) return search.with_margin(*best);
   return search.closest ? search.closest->band : unshaped->band;
 }
 
 /// What is seen has a name, if that explains it as well: quantization noise where it rises, a low-pass where it falls.
-Band named_instead(const std::vector<PowerBin>& bins,
-                   double rate_hz,
-                   TermSet terms,
-                   Band plain,
-                   const Band& shaped) {
-  if (plain.quantized || plain.low_pass || plain.filter.kind != NoiseShape::Kind::none)
-    return shaped;
+Band named_instead(const std::vector<PowerBin>& bins, double rate_hz, TermSet terms, Band plain, const Band& shaped) {
+  if (plain.quantized || plain.low_pass || plain.filter.kind != NoiseShape::Kind::none) return shaped;
   const auto deviance = [&](const Band& band) {
     return score(bin_problem(bins_of(bins, band, rate_hz)), terms).half_deviance;
   };
@@ -677,10 +629,7 @@ Band named_instead(const std::vector<PowerBin>& bins,
 
 }  // namespace
 
-Band find_band(const std::vector<PowerBin>& bins,
-               double rate_hz,
-               const TermSet& terms,
-               const BandOptions& options) {
+Band find_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const BandOptions& options) {
   Band band = passing_band(bins, rate_hz, terms, options);
   constexpr double kSliver = 1.0 / 256;  ///< of half the rate
   const bool sliver = !band.passes || band.top_hz < kSliver * rate_hz / 2;

@@ -15,14 +15,13 @@ namespace libchar {
 
 /// Bins, the shape that multiplies their expectations, and how well that describes them.
 struct Band {
-  double top_hz = 0;  ///< bins end here; half the rate where nothing is left out
-  double bottom_hz =
-      0;  ///< and begin here: below is a hump that no noise term describes; 0: all do
-  std::vector<char> inside;  ///< of every bin: is it fitted?
-  NoiseShape filter;         ///< a filter known by name (boxcar, Bartlett), or none
-  int orders = 0;            ///< of the polynomial of the shape beyond that, or unknowns of `named`
-  NamedShape named;          ///< a filter or loop with a low corner in its place
-  bool quantized = false;    ///< quantization noise is among the terms
+  double top_hz = 0;                   ///< bins end here; half the rate where nothing is left out
+  double bottom_hz = 0;                ///< and begin here: below is a hump that no noise term describes; 0: all do
+  std::vector<char> inside;            ///< of every bin: is it fitted?
+  NoiseShape filter;                   ///< a filter known by name (boxcar, Bartlett), or none
+  int orders = 0;                      ///< of the polynomial of the shape beyond that, or unknowns of `named`
+  NamedShape named;                    ///< a filter or loop with a low corner in its place
+  bool quantized = false;              ///< quantization noise is among the terms
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
   std::optional<double> tau_s;
@@ -33,22 +32,17 @@ struct Band {
 };
 
 struct BandOptions {
-  double probability =
-      0.02;  ///< of more chi-square than in the residuals, below which a band does not pass
-  double probability_unshaped =
-      0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
-  double misfit = 1e-3;  ///< from here on the whole spectrum is cut at most by two octaves
-  double clear_misfit =
-      1e-6;  ///< and from here on by three: its misfit is said, and widens the intervals
+  double probability = 0.02;            ///< of more chi-square than in the residuals, below which a band does not pass
+  double probability_unshaped = 0.005;  ///< the same for the whole spectrum without a shape: 1 % of clean records fail
+  double misfit = 1e-3;                 ///< from here on the whole spectrum is cut at most by two octaves
+  double clear_misfit = 1e-6;           ///< and from here on by three: its misfit is said, and widens the intervals
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
   bool small_shapes = false;    ///< the top may have a shape that is too small for the tests
-  bool corners =
-      false;  ///< shelves and high-passes are looked for: not of a clock, whose noise rises
-  double high_pass = 1.5;  ///< deviate from which on a high-pass is looked for
-  double shelf = 3.9;      ///< deviate of a directed test from which on a shelf is looked for
-  double seen =
-      3;  ///< standard deviations of such a shape from which on a filter with a name is tried
+  bool corners = false;         ///< shelves and high-passes are looked for: not of a clock, whose noise rises
+  double high_pass = 1.5;       ///< deviate from which on a high-pass is looked for
+  double shelf = 3.9;           ///< deviate of a directed test from which on a shelf is looked for
+  double seen = 3;              ///< standard deviations of such a shape from which on a filter with a name is tried
 };
 
 /// Every bin, without a shape.
@@ -56,9 +50,7 @@ Band whole_band(const std::vector<PowerBin>& bins, double rate_hz);
 
 /// The widest band, from the slow end up, in which the residuals are those of noise, and in it the fewest orders of the
 /// polynomial, plus one. Broad peaks are left out where that widens it.
-Band find_band(const std::vector<PowerBin>& bins,
-               double rate_hz,
-               const TermSet& terms,
+Band find_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
                const BandOptions& options = {});
 
 /// The bins of a band, expectations times its filter.
@@ -71,8 +63,6 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
 double band_log_gain(const Band& band, const PowerBin& bin, double rate_hz);
 
 /// Expectations times a ratio averaged over each bin.
-std::vector<PowerBin> filtered(std::vector<PowerBin> bins,
-                               const NoiseShape& filter,
-                               double rate_hz);
+std::vector<PowerBin> filtered(std::vector<PowerBin> bins, const NoiseShape& filter, double rate_hz);
 
 }  // namespace libchar

@@ -20,8 +20,7 @@ std::vector<Interval> stretches_left_out(const std::vector<PowerBin>& bins, cons
   std::vector<Interval> out;
   for (std::size_t j = 0; j < bins.size(); ++j) {
     if (band.inside[j] != 0 || bins[j].high_hz > band.top_hz * (1 + 1e-9)) continue;
-    if (!out.empty() && out.back().high >= bins[j].low_hz * (1 - 1e-9) &&
-        out.back().low <= bins[j].low_hz)
+    if (!out.empty() && out.back().high >= bins[j].low_hz * (1 - 1e-9) && out.back().low <= bins[j].low_hz)
       out.back().high = bins[j].high_hz;
     else
       out.push_back({bins[j].low_hz, bins[j].high_hz});
@@ -40,17 +39,14 @@ struct ShapePoint {
 /// describe nothing. Sorted by frequency.
 std::vector<ShapePoint> best_known(std::vector<ShapePoint> points) {
   constexpr double kNear = 1.1, kWorse = 0.2;
-  std::sort(points.begin(), points.end(), [](const ShapePoint& a, const ShapePoint& b) {
-    return a.frequency_hz < b.frequency_hz;
-  });
+  std::sort(points.begin(), points.end(),
+            [](const ShapePoint& a, const ShapePoint& b) { return a.frequency_hz < b.frequency_hz; });
   std::vector<ShapePoint> kept;
   std::size_t first = 0;
   for (const ShapePoint& point : points) {
     while (points[first].frequency_hz * kNear < point.frequency_hz) ++first;
     double most = 0;
-    for (std::size_t i = first;
-         i < points.size() && points[i].frequency_hz < point.frequency_hz * kNear;
-         ++i)
+    for (std::size_t i = first; i < points.size() && points[i].frequency_hz < point.frequency_hz * kNear; ++i)
       most = std::max(most, points[i].dof);
     if (point.dof >= kWorse * most) kept.push_back(point);
   }
@@ -61,9 +57,8 @@ std::vector<ShapePoint> best_known(std::vector<ShapePoint> points) {
 NoiseShape measured_shape(std::vector<ShapePoint> points) {
   NoiseShape shape;
   points = best_known(std::move(points));
-  const auto first = std::find_if(points.begin(), points.end(), [](const ShapePoint& point) {
-    return std::abs(point.ratio - 1) > kVisible;
-  });
+  const auto first = std::find_if(points.begin(), points.end(),
+                                  [](const ShapePoint& point) { return std::abs(point.ratio - 1) > kVisible; });
   for (auto point = first; point != points.end(); ++point) {
     if (!shape.frequency_hz.empty() && !(point->frequency_hz > shape.frequency_hz.back())) continue;
     shape.frequency_hz.push_back(point->frequency_hz);
@@ -75,16 +70,11 @@ NoiseShape measured_shape(std::vector<ShapePoint> points) {
 
 }  // namespace
 
-void describe_band(const std::vector<PowerBin>& bins,
-                   const Band& band,
-                   const BinProblem& problem,
-                   const ModelPoint& best,
-                   double rate_hz,
-                   NoiseFit& fit) {
+void describe_band(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
+                   const ModelPoint& best, double rate_hz, NoiseFit& fit) {
   fit.band.top_hz = band.top_hz;
   fit.band.orders = band.orders;
-  fit.band.whole =
-      std::all_of(band.inside.begin(), band.inside.end(), [](char in) { return in != 0; });
+  fit.band.whole = std::all_of(band.inside.begin(), band.inside.end(), [](char in) { return in != 0; });
   fit.band.left_out_hz = stretches_left_out(bins, band);
   Band everywhere = band;
   everywhere.inside.assign(bins.size(), 1);
@@ -107,25 +97,19 @@ void describe_band(const std::vector<PowerBin>& bins,
       residual.z = normal_deviate(residual.measured / residual.model, residual.dof);
     } else if (!slow) {
       const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
-      points.push_back(
-          {residual.frequency_hz, known * residual.measured / residual.model, residual.dof});
+      points.push_back({residual.frequency_hz, known * residual.measured / residual.model, residual.dof});
     }
   }
-  fit.shape =
-      band.filter.kind != NoiseShape::Kind::none ? band.filter : measured_shape(std::move(points));
+  fit.shape = band.filter.kind != NoiseShape::Kind::none ? band.filter : measured_shape(std::move(points));
   if (!band.low_pass) return;
   fit.bandwidth_hz = band.low_pass->corner_hz;
   const double spread = std::exp(kNormal95 * band.low_pass->log_sd);
-  fit.bandwidth_ci95 =
-      Interval{band.low_pass->corner_hz / spread, band.low_pass->corner_hz * spread};
+  fit.bandwidth_ci95 = Interval{band.low_pass->corner_hz / spread, band.low_pass->corner_hz * spread};
   widen_for_joint_parameter(band.low_pass->log_theta_sd, fit);
 }
 
-void add_lines(const std::vector<PowerBin>& clipped,
-               const std::vector<PowerBin>& full,
-               NoiseFit& fit) {
-  constexpr double kCounts =
-      1.02;  ///< power of a bin with its lines over that without, beyond which they count
+void add_lines(const std::vector<PowerBin>& clipped, const std::vector<PowerBin>& full, NoiseFit& fit) {
+  constexpr double kCounts = 1.02;  ///< power of a bin with its lines over that without, beyond which they count
   const auto without_lines = [&](const PowerBin& bin) {
     for (const PowerBin& other : clipped)
       if (other.low_hz == bin.low_hz && other.high_hz == bin.high_hz) return other.energy;
@@ -148,58 +132,43 @@ void add_lines(const std::vector<PowerBin>& clipped,
     if (fit.bandwidth_hz) terms *= low_pass_gain(bin, *fit.bandwidth_hz, fit.rate_hz).gain;
     const bool counts = bin.dof > 4 && bin.energy > kCounts * without_lines(bin);
     any = any || counts;
-    points.push_back(
-        {bin.frequency_hz,
-         counts ? bin.energy / terms : shape_ratio(fit.shape, bin.frequency_hz, fit.rate_hz),
-         bin.dof});
+    points.push_back({bin.frequency_hz,
+                      counts ? bin.energy / terms : shape_ratio(fit.shape, bin.frequency_hz, fit.rate_hz), bin.dof});
   }
   if (any) fit.shape = measured_shape(std::move(points));
 }
 
 void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit) {
   const std::string alarm = "the noise terms alone do not describe the whole spectrum";
-  if (band.quantized)
-    fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
+  if (band.quantized) fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
   if (band.low_pass)
-    fit.remedies.push_back({"bandwidth",
-                            alarm,
+    fit.remedies.push_back({"bandwidth", alarm,
                             fmt::format("first-order low-pass with corner {} Hz added to the model",
                                         brief_text(band.low_pass->corner_hz, 4)),
                             1});
   if (band.filter.kind != NoiseShape::Kind::none)
-    fit.remedies.push_back({"shape",
-                            alarm,
-                            fmt::format("the spectrum is that of a {} of {} samples",
-                                        band.filter.kind == NoiseShape::Kind::boxcar
-                                            ? "moving average (or values repeated)"
-                                            : "triangular average",
-                                        band.filter.taps),
-                            1});
+    fit.remedies.push_back(
+        {"shape", alarm,
+         fmt::format("the spectrum is that of a {} of {} samples",
+                     band.filter.kind == NoiseShape::Kind::boxcar ? "moving average (or values repeated)"
+                                                                  : "triangular average",
+                     band.filter.taps),
+         1});
   if (band.named.family != NamedShape::Family::none)
-    fit.remedies.push_back({"shape",
-                            alarm,
-                            fmt::format("the spectrum is that of {}", named_shape_text(band.named)),
+    fit.remedies.push_back({"shape", alarm, fmt::format("the spectrum is that of {}", named_shape_text(band.named)),
                             static_cast<std::uint64_t>(band.orders)});
   else if (band.orders > 0)
-    fit.remedies.push_back(
-        {"shape",
-         alarm,
-         fmt::format("a filter's shape of {} coefficient{} fitted with the terms",
-                     band.orders,
-                     band.orders == 1 ? "" : "s"),
-         static_cast<std::uint64_t>(band.orders)});
-  const auto left_out =
-      static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));
+    fit.remedies.push_back({"shape", alarm,
+                            fmt::format("a filter's shape of {} coefficient{} fitted with the terms", band.orders,
+                                        band.orders == 1 ? "" : "s"),
+                            static_cast<std::uint64_t>(band.orders)});
+  const auto left_out = static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));
   // At the zeros of a filter known by name there is nothing to fit.
   if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)
     fit.remedies.push_back(
-        {"band",
-         alarm,
-         fmt::format("coefficients from {} {} Hz, {} of {} bins left out",
-                     band.bottom_hz > 0 ? "above" : "below",
-                     brief_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4),
-                     left_out,
-                     bins.size()),
+        {"band", alarm,
+         fmt::format("coefficients from {} {} Hz, {} of {} bins left out", band.bottom_hz > 0 ? "above" : "below",
+                     brief_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4), left_out, bins.size()),
          left_out});
 }
 
@@ -209,8 +178,7 @@ namespace {
 /// the same spectrum: which of the levels is N the record does not say.
 void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
   Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
-  if (shape.family != NamedShape::Family::shelf || !(shape.pole_hz < shape.zero_hz) || !white.value)
-    return;
+  if (shape.family != NamedShape::Family::shelf || !(shape.pole_hz < shape.zero_hz) || !white.value) return;
   const auto square = [&](double corner_hz) {
     return std::pow(std::sin(std::numbers::pi * std::min(corner_hz / fit.rate_hz, 0.5)), 2);
   };
@@ -221,8 +189,7 @@ void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
                          fmt::format("The spectrum is that of {}: a filter behind white noise, or "
                                      "white noise of {} and a process of a "
                                      "correlation time of {}. N is the level of the slow side.",
-                                     named_shape_text(shape),
-                                     brief_text(*white.value * fast),
+                                     named_shape_text(shape), brief_text(*white.value * fast),
                                      duration_text(1 / (2 * std::numbers::pi * shape.pole_hz))),
                          "N is undetermined: its spectrum has two levels");
   both.severity = Severity::caution;
@@ -234,12 +201,12 @@ void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
 void report_corner(const Band& band, NoiseFit& fit) {
   report_two_levels(band.named, fit);
   if (band.named.family != NamedShape::Family::high_pass) return;
-  fit.findings.push_back(finding(
-      "high_passed",
-      fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an output "
-                  "with its mean taken out. B and K are those in front of it.",
-                  named_shape_text(band.named)),
-      "the slow end of the spectrum falls like behind a high-pass"));
+  fit.findings.push_back(
+      finding("high_passed",
+              fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an output "
+                          "with its mean taken out. B and K are those in front of it.",
+                          named_shape_text(band.named)),
+              "the slow end of the spectrum falls like behind a high-pass"));
 }
 
 std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals) {

@@ -24,8 +24,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   problem.energy.resize(n);
   problem.dof.resize(n);
   problem.unit.resize(n, static_cast<int>(kTerms));
-  if (bins.empty())
-    throw numeric_error("E0401").says("the record is too short: no frequency is left to be fitted");
+  if (bins.empty()) throw numeric_error("E0401").says("the record is too short: no frequency is left to be fitted");
   double largest = 0;
   for (const PowerBin& bin : bins) largest = std::max(largest, bin.energy);
   constexpr double kLargestPower = 1e140,
@@ -45,8 +44,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];
     problem.energy[j] = std::max(bin.energy, 1e-40 * largest);  // an exact zero has no logarithm
     problem.dof[j] = bin.dof;
-    for (std::size_t i = 0; i < kTerms; ++i)
-      problem.unit(j, static_cast<Eigen::Index>(i)) = bin.unit[i];
+    for (std::size_t i = 0; i < kTerms; ++i) problem.unit(j, static_cast<Eigen::Index>(i)) = bin.unit[i];
   }
   return problem;
 }
@@ -106,9 +104,7 @@ double half_deviance(const BinProblem& problem, const ModelPoint& at) {
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
-TermMatrix fisher_information(const BinProblem& problem,
-                              const ModelPoint& at,
-                              const TermSet& terms) {
+TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, const TermSet& terms) {
   const Eigen::ArrayXd mixture = mixture_of(problem, at.theta);
   const Eigen::ArrayXd weight = problem.dof / (2 * mixture * mixture);
   TermMatrix information = TermMatrix::Zero();
@@ -116,8 +112,7 @@ TermMatrix fisher_information(const BinProblem& problem,
     for (std::size_t b = 0; b <= a; ++b) {
       if (!terms[a] || !terms[b]) continue;
       const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-      information(i, j) = information(j, i) =
-          (weight * problem.unit.col(i) * problem.unit.col(j)).sum();
+      information(i, j) = information(j, i) = (weight * problem.unit.col(i) * problem.unit.col(j)).sum();
     }
   }
   if (problem.shapes() == 0) return information;
@@ -142,8 +137,7 @@ TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms) {
   Eigen::VectorXd scale(n);
   for (Eigen::Index a = 0; a < n; ++a) scale[a] = 1 / std::sqrt(information(in[a], in[a]));
   for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < n; ++b)
-      block(a, b) = information(in[a], in[b]) * scale[a] * scale[b];
+    for (Eigen::Index b = 0; b < n; ++b) block(a, b) = information(in[a], in[b]) * scale[a] * scale[b];
   }
   const Eigen::MatrixXd inverse = cholesky_inverse(block);
   TermMatrix result = TermMatrix::Zero();

@@ -50,9 +50,7 @@ double half_deviance(const BinProblem& problem, const ModelPoint& at);
 
 /// Expected information of theta at the point, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows); what the
 /// unknown shape takes of it is taken off.
-TermMatrix fisher_information(const BinProblem& problem,
-                              const ModelPoint& at,
-                              const TermSet& terms);
+TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, const TermSet& terms);
 
 /// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are
 /// scaled first.

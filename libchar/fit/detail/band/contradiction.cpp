@@ -20,8 +20,7 @@ namespace libchar {
 namespace {
 
 constexpr double kConfidence = 0.997;
-constexpr double kRelevant =
-    1.2;  // ratio of deviations below which a difference is not worth a word
+constexpr double kRelevant = 1.2;  // ratio of deviations below which a difference is not worth a word
 constexpr double kFewestDof = 2;
 
 struct Contradiction {
@@ -57,8 +56,7 @@ std::optional<Contradiction> worst_contradiction(const NoiseFit& fit, const Alla
     if (!std::isfinite(model)) continue;  // a shape far beyond the band that gave it
     const double ratio = model / point.deviation;
     if (model <= interval.high || ratio < kRelevant || (worst && ratio <= worst->ratio)) continue;
-    worst =
-        Contradiction{point.tau_s, model, interval, ratio, largest_term(fit.theta, m, allan.dt_s)};
+    worst = Contradiction{point.tau_s, model, interval, ratio, largest_term(fit.theta, m, allan.dt_s)};
   }
   return worst;
 }
@@ -84,38 +82,28 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
   if (!deviation_row(allan.type).is_allan()) return;
   if (const auto worst = worst_contradiction(fit, allan)) {
     const bool of_process = mostly_process(fit, worst->tau_s / allan.dt_s, allan.dt_s);
-    if (of_process)
-      fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
-    doubt(fit,
-          of_process ? kTerms : worst->term,
-          0,
-          fmt::format(
-              "At an averaging time of {} the fitted curve stands at {}, the "
-              "measured Allan deviation within {} … {} (99.7 %): "
-              "{} is not borne out there and is marked undetermined.",
-              duration_text(worst->tau_s),
-              brief_text(worst->model),
-              brief_text(worst->measured.low),
-              brief_text(worst->measured.high),
-              of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));
+    if (of_process) fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
+    doubt(fit, of_process ? kTerms : worst->term, 0,
+          fmt::format("At an averaging time of {} the fitted curve stands at {}, the "
+                      "measured Allan deviation within {} … {} (99.7 %): "
+                      "{} is not borne out there and is marked undetermined.",
+                      duration_text(worst->tau_s), brief_text(worst->model), brief_text(worst->measured.low),
+                      brief_text(worst->measured.high),
+                      of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));
   }
   if (!fit.second_opinion || !(fit.goodness.p < 1e-3)) return;
   for (std::size_t t = 0; t < kTerms; ++t) {
     const Coefficient& first = fit.term[t];
     const std::optional<double>& second = fit.second_opinion->value[t];
     if (first.status != Status::detected || !second) continue;
-    const double apart = std::abs(*second - *first.value) /
-                         std::hypot(fit.second_opinion->sd[t], first.relative_sd * *first.value);
+    const double apart =
+        std::abs(*second - *first.value) / std::hypot(fit.second_opinion->sd[t], first.relative_sd * *first.value);
     const double ratio = std::max(*second, *first.value) / std::min(*second, *first.value);
     if (apart > 3 && ratio > kRelevant)
-      doubt(fit,
-            t,
-            *second,
+      doubt(fit, t, *second,
             fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
                         "Allan curve gives {} instead of {}.",
-                        long_name(static_cast<Term>(t)),
-                        brief_text(*second),
-                        brief_text(*first.value)));
+                        long_name(static_cast<Term>(t)), brief_text(*second), brief_text(*first.value)));
   }
 }
 

@@ -26,18 +26,13 @@ double normal_deviate(double energy_ratio, double dof) {
   return tail > 1e-300 ? -std::sqrt(2.0) * boost::math::erfc_inv(2 * tail) : -kFar;
 }
 
-std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins,
-                                      const Mixture& theta,
-                                      double rate_hz) {
+std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins, const Mixture& theta, double rate_hz) {
   std::vector<FitResidual> residuals;
   residuals.reserve(bins.size());
   for (const PowerBin& bin : bins) {
     double model = 0;
     for (std::size_t i = 0; i < kTerms; ++i) model += theta[i] > 0 ? theta[i] * bin.unit[i] : 0;
-    residuals.push_back({bin.frequency_hz,
-                         bin.energy / rate_hz,
-                         model / rate_hz,
-                         bin.dof,
+    residuals.push_back({bin.frequency_hz, bin.energy / rate_hz, model / rate_hz, bin.dof,
                          normal_deviate(bin.energy / model, bin.dof)});
   }
   return residuals;

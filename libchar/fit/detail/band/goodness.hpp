@@ -16,9 +16,7 @@ namespace libchar {
 /// every nu.
 double normal_deviate(double energy_ratio, double dof);
 
-std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins,
-                                      const Mixture& theta,
-                                      double rate_hz);
+std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins, const Mixture& theta, double rate_hz);
 
 /// Sum of z^2 over the residuals against chi-square with (bins - fitted) degrees of freedom.
 Goodness goodness_of(std::span<const FitResidual> residuals, std::size_t fitted);

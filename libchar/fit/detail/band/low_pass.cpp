@@ -21,17 +21,13 @@ namespace {
 
 class LowPassResiduals final : public ceres::CostFunction {
  public:
-  LowPassResiduals(const std::vector<PowerBin>& bins,
-                   double rate_hz,
-                   std::vector<std::size_t> terms)
+  LowPassResiduals(const std::vector<PowerBin>& bins, double rate_hz, std::vector<std::size_t> terms)
       : bins_(bins), rate_hz_(rate_hz), terms_(std::move(terms)) {
     set_num_residuals(static_cast<int>(bins.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size() + 1));
   }
 
-  bool Evaluate(double const* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const std::size_t p = terms_.size();
     const double corner_hz = std::exp(parameters[0][p]);
     for (std::size_t j = 0; j < bins_.size(); ++j) {
@@ -60,20 +56,14 @@ class LowPassResiduals final : public ceres::CostFunction {
   std::vector<std::size_t> terms_;
 };
 
-ScoringResult scored(const std::vector<PowerBin>& bins,
-                     double corner_hz,
-                     double rate_hz,
-                     const TermSet& terms) {
+ScoringResult scored(const std::vector<PowerBin>& bins, double corner_hz, double rate_hz, const TermSet& terms) {
   return score(bin_problem(low_passed(bins, corner_hz, rate_hz)), terms, nullptr, 1e-8);
 }
 
 /// ln corner of least deviance: coarse scan of 24 points, then golden section.
 double best_log_corner(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms) {
-  const auto cost = [&](double log_corner) {
-    return scored(bins, std::exp(log_corner), rate_hz, terms).half_deviance;
-  };
-  const double first = std::log(1e-3 * rate_hz), last = std::log(2 * rate_hz),
-               step = (last - first) / 23;
+  const auto cost = [&](double log_corner) { return scored(bins, std::exp(log_corner), rate_hz, terms).half_deviance; };
+  const double first = std::log(1e-3 * rate_hz), last = std::log(2 * rate_hz), step = (last - first) / 23;
   double best = first, least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 24; ++i) {
     const double value = cost(first + step * i);
@@ -108,8 +98,7 @@ LowPassGain low_pass_gain(double frequency_hz, double corner_hz, double rate_hz)
   const double exponent = 2 * std::numbers::pi * corner_hz / rate_hz;
   const double a = std::exp(-exponent), pass = -std::expm1(-exponent);
   const double half_sine = std::sin(std::numbers::pi * frequency_hz / rate_hz);
-  const double below =
-      pass * pass + 4 * a * half_sine * half_sine;  // 1 - 2 a cos w + a^2 without cancellation
+  const double below = pass * pass + 4 * a * half_sine * half_sine;  // 1 - 2 a cos w + a^2 without cancellation
   // d ln gain/da = -2/(1-a) - (2a - 2 cos w)/below, da/dln corner = -exponent a
   const double cosine = 1 - 2 * half_sine * half_sine;
   return {pass * pass / below, exponent * a * (2 / pass + 2 * (a - cosine) / below)};
@@ -136,8 +125,7 @@ std::vector<PowerBin> low_passed(std::vector<PowerBin> bins, double corner_hz, d
   return bins;
 }
 
-std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
-                                       double rate_hz,
+std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins, double rate_hz,
                                        const std::array<bool, kTerms>& offered) {
   const SilentGlog silent;
   const double log_corner = best_log_corner(bins, rate_hz, offered);
@@ -165,11 +153,9 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
   ceres::Covariance covariance(exact_covariance_options());
   const std::vector<std::pair<const double*, const double*>> wanted = {{x.data(), x.data()}};
   std::vector<double> block(x.size() * x.size());
-  if (!covariance.Compute(wanted, &problem) ||
-      !covariance.GetCovarianceBlock(x.data(), x.data(), block.data()))
+  if (!covariance.Compute(wanted, &problem) || !covariance.GetCovarianceBlock(x.data(), x.data(), block.data()))
     return std::nullopt;
-  for (std::size_t i = 0; i < terms.size(); ++i)
-    fit.log_theta_sd[terms[i]] = std::sqrt(block[i * (x.size() + 1)]);
+  for (std::size_t i = 0; i < terms.size(); ++i) fit.log_theta_sd[terms[i]] = std::sqrt(block[i * (x.size() + 1)]);
   fit.log_sd = std::sqrt(block.back());
   return fit;
 }

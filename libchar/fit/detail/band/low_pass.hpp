@@ -29,8 +29,7 @@ struct LowPassFit {
   Mixture theta{};
   Mixture log_theta_sd{};  ///< joint covariance, positive terms
 };
-std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins,
-                                       double rate_hz,
+std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins, double rate_hz,
                                        const std::array<bool, kTerms>& terms);
 
 }  // namespace libchar

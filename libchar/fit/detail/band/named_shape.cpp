@@ -44,21 +44,16 @@ struct Unknowns {
 
 Unknowns unknowns(const NamedShape& shape, double rate_hz) {
   return {shape.family,
-          {std::log(square_of_corner(shape.pole_hz, rate_hz)),
-           std::log(shape.damping),
-           shape.zero_hz > 0 ? std::log(square_of_corner(shape.zero_hz, rate_hz)) : 0,
-           shape.tilt}};
+          {std::log(square_of_corner(shape.pole_hz, rate_hz)), std::log(shape.damping),
+           shape.zero_hz > 0 ? std::log(square_of_corner(shape.zero_hz, rate_hz)) : 0, shape.tilt}};
 }
 NamedShape shape_of(const Unknowns& u, double rate_hz) {
   NamedShape shape;
   shape.family = u.family;
   shape.pole_hz = corner_of_square(std::exp(u.x[0]), rate_hz);
-  const bool pair =
-      u.family == NamedShape::Family::second_order || u.family == NamedShape::Family::loop;
+  const bool pair = u.family == NamedShape::Family::second_order || u.family == NamedShape::Family::loop;
   shape.damping = pair ? std::exp(u.x[1]) : 1;
-  shape.zero_hz = u.family == NamedShape::Family::second_order
-                      ? 0
-                      : corner_of_square(std::exp(u.x[2]), rate_hz);
+  shape.zero_hz = u.family == NamedShape::Family::second_order ? 0 : corner_of_square(std::exp(u.x[2]), rate_hz);
   return shape;
 }
 
@@ -133,9 +128,7 @@ class Gain {
   double pole_, damped_, zero_, tilt_;
 };
 
-LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) {
-  return Gain(u)(nodes_of(bin, rate_hz));
-}
+LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) { return Gain(u)(nodes_of(bin, rate_hz)); }
 
 /// Which of the three unknowns a family has.
 std::vector<std::size_t> free_of(NamedShape::Family family) {
@@ -152,9 +145,7 @@ class Fit {
     for (const PowerBin& bin : inside) nodes_.push_back(nodes_of(bin, rate_hz));
   }
 
-  double deviance(const Unknowns& u) const {
-    return score(problem(u), terms_, nullptr, kCoarse).half_deviance;
-  }
+  double deviance(const Unknowns& u) const { return score(problem(u), terms_, nullptr, kCoarse).half_deviance; }
 
   /// A straight line in the unknowns, to its maximum; false where the likelihood does not rise.
   bool step(Unknowns& u, double& value) const {
@@ -178,8 +169,7 @@ class Fit {
     double length = std::min(1.0, kLongest / std::max(change.cwiseAbs().maxCoeff(), 1e-300));
     for (int half = 0; half < kHalvings; ++half, length /= 2) {
       Unknowns next = u;
-      for (std::size_t k = 0; k < free.size(); ++k)
-        next.x[free[k]] += length * change[static_cast<Eigen::Index>(k)];
+      for (std::size_t k = 0; k < free.size(); ++k) next.x[free[k]] += length * change[static_cast<Eigen::Index>(k)];
       const double there = deviance(next);
       if (!(there < value)) continue;
       const bool goes_on = value - there > kEnough;
@@ -208,19 +198,16 @@ class Fit {
 };
 
 /// Corners a factor of two apart, two dampings, zeros on both sides of the pole.
-std::vector<Unknowns> grid(NamedShape::Family family,
-                           const std::vector<PowerBin>& inside,
-                           double rate_hz) {
+std::vector<Unknowns> grid(NamedShape::Family family, const std::vector<PowerBin>& inside, double rate_hz) {
   constexpr double kWidest = 128, kApart = 4;
   std::vector<Unknowns> out;
   double top = 0;
   for (const PowerBin& bin : inside) top = std::max(top, square_at(bin.high_hz, rate_hz));
   const std::vector<double> dampings =
       family == NamedShape::Family::shelf ? std::vector<double>{1} : std::vector<double>{0.4, 1};
-  const std::vector<double> zeros =
-      family == NamedShape::Family::second_order ? std::vector<double>{1}
-      : family == NamedShape::Family::shelf      ? std::vector<double>{0.6, 1.7}
-                                                 : std::vector<double>{0.2, 2};
+  const std::vector<double> zeros = family == NamedShape::Family::second_order ? std::vector<double>{1}
+                                    : family == NamedShape::Family::shelf      ? std::vector<double>{0.6, 1.7}
+                                                                               : std::vector<double>{0.2, 2};
   for (double square = top; square > top / (kWidest * kWidest); square /= kApart)
     for (const double damping : dampings)
       for (const double zero : zeros)
@@ -239,9 +226,7 @@ double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_
   return log_gain_of(unknowns(shape, rate_hz), bin, rate_hz).value;
 }
 
-std::array<double, 4> named_log_slopes(const NamedShape& shape,
-                                       const PowerBin& bin,
-                                       double rate_hz) {
+std::array<double, 4> named_log_slopes(const NamedShape& shape, const PowerBin& bin, double rate_hz) {
   const LogGain at = log_gain_of(unknowns(shape, rate_hz), bin, rate_hz);
   std::array<double, 4> out{};
   const std::vector<std::size_t> free = free_of(shape.family);
@@ -249,11 +234,8 @@ std::array<double, 4> named_log_slopes(const NamedShape& shape,
   return out;
 }
 
-std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
-                                          double rate_hz,
-                                          const TermSet& terms,
-                                          NamedShape::Family family,
-                                          const std::optional<NamedShape>& start,
+std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms,
+                                          NamedShape::Family family, const std::optional<NamedShape>& start,
                                           double hopeless) {
   const int steps = start ? 4 : 12;  // the next, narrower band goes on from here
   const Fit fit(inside, rate_hz, terms);
@@ -271,8 +253,7 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
   for (int i = 0; i < steps && fit.step(best, value); ++i) {
   }
   const NamedShape shape = shape_of(best, rate_hz);
-  if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) ||
-      !std::isfinite(shape.zero_hz))
+  if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) || !std::isfinite(shape.zero_hz))
     return std::nullopt;
   return shape;
 }
@@ -290,12 +271,10 @@ std::string named_shape_text(const NamedShape& shape) {
   if (shape.family == NamedShape::Family::high_pass)
     return fmt::format("a high-pass at {} Hz", brief_text(shape.pole_hz, 3));
   if (shape.family == NamedShape::Family::shelf)
-    return fmt::format("a shelf, {} times between {} Hz and {} Hz",
-                       brief_text(shape.pole_hz / shape.zero_hz, 3),
+    return fmt::format("a shelf, {} times between {} Hz and {} Hz", brief_text(shape.pole_hz / shape.zero_hz, 3),
                        brief_text(std::min(shape.pole_hz, shape.zero_hz), 3),
                        brief_text(std::max(shape.pole_hz, shape.zero_hz), 3));
-  std::string text = fmt::format("a second-order low-pass at {} Hz, damping {}",
-                                 brief_text(shape.pole_hz, 3),
+  std::string text = fmt::format("a second-order low-pass at {} Hz, damping {}", brief_text(shape.pole_hz, 3),
                                  brief_text(shape.damping, 2));
   if (shape.family == NamedShape::Family::loop)
     text += fmt::format(", with a zero at {} Hz", brief_text(shape.zero_hz, 3));

@@ -31,17 +31,12 @@ std::size_t unknowns_of(NamedShape::Family family);
 /// ln |H|², a mean over the bin.
 double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_hz);
 /// Its derivatives by the unknowns.
-std::array<double, 4> named_log_slopes(const NamedShape& shape,
-                                       const PowerBin& bin,
-                                       double rate_hz);
+std::array<double, 4> named_log_slopes(const NamedShape& shape, const PowerBin& bin, double rate_hz);
 
 /// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no
 /// start, none where even that has a half deviance above `hopeless`.
-std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside,
-                                          double rate_hz,
-                                          const TermSet& terms,
-                                          NamedShape::Family family,
-                                          const std::optional<NamedShape>& start = {},
+std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms,
+                                          NamedShape::Family family, const std::optional<NamedShape>& start = {},
                                           double hopeless = 1e300);
 
 /// Corners of high-passes to start from, an octave apart.

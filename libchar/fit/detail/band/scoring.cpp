@@ -21,9 +21,7 @@ struct TermEquations {
   Mixture right{};
 };
 
-TermEquations equations_of(const BinProblem& problem,
-                           const TermSet& free,
-                           const Eigen::ArrayXd& weight,
+TermEquations equations_of(const BinProblem& problem, const TermSet& free, const Eigen::ArrayXd& weight,
                            const Eigen::ArrayXd& target) {
   TermEquations out;
   for (std::size_t a = 0; a < kTerms; ++a) {
@@ -47,19 +45,14 @@ Mixture joined(const Mixture& fixed, const Mixture& solved, const TermSet& free)
 
 ModelPoint between(const ModelPoint& a, const ModelPoint& b, double share) {
   ModelPoint at;
-  for (std::size_t i = 0; i < kTerms; ++i)
-    at.theta[i] = a.theta[i] + share * (b.theta[i] - a.theta[i]);
-  for (std::size_t p = 0; p < at.shape.size(); ++p)
-    at.shape[p] = a.shape[p] + share * (b.shape[p] - a.shape[p]);
+  for (std::size_t i = 0; i < kTerms; ++i) at.theta[i] = a.theta[i] + share * (b.theta[i] - a.theta[i]);
+  for (std::size_t p = 0; p < at.shape.size(); ++p) at.shape[p] = a.shape[p] + share * (b.shape[p] - a.shape[p]);
   return at;
 }
 
 // A step with a shape, in units of the model: rows are relative errors with weight nu/2, the shape's columns are taken out of the
 // terms' columns (they are orthonormal), and come back when the terms are known.
-ModelPoint shaped_step(const BinProblem& problem,
-                       const TermSet& free,
-                       const Mixture& fixed,
-                       const ModelPoint& now) {
+ModelPoint shaped_step(const BinProblem& problem, const TermSet& free, const Mixture& fixed, const ModelPoint& now) {
   const Eigen::ArrayXd mixture = mixture_of(problem, now.theta);
   const Eigen::ArrayXd gain = shape_of(problem, now.shape);
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
@@ -100,15 +93,13 @@ ModelPoint slow_start(const BinProblem& problem, const TermSet& free, const Mixt
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
   const Eigen::VectorXd log_gain =
       whitened_shape(problem).transpose() * (root * (problem.energy / mixture).log()).matrix();
-  for (Eigen::Index p = 0; p < problem.shapes(); ++p)
-    at.shape[static_cast<std::size_t>(p)] = log_gain[p];
+  for (Eigen::Index p = 0; p < problem.shapes(); ++p) at.shape[static_cast<std::size_t>(p)] = log_gain[p];
   return at;
 }
 
 class Scoring {
  public:
-  Scoring(const BinProblem& problem, const TermSet& free, const ModelPoint* start)
-      : problem_(problem), free_(free) {
+  Scoring(const BinProblem& problem, const TermSet& free, const ModelPoint* start) : problem_(problem), free_(free) {
     if (start == nullptr) return;
     for (std::size_t i = 0; i < kTerms; ++i) fixed_[i] = free[i] ? 0 : start->theta[i];
   }
@@ -140,10 +131,7 @@ class Scoring {
 
 }  // namespace
 
-ScoringResult score(const BinProblem& problem,
-                    const TermSet& free,
-                    const ModelPoint* start,
-                    double tolerance) {
+ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start, double tolerance) {
   const Scoring scoring(problem, free, start);
   ScoringResult result;
   result.at = start != nullptr ? *start : scoring.first_guess();

@@ -12,9 +12,7 @@ struct ScoringResult {
   int iterations = 0;
   bool converged = false;
 };
-ScoringResult score(const BinProblem& problem,
-                    const TermSet& free,
-                    const ModelPoint* start = nullptr,
+ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start = nullptr,
                     double tolerance = 1e-10);
 
 }  // namespace libchar

@@ -34,8 +34,7 @@ struct Order {
 /// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so
 /// as quantization noise does.
 constexpr std::array<Order, 3> kOrders = {{{1, 0.75, 0.9}, {2, 0.15, 0.07}, {4, 0.1, 0.03}}};
-constexpr double kTaken =
-    1;  ///< standard deviations from which on the shape is a part of the model
+constexpr double kTaken = 1;  ///< standard deviations from which on the shape is a part of the model
 
 double mean_sine_power(const PowerBin& bin, double rate_hz, int power) {
   constexpr int kNodes = 5;
@@ -85,12 +84,8 @@ struct Slopes {
   Eigen::VectorXd taken;     ///< sqrt(nu/2) times the log gain that is in the model
 };
 
-Slopes slopes_of(const std::vector<PowerBin>& inside,
-                 const Band& band,
-                 const BinProblem& problem,
-                 const Mixture& theta,
-                 const TermSet& terms,
-                 double rate_hz) {
+Slopes slopes_of(const std::vector<PowerBin>& inside, const Band& band, const BinProblem& problem, const Mixture& theta,
+                 const TermSet& terms, double rate_hz) {
   Slopes out;
   for (std::size_t i = 0; i < kTerms; ++i)
     if (terms[i] || theta[i] > 0) out.terms.push_back(i);
@@ -102,8 +97,7 @@ Slopes slopes_of(const std::vector<PowerBin>& inside,
     const std::size_t term = out.terms[static_cast<std::size_t>(i)];
     // Of a term at zero the slope by theta itself: its scale does not matter here.
     const double scale = theta[term] > 0 ? theta[term] : 1;
-    out.columns.col(i) =
-        (out.root * scale * problem.unit.col(static_cast<Eigen::Index>(term)) / model).matrix();
+    out.columns.col(i) = (out.root * scale * problem.unit.col(static_cast<Eigen::Index>(term)) / model).matrix();
   }
   out.residual = (out.root * (problem.energy / model - 1)).matrix();
   out.taken.resize(problem.size());
@@ -111,8 +105,7 @@ Slopes slopes_of(const std::vector<PowerBin>& inside,
     const PowerBin& bin = inside[static_cast<std::size_t>(j)];
     out.taken[j] = out.root[j] * small_shape_log_gain(band.small, bin, rate_hz);
     if (band.low_pass)
-      out.columns(j, count) =
-          out.root[j] * low_pass_gain(bin, band.low_pass->corner_hz, rate_hz).log_slope;
+      out.columns(j, count) = out.root[j] * low_pass_gain(bin, band.low_pass->corner_hz, rate_hz).log_slope;
   }
   return out;
 }
@@ -141,10 +134,7 @@ Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Order
 
 using Answers = std::array<Answer, kOrders.size()>;
 
-Answers answers_of(const Slopes& slopes,
-                   const std::vector<PowerBin>& inside,
-                   const Band& band,
-                   double rate_hz) {
+Answers answers_of(const Slopes& slopes, const std::vector<PowerBin>& inside, const Band& band, double rate_hz) {
   Answers out;
   double total = 0;
   for (std::size_t f = 0; f < kOrders.size(); ++f) {
@@ -152,9 +142,8 @@ Answers answers_of(const Slopes& slopes,
     if (kOrders[f].power == 1 && (band.quantized || band.low_pass)) continue;
     Eigen::VectorXd shape(slopes.root.size());
     for (Eigen::Index j = 0; j < shape.size(); ++j)
-      shape[j] = slopes.root[j] * small_shape_log_gain({kOrders[f].power, 1, false},
-                                                       inside[static_cast<std::size_t>(j)],
-                                                       rate_hz);
+      shape[j] = slopes.root[j] *
+                 small_shape_log_gain({kOrders[f].power, 1, false}, inside[static_cast<std::size_t>(j)], rate_hz);
     out[f] = answer_of(slopes, shape, kOrders[f]);
     total += out[f].weight;
   }
@@ -182,10 +171,7 @@ double small_shape_log_gain(const SmallShape& shape, const PowerBin& bin, double
   return shape.amplitude == 0 ? 0 : shape.amplitude * mean_sine_power(bin, rate_hz, shape.power);
 }
 
-double take_small_shape(const std::vector<PowerBin>& bins,
-                        double rate_hz,
-                        const TermSet& terms,
-                        Band& band) {
+double take_small_shape(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, Band& band) {
   constexpr int kRounds = 2;
   double taken = 0;
   const std::vector<PowerBin> inside = inside_bins(bins, band);
@@ -194,14 +180,11 @@ double take_small_shape(const std::vector<PowerBin>& bins,
     const ScoringResult now = score(problem, terms);
     const Slopes slopes = slopes_of(inside, band, problem, now.at.theta, terms, rate_hz);
     const Answers answers = answers_of(slopes, inside, band, rate_hz);
-    const auto best =
-        std::max_element(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) {
-          return a.weight < b.weight;
-        });
+    const auto best = std::max_element(answers.begin(), answers.end(),
+                                       [](const Answer& a, const Answer& b) { return a.weight < b.weight; });
     if (!(best->weight > 0) || !(std::abs(best->posterior.mean) > kTaken)) return taken;
     Band with = band;
-    with.small = {kOrders[static_cast<std::size_t>(best - answers.begin())].power,
-                  best->posterior.mean * best->sd,
+    with.small = {kOrders[static_cast<std::size_t>(best - answers.begin())].power, best->posterior.mean * best->sd,
                   false};
     if (with.low_pass) {
       with.low_pass.reset();
@@ -217,13 +200,9 @@ double take_small_shape(const std::vector<PowerBin>& bins,
   return taken;
 }
 
-void average_over_small_shapes(const std::vector<PowerBin>& bins,
-                               const Band& band,
-                               const BinProblem& problem,
-                               const ModelPoint& best,
-                               NoiseFit& fit) {
-  if (problem.shapes() > 0 || problem.size() == 0 || count_of(only_positive(best.theta)) == 0)
-    return;
+void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
+                               const ModelPoint& best, NoiseFit& fit) {
+  if (problem.shapes() > 0 || problem.size() == 0 || count_of(only_positive(best.theta)) == 0) return;
   const std::vector<PowerBin> inside = inside_bins(bins, band);
   const Slopes slopes = slopes_of(inside, band, problem, best.theta, {}, fit.rate_hz);
   const auto n = static_cast<Eigen::Index>(slopes.terms.size());
@@ -234,15 +213,13 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins,
   for (const Answer& answer : answers_of(slopes, inside, band, fit.rate_hz)) {
     if (!(answer.weight > 0)) continue;
     mean += answer.weight * answer.posterior.mean * answer.sd * answer.slope;
-    more += answer.weight * answer.posterior.square * answer.sd * answer.sd * answer.slope *
-            answer.slope.transpose();
+    more += answer.weight * answer.posterior.square * answer.sd * answer.sd * answer.slope * answer.slope.transpose();
   }
   more -= mean * mean.transpose();
   shift += mean;
   for (Eigen::Index a = 0; a < n; ++a) {
     const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
-    for (Eigen::Index b = 0; b < n; ++b)
-      fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
+    for (Eigen::Index b = 0; b < n; ++b) fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
     fit.theta[i] *= std::exp(shift[a]);
     if (fit.term[i].value) move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);
   }

@@ -22,18 +22,12 @@ double small_shape_log_gain(const SmallShape& shape, const PowerBin& bin, double
 
 /// Puts the most probable one beside all `terms` into a band, where it is larger than its standard
 /// deviation. Returns how many of them it is; 0: none was put there.
-double take_small_shape(const std::vector<PowerBin>& bins,
-                        double rate_hz,
-                        const TermSet& terms,
-                        Band& band);
+double take_small_shape(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, Band& band);
 
 /// Averages the coefficients of `fit`, with their covariance and intervals, over small shapes of
 /// the top of the spectrum. `problem` and `best`: the likelihood of the bins inside the band, the
 /// band's own small shape in it, and its maximum.
-void average_over_small_shapes(const std::vector<PowerBin>& bins,
-                               const Band& band,
-                               const BinProblem& problem,
-                               const ModelPoint& best,
-                               NoiseFit& fit);
+void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
+                               const ModelPoint& best, NoiseFit& fit);
 
 }  // namespace libchar

@@ -45,8 +45,7 @@ class Submodels {
     set[term] = false;
     if (count_of(set) == 0) return std::numeric_limits<double>::infinity();
     const double without = at(set).half_deviance;
-    return std::isfinite(without) ? std::max(0.0, 2 * (without - with))
-                                  : std::numeric_limits<double>::infinity();
+    return std::isfinite(without) ? std::max(0.0, 2 * (without - with)) : std::numeric_limits<double>::infinity();
   }
 
   int iterations = 0;
@@ -65,8 +64,7 @@ bool cannot_tell(Submodels& models, const TermSet& set, double threshold) {
   neither[kFlicker] = neither[kWalk] = false;
   if (count_of(neither) == 0) return false;
   const double both = 2 * (models.at(neither).half_deviance - models.at(set).half_deviance);
-  return models.ratio(set, kFlicker) < threshold && models.ratio(set, kWalk) < threshold &&
-         both > threshold;
+  return models.ratio(set, kFlicker) < threshold && models.ratio(set, kWalk) < threshold && both > threshold;
 }
 
 }  // namespace
@@ -106,24 +104,17 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
 
 namespace {
 
-constexpr double kUndeterminedAbove =
-    0.30;  ///< bound above which a term counts as not determined (docs/theory/fit.md)
+constexpr double kUndeterminedAbove = 0.30;  ///< bound above which a term counts as not determined (docs/theory/fit.md)
 /// Relative sd below which a dropped term moves no interval (white noise).
 constexpr double kWellKnown = 0.01;
 
-double sd_of_theta(const BinProblem& problem,
-                   const ModelPoint& at,
-                   TermSet terms,
-                   std::size_t term) {
+double sd_of_theta(const BinProblem& problem, const ModelPoint& at, TermSet terms, std::size_t term) {
   terms[term] = true;
   const TermMatrix covariance = inverse_of(fisher_information(problem, at, terms), terms);
   return std::sqrt(covariance(static_cast<Eigen::Index>(term), static_cast<Eigen::Index>(term)));
 }
 
-Interval profile_interval(const BinProblem& problem,
-                          const TermSet& terms,
-                          const Optimum& best,
-                          std::size_t term,
+Interval profile_interval(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term,
                           double lower_rise) {
   const double sd = sd_of_theta(problem, best.at, terms, term);
   return {std::sqrt(profile_lower(problem, terms, best, term, sd, lower_rise)),
@@ -138,9 +129,7 @@ struct WithDropped {
   bool any = false;
 };
 
-WithDropped with_dropped(const BinProblem& problem,
-                         const Decision& decision,
-                         const Optimum& reported,
+WithDropped with_dropped(const BinProblem& problem, const Decision& decision, const Optimum& reported,
                          const TermSet& offered) {
   WithDropped all;
   all.terms = offered;
@@ -174,8 +163,7 @@ void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficien
     const double sd = std::sqrt(covariance(k, k));
     const Eigen::ArrayXd weight =
         problem.dof / 2 * shape / model * (problem.unit.matrix() * covariance.col(k)).array() / sd;
-    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(k).dot(gradient),
-                                  sd,
+    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(k).dot(gradient), sd,
                                   (8 * weight.cube() / problem.dof.square()).sum()};
   }
 }
@@ -189,10 +177,7 @@ double lower_rise(double ratio, double relative_sd, double threshold) {
 }
 
 /// Limits of a term that has no value: it is put back into the model for that.
-void report_limits(const BinProblem& problem,
-                   TermSet terms,
-                   const Optimum& reported,
-                   std::size_t i,
+void report_limits(const BinProblem& problem, TermSet terms, const Optimum& reported, std::size_t i,
                    Coefficient& term) {
   terms[i] = true;
   const ScoringResult with = score(problem, terms);
@@ -207,8 +192,8 @@ void report_limits(const BinProblem& problem,
 }  // namespace
 
 std::string long_name(Term term) {
-  static constexpr std::array<std::string_view, kTerms> names = {
-      "white noise", "bias instability", "random walk", "quantization noise", "rate ramp"};
+  static constexpr std::array<std::string_view, kTerms> names = {"white noise", "bias instability", "random walk",
+                                                                 "quantization noise", "rate ramp"};
   const auto i = static_cast<std::size_t>(term);
   return fmt::format("{} {}", names[i], kTermNames[i].letter);
 }
@@ -224,17 +209,13 @@ void report_undetermined(Term which, NoiseFit& fit) {
   term.ci95 = {kNotKnown, kNotKnown};
   term.upper95 = kNotKnown;
   fit.findings.push_back(finding(
-      "undetermined",
-      fmt::format(
-          "The record does not determine {}: the terms that were offered describe it nowhere.",
-          long_name(which))));
+      "undetermined", fmt::format("The record does not determine {}: the terms that were offered describe it nowhere.",
+                                  long_name(which))));
 }
 
 }  // namespace
 
-ModelPoint report_coefficients(const BinProblem& problem,
-                               const Decision& decision,
-                               const FitOptions& options,
+ModelPoint report_coefficients(const BinProblem& problem, const Decision& decision, const FitOptions& options,
                                NoiseFit& fit) {
   const Polished polished = polish(problem, decision.at);
   fit.theta = polished.at.theta;
@@ -244,8 +225,7 @@ ModelPoint report_coefficients(const BinProblem& problem,
   const WithDropped all = with_dropped(problem, decision, best, options.terms);
   for (std::size_t i = 0; i < kTerms; ++i) {
     for (std::size_t j = 0; j < kTerms; ++j) {
-      fit.covariance[i][j] =
-          polished.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      fit.covariance[i][j] = polished.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
   }
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -253,9 +233,8 @@ ModelPoint report_coefficients(const BinProblem& problem,
     term = {};
     if (!options.terms[i]) continue;
     term.likelihood_ratio = decision.likelihood_ratio[i];
-    const bool ambiguous =
-        decision.flicker_or_walk &&
-        (i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk));
+    const bool ambiguous = decision.flicker_or_walk &&
+                           (i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk));
     if (!(fit.theta[i] > 0)) {
       term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
       report_limits(problem, decision.kept, best, i, term);
@@ -273,8 +252,7 @@ ModelPoint report_coefficients(const BinProblem& problem,
     term.ci95 = {*term.value / spread, *term.value * spread};
     term.profile = term.relative_sd > options.profile_above;
     const double rise =
-        ambiguous ? kTwoSided95
-                  : lower_rise(decision.ratio_in_all[i], term.relative_sd, options.threshold);
+        ambiguous ? kTwoSided95 : lower_rise(decision.ratio_in_all[i], term.relative_sd, options.threshold);
     if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i, rise);
     if (all.any && term.relative_sd > kWellKnown && all.best.at.theta[i] > 0) {
       const Interval wide = profile_interval(problem, all.terms, all.best, i, rise);
@@ -284,10 +262,10 @@ ModelPoint report_coefficients(const BinProblem& problem,
   }
   report_in_all(problem, all, fit.term);
   if (decision.flicker_or_walk) {
-    fit.findings.push_back(finding(
-        "flicker_or_walk",
-        "The record shows slow noise but cannot tell bias instability from random walk: each could "
-        "explain it alone. A longer record can tell."));
+    fit.findings.push_back(
+        finding("flicker_or_walk",
+                "The record shows slow noise but cannot tell bias instability from random walk: each could "
+                "explain it alone. A longer record can tell."));
   }
   return best.at;
 }
@@ -298,8 +276,7 @@ void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {
     if (!term.value || !(log_theta_sd[i] / 2 > term.relative_sd)) continue;
     term.relative_sd = log_theta_sd[i] / 2;
     const double spread = std::exp(kNormal95 * term.relative_sd);
-    term.ci95 = {std::min(term.ci95.low, *term.value / spread),
-                 std::max(term.ci95.high, *term.value * spread)};
+    term.ci95 = {std::min(term.ci95.low, *term.value / spread), std::max(term.ci95.high, *term.value * spread)};
     const double ratio = log_theta_sd[i] / std::sqrt(fit.covariance[i][i]);
     for (std::size_t j = 0; j < kTerms; ++j) {
       fit.covariance[i][j] *= ratio;
@@ -317,13 +294,10 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit) {
     if (*bound[i] > kUndeterminedAbove && term.status == Status::detected) {
       term.status = Status::undetermined;
       fit.findings.push_back(
-          finding("too_short",
-                  fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
-                              long_name(static_cast<Term>(i)),
-                              percent_text(*bound[i]))));
+          finding("too_short", fmt::format("The record is too short for {}: at best it is known to {} (1 sd).",
+                                           long_name(static_cast<Term>(i)), percent_text(*bound[i]))));
     }
-    term.seconds_for_10_percent =
-        seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);
+    term.seconds_for_10_percent = seconds_for(static_cast<Term>(i), 0.10, fit.theta, fit.rate_hz, fitted);
   }
 }
 

@@ -27,9 +27,7 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
 
 /// Fills term, theta, covariance, converged, iterations and the sentences about what cannot be told
 /// apart; gives back the maximum of the likelihood.
-ModelPoint report_coefficients(const BinProblem& problem,
-                               const Decision& decision,
-                               const FitOptions& options,
+ModelPoint report_coefficients(const BinProblem& problem, const Decision& decision, const FitOptions& options,
                                NoiseFit& fit);
 
 /// Bounds and record lengths for 10 % of every term with a value; marks those above 30 % as

@@ -33,9 +33,7 @@ Eigen::MatrixXd whitened(const CurveProblem& problem, const Eigen::MatrixXd& col
 }
 
 /// Columns A_i/mu of the free terms (others zero), whitened.
-Eigen::MatrixXd jacobian(const CurveProblem& problem,
-                         const Eigen::ArrayXd& model,
-                         const TermSet& free) {
+Eigen::MatrixXd jacobian(const CurveProblem& problem, const Eigen::ArrayXd& model, const TermSet& free) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(problem.size(), static_cast<int>(kTerms));
   for (std::size_t i = 0; i < kTerms; ++i) {
     const auto c = static_cast<Eigen::Index>(i);
@@ -49,14 +47,10 @@ double sum_of_squares(const CurveProblem& problem, const Mixture& theta) {
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-Mixture step_goal(const CurveProblem& problem,
-                  const TermSet& free,
-                  const Mixture& fixed,
-                  const Eigen::ArrayXd& model) {
+Mixture step_goal(const CurveProblem& problem, const TermSet& free, const Mixture& fixed, const Eigen::ArrayXd& model) {
   const Eigen::MatrixXd columns = jacobian(problem, model, free);
   const Eigen::ArrayXd held = model_of(problem, fixed);
-  const Eigen::MatrixXd target =
-      whitened(problem, ((1 + log_ratio(problem, model)) - held / model).matrix());
+  const Eigen::MatrixXd target = whitened(problem, ((1 + log_ratio(problem, model)) - held / model).matrix());
   const TermMatrix gram = columns.transpose() * columns;
   const Eigen::VectorXd product = columns.transpose() * target;
   Mixture right{};
@@ -68,17 +62,13 @@ Mixture step_goal(const CurveProblem& problem,
 
 /// The sum of squares is flat to rounding within 1e-8 of the minimum; the step itself goes on to
 /// shrink. Follows it while it does.
-void refine(const CurveProblem& problem,
-            const TermSet& free,
-            const Mixture& fixed,
-            CurveSolution& solution) {
+void refine(const CurveProblem& problem, const TermSet& free, const Mixture& fixed, CurveSolution& solution) {
   double before = 1e-4;
   for (int i = 0; i < 60; ++i) {
     const Mixture goal = step_goal(problem, free, fixed, model_of(problem, solution.theta));
     double moved = 0;
     for (std::size_t t = 0; t < kTerms; ++t) {
-      if (goal[t] != solution.theta[t])
-        moved = std::max(moved, std::abs(goal[t] / solution.theta[t] - 1));
+      if (goal[t] != solution.theta[t]) moved = std::max(moved, std::abs(goal[t] / solution.theta[t] - 1));
     }
     if (!(moved < before)) return;
     before = moved;
@@ -92,17 +82,14 @@ Eigen::ArrayXd curve_residuals(const CurveProblem& problem, const Mixture& theta
   return whitened(problem, log_ratio(problem, model_of(problem, theta)).matrix()).array();
 }
 
-TermMatrix curve_information(const CurveProblem& problem,
-                             const Mixture& theta,
-                             const TermSet& terms) {
+TermMatrix curve_information(const CurveProblem& problem, const Mixture& theta, const TermSet& terms) {
   const Eigen::MatrixXd columns = jacobian(problem, model_of(problem, theta), terms);
   return columns.transpose() * columns;
 }
 
 CurveSolution solve_curve(const CurveProblem& problem, const TermSet& free, const Mixture* start) {
   Mixture fixed{};
-  for (std::size_t i = 0; i < kTerms; ++i)
-    fixed[i] = start != nullptr && !free[i] ? (*start)[i] : 0;
+  for (std::size_t i = 0; i < kTerms; ++i) fixed[i] = start != nullptr && !free[i] ? (*start)[i] : 0;
   CurveSolution solution;
   // Linear weights 1/v^2 to begin with: mu = v makes ln(v/mu) vanish.
   solution.theta = start != nullptr ? *start : step_goal(problem, free, fixed, problem.value);
@@ -111,14 +98,12 @@ CurveSolution solve_curve(const CurveProblem& problem, const TermSet& free, cons
     solution.theta = step_goal(problem, free, fixed, problem.value);
     solution.sum_of_squares = sum_of_squares(problem, solution.theta);
   }
-  for (; solution.iterations < 300 && std::isfinite(solution.sum_of_squares);
-       ++solution.iterations) {
+  for (; solution.iterations < 300 && std::isfinite(solution.sum_of_squares); ++solution.iterations) {
     const Mixture goal = step_goal(problem, free, fixed, model_of(problem, solution.theta));
     double share = 1, value = 0;
     Mixture next{};
     for (;; share /= 2) {
-      for (std::size_t i = 0; i < kTerms; ++i)
-        next[i] = solution.theta[i] + share * (goal[i] - solution.theta[i]);
+      for (std::size_t i = 0; i < kTerms; ++i) next[i] = solution.theta[i] + share * (goal[i] - solution.theta[i]);
       value = sum_of_squares(problem, next);
       if (value <= solution.sum_of_squares || share < 1e-8) break;
     }
@@ -148,8 +133,7 @@ CurveSolution solve_curve_thoroughly(const CurveProblem& problem, const TermSet&
     }
     if (!inside) continue;
     CurveSolution found = solve_curve(problem, part);
-    if (std::isfinite(found.sum_of_squares) && part != free)
-      found = solve_curve(problem, free, &found.theta);
+    if (std::isfinite(found.sum_of_squares) && part != free) found = solve_curve(problem, free, &found.theta);
     if (found.sum_of_squares < best.sum_of_squares) best = found;
   }
   return best;

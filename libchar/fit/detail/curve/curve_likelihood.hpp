@@ -14,8 +14,7 @@ struct CurveProblem {
   /// L^-1 with cov(ln value) = s L L'; empty = identity (equal relative errors)
   Eigen::MatrixXd whitening;
   Eigen::ArrayXd weight;  ///< its diagonal, where it has nothing else
-  Eigen::ArrayXd
-      bias;  ///< of ln(value), where its expectation is not that of the curve; empty: none
+  Eigen::ArrayXd bias;    ///< of ln(value), where its expectation is not that of the curve; empty: none
   Eigen::Index size() const { return value.size(); }
 };
 
@@ -27,9 +26,7 @@ struct CurveSolution {
 };
 
 /// Minimum over theta >= 0 of the free terms, the others held at `start` (null: zero).
-CurveSolution solve_curve(const CurveProblem& problem,
-                          const TermSet& free,
-                          const Mixture* start = nullptr);
+CurveSolution solve_curve(const CurveProblem& problem, const TermSet& free, const Mixture* start = nullptr);
 
 /// Best over all subsets of the free terms: the objective is not convex, a subset's own start finds
 /// what the full set misses.
@@ -39,8 +36,6 @@ CurveSolution solve_curve_thoroughly(const CurveProblem& problem, const TermSet&
 Eigen::ArrayXd curve_residuals(const CurveProblem& problem, const Mixture& theta);
 
 /// J'J of the whitened residuals with respect to theta.
-TermMatrix curve_information(const CurveProblem& problem,
-                             const Mixture& theta,
-                             const TermSet& terms);
+TermMatrix curve_information(const CurveProblem& problem, const Mixture& theta, const TermSet& terms);
 
 }  // namespace libchar

@@ -43,8 +43,8 @@ class RecordScatter {
     const auto n = covariance.rows();
     Eigen::VectorXd level(n), wider(n);
     for (Eigen::Index j = 0; j < n; ++j)
-      level[j] = allan_variance(
-          noise, static_cast<double>(record_.points[static_cast<std::size_t>(j)].m), record_.dt_s);
+      level[j] =
+          allan_variance(noise, static_cast<double>(record_.points[static_cast<std::size_t>(j)].m), record_.dt_s);
     covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
     problem.bias.resize(n);
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -66,8 +66,7 @@ class RecordScatter {
     record.samples = static_cast<std::uint64_t>(std::llround(duration_s * rate_hz));
     for (const double tau_s : curve.x) {
       AllanPoint point;
-      point.m =
-          std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(tau_s * rate_hz)));
+      point.m = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(tau_s * rate_hz)));
       point.m = std::min(point.m, record.samples / 2);
       point.tau_s = static_cast<double>(point.m) / rate_hz;
       point.terms = record.samples - 2 * point.m + 1;
@@ -79,12 +78,8 @@ class RecordScatter {
   AllanCovariance covariance_;
 };
 
-CurveSolution solve_weighed(const RecordScatter& scatter,
-                            double reading,
-                            const TermSet& offered,
-                            int rounds,
-                            CurveSolution best,
-                            CurveProblem& problem) {
+CurveSolution solve_weighed(const RecordScatter& scatter, double reading, const TermSet& offered, int rounds,
+                            CurveSolution best, CurveProblem& problem) {
   for (int round = 0; round < rounds; ++round) {
     scatter.weigh(best.theta, reading, problem);
     best = solve_curve_thoroughly(problem, offered);
@@ -93,9 +88,7 @@ CurveSolution solve_weighed(const RecordScatter& scatter,
 }
 
 Eigen::ArrayXd weights_of_groups(const DigitisedCurve& curve) {
-  return Eigen::Map<const Eigen::ArrayXd>(curve.group.data(),
-                                          static_cast<Eigen::Index>(curve.group.size()))
-      .sqrt();
+  return Eigen::Map<const Eigen::ArrayXd>(curve.group.data(), static_cast<Eigen::Index>(curve.group.size())).sqrt();
 }
 
 /// Degrees of freedom of a chi-square whose logarithm has this variance.
@@ -110,22 +103,13 @@ double dof_of_log_variance(double variance) {
 
 }  // namespace
 
-CurveSolution weigh_by_duration(const DigitisedCurve& curve,
-                                double duration_s,
-                                double reading,
-                                const TermSet& offered,
+CurveSolution weigh_by_duration(const DigitisedCurve& curve, double duration_s, double reading, const TermSet& offered,
                                 CurveProblem& problem) {
-  return solve_weighed(RecordScatter(curve, duration_s),
-                       reading,
-                       offered,
-                       3,
-                       solve_curve_thoroughly(problem, offered),
+  return solve_weighed(RecordScatter(curve, duration_s), reading, offered, 3, solve_curve_thoroughly(problem, offered),
                        problem);
 }
 
-std::string weigh_evenly(const DigitisedCurve& curve,
-                         const TermSet& offered,
-                         CurveProblem& problem) {
+std::string weigh_evenly(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem) {
   if (!curve.group.empty()) problem.weight = weights_of_groups(curve);
   const double sum = solve_curve_thoroughly(problem, offered).sum_of_squares;
   return fmt::format(
@@ -135,15 +119,11 @@ std::string weigh_evenly(const DigitisedCurve& curve,
       percent_text(std::sqrt(sum / static_cast<double>(problem.size())) / 2));
 }
 
-std::string weigh_by_frequency(const DigitisedCurve& curve,
-                               const TermSet& offered,
-                               CurveProblem& problem) {
+std::string weigh_by_frequency(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem) {
   const auto n = problem.size();
-  const Eigen::ArrayXd together =
-      curve.group.empty() ? Eigen::ArrayXd::Ones(n) : weights_of_groups(curve);
+  const Eigen::ArrayXd together = curve.group.empty() ? Eigen::ArrayXd::Ones(n) : weights_of_groups(curve);
   Eigen::ArrayXd below(n);  // the highest frequency, ln
-  for (Eigen::Index j = 0; j < n; ++j)
-    below[j] = std::log(curve.x[static_cast<std::size_t>(j)] / curve.x.back());
+  for (Eigen::Index j = 0; j < n; ++j) below[j] = std::log(curve.x[static_cast<std::size_t>(j)] / curve.x.back());
   const double free = static_cast<double>(n) - std::min(3.0, static_cast<double>(n) / 2);
   const CurveProblem plain = problem;
   double most = -std::numeric_limits<double>::infinity(), highest_dof = 0, power = 0;
@@ -155,12 +135,9 @@ std::string weigh_by_frequency(const DigitisedCurve& curve,
       square = solve_curve_thoroughly(weighed, offered).sum_of_squares / free;
       weighed.bias.resize(n);
       for (Eigen::Index j = 0; j < n; ++j)
-        weighed.bias[j] =
-            chi_square_log_moments(dof_of_log_variance(square / std::pow(weighed.weight[j], 2)))
-                .mean;
+        weighed.bias[j] = chi_square_log_moments(dof_of_log_variance(square / std::pow(weighed.weight[j], 2))).mean;
     }
-    const double log_likelihood =
-        2 * weighed.weight.log().sum() - static_cast<double>(n) * std::log(square);
+    const double log_likelihood = 2 * weighed.weight.log().sum() - static_cast<double>(n) * std::log(square);
     if (!(log_likelihood > most)) continue;
     most = log_likelihood;
     problem = weighed;
@@ -172,9 +149,7 @@ std::string weigh_by_frequency(const DigitisedCurve& curve,
       "they are "
       "known",
       brief_text(highest_dof, 2),
-      power > 0 ? fmt::format(" at the highest frequency, with its power of {} below",
-                              brief_text(power, 2))
-                : "");
+      power > 0 ? fmt::format(" at the highest frequency, with its power of {} below", brief_text(power, 2)) : "");
 }
 
 }  // namespace libchar

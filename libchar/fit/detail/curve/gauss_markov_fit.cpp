@@ -26,13 +26,12 @@
 namespace libchar {
 namespace {
 
-constexpr double kNeeded = 10;    ///< of 2 lnL
-constexpr double kRival = 2.71;   ///< of 2 lnL
-constexpr double kSlowNoise = 4;  ///< of 2 lnL that flicker and walk together must be worth
-constexpr double kFewestSamples =
-    100;                          ///< of a correlation time: a faster process is a filter's affair
-constexpr double kLongest = 0.5;  ///< of the record
-constexpr double kWidth = 1.9;    ///< of the other band that is worth the process
+constexpr double kNeeded = 10;          ///< of 2 lnL
+constexpr double kRival = 2.71;         ///< of 2 lnL
+constexpr double kSlowNoise = 4;        ///< of 2 lnL that flicker and walk together must be worth
+constexpr double kFewestSamples = 100;  ///< of a correlation time: a faster process is a filter's affair
+constexpr double kLongest = 0.5;        ///< of the record
+constexpr double kWidth = 1.9;          ///< of the other band that is worth the process
 constexpr double kBadlyKnown = 0.30;
 constexpr auto kLent = static_cast<std::size_t>(Term::ramp);
 constexpr auto kColumn = static_cast<Eigen::Index>(Term::ramp);
@@ -50,8 +49,7 @@ class AtTau {
       if (band.inside[j] != 0) inside_.push_back(bins[j]);
     const std::vector<PowerBin> filtered = bins_of(bins, without, rate_hz);
     problem_ = band_problem(bins, without, rate_hz);
-    for (std::size_t j = 0; j < inside_.size(); ++j)
-      gain_.push_back(filtered[j].unit[0] / inside_[j].unit[0]);
+    for (std::size_t j = 0; j < inside_.size(); ++j) gain_.push_back(filtered[j].unit[0] / inside_[j].unit[0]);
   }
 
   const ScoringResult& operator()(double tau_s) {
@@ -101,13 +99,11 @@ AtTau::Spread AtTau::spread_at(const ModelPoint& at, double tau_s) {
   const auto n = static_cast<Eigen::Index>(in.size());
   Eigen::MatrixXd relative(problem_.size(), n + 1);
   for (Eigen::Index i = 0; i < n; ++i)
-    relative.col(i) =
-        (weight * at.theta[in[static_cast<std::size_t>(i)]] *
-         problem_.unit.col(static_cast<Eigen::Index>(in[static_cast<std::size_t>(i)])))
-            .matrix();
-  relative.col(n) = (weight * at.theta[kLent] *
-                     (column(tau_s * (1 + kStep)) - column(tau_s * (1 - kStep))) / (2 * kStep))
-                        .matrix();
+    relative.col(i) = (weight * at.theta[in[static_cast<std::size_t>(i)]] *
+                       problem_.unit.col(static_cast<Eigen::Index>(in[static_cast<std::size_t>(i)])))
+                          .matrix();
+  relative.col(n) =
+      (weight * at.theta[kLent] * (column(tau_s * (1 + kStep)) - column(tau_s * (1 - kStep))) / (2 * kStep)).matrix();
   if (problem_.shapes() > 0) relative = without_columns_of(whitened_shape(problem_), relative);
   const Eigen::MatrixXd information = relative.transpose() * relative;
   const Eigen::MatrixXd joint = cholesky_inverse(information);
@@ -134,8 +130,7 @@ Peak most_likely(AtTau& likelihood, double low_s, double high_s) {
   std::size_t at = 0;
   const auto look = [&](double log_tau) {
     const ScoringResult& result = likelihood(std::exp(log_tau));
-    if (result.half_deviance < best.half_deviance)
-      best = {std::exp(log_tau), result.half_deviance, result.at};
+    if (result.half_deviance < best.half_deviance) best = {std::exp(log_tau), result.half_deviance, result.at};
     return result.half_deviance;
   };
   const double first = std::log(low_s), last = std::log(high_s);
@@ -180,10 +175,7 @@ struct TauSearch {
   double without = 0;  ///< half deviance of the terms alone
 };
 
-TauSearch search_tau(const std::vector<PowerBin>& bins,
-                     const Band& band,
-                     double rate_hz,
-                     double duration_s,
+TauSearch search_tau(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, double duration_s,
                      const TermSet& terms) {
   AtTau likelihood(bins, band, rate_hz, terms);
   TauSearch out;
@@ -194,10 +186,7 @@ TauSearch search_tau(const std::vector<PowerBin>& bins,
 }
 
 /// A band that the terms with the process describe: found with the process at its most likely correlation time under any shape.
-std::optional<Band> other_band(const std::vector<PowerBin>& bins,
-                               const Band& band,
-                               double rate_hz,
-                               double duration_s,
+std::optional<Band> other_band(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, double duration_s,
                                const TermSet& terms) {
   BandOptions options;
   Band shaped = whole_band(bins, rate_hz);
@@ -211,11 +200,8 @@ std::optional<Band> other_band(const std::vector<PowerBin>& bins,
 
 }  // namespace
 
-std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>& bins,
-                                                     const Band& band,
-                                                     double rate_hz,
-                                                     double duration_s,
-                                                     const TermSet& terms) {
+std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>& bins, const Band& band,
+                                                     double rate_hz, double duration_s, const TermSet& terms) {
   const bool cut = !band.passes || band.top_hz < 0.99 * rate_hz / 2;
   if (terms[kLent] || duration_s * rate_hz * kLongest < 4 * kFewestSamples) return std::nullopt;
   if (!terms[0] || !terms[static_cast<std::size_t>(Term::walk)]) return std::nullopt;
@@ -244,10 +230,7 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
   return choice;
 }
 
-double likeliest_tau(const std::vector<PowerBin>& bins,
-                     const Band& band,
-                     double rate_hz,
-                     const Mixture& theta) {
+double likeliest_tau(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, const Mixture& theta) {
   AtTau likelihood(bins, band, rate_hz, only_positive(theta));
   return most_likely(likelihood, *band.tau_s / 2, *band.tau_s * 2).tau_s;
 }
@@ -277,12 +260,10 @@ double profile_end(AtTau& likelihood, const Peak& peak, double log_sd, double si
 /// Of sigma: the union over tau of its intervals given tau.
 Interval sigma_interval(AtTau& likelihood, const Peak& peak, Interval tau_s, double given_tau) {
   constexpr int kPoints = 12;
-  const double far = std::min(tau_s.high, 100 * peak.tau_s),
-               near = std::max(tau_s.low, 0.01 * peak.tau_s);
+  const double far = std::min(tau_s.high, 100 * peak.tau_s), near = std::max(tau_s.low, 0.01 * peak.tau_s);
   Interval out = {std::sqrt(peak.at.theta[kLent]), std::sqrt(peak.at.theta[kLent])};
   for (int i = 0; i <= kPoints; ++i) {
-    const ScoringResult& there =
-        likelihood(near * std::pow(far / near, static_cast<double>(i) / kPoints));
+    const ScoringResult& there = likelihood(near * std::pow(far / near, static_cast<double>(i) / kPoints));
     const double fallen = 2 * (there.half_deviance - peak.half_deviance);
     const double left = std::sqrt(std::max(0.0, kTwoSided95 - fallen));
     const double sigma = std::sqrt(there.at.theta[kLent]);
@@ -300,12 +281,10 @@ void report_joint_bounds(const Mixture& log_theta, NoiseFit& fit) {
     term.bound = log_theta[i] / 2;
     if (!(*term.bound > kBadlyKnown) || term.status != Status::detected || i == kLent) continue;
     term.status = Status::undetermined;
-    fit.findings.push_back(finding(
-        "too_short",
-        fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is "
-                    "known to {} (1 sd).",
-                    long_name(static_cast<Term>(i)),
-                    percent_text(*term.bound))));
+    fit.findings.push_back(
+        finding("too_short", fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is "
+                                         "known to {} (1 sd).",
+                                         long_name(static_cast<Term>(i)), percent_text(*term.bound))));
   }
 }
 
@@ -314,8 +293,7 @@ TermSet kept_or_doubtful(const NoiseFit& fit) {
   constexpr double kDoubtful = 1;
   TermSet terms = only_positive(fit.theta);
   for (std::size_t i = 0; i < kTerms; ++i)
-    terms[i] = terms[i] || (fit.term[i].status != Status::not_fitted &&
-                            fit.term[i].likelihood_ratio > kDoubtful);
+    terms[i] = terms[i] || (fit.term[i].status != Status::not_fitted && fit.term[i].likelihood_ratio > kDoubtful);
   return terms;
 }
 
@@ -327,15 +305,12 @@ void empty_lent_column(NoiseFit& fit) {
 }
 
 std::string process_text(double sigma, double tau_s) {
-  return fmt::format(
-      "standard deviation {}, correlation time {}", brief_text(sigma), duration_text(tau_s));
+  return fmt::format("standard deviation {}, correlation time {}", brief_text(sigma), duration_text(tau_s));
 }
 
 }  // namespace
 
-void settle_gauss_markov(const std::vector<PowerBin>& bins,
-                         const GaussMarkovChoice& choice,
-                         NoiseFit& fit) {
+void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovChoice& choice, NoiseFit& fit) {
   if (!(fit.theta[kLent] > 0)) return empty_lent_column(fit);
   AtTau likelihood(bins, choice.band, fit.rate_hz, kept_or_doubtful(fit));
   const Peak peak = most_likely(likelihood, choice.tau_s / 2, choice.tau_s * 2);
@@ -363,14 +338,11 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins,
   widen_for_joint_parameter(spread.log_theta, fit);
   fit.findings.push_back(finding(
       "gauss_markov",
-      fmt::format(
-          "Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker "
-          "and "
-          "random walk alone do not "
-          "describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
-          process_text(process.sigma.value.value_or(0), choice.tau_s),
-          choice.likelihood_ratio,
-          kNeeded)));
+      fmt::format("Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker "
+                  "and "
+                  "random walk alone do not "
+                  "describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
+                  process_text(process.sigma.value.value_or(0), choice.tau_s), choice.likelihood_ratio, kNeeded)));
   empty_lent_column(fit);
   fit.gauss_markov = process;
 }
@@ -386,12 +358,12 @@ void report_not_needed(const GaussMarkovChoice& choice, NoiseFit& fit) {
   process.sigma.value = choice.rival_sigma;
   process.tau_s.value = choice.tau_s;
   fit.gauss_markov = process;
-  fit.findings.push_back(finding(
-      "gauss_markov_or_terms",
-      fmt::format("The record cannot tell its slow noise from a first-order Gauss-Markov process "
-                  "({}): that with white noise alone is as "
-                  "likely. A longer record can tell.",
-                  process_text(choice.rival_sigma, choice.tau_s))));
+  fit.findings.push_back(
+      finding("gauss_markov_or_terms",
+              fmt::format("The record cannot tell its slow noise from a first-order Gauss-Markov process "
+                          "({}): that with white noise alone is as "
+                          "likely. A longer record can tell.",
+                          process_text(choice.rival_sigma, choice.tau_s))));
 }
 
 }  // namespace libchar

@@ -59,8 +59,7 @@ Mixture nonnegative_minimum(const TermMatrix& gram, const Mixture& right, const 
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = b[i] = right[unknown[in[i]]] * scale[in[i]];
       for (std::size_t j = 0; j < n; ++j) {
-        g[i][j] = gram(static_cast<Eigen::Index>(unknown[in[i]]),
-                       static_cast<Eigen::Index>(unknown[in[j]])) *
+        g[i][j] = gram(static_cast<Eigen::Index>(unknown[in[i]]), static_cast<Eigen::Index>(unknown[in[j]])) *
                   scale[in[i]] * scale[in[j]];
       }
     }

@@ -49,13 +49,10 @@ class BinResiduals final : public ceres::CostFunction {
   BinResiduals(const BinProblem& problem, std::vector<Eigen::Index> terms)
       : problem_(problem), terms_(std::move(terms)) {
     set_num_residuals(static_cast<int>(problem.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size()) +
-                                               static_cast<int>(problem.shapes()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(terms_.size()) + static_cast<int>(problem.shapes()));
   }
 
-  bool Evaluate(double const* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const std::size_t p = terms_.size();
     const auto shapes = static_cast<std::size_t>(problem_.shapes());
     std::array<double, kTerms> theta{};
@@ -66,8 +63,7 @@ class BinResiduals final : public ceres::CostFunction {
     for (Eigen::Index j = 0; j < problem_.size(); ++j) {
       std::array<double, kTerms> part{};
       double model = 0;
-      for (std::size_t i = 0; i < p; ++i)
-        model += part[i] = gain[j] * theta[i] * problem_.unit(j, terms_[i]);
+      for (std::size_t i = 0; i < p; ++i) model += part[i] = gain[j] * theta[i] * problem_.unit(j, terms_[i]);
       if (!(model > 0) || !std::isfinite(model)) return false;
       const DevianceResidual r = deviance_residual(problem_.energy[j], model, problem_.dof[j]);
       if (!std::isfinite(r.value) || !std::isfinite(r.slope)) return false;
@@ -75,8 +71,7 @@ class BinResiduals final : public ceres::CostFunction {
       if (jacobians == nullptr || jacobians[0] == nullptr) continue;
       double* const row = jacobians[0] + static_cast<std::size_t>(j) * (p + shapes);
       for (std::size_t i = 0; i < p; ++i) row[i] = r.slope * part[i] / model;
-      for (std::size_t s = 0; s < shapes; ++s)
-        row[p + s] = r.slope * problem_.shape(j, static_cast<Eigen::Index>(s));
+      for (std::size_t s = 0; s < shapes; ++s) row[p + s] = r.slope * problem_.shape(j, static_cast<Eigen::Index>(s));
     }
     return true;
   }
@@ -115,9 +110,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     unknown.push_back(std::log(start.theta[i]));
   }
   const auto shapes = static_cast<std::size_t>(problem.shapes());
-  unknown.insert(unknown.end(),
-                 start.shape.begin(),
-                 start.shape.begin() + static_cast<std::ptrdiff_t>(shapes));
+  unknown.insert(unknown.end(), start.shape.begin(), start.shape.begin() + static_cast<std::ptrdiff_t>(shapes));
   Polished result;
   result.at = start;
   result.half_deviance = half_deviance(problem, start);
@@ -132,8 +125,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   ModelPoint polished;
   for (std::size_t i = 0; i < terms.size(); ++i)
     polished.theta[static_cast<std::size_t>(terms[i])] = std::exp(unknown[i]);
-  std::copy_n(
-      unknown.begin() + static_cast<std::ptrdiff_t>(terms.size()), shapes, polished.shape.begin());
+  std::copy_n(unknown.begin() + static_cast<std::ptrdiff_t>(terms.size()), shapes, polished.shape.begin());
   const double value = half_deviance(problem, polished);
   // Never worse than the start, up to the rounding of the sum. A descent that begins at the maximum
   // may find no step at all, which the solver calls a failure.
@@ -149,13 +141,11 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   ceres::Covariance covariance(exact_covariance_options());
   const std::size_t p = terms.size(), all = p + shapes;
   std::vector<double> block(all * all);
-  const std::vector<std::pair<const double*, const double*>> wanted = {
-      {unknown.data(), unknown.data()}};
+  const std::vector<std::pair<const double*, const double*>> wanted = {{unknown.data(), unknown.data()}};
   if (covariance.Compute(wanted, &solver_problem) &&
       covariance.GetCovarianceBlock(unknown.data(), unknown.data(), block.data())) {
     for (std::size_t i = 0; i < p; ++i) {
-      for (std::size_t j = 0; j < p; ++j)
-        result.covariance(terms[i], terms[j]) = block[i * all + j];
+      for (std::size_t j = 0; j < p; ++j) result.covariance(terms[i], terms[j]) = block[i * all + j];
     }
   }
   return result;

@@ -23,12 +23,11 @@ constexpr auto kWalkColumn = static_cast<Eigen::Index>(Term::walk);
 constexpr auto kLawColumn = static_cast<Eigen::Index>(Term::ramp);
 constexpr double kLawNeeded = 8;                             ///< of 2 lnL
 constexpr double kLeastExponent = 0.5, kMostExponent = 1.9;  ///< of the exponent
-constexpr double kFromTerms = 3;  ///< standard deviations from 1 and from 2
+constexpr double kFromTerms = 3;                             ///< standard deviations from 1 and from 2
 
 Eigen::ArrayXd column(const BinProblem& problem, double exponent) {
   const Eigen::ArrayXd flicker = problem.unit.col(kFlickerColumn).log();
-  if (exponent < 1)
-    return ((1 - exponent) * problem.unit.col(kWhiteColumn).log() + exponent * flicker).exp();
+  if (exponent < 1) return ((1 - exponent) * problem.unit.col(kWhiteColumn).log() + exponent * flicker).exp();
   return ((2 - exponent) * flicker + (exponent - 1) * problem.unit.col(kWalkColumn).log()).exp();
 }
 
@@ -48,10 +47,9 @@ class AtExponent {
     Eigen::MatrixXd slopes(problem_.size(), 3);
     slopes.col(0) = (weight * at.theta[kWhiteColumn] * problem_.unit.col(kWhiteColumn)).matrix();
     slopes.col(1) = (weight * at.theta[kLawColumn] * column(problem_, exponent)).matrix();
-    slopes.col(2) =
-        (weight * at.theta[kLawColumn] *
-         (column(problem_, exponent + kStep) - column(problem_, exponent - kStep)) / (2 * kStep))
-            .matrix();
+    slopes.col(2) = (weight * at.theta[kLawColumn] *
+                     (column(problem_, exponent + kStep) - column(problem_, exponent - kStep)) / (2 * kStep))
+                        .matrix();
     if (problem_.shapes() > 0) slopes = without_columns_of(whitened_shape(problem_), slopes);
     return std::sqrt(cholesky_inverse(slopes.transpose() * slopes)(0, 0));
   }
@@ -63,13 +61,11 @@ class AtExponent {
 
 }  // namespace
 
-std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins,
-                                               const Band& band,
-                                               double rate_hz,
+std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms) {
   constexpr int kSteps = 8;
-  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] ||
-      band.quantized || !band.passes)
+  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] || band.quantized ||
+      !band.passes)
     return std::nullopt;
   const BinProblem problem = band_problem(bins, band, rate_hz);
   const double terms_alone = score(problem, terms).half_deviance;
@@ -85,13 +81,12 @@ std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins
   const double bend = value[least - 1] - 2 * value[least] + value[least + 1];
   if (!(bend > 0)) return std::nullopt;
   PowerLawChoice out;
-  out.exponent = kLeastExponent + step * (static_cast<double>(least) +
-                                          0.5 * (value[least - 1] - value[least + 1]) / bend);
+  out.exponent =
+      kLeastExponent + step * (static_cast<double>(least) + 0.5 * (value[least - 1] - value[least + 1]) / bend);
   out.exponent_sd = step / std::sqrt(bend);
   const ScoringResult best = law(out.exponent);
   out.likelihood_ratio = 2 * (terms_alone - best.half_deviance);
-  if (!(out.likelihood_ratio > kLawNeeded) || !(best.at.theta[kWhiteColumn] > 0) ||
-      !(best.at.theta[kLawColumn] > 0))
+  if (!(out.likelihood_ratio > kLawNeeded) || !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
     return std::nullopt;
   for (const double whole : {1.0, 2.0})
     if (std::abs(out.exponent - whole) < kFromTerms * out.exponent_sd) return std::nullopt;
@@ -111,17 +106,14 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
   for (const auto slow : {kFlickerColumn, kWalkColumn})
     if (fit.term[static_cast<std::size_t>(slow)].value)
       fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;
-  fit.findings.push_back(finding(
-      "power_law",
-      fmt::format(
-          "The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is "
-          "neither flicker nor a random walk (2 ln L {:.0f}): B and K stand in for it within "
-          "this recording and mean nothing beyond it.",
-          law.exponent,
-          law.exponent - kNormal95 * law.exponent_sd,
-          law.exponent + kNormal95 * law.exponent_sd,
-          law.likelihood_ratio),
-      fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
+  fit.findings.push_back(
+      finding("power_law",
+              fmt::format("The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is "
+                          "neither flicker nor a random walk (2 ln L {:.0f}): B and K stand in for it within "
+                          "this recording and mean nothing beyond it.",
+                          law.exponent, law.exponent - kNormal95 * law.exponent_sd,
+                          law.exponent + kNormal95 * law.exponent_sd, law.likelihood_ratio),
+              fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
 }
 
 }  // namespace libchar

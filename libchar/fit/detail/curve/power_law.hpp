@@ -11,15 +11,13 @@ namespace libchar {
 
 struct PowerLawChoice {
   double exponent = 1, exponent_sd = 0;
-  double likelihood_ratio = 0;  ///< 2 (lnL of white noise and the law - lnL of all offered terms)
+  double likelihood_ratio = 0;         ///< 2 (lnL of white noise and the law - lnL of all offered terms)
   double white = 0, white_log_sd = 0;  ///< Q, and the sd of ln Q² with h and alpha unknown
 };
 
 /// The law where it beats all offered terms, which have one parameter more, by more than they do in
 /// 1 % of the records that they describe, and is neither of them.
-std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins,
-                                               const Band& band,
-                                               double rate_hz,
+std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms);
 
 /// White noise as it is beside the law; flicker and walk stand in for it and are borne out by nothing.

@@ -25,9 +25,7 @@ namespace {
 constexpr double kTail = 0.025;
 constexpr double kFarRoot = 20;  ///< beyond it a limit is zero whatever the term
 
-double above(double r) {
-  return 0.5 * std::erfc(r / std::numbers::sqrt2);
-}
+double above(double r) { return 0.5 * std::erfc(r / std::numbers::sqrt2); }
 
 }  // namespace
 
@@ -93,11 +91,7 @@ double bracketed_root(Function&& f, double x_in, double f_in, double x_out, doub
 
 }  // namespace
 
-double profile_upper(const BinProblem& problem,
-                     const TermSet& terms,
-                     const Optimum& best,
-                     std::size_t term,
-                     double sd,
+double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise) {
   Profile profile(problem, terms, best, term);
   const double goal = std::sqrt(rise), at = best.at.theta[term];
@@ -115,11 +109,7 @@ double profile_upper(const BinProblem& problem,
   return bracketed_root(f, in, f_in, out, f_out);
 }
 
-double profile_lower(const BinProblem& problem,
-                     const TermSet& terms,
-                     const Optimum& best,
-                     std::size_t term,
-                     double sd,
+double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise) {
   Profile profile(problem, terms, best, term);
   const double goal = std::sqrt(rise), at = best.at.theta[term];

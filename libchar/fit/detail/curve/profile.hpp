@@ -23,18 +23,10 @@ struct Optimum {
 
 /// Largest theta of the term with 2 (lnL_max - lnL_profile) <= rise; `sd` is a first guess of
 /// theta's standard deviation.
-double profile_upper(const BinProblem& problem,
-                     const TermSet& terms,
-                     const Optimum& best,
-                     std::size_t term,
-                     double sd,
+double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise);
 /// Smallest such theta; 0 when zero is not excluded.
-double profile_lower(const BinProblem& problem,
-                     const TermSet& terms,
-                     const Optimum& best,
-                     std::size_t term,
-                     double sd,
+double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise);
 
 }  // namespace libchar

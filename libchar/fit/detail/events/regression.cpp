@@ -25,8 +25,7 @@ using std::numbers::pi;
 
 /// A step within a point is the mean of the steps beside it by its place; a line over w points is the mean of w + 1 steps.
 void fill_step(const EventShape& shape, double n, std::vector<double>& column) {
-  const double scale = -std::sqrt(2 / n) / 2, whole = std::floor(shape.at),
-               within = shape.at - whole;
+  const double scale = -std::sqrt(2 / n) / 2, whole = std::floor(shape.at), within = shape.at - whole;
   const double steps = shape.bridged + 1, middle = whole + 0.5 * shape.bridged;
   Turning half(pi / (2 * n)), place(pi * middle / n), next(pi * (middle + 1) / n);
   Turning wide(pi * steps / (2 * n));
@@ -50,8 +49,7 @@ void fill_warm_up(double tau, const SeriesGrid& grid, std::vector<double>& colum
   double parity = -1;
   for (double& value : column) {
     half.next();
-    value =
-        scale * (1 - parity * end) * half.cosine / (below * below + 4 * r * half.sine * half.sine);
+    value = scale * (1 - parity * end) * half.cosine / (below * below + 4 * r * half.sine * half.sine);
     parity = -parity;
   }
 }
@@ -82,21 +80,16 @@ void fill_column(const EventShape& shape, const SeriesGrid& grid, std::vector<do
   }
 }
 
-double weighted_product(std::span<const double> weight,
-                        std::span<const double> x,
-                        std::span<const double> y) {
+double weighted_product(std::span<const double> weight, std::span<const double> x, std::span<const double> y) {
   double lanes[4] = {};
   std::size_t k = 0;
   for (; k + 4 <= x.size(); k += 4)
-    for (std::size_t lane = 0; lane < 4; ++lane)
-      lanes[lane] += weight[k + lane] * x[k + lane] * y[k + lane];
+    for (std::size_t lane = 0; lane < 4; ++lane) lanes[lane] += weight[k + lane] * x[k + lane] * y[k + lane];
   for (; k < x.size(); ++k) lanes[0] += weight[k] * x[k] * y[k];
   return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
 }
 
-Regression regress(std::vector<EventShape> shapes,
-                   const SeriesGrid& grid,
-                   std::span<const double> coefficients,
+Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::span<const double> coefficients,
                    std::span<const double> weight) {
   Regression fit;
   fit.shape = std::move(shapes);
@@ -113,13 +106,11 @@ Regression regress(std::vector<EventShape> shapes,
     const std::vector<double>& x = fit.column[static_cast<std::size_t>(i)];
     right(i) = weighted_product(weight, x, coefficients);
     for (Eigen::Index j = 0; j <= i; ++j)
-      normal(i, j) = normal(j, i) =
-          weighted_product(weight, x, fit.column[static_cast<std::size_t>(j)]);
+      normal(i, j) = normal(j, i) = weighted_product(weight, x, fit.column[static_cast<std::size_t>(j)]);
   }
   // Columns in units of their own sizes: a ramp beside a step loses no digits.
   const Eigen::VectorXd scale = normal.diagonal().array().rsqrt();
-  const Eigen::MatrixXd inverse =
-      cholesky_inverse(scale.asDiagonal() * normal * scale.asDiagonal());
+  const Eigen::MatrixXd inverse = cholesky_inverse(scale.asDiagonal() * normal * scale.asDiagonal());
   fit.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
   fit.size = fit.covariance * right;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -129,11 +120,8 @@ Regression regress(std::vector<EventShape> shapes,
   return fit;
 }
 
-Score score_of(const Regression& beside,
-               std::span<const double> column,
-               std::span<const double> weight) {
-  Score score{weighted_product(weight, column, beside.rest),
-              weighted_product(weight, column, column)};
+Score score_of(const Regression& beside, std::span<const double> column, std::span<const double> weight) {
+  Score score{weighted_product(weight, column, beside.rest), weighted_product(weight, column, column)};
   const auto count = static_cast<Eigen::Index>(beside.shape.size());
   if (count == 0) return score;
   Eigen::VectorXd cross(count);

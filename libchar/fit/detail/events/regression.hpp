@@ -19,9 +19,8 @@ struct EventShape {
   EventKind kind = EventKind::step;
   /// step: the first point after it; 10.3 is a step within point 10, which has seven tenths of it
   double at = 0;
-  double bridged =
-      0;  ///< step: it was while this many points were missing, bridged from `at` on by a line
-  double tau = 0;  ///< warm-up: time constant
+  double bridged = 0;  ///< step: it was while this many points were missing, bridged from `at` on by a line
+  double tau = 0;      ///< warm-up: time constant
 };
 
 /// Where a series stands: n points of `per_point` samples.
@@ -45,14 +44,10 @@ struct Regression {
 };
 
 /// sum_k w_k x_k y_k over the length of x.
-double weighted_product(std::span<const double> weight,
-                        std::span<const double> x,
-                        std::span<const double> y);
+double weighted_product(std::span<const double> weight, std::span<const double> x, std::span<const double> y);
 
 /// The shapes fitted to coefficients[k-1] with the weights.
-Regression regress(std::vector<EventShape> shapes,
-                   const SeriesGrid& grid,
-                   std::span<const double> coefficients,
+Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::span<const double> coefficients,
                    std::span<const double> weight);
 
 /// Score of one more column beside a regression: its size over its standard deviation when it joins.
@@ -60,8 +55,6 @@ struct Score {
   double numerator = 0, information = 0;
   double value() const { return information > 0 ? numerator / std::sqrt(information) : 0; }
 };
-Score score_of(const Regression& beside,
-               std::span<const double> column,
-               std::span<const double> weight);
+Score score_of(const Regression& beside, std::span<const double> column, std::span<const double> weight);
 
 }  // namespace libchar

@@ -36,16 +36,13 @@ int not_in_turn(std::span<const Event> events) {
     if (event.kind == EventKind::step) steps.emplace_back(event.at_s, event.size);
   std::sort(steps.begin(), steps.end());
   int same = 0;
-  for (std::size_t i = 1; i < steps.size(); ++i)
-    same += steps[i].second * steps[i - 1].second > 0 ? 1 : 0;
+  for (std::size_t i = 1; i < steps.size(); ++i) same += steps[i].second * steps[i - 1].second > 0 ? 1 : 0;
   return same;
 }
 
 }  // namespace
 
-std::optional<Telegraph> telegraph_of(std::span<const Event> events,
-                                      int further,
-                                      double duration_s) {
+std::optional<Telegraph> telegraph_of(std::span<const Event> events, int further, double duration_s) {
   double weight = 0, sum = 0;
   int up = 0, down = 0;
   for (const Event& event : events) {
@@ -87,22 +84,18 @@ std::vector<double> warm_up_column(double tau, const SeriesGrid& grid) {
 }
 
 /// Standard deviation of the difference of two scores, regression aside.
-double distance_between(const std::vector<double>& longer,
-                        const std::vector<double>& shorter,
+double distance_between(const std::vector<double>& longer, const std::vector<double>& shorter,
                         std::span<const double> weight) {
   const double both = weighted_product(weight, shorter, longer);
   const double square =
       weighted_product(weight, shorter, shorter) *
-      weighted_product(
-          weight, std::span(longer).first(shorter.size()), std::span(longer).first(shorter.size()));
+      weighted_product(weight, std::span(longer).first(shorter.size()), std::span(longer).first(shorter.size()));
   return std::sqrt(std::max(0.0, 2 - 2 * both / std::sqrt(square)));
 }
 
 }  // namespace
 
-WarmUpScan scan_warm_ups(const Regression& beside,
-                         const SeriesGrid& grid,
-                         std::span<const double> weight) {
+WarmUpScan scan_warm_ups(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight) {
   WarmUpScan scan;
   const double n = static_cast<double>(grid.points);
   std::vector<double> before;
@@ -111,16 +104,13 @@ WarmUpScan scan_warm_ups(const Regression& beside,
     scan.tau.push_back(tau);
     scan.score.push_back(score_of(beside, column, weight).value());
     if (!before.empty()) scan.distance.push_back(distance_between(before, column, weight));
-    if (std::abs(scan.score.back()) > std::abs(scan.score[scan.best]))
-      scan.best = scan.score.size() - 1;
+    if (std::abs(scan.score.back()) > std::abs(scan.score[scan.best])) scan.best = scan.score.size() - 1;
     before = std::move(column);
   }
   return scan;
 }
 
-double refined_tau(const WarmUpScan& scan,
-                   const Regression& beside,
-                   const SeriesGrid& grid,
+double refined_tau(const WarmUpScan& scan, const Regression& beside, const SeriesGrid& grid,
                    std::span<const double> weight) {
   const auto gain = [&](double log_tau) {
     return std::abs(score_of(beside, warm_up_column(std::exp(log_tau), grid), weight).value());
@@ -185,20 +175,14 @@ struct DistanceClasses {
       count[static_cast<std::size_t>(octaves * kClasses + 0.5)] += 1;
     }
   }
-  static double distance_of(std::size_t i) {
-    return std::exp2(static_cast<double>(i) / kClasses - (kOctaves - 1));
-  }
+  static double distance_of(std::size_t i) { return std::exp2(static_cast<double>(i) / kClasses - (kOctaves - 1)); }
 };
 
 }  // namespace
 
-double normal_tail(double u) {
-  return 0.5 * std::erfc(u / std::numbers::sqrt2);
-}
+double normal_tail(double u) { return 0.5 * std::erfc(u / std::numbers::sqrt2); }
 
-double normal_density(double u) {
-  return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
-}
+double normal_density(double u) { return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi); }
 
 double rough_threshold(std::span<const double> distance, double alpha, double each) {
   const DistanceClasses classes(distance);
@@ -218,8 +202,7 @@ double smooth_threshold(std::span<const double> distance, double alpha) {
   const auto exceedance = [&](double u) {
     double sum = normal_tail(u);
     const double arc = normal_density(u) / std::sqrt(2 * std::numbers::pi);
-    for (const double d : distance)
-      sum += std::min(normal_tail(u), 2 * std::asin(std::min(1.0, d / 2)) * arc);
+    for (const double d : distance) sum += std::min(normal_tail(u), 2 * std::asin(std::min(1.0, d / 2)) * arc);
     return 2 * sum;
   };
   return bisect(exceedance, alpha);
@@ -243,21 +226,17 @@ std::vector<double> half_cosecants(std::size_t n) {
 }
 
 /// sum_k W_k s_k(t) x_k for every t.
-std::vector<double> products(SineSums& sines,
-                             std::span<const double> weight,
-                             std::span<const double> cosecant,
+std::vector<double> products(SineSums& sines, std::span<const double> weight, std::span<const double> cosecant,
                              std::span<const double> x) {
   const std::span<double> input = sines.input();
   const double scale = -std::sqrt(2 / static_cast<double>(input.size()));
-  for (std::size_t k = 1; k < input.size(); ++k)
-    input[k] = scale * weight[k - 1] * x[k - 1] * cosecant[k - 1];
+  for (std::size_t k = 1; k < input.size(); ++k) input[k] = scale * weight[k - 1] * x[k - 1] * cosecant[k - 1];
   const std::span<const double> sums = sines.transform();
   return {sums.begin(), sums.end()};
 }
 
 /// [t]: sum W s^2 of a step at t. h is folded onto k <= n/2: cos(2 pi k t/n) is the same at n - k.
-std::vector<double> step_information(std::span<const double> weight,
-                                     std::span<const double> cosecant) {
+std::vector<double> step_information(std::span<const double> weight, std::span<const double> cosecant) {
   const std::size_t n = weight.size() + 1;
   RealFft fft(n);
   const auto bins = fft.coefficients();
@@ -275,16 +254,14 @@ std::vector<double> step_information(std::span<const double> weight,
 }
 
 /// What the columns already hold of a step at every place is taken from its information.
-void subtract_shared(const Regression& beside,
-                     const std::vector<std::vector<double>>& cross,
+void subtract_shared(const Regression& beside, const std::vector<std::vector<double>>& cross,
                      std::vector<double>& information) {
   std::vector<double> shared(information.size(), 0.0);
   for (std::size_t i = 0; i < cross.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      const double times = (i == j ? 1 : 2) * beside.covariance(static_cast<Eigen::Index>(i),
-                                                                static_cast<Eigen::Index>(j));
-      for (std::size_t t = 0; t < shared.size(); ++t)
-        shared[t] += times * cross[i][t] * cross[j][t];
+      const double times =
+          (i == j ? 1 : 2) * beside.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      for (std::size_t t = 0; t < shared.size(); ++t) shared[t] += times * cross[i][t] * cross[j][t];
     }
   for (std::size_t t = 0; t < information.size(); ++t) {
     const double left = information[t] - shared[t];
@@ -294,10 +271,7 @@ void subtract_shared(const Regression& beside,
 
 }  // namespace
 
-StepScan scan_steps(const Regression& beside,
-                    std::span<const double> weight,
-                    std::size_t points,
-                    std::size_t margin) {
+StepScan scan_steps(const Regression& beside, std::span<const double> weight, std::size_t points, std::size_t margin) {
   const std::vector<double> cosecant = half_cosecants(points);
   SineSums sines(points);
   std::vector<double> information = step_information(weight, cosecant);
@@ -310,8 +284,7 @@ StepScan scan_steps(const Regression& beside,
     scan.distance.push_back(std::sqrt(std::max(0.0, 2 - 2 * shared / both)));
   }
   std::vector<std::vector<double>> cross;
-  for (const std::vector<double>& column : beside.column)
-    cross.push_back(products(sines, weight, cosecant, column));
+  for (const std::vector<double>& column : beside.column) cross.push_back(products(sines, weight, cosecant, column));
   subtract_shared(beside, cross, information);
   scan.score = products(sines, weight, cosecant, beside.rest);
   for (std::size_t t = 0; t < points; ++t) {
@@ -330,9 +303,7 @@ Interval step_place(const StepScan& scan, double at, std::size_t margin) {
   for (std::size_t t = middle - std::min(middle, reach); t <= std::min(last, middle + reach); ++t)
     if (std::abs(scan.score[t]) > std::abs(scan.score[top])) top = t;
   const double best = scan.score[top], limit = best * best - kPlaceDrop;
-  const auto in = [&](std::size_t t) {
-    return scan.score[t] * best > 0 && scan.score[t] * scan.score[t] >= limit;
-  };
+  const auto in = [&](std::size_t t) { return scan.score[t] * best > 0 && scan.score[t] * scan.score[t] >= limit; };
   // Far away another step may stand: only what is joined to this place, but for dips shorter than the reach.
   std::size_t low = top, high = top;
   for (std::size_t t = top; t > 0 && low - t < reach; --t)

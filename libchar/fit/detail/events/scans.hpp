@@ -16,9 +16,7 @@ namespace libchar {
 
 /// From six steps on, of one size within their standard deviations and a quarter, up as well as down. `further`: places beside them
 /// where the scores ask for more.
-std::optional<Telegraph> telegraph_of(std::span<const Event> events,
-                                      int further,
-                                      double duration_s);
+std::optional<Telegraph> telegraph_of(std::span<const Event> events, int further, double duration_s);
 
 // The score of a warm-up at every time constant of a grid, and of a ramp.
 
@@ -30,14 +28,10 @@ struct WarmUpScan {
 };
 
 /// Time constants from eight points (or a thousandth of the series) to half the series.
-WarmUpScan scan_warm_ups(const Regression& beside,
-                         const SeriesGrid& grid,
-                         std::span<const double> weight);
+WarmUpScan scan_warm_ups(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
 
 /// The best time constant between the neighbours of the scan's best, in points.
-double refined_tau(const WarmUpScan& scan,
-                   const Regression& beside,
-                   const SeriesGrid& grid,
+double refined_tau(const WarmUpScan& scan, const Regression& beside, const SeriesGrid& grid,
                    std::span<const double> weight);
 
 Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
@@ -57,8 +51,7 @@ double smooth_threshold(std::span<const double> distance, double alpha);
 
 struct StepScan {
   static constexpr std::size_t kEvery = 8;
-  std::vector<double>
-      score;  ///< [t]: of a step between points t-1 and t; 0 where none is looked for
+  std::vector<double> score;  ///< [t]: of a step between points t-1 and t; 0 where none is looked for
   /// standard deviations of neighbouring scores' differences at every kEvery-th place, for rough_threshold
   std::vector<double> distance;
   std::size_t best = 0;  ///< where |score| is largest
@@ -66,10 +59,7 @@ struct StepScan {
 };
 
 /// Scores beside what a regression already holds; no step is looked for in the first and last `margin` points.
-StepScan scan_steps(const Regression& beside,
-                    std::span<const double> weight,
-                    std::size_t points,
-                    std::size_t margin);
+StepScan scan_steps(const Regression& beside, std::span<const double> weight, std::size_t points, std::size_t margin);
 
 /// Where the step that is best within `margin` of `at` stands with 95 %: the places beside it whose score squared is at most 7.35
 /// below its own.

@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kExact = 64;  ///< coefficients at which a function is called one by one
+constexpr std::size_t kExact = 64;         ///< coefficients at which a function is called one by one
 constexpr double kGrid = 1.0442737824274;  ///< sixteenth of an octave
 
 /// Flicker of means over flicker of samples at the means' rate.
@@ -34,20 +34,16 @@ double flicker_of_means(double a, std::uint64_t m) {
 
 }  // namespace
 
-std::array<double, kTerms> mean_unit_powers(double k,
-                                            std::uint64_t n,
-                                            std::uint64_t m,
-                                            double dt_s) {
+std::array<double, kTerms> mean_unit_powers(double k, std::uint64_t n, std::uint64_t m, double dt_s) {
   const double step = dt_s * static_cast<double>(m), width = static_cast<double>(m);
   std::array<double, kTerms> unit = dct_mean(k, n, step);
-  unit[static_cast<std::size_t>(Term::flicker)] *=
-      flicker_of_means(pi * k / static_cast<double>(n), m);
+  unit[static_cast<std::size_t>(Term::flicker)] *= flicker_of_means(pi * k / static_cast<double>(n), m);
   unit[static_cast<std::size_t>(Term::walk)] -= step * (1 - 1 / (width * width)) / 6;
   return unit;
 }
 
-std::vector<std::vector<double>> at_every_k(
-    std::size_t n, std::size_t count, const std::function<void(double, std::span<double>)>& power) {
+std::vector<std::vector<double>> at_every_k(std::size_t n, std::size_t count,
+                                            const std::function<void(double, std::span<double>)>& power) {
   std::vector<std::vector<double>> all(count, std::vector<double>(n - 1));
   const std::size_t exact = std::min(kExact, n - 1);
   std::vector<double> at_low(count), at_high(count);
@@ -63,8 +59,7 @@ std::vector<std::vector<double>> at_every_k(
     const std::size_t end = std::min(n, static_cast<std::size_t>(high) + 1);
     for (std::size_t i = 0; i < count; ++i) {
       const double slope = (at_high[i] - at_low[i]) / (high - low);
-      for (std::size_t j = k; j < end; ++j)
-        all[i][j - 1] = at_low[i] + slope * (static_cast<double>(j) - low);
+      for (std::size_t j = k; j < end; ++j) all[i][j - 1] = at_low[i] + slope * (static_cast<double>(j) - low);
     }
     k = std::max(k, end);
     low = high;
@@ -90,8 +85,7 @@ double deviance_of(std::span<const double> coefficients, std::span<const double>
   double sum = 0;
   const std::vector<LevelStretch> stretches = level_stretches(power.size());
   const std::size_t first = stretches.empty() ? power.size() : stretches[0].from;
-  for (std::size_t k = 0; k < first; ++k)
-    sum += coefficients[k] * coefficients[k] / power[k] + std::log(power[k]);
+  for (std::size_t k = 0; k < first; ++k) sum += coefficients[k] * coefficients[k] / power[k] + std::log(power[k]);
   for (const auto& [from, to] : stretches) {
     double level = 0, product = 1;
     for (std::size_t k = from; k < to; ++k) {

@@ -125,17 +125,15 @@ double median_beside(std::span<const double> rest, std::size_t peak) {
 }
 
 /// The highest peak that stands out of what is beside it and is none of those looked at.
-std::optional<std::size_t> next_peak(std::span<const double> rest,
-                                     const std::vector<std::size_t>& looked_at) {
+std::optional<std::size_t> next_peak(std::span<const double> rest, const std::vector<std::size_t>& looked_at) {
   std::optional<std::size_t> best;
   const std::size_t end = std::min(rest.size() - 1, kHighestPeak);
   for (std::size_t k = kLowestPeak; k < end; ++k) {
     const double square = rest[k] * rest[k];
     if (best && square <= rest[*best] * rest[*best]) continue;
     if (square < rest[k - 1] * rest[k - 1] || square < rest[k + 1] * rest[k + 1]) continue;
-    const bool known = std::any_of(looked_at.begin(), looked_at.end(), [&](std::size_t other) {
-      return other + 1 >= k && k + 1 >= other;
-    });
+    const bool known = std::any_of(looked_at.begin(), looked_at.end(),
+                                   [&](std::size_t other) { return other + 1 >= k && k + 1 >= other; });
     if (!known && square > kStandsOut * median_beside(rest, k)) best = k;
   }
   return best;
@@ -163,9 +161,8 @@ void take_out_harmonics(std::vector<Sine>& found, const Head& head) {
   const auto end = static_cast<double>(std::min(head.rest.size() - kReach, kHighestPeak));
   int missed = 0;
   for (double place = 2 * base.place; place < end && missed < kMostMissed; place += base.place) {
-    const bool known = std::any_of(found.begin(), found.end(), [&](const Sine& other) {
-      return std::abs(other.place - place) < 1.5;
-    });
+    const bool known =
+        std::any_of(found.begin(), found.end(), [&](const Sine& other) { return std::abs(other.place - place) < 1.5; });
     if (known) continue;
     const Window window(head, static_cast<std::size_t>(std::lround(place)));
     Sine sine{off_grid(place)};
@@ -182,8 +179,7 @@ void take_out_harmonics(std::vector<Sine>& found, const Head& head) {
 
 }  // namespace
 
-std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients,
-                                                std::size_t length) {
+std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, std::size_t length) {
   const Head head{coefficients, length};
   std::vector<Sine> found;
   if (coefficients.size() < 4 * kReach) return {};
@@ -204,8 +200,7 @@ std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients,
     for (Sine& sine : found) {
       add(sine, 1, head);
       double left = 0;
-      sine = fitted_sine(
-          Window(head, static_cast<std::size_t>(std::lround(sine.place))), sine.place, left);
+      sine = fitted_sine(Window(head, static_cast<std::size_t>(std::lround(sine.place))), sine.place, left);
       add(sine, -1, head);
     }
   if (!found.empty()) take_out_harmonics(found, head);

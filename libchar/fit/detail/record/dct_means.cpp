@@ -28,8 +28,7 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFew = 6;  ///< coefficients of a bin that are summed one by one
-constexpr double kForgotten =
-    10;  ///< correlation times between means: only neighbours have to do with each other
+constexpr double kForgotten = 10;  ///< correlation times between means: only neighbours have to do with each other
 
 /// Mean of unit(k) over the bin's coefficients: its ends are an eighth of an octave apart, three nodes do.
 template <typename UnitAt>
@@ -42,9 +41,7 @@ double mean_over(const PowerBin& bin, UnitAt&& unit_at) {
   }
   const double middle = 0.5 * (first + end - 1), half = 0.5 * (end - first);
   const double node = 0.7745966692414834 * half;
-  return (5 * unit_at(middle - node + 1e-7) + 8 * unit_at(middle + 1e-7) +
-          5 * unit_at(middle + node + 1e-7)) /
-         18;
+  return (5 * unit_at(middle - node + 1e-7) + 8 * unit_at(middle + 1e-7) + 5 * unit_at(middle + node + 1e-7)) / 18;
 }
 
 }  // namespace
@@ -67,8 +64,7 @@ double gauss_markov_dct_mean(double k, std::uint64_t n, double dt_over_tau) {
 
 double gauss_markov_unit(const PowerBin& bin, double tau_s, double rate_hz) {
   const double step = 1 / (rate_hz * tau_s);
-  if (bin.spacing == 1)
-    return mean_over(bin, [&](double k) { return gauss_markov_dct_mean(k, bin.length, step); });
+  if (bin.spacing == 1) return mean_over(bin, [&](double k) { return gauss_markov_dct_mean(k, bin.length, step); });
   const auto m = static_cast<double>(bin.spacing);
   const MeanCovariance means = gauss_markov_means(tau_s, m, 1 / rate_hz);
   if (step * m > kForgotten) {
@@ -78,9 +74,7 @@ double gauss_markov_unit(const PowerBin& bin, double tau_s, double rate_hz) {
                                  }));
   }
   const double like = means.neighbours * std::exp(step * m);
-  return m * (like * mean_over(
-                         bin,
-                         [&](double k) { return gauss_markov_dct_mean(k, bin.length, step * m); }) +
+  return m * (like * mean_over(bin, [&](double k) { return gauss_markov_dct_mean(k, bin.length, step * m); }) +
               means.variance - like);
 }
 
@@ -109,10 +103,9 @@ std::vector<double> exact_means(std::size_t n, std::uint64_t m) {
       covariance[j] = -4 / pi / (4 * lag * lag - 1);
       continue;
     }
-    covariance[j] =
-        2 / pi / width *
-        (libchar::odd_harmonic((lag + 1) * width) +
-         libchar::odd_harmonic(std::abs(lag - 1) * width) - 2 * libchar::odd_harmonic(lag * width));
+    covariance[j] = 2 / pi / width *
+                    (libchar::odd_harmonic((lag + 1) * width) + libchar::odd_harmonic(std::abs(lag - 1) * width) -
+                     2 * libchar::odd_harmonic(lag * width));
   }
   return dct_means_of_covariance(covariance);
 }
@@ -150,8 +143,8 @@ double flicker_phase_dct_mean(double k, std::uint64_t n, double dt_s) {
     beyond = sign - z * (pi / 2 - sine_integral_at_pi(static_cast<std::uint64_t>(k)));
     integral = -sign / (z * z + 4.3);
   }
-  const double ends = 8 * (0.5 * log_cot * std::cos(b) - 0.25 + 0.25 * integral) +
-                      4 * log_cot / std::cos(b) + 2 * beyond;
+  const double ends =
+      8 * (0.5 * log_cot * std::cos(b) - 0.25 + 0.25 * integral) + 4 * log_cot / std::cos(b) + 2 * beyond;
   return (2 * std::sin(b) + ends / (pi * count)) / (dt_s * dt_s);
 }
 
@@ -176,8 +169,7 @@ std::vector<double> flicker_phase_units(const std::vector<PowerBin>& bins, doubl
 
 void lend_flicker_phase(double rate_hz, std::vector<PowerBin>& bins) {
   const std::vector<double> units = flicker_phase_units(bins, rate_hz);
-  for (std::size_t j = 0; j < bins.size(); ++j)
-    bins[j].unit[static_cast<std::size_t>(Term::ramp)] = units[j];
+  for (std::size_t j = 0; j < bins.size(); ++j) bins[j].unit[static_cast<std::size_t>(Term::ramp)] = units[j];
 }
 
 namespace {
@@ -191,16 +183,10 @@ constexpr std::uint64_t kSiTable = 64;
 // Integral of sin(t)/t over [pi (j-1), pi j] by ten-point Gauss-Legendre (1e-15 on these smooth
 // half waves).
 double sine_integral_half_wave(std::uint64_t j) {
-  static constexpr std::array<double, 5> node = {0.1488743389816312,
-                                                 0.4333953941292472,
-                                                 0.6794095682990244,
-                                                 0.8650633666889845,
-                                                 0.9739065285171717};
-  static constexpr std::array<double, 5> weight = {0.2955242247147529,
-                                                   0.2692667193099963,
-                                                   0.2190863625159820,
-                                                   0.1494513491505806,
-                                                   0.0666713443086881};
+  static constexpr std::array<double, 5> node = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
+                                                 0.8650633666889845, 0.9739065285171717};
+  static constexpr std::array<double, 5> weight = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
+                                                   0.1494513491505806, 0.0666713443086881};
   const double middle = pi * (static_cast<double>(j) - 0.5);
   double sum = 0;
   for (std::size_t i = 0; i < node.size(); ++i) {
@@ -220,8 +206,7 @@ std::array<double, kSiTable + 1> sine_integral_table() {
 
 double flicker_ratio(double k) {
   const double whole = std::round(k);
-  if (whole != k)
-    return 1 - 2 / (pi * pi * k);  // between the integers: the mean of odd and even, k large
+  if (whole != k) return 1 - 2 / (pi * pi * k);  // between the integers: the mean of odd and even, k large
   const auto index = static_cast<std::uint64_t>(whole);
   const double odd = index % 2 == 1 ? 2.0 : 0.0;
   return 2 / pi * sine_integral_at_pi(index) - 2 / (pi * pi) * odd / k;
@@ -236,16 +221,14 @@ long double long_odd_harmonic(std::uint64_t n) {
   }
   const auto x = static_cast<long double>(n);
   const long double y = 1 / (x * x);
-  return (std::log(x) + std::numbers::egamma_v<long double>) / 2 +
-         std::numbers::ln2_v<long double> +
+  return (std::log(x) + std::numbers::egamma_v<long double>) / 2 + std::numbers::ln2_v<long double> +
          y * (1.0L / 48 - y * (7.0L / 1920 - y * (31.0L / 16128)));
 }
 
 // Generalised covariance of the phase of unit flicker, s_F(n) = [(4n^2-1) H_n - 3n^2] / (4 pi).
 long double flicker_phase_covariance(std::uint64_t n) {
   const auto x = static_cast<long double>(n);
-  return ((4 * x * x - 1) * long_odd_harmonic(n) - 3 * x * x) /
-         (4 * std::numbers::pi_v<long double>);
+  return ((4 * x * x - 1) * long_odd_harmonic(n) - 3 * x * x) / (4 * std::numbers::pi_v<long double>);
 }
 
 // Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m,
@@ -255,17 +238,14 @@ double flicker_block_covariance(std::uint64_t j, std::uint64_t m) {
   const auto width = static_cast<double>(m);
   if (j <= 32) {
     const std::uint64_t before = j == 0 ? 1 : j - 1;
-    const long double second = flicker_phase_covariance((j + 1) * m) -
-                               2 * flicker_phase_covariance(j * m) +
+    const long double second = flicker_phase_covariance((j + 1) * m) - 2 * flicker_phase_covariance(j * m) +
                                flicker_phase_covariance(before * m);
     return static_cast<double>(-second) / width;
   }
   const double n = static_cast<double>(j), x = n * width, y = 1 / (n * n), z = 1 / (x * x);
   const double level = std::log(x) + egamma + 2 * ln2;
-  const double discrete =
-      z * (0.125 * (1 + y * (0.5 + y / 3)) - z * (17.0 / 320 * (1 + 5 * y / 3) - z * 0.0567));
-  return -width / pi *
-         (level + discrete - y * (1.0 / 12 + y * (1.0 / 60 + y * (1.0 / 168 + y / 360))));
+  const double discrete = z * (0.125 * (1 + y * (0.5 + y / 3)) - z * (17.0 / 320 * (1 + 5 * y / 3) - z * 0.0567));
+  return -width / pi * (level + discrete - y * (1.0 / 12 + y * (1.0 / 60 + y * (1.0 / 168 + y / 360))));
 }
 
 }  // namespace
@@ -282,14 +262,10 @@ double sine_integral_at_pi(std::uint64_t k) {
 std::array<double, kTerms> dct_mean(double k, std::uint64_t n, double dt_s) {
   const double count = static_cast<double>(n), fs = 1 / dt_s;
   const double half = 0.5 * pi * k / count, sine = std::sin(half), cosine = std::cos(half);
-  const double parity =
-      k == std::round(k) ? std::fmod(k, 2.0) : 0.5;  // a bin centre stands for odd and even alike
+  const double parity = k == std::round(k) ? std::fmod(k, 2.0) : 0.5;  // a bin centre stands for odd and even alike
   const double ramp = dt_s * cosine / (2 * sine * sine);
-  return {fs,
-          flicker_ratio(k) / (2 * sine),
-          dt_s / (4 * sine * sine),
-          fs * fs * (4 * sine * sine + 4 / count * cosine * cosine),
-          parity * 2 / count * ramp * ramp};
+  return {fs, flicker_ratio(k) / (2 * sine), dt_s / (4 * sine * sine),
+          fs * fs * (4 * sine * sine + 4 / count * cosine * cosine), parity * 2 / count * ramp * ramp};
 }
 
 std::vector<double> dct_means_of_covariance(const std::vector<double>& g) {
@@ -313,13 +289,11 @@ std::vector<double> dct_means_of_covariance(const std::vector<double>& g) {
   return means;
 }
 
-BlockMeanDct::BlockMeanDct(std::uint64_t n, std::uint64_t m, double dt_s)
-    : n_(n), m_(m), dt_s_(dt_s) {
+BlockMeanDct::BlockMeanDct(std::uint64_t n, std::uint64_t m, double dt_s) : n_(n), m_(m), dt_s_(dt_s) {
   std::vector<double> covariance(detail::in_memory(n));
-  const double origin = flicker_block_covariance(
-      1, m);  // constants drop out of contrasts; small numbers keep the digits
-  for (std::size_t j = 0; j < covariance.size(); ++j)
-    covariance[j] = flicker_block_covariance(j, m) - origin;
+  const double origin =
+      flicker_block_covariance(1, m);  // constants drop out of contrasts; small numbers keep the digits
+  for (std::size_t j = 0; j < covariance.size(); ++j) covariance[j] = flicker_block_covariance(j, m) - origin;
   flicker_ = dct_means_of_covariance(covariance);
 }
 

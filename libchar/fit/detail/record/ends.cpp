@@ -27,12 +27,9 @@ namespace {
 
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kFlickerPhase = static_cast<std::size_t>(Term::ramp);
-constexpr std::uint64_t kReachOfEnds =
-    1U << 16U;  ///< coefficients; the sums over the rest are 1e-5 of all
+constexpr std::uint64_t kReachOfEnds = 1U << 16U;  ///< coefficients; the sums over the rest are 1e-5 of all
 
-double sine_of_half(double k, std::uint64_t n) {
-  return std::sin(0.5 * std::numbers::pi * k / static_cast<double>(n));
-}
+double sine_of_half(double k, std::uint64_t n) { return std::sin(0.5 * std::numbers::pi * k / static_cast<double>(n)); }
 
 /// Of the mixture without the ends of its quantization.
 double power_at(const EndNoise& noise, double k, std::uint64_t n, std::uint64_t m) {
@@ -42,16 +39,15 @@ double power_at(const EndNoise& noise, double k, std::uint64_t n, std::uint64_t 
   for (const Term term : {Term::white, Term::flicker, Term::walk})
     slow += noise.theta[static_cast<std::size_t>(term)] * unit[static_cast<std::size_t>(term)];
   const double flicker_phase = 2 * sine_of_half(k, n) / (noise.dt_s * noise.dt_s);
-  return width * slow +
-         noise.theta[kQuantization] / width * quantization_without_ends(k, n, noise.dt_s) +
+  return width * slow + noise.theta[kQuantization] / width * quantization_without_ends(k, n, noise.dt_s) +
          noise.theta[kFlickerPhase] / width * flicker_phase;
 }
 
 /// Of the ends in coefficient k of n means of m samples.
 double share_at(const EndNoise& noise, double k, std::uint64_t n, std::uint64_t m) {
   const double cosine = std::cos(0.5 * std::numbers::pi * k / static_cast<double>(n));
-  const double theirs = noise.theta[kQuantization] * 4 / static_cast<double>(n * m) * cosine *
-                        cosine / (noise.dt_s * noise.dt_s);
+  const double theirs =
+      noise.theta[kQuantization] * 4 / static_cast<double>(n * m) * cosine * cosine / (noise.dt_s * noise.dt_s);
   return theirs > 0 ? theirs / (theirs + power_at(noise, k, n, m)) : 0;
 }
 
@@ -64,8 +60,7 @@ double quantization_without_ends(double k, std::uint64_t n, double dt_s) {
 
 double share_of_ends(const EndNoise& noise, std::uint64_t n) {
   double largest = 0;
-  for (double k = 1; k < static_cast<double>(n); k *= 2)
-    largest = std::max(largest, share_at(noise, k, n, 1));
+  for (double k = 1; k < static_cast<double>(n); k *= 2) largest = std::max(largest, share_at(noise, k, n, 1));
   return largest;
 }
 
@@ -90,7 +85,7 @@ struct Ends {
   std::array<double, 2> size{};  ///< alpha, of even and of odd coefficients
   std::vector<double> power;     ///< p, k = 1.. at [k-1]
   std::vector<double> share;     ///< h, at [k]
-  double deviance = 0;  ///< -2 ln L of the coefficients with unknown ends, but for a constant
+  double deviance = 0;           ///< -2 ln L of the coefficients with unknown ends, but for a constant
 };
 
 double end_at(std::uint64_t k, std::uint64_t n) {
@@ -102,9 +97,8 @@ double end_at(std::uint64_t k, std::uint64_t n) {
 Ends ends_of(std::span<const double> c, std::uint64_t n, const EndNoise& noise) {
   Ends ends;
   const std::size_t reach = c.size() - 1;
-  ends.power = std::move(at_every_k(reach + 1, 1, [&](double k, std::span<double> out) {
-    out[0] = power_at(noise, k, n, 1);
-  })[0]);
+  ends.power = std::move(
+      at_every_k(reach + 1, 1, [&](double k, std::span<double> out) { out[0] = power_at(noise, k, n, 1); })[0]);
   ends.share.resize(reach + 1);
   std::array<double, 2> product{}, square{};
   for (std::size_t k = 1; k <= reach; ++k) {
@@ -123,10 +117,7 @@ Ends ends_of(std::span<const double> c, std::uint64_t n, const EndNoise& noise) 
 }
 
 /// Bins of the first coefficients as they are expected without the ends.
-std::vector<PowerBin> expected_bins(std::span<const double> c,
-                                    std::uint64_t n,
-                                    const Ends& ends,
-                                    double dt_s) {
+std::vector<PowerBin> expected_bins(std::span<const double> c, std::uint64_t n, const Ends& ends, double dt_s) {
   PooledPower power{n, 1, 1, 1, {}};
   power.with_ends.assign(1, 0.0);
   for (std::size_t k = 1; k < c.size(); ++k) {
@@ -143,8 +134,7 @@ struct Likeliest {
 
 /// Of these terms with unknown ends, by expectation and maximisation from `start` on (A. Dempster, N. Laird, D. Rubin,
 /// Journal of the Royal Statistical Society B 39, 1977).
-Likeliest likeliest(
-    std::span<const double> c, std::uint64_t n, const TermSet& terms, bool clock, EndNoise start) {
+Likeliest likeliest(std::span<const double> c, std::uint64_t n, const TermSet& terms, bool clock, EndNoise start) {
   constexpr int kRounds = 8;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<PowerBin> bins = expected_bins(c, n, ends_of(c, n, start), start.dt_s);

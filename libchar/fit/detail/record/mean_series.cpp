@@ -42,9 +42,7 @@ void MeanCutter::take_pieces(std::span<const double> rest, MeanPowers& to) const
   }
 }
 
-void append_powers(const MeanPowers& powers,
-                   std::uint64_t per_mean,
-                   std::vector<PooledPower>& out) {
+void append_powers(const MeanPowers& powers, std::uint64_t per_mean, std::vector<PooledPower>& out) {
   for (std::size_t piece = 0; piece < powers.pieces.size(); ++piece) {
     const std::size_t length = detail::in_memory(MeanPowers::piece_length(piece));
     append_pooled(powers.pieces[piece], length, per_mean, first_kept(length, kMeansBlock), out);
@@ -52,20 +50,14 @@ void append_powers(const MeanPowers& powers,
   append_pooled(powers.blocks, kMeansBlock, per_mean, kLeftToMeans, out);
 }
 
-void append_slow(std::span<const double> rest,
-                 std::vector<double> slow,
-                 std::uint64_t per_mean,
-                 std::uint64_t block,
+void append_slow(std::span<const double> rest, std::vector<double> slow, std::uint64_t per_mean, std::uint64_t block,
                  std::vector<PooledPower>& out) {
-  const std::uint64_t first = first_kept(rest.size(), kMeansBlock),
-                      end = end_of_left(rest.size(), per_mean, block);
-  if (rest.size() >= kSmallestTransform && first < end)
-    out.push_back(record_power(rest, per_mean, first, end));
+  const std::uint64_t first = first_kept(rest.size(), kMeansBlock), end = end_of_left(rest.size(), per_mean, block);
+  if (rest.size() >= kSmallestTransform && first < end) out.push_back(record_power(rest, per_mean, first, end));
   const std::vector<double> last = slow_means(rest);
   slow.insert(slow.end(), last.begin(), last.end());
   if (slow.size() < kSmallestTransform) return;
-  out.push_back(record_power(
-      slow, per_mean * kMeansPerSlow, 1, end_of_left(slow.size(), kMeansPerSlow, kMeansBlock)));
+  out.push_back(record_power(slow, per_mean * kMeansPerSlow, 1, end_of_left(slow.size(), kMeansPerSlow, kMeansBlock)));
 }
 
 }  // namespace libchar

@@ -38,10 +38,7 @@ class MeanCutter {
 void append_powers(const MeanPowers& powers, std::uint64_t per_mean, std::vector<PooledPower>& out);
 /// The end of a long series: `rest` fills no block and is one transform of its own, `slow` is of
 /// all of it but for `rest`.
-void append_slow(std::span<const double> rest,
-                 std::vector<double> slow,
-                 std::uint64_t per_mean,
-                 std::uint64_t block,
+void append_slow(std::span<const double> rest, std::vector<double> slow, std::uint64_t per_mean, std::uint64_t block,
                  std::vector<PooledPower>& out);
 
 }  // namespace libchar

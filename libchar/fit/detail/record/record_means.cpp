@@ -18,11 +18,9 @@ namespace {
 constexpr std::size_t kFewestForEvents = 1024;  ///< samples
 constexpr std::size_t kFewestPoints = 64;       ///< of a series of means
 constexpr double kToldApart = 6;                ///< of 2 ln L: odds of twenty to one
-constexpr double kLeastDof = 0.1;  ///< of a bin: what is all but explained weighs next to nothing
+constexpr double kLeastDof = 0.1;               ///< of a bin: what is all but explained weighs next to nothing
 
-bool take_events(const EventSearch& search) {
-  return !search.events.empty() && !search.more && !search.telegraph;
-}
+bool take_events(const EventSearch& search) { return !search.events.empty() && !search.more && !search.telegraph; }
 
 /// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what
 /// it cannot do.
@@ -43,9 +41,7 @@ EventSearch search_events(const FitOptions& options, const Series& series) {
   }
 }
 
-EventSearch search_record(std::span<const double> record,
-                          double rate_hz,
-                          const FitOptions& options,
+EventSearch search_record(std::span<const double> record, double rate_hz, const FitOptions& options,
                           const EventSeries* known) {
   if (record.size() < kFewestForEvents) return {};
   EventSeries own;
@@ -55,9 +51,7 @@ EventSearch search_record(std::span<const double> record,
   });
 }
 
-std::vector<double> less(std::span<const double> record,
-                         double rate_hz,
-                         const EventSearch* search,
+std::vector<double> less(std::span<const double> record, double rate_hz, const EventSearch* search,
                          const std::optional<TemperatureEffect>& temperature) {
   std::vector<double> left(record.begin(), record.end());
   if (search != nullptr) subtract_events(search->events, rate_hz, left);
@@ -65,9 +59,7 @@ std::vector<double> less(std::span<const double> record,
   return left;
 }
 
-bool moves(const std::optional<TemperatureEffect>& effect) {
-  return effect && effect->order > 0;
-}
+bool moves(const std::optional<TemperatureEffect>& effect) { return effect && effect->order > 0; }
 
 void report_temperature(const TemperatureEffect& effect, const FitOptions& options, NoiseFit& fit) {
   fit.temperature = effect;
@@ -75,21 +67,15 @@ void report_temperature(const TemperatureEffect& effect, const FitOptions& optio
   if (effect.order == 0) return;
   fit.remedies.push_back(
       {"temperature",
-       fmt::format("2 ln L rises by {:.1f}, by chance with probability {}; asked for",
-                   effect.gain,
+       fmt::format("2 ln L rises by {:.1f}, by chance with probability {}; asked for", effect.gain,
                    brief_text(effect.p, 2)),
-       fmt::format("a polynomial of order {} taken out of the record before the noise was fitted",
-                   effect.order),
-       1});
+       fmt::format("a polynomial of order {} taken out of the record before the noise was fitted", effect.order), 1});
   for (const Term term : {Term::flicker, Term::walk}) {
     const auto i = static_cast<std::size_t>(term);
     if (fit.term[i].status == Status::not_fitted) continue;
     fit.findings.push_back(
-        finding("temperature",
-                fmt::format("With temperature left in, {} would be {}; it is {}.",
-                            kTermNames[i].letter,
-                            coefficient_text(effect.without[i]),
-                            coefficient_text(fit.term[i]))));
+        finding("temperature", fmt::format("With temperature left in, {} would be {}; it is {}.", kTermNames[i].letter,
+                                           coefficient_text(effect.without[i]), coefficient_text(fit.term[i]))));
   }
 }
 
@@ -104,28 +90,21 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   fit.events = search.events;
   for (const Event& event : fit.events)
     fit.remedies.push_back({std::string(event_name(event.kind)),
-                            fmt::format("score {}, above {} by chance in 0.3 % of records",
-                                        brief_text(event.score),
+                            fmt::format("score {}, above {} by chance in 0.3 % of records", brief_text(event.score),
                                         brief_text(event.threshold)),
-                            "taken out of the record before the noise was fitted",
-                            1});
+                            "taken out of the record before the noise was fitted", 1});
 }
 
 }  // namespace
 
-RecordMeans without_means(std::span<const double> record,
-                          double rate_hz,
-                          const FitOptions& options,
-                          const TemperatureRecord* temperature,
-                          const EventSeries* series) {
+RecordMeans without_means(std::span<const double> record, double rate_hz, const FitOptions& options,
+                          const TemperatureRecord* temperature, const EventSeries* series) {
   RecordMeans out;
-  if (temperature != nullptr)
-    out.temperature = find_temperature_effect(record, rate_hz, *temperature);
-  const std::vector<double> warm = moves(out.temperature)
-                                       ? less(record, rate_hz, nullptr, out.temperature)
-                                       : std::vector<double>{};
-  out.search = warm.empty() ? search_record(record, rate_hz, options, series)
-                            : search_record(warm, rate_hz, options, nullptr);
+  if (temperature != nullptr) out.temperature = find_temperature_effect(record, rate_hz, *temperature);
+  const std::vector<double> warm =
+      moves(out.temperature) ? less(record, rate_hz, nullptr, out.temperature) : std::vector<double>{};
+  out.search =
+      warm.empty() ? search_record(record, rate_hz, options, series) : search_record(warm, rate_hz, options, nullptr);
   out.events_taken = take_events(out.search);
   const EventSearch* events = out.events_taken ? &out.search : nullptr;
   if (temperature != nullptr && events != nullptr) {
@@ -133,16 +112,14 @@ RecordMeans without_means(std::span<const double> record,
         find_temperature_effect(less(record, rate_hz, events, std::nullopt), rate_hz, *temperature);
     if (again.order > 0) out.temperature = std::move(again);
   }
-  if (events != nullptr || moves(out.temperature))
-    out.samples = less(record, rate_hz, events, out.temperature);
+  if (events != nullptr || moves(out.temperature)) out.samples = less(record, rate_hz, events, out.temperature);
   if (!moves(out.temperature)) return out;
   FitOptions without = options;
   without.second_opinion = false;
   const NoiseFit left_in = fit_record(record, rate_hz, nullptr, without);
   out.temperature->without = left_in.term;
   for (const Event& event : left_in.events)
-    if (event.kind != EventKind::step &&
-        event.score * event.score > out.temperature->gain - kToldApart)
+    if (event.kind != EventKind::step && event.score * event.score > out.temperature->gain - kToldApart)
       out.temperature->like_drift = true;
   return out;
 }
@@ -159,8 +136,7 @@ void count_spent(const TemperatureEffect& effect, double duration_s, std::vector
   for (std::size_t k = 0; k < effect.leverage.size(); ++k) sum[k + 1] = sum[k] + effect.leverage[k];
   // Coefficient k = 1.. stands for frequencies from k - 1/2 to k + 1/2 over twice the duration.
   const auto below = [&](double frequency_hz) {
-    const double at = std::clamp(
-        2 * duration_s * frequency_hz - 0.5, 0.0, static_cast<double>(effect.leverage.size()));
+    const double at = std::clamp(2 * duration_s * frequency_hz - 0.5, 0.0, static_cast<double>(effect.leverage.size()));
     const auto i = static_cast<std::size_t>(at);
     return sum[i] + (i + 1 < sum.size() ? (at - std::floor(at)) * (sum[i + 1] - sum[i]) : 0);
   };

@@ -21,11 +21,8 @@ struct RecordMeans {
 
 /// Looks for what `options` asks for, and for what a temperature does where one is given (else
 /// null). `series` of the record, where it is there already.
-RecordMeans without_means(std::span<const double> record,
-                          double rate_hz,
-                          const FitOptions& options,
-                          const TemperatureRecord* temperature,
-                          const EventSeries* series = nullptr);
+RecordMeans without_means(std::span<const double> record, double rate_hz, const FitOptions& options,
+                          const TemperatureRecord* temperature, const EventSeries* series = nullptr);
 
 /// The same events of a series alone, without samples.
 RecordMeans means_in(const EventSeries& series, const FitOptions& options);

@@ -15,9 +15,9 @@ namespace libchar::fusion {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kApart = 10;       // ratio of correlation times of neighbours
-constexpr double kHidden = 3;       // beyond this ratio of frequencies another noise hides flicker
-constexpr double kWalkMemory = 10;  // of a walk, in units of the slowest process of flicker
+constexpr double kApart = 10;          // ratio of correlation times of neighbours
+constexpr double kHidden = 3;          // beyond this ratio of frequencies another noise hides flicker
+constexpr double kWalkMemory = 10;     // of a walk, in units of the slowest process of flicker
 constexpr double kFastestShare = 0.1;  // of the sampling rate: the fastest corner
 
 struct Process {
@@ -32,11 +32,9 @@ std::vector<Process> flicker_processes(const NoiseModel& model, double rate_hz, 
   const double white_hz = square * rate_hz / (2 * kPi * model.white);
   const double walk_hz = (model.walk / b) * (model.walk / b) / (2 * kPi);
   const double fast_s = 1 / (2 * kPi * std::min(kHidden * white_hz, kFastestShare * rate_hz));
-  const double slow_s =
-      walk_hz > 0 ? std::min(slowest_s, kHidden / (2 * kPi * walk_hz)) : slowest_s;
+  const double slow_s = walk_hz > 0 ? std::min(slowest_s, kHidden / (2 * kPi * walk_hz)) : slowest_s;
   std::vector<Process> out;
-  for (double tau = slow_s; tau >= fast_s; tau /= kApart)
-    out.push_back({tau, square * std::log(kApart) / kPi, 0});
+  for (double tau = slow_s; tau >= fast_s; tau /= kApart) out.push_back({tau, square * std::log(kApart) / kPi, 0});
   return out;
 }
 
@@ -48,10 +46,8 @@ BiasStates bias_states(const std::vector<NoiseModel>& models, double rate_hz, do
   for (std::size_t i = 0; i < models.size(); ++i) {
     std::vector<Process> own = flicker_processes(models[i], rate_hz, slowest_s);
     for (const RememberedNoise& noise : models[i].gauss_markov)
-      if (noise.sigma > 0 && noise.tau_s > 0)
-        own.push_back({noise.tau_s, noise.sigma * noise.sigma, 0});
-    if (models[i].walk > 0)
-      own.push_back({kWalkMemory * slowest_s, 0, models[i].walk * models[i].walk});
+      if (noise.sigma > 0 && noise.tau_s > 0) own.push_back({noise.tau_s, noise.sigma * noise.sigma, 0});
+    if (models[i].walk > 0) own.push_back({kWalkMemory * slowest_s, 0, models[i].walk * models[i].walk});
     out.channel.insert(out.channel.end(), own.size(), static_cast<Eigen::Index>(i));
     all.insert(all.end(), own.begin(), own.end());
   }
@@ -84,17 +80,13 @@ constexpr std::size_t kSets = 5;      // of channels whose gains are kept
 MatrixXd information_of(const MatrixXd& seen, const VectorXd& white, const MatrixXd* h) {
   const VectorXd root = white.cwiseSqrt().cwiseInverse();
   const MatrixXd scaled = root.asDiagonal() * seen;
-  const MatrixXd left =
-      h == nullptr ? scaled : without_columns_of(thin_qr(root.asDiagonal() * *h).q, scaled);
+  const MatrixXd left = h == nullptr ? scaled : without_columns_of(thin_qr(root.asDiagonal() * *h).q, scaled);
   return left.transpose() * left;
 }
 
 }  // namespace
 
-BiasFilter::BiasFilter(const Array& array,
-                       double slowest_s,
-                       Index most_states,
-                       const InputModel& input,
+BiasFilter::BiasFilter(const Array& array, double slowest_s, Index most_states, const InputModel& input,
                        bool for_smoother)
     : h_(array.h()),
       common_(array.one_common_input() && !(input.deviation > 0)),
@@ -105,8 +97,8 @@ BiasFilter::BiasFilter(const Array& array,
   const Index n = array.channels, r = h_.cols();
   if (states_.size() > most_states)
     throw usage_error("E0865")
-        .says("virtual-sensor would need " + std::to_string(states_.size()) +
-              " states of drift for " + std::to_string(n) + " channels")
+        .says("virtual-sensor would need " + std::to_string(states_.size()) + " states of drift for " +
+              std::to_string(n) + " channels")
         .got(std::to_string(most_states))
         .hint("set most_states higher, or slowest_s lower");
   for (Index i = 0; i < n; ++i) white_[i] = array.noise_models[static_cast<std::size_t>(i)].white;
@@ -166,15 +158,12 @@ void BiasFilter::add_inputs(const InputModel& input, double rate_hz) {
 
 void BiasFilter::note(double instant, const MatrixXd& p) {
   VectorXd input = VectorXd::Zero(h_.cols());
-  for (Index j = 0; modelled_ && j < h_.cols(); ++j)
-    input[j] = p(state_of_input(j), state_of_input(j));
+  for (Index j = 0; modelled_ && j < h_.cols(); ++j) input[j] = p(state_of_input(j), state_of_input(j));
   renewals_.push_back({instant, p * seen_.transpose(), std::move(input)});
   if (for_smoother_) renewals_.back().covariance = p;
 }
 
-MatrixXd BiasFilter::information() const {
-  return information_of(seen_, white_, modelled_ ? nullptr : &h_);
-}
+MatrixXd BiasFilter::information() const { return information_of(seen_, white_, modelled_ ? nullptr : &h_); }
 
 void BiasFilter::schedule() {
   note(0, start_);
@@ -221,8 +210,7 @@ void BiasFilter::decompose() {
   const auto m = static_cast<Index>(used_.size());
   for (Index j = 0; j < m; ++j)
     for (Index i = j; i < m; ++i) {
-      double left =
-          covariance(used_[static_cast<std::size_t>(i)], used_[static_cast<std::size_t>(j)]);
+      double left = covariance(used_[static_cast<std::size_t>(i)], used_[static_cast<std::size_t>(j)]);
       for (Index k = 0; k < j; ++k) left -= lower_(i, k) * lower_(j, k);
       lower_(i, j) = i == j ? std::sqrt(left) : left / lower_(j, j);
     }
@@ -309,8 +297,7 @@ void BiasFilter::couple(BiasGain& out) const {
   }
   for (Index j = 0; j < h_.cols(); ++j) {
     const Index k = state_of_input(j);
-    out.coupling.row(j) =
-        out.gain.row(k) * renewal_->cross.transpose() - renewal_->covariance.row(k);
+    out.coupling.row(j) = out.gain.row(k) * renewal_->cross.transpose() - renewal_->covariance.row(k);
   }
 }
 
@@ -338,28 +325,21 @@ void BiasFilter::factor(BiasGain& out) {
     backward();
     for (Index k = 0; k < m; ++k) out.weights(j, at(k)) = column_[k];
   }
-  project([&](Index state, Index channel) { return renewal_->cross(state, channel); },
-          out.weights,
-          out.gain);
+  project([&](Index state, Index channel) { return renewal_->cross(state, channel); }, out.weights, out.gain);
   for (Index j = 0; modelled_ && j < h_.cols(); ++j) {
     const Index s = state_of_input(j);
     out.weights.row(j) = out.gain.row(s);
     out.input_variance[j] = renewal_->input[j];
-    for (Index k = 0; k < m; ++k)
-      out.input_variance[j] -= out.gain(s, at(k)) * renewal_->cross(s, at(k));
+    for (Index k = 0; k < m; ++k) out.input_variance[j] -= out.gain(s, at(k)) * renewal_->cross(s, at(k));
   }
   if (!for_smoother_) return;
-  project([this](Index state, Index channel) { return seen_(channel, state); },
-          out.weights,
-          out.information);
+  project([this](Index state, Index channel) { return seen_(channel, state); }, out.weights, out.information);
   couple(out);
 }
 
 std::size_t BiasFilter::epoch_at(double instant) const {
-  const auto after = std::upper_bound(
-      renewals_.begin(), renewals_.end(), instant, [](double at, const Renewal& r) {
-        return at < r.instant;
-      });
+  const auto after = std::upper_bound(renewals_.begin(), renewals_.end(), instant,
+                                      [](double at, const Renewal& r) { return at < r.instant; });
   return static_cast<std::size_t>(after - renewals_.begin()) - 1;
 }
 
@@ -417,10 +397,8 @@ Estimate BiasFilter::step(const Sample& y) {
         break;
       }
     for (Index i = 0; i < y.size(); ++i) residual_[i] = usable(y[i]) ? y[i] - base : 0;
-    for (Index s = 0; s < states_.size(); ++s)
-      residual_[states_.channel[static_cast<std::size_t>(s)]] -= bias_[s];
-    for (Index j = 0; modelled_ && j < h_.cols(); ++j)
-      residual_ -= bias_[state_of_input(j)] * h_.col(j);
+    for (Index s = 0; s < states_.size(); ++s) residual_[states_.channel[static_cast<std::size_t>(s)]] -= bias_[s];
+    for (Index j = 0; modelled_ && j < h_.cols(); ++j) residual_ -= bias_[state_of_input(j)] * h_.col(j);
     for (Index i = 0; i < y.size(); ++i)
       if (!usable(y[i])) residual_[i] = 0;
     for (Index j = 0; j < h_.cols(); ++j) {
@@ -435,8 +413,6 @@ Estimate BiasFilter::step(const Sample& y) {
   return estimate;
 }
 
-Eigen::MatrixXd BiasFilter::weights() const {
-  return now_->weights.transpose();
-}
+Eigen::MatrixXd BiasFilter::weights() const { return now_->weights.transpose(); }
 
 }  // namespace libchar::fusion

@@ -35,8 +35,8 @@ struct BiasGain {
   bool determined = false;         ///< these channels determine the inputs
   // For a smoother only (bias_smoother.hpp):
   Eigen::MatrixXd information;  ///< C' S^-1 (I - H W), s x n
-  Eigen::MatrixXd coupling;   ///< minus the covariance of input and states after the samples, r x s
-  std::uint64_t version = 0;  ///< another one: other gains
+  Eigen::MatrixXd coupling;     ///< minus the covariance of input and states after the samples, r x s
+  std::uint64_t version = 0;    ///< another one: other gains
 };
 
 /// What is assumed of the inputs; nothing: deviation 0.
@@ -49,10 +49,7 @@ struct InputModel {
 class BiasFilter {
  public:
   /// `for_smoother`: keeps what a smoother asks for.
-  BiasFilter(const Array& array,
-             double slowest_s,
-             Eigen::Index most_states,
-             const InputModel& input = {},
+  BiasFilter(const Array& array, double slowest_s, Eigen::Index most_states, const InputModel& input = {},
              bool for_smoother = false);
   Estimate step(const Sample& y);
   /// n x r, of the samples of the last instant.
@@ -81,8 +78,8 @@ class BiasFilter {
  private:
   struct Renewal {
     double instant;
-    Eigen::MatrixXd cross;  // P C', s x n
-    Eigen::VectorXd input;  // variances of the inputs before the samples, where they are states
+    Eigen::MatrixXd cross;            // P C', s x n
+    Eigen::VectorXd input;            // variances of the inputs before the samples, where they are states
     Eigen::MatrixXd covariance = {};  // P, for a smoother
   };
   void add_inputs(const InputModel& input, double rate_hz);
@@ -108,7 +105,7 @@ class BiasFilter {
   bool for_smoother_;
   std::uint64_t version_ = 0;
   BiasStates states_;
-  Eigen::MatrixXd seen_;  // C, n x s, inputs that are states behind the biases
+  Eigen::MatrixXd seen_;                        // C, n x s, inputs that are states behind the biases
   Eigen::MatrixXd transition_, drive_, start_;  // of all states
   Eigen::VectorXd white_;
   Eigen::MatrixXd steady_;

@@ -33,15 +33,11 @@ MatrixXd future_variance(const BiasFilter& filter, const MatrixXd& p, const Matr
 
 }  // namespace
 
-BiasSmoother::BiasSmoother(std::unique_ptr<BiasFilter> filter,
-                           Index channels,
-                           Index inputs,
-                           double most_bytes)
+BiasSmoother::BiasSmoother(std::unique_ptr<BiasFilter> filter, Index channels, Index inputs, double most_bytes)
     : filter_(std::move(filter)), channels_(channels), inputs_(inputs), most_bytes_(most_bytes) {}
 
 Eigen::Ref<VectorXd> BiasSmoother::kept(std::int64_t instant) {
-  return kept_[static_cast<std::size_t>(instant / kKeptTogether)].col(
-      static_cast<Index>(instant % kKeptTogether));
+  return kept_[static_cast<std::size_t>(instant / kKeptTogether)].col(static_cast<Index>(instant % kKeptTogether));
 }
 
 void BiasSmoother::look(const Sample& y) {
@@ -97,8 +93,7 @@ void BiasSmoother::smooth(std::int64_t instant, bool other) {
   for (Index j = 0; j < inputs_; ++j) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     column[channels_ + j] -= gain.coupling.row(j).dot(future_);
-    column[j] =
-        gain.determined ? std::max(gain.input_variance[j] - gained_variance_[j], 0.0) : none;
+    column[j] = gain.determined ? std::max(gain.input_variance[j] - gained_variance_[j], 0.0) : none;
   }
   residual_seen_.noalias() = gain.gain.transpose() * future_;
   back_ = future_;
@@ -120,8 +115,7 @@ void BiasSmoother::finish() {
     bool other = instant + 1 == count_ || now != epoch;
     epoch = now;
     for (; place + 1 < told.size() && told[place + 1].instants <= left; ++place) other = true;
-    if (other)
-      variance_ = future_variance(*filter_, filter_->covariance(now), told[place].information);
+    if (other) variance_ = future_variance(*filter_, filter_->covariance(now), told[place].information);
     smooth(instant, other);
   }
 }

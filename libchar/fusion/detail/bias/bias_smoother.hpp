@@ -19,10 +19,7 @@ namespace libchar::fusion {
 class BiasSmoother {
  public:
   /// `filter`: made for a smoother. `most_bytes`: of what is kept.
-  BiasSmoother(std::unique_ptr<BiasFilter> filter,
-               Eigen::Index channels,
-               Eigen::Index inputs,
-               double most_bytes);
+  BiasSmoother(std::unique_ptr<BiasFilter> filter, Eigen::Index channels, Eigen::Index inputs, double most_bytes);
   /// One instant of the run after the other. Throws Error(numeric) when they are more than fit.
   void look(const Sample& y);
   /// After the last of them.

@@ -5,9 +5,7 @@
 namespace libchar::fusion {
 namespace {
 
-Eigen::MatrixXd symmetric(const Eigen::MatrixXd& m) {
-  return 0.5 * (m + m.transpose());
-}
+Eigen::MatrixXd symmetric(const Eigen::MatrixXd& m) { return 0.5 * (m + m.transpose()); }
 
 Eigen::MatrixXd one_plus(Eigen::MatrixXd m) {
   m.diagonal().array() += 1;
@@ -16,8 +14,7 @@ Eigen::MatrixXd one_plus(Eigen::MatrixXd m) {
 
 }  // namespace
 
-RiccatiSteps::RiccatiSteps(const Eigen::MatrixXd& transition,
-                           const Eigen::MatrixXd& drive,
+RiccatiSteps::RiccatiSteps(const Eigen::MatrixXd& transition, const Eigen::MatrixXd& drive,
                            const Eigen::MatrixXd& information)
     : a_(transition.transpose()), g_(information), h_(drive) {}
 

@@ -14,9 +14,7 @@ namespace libchar::fusion {
 
 class RiccatiSteps {
  public:
-  RiccatiSteps(const Eigen::MatrixXd& transition,
-               const Eigen::MatrixXd& drive,
-               const Eigen::MatrixXd& information);
+  RiccatiSteps(const Eigen::MatrixXd& transition, const Eigen::MatrixXd& drive, const Eigen::MatrixXd& information);
   /// Prediction covariance after as many steps as the operator stands for.
   Eigen::MatrixXd advance(const Eigen::MatrixXd& p) const;
   /// Twice as many steps.

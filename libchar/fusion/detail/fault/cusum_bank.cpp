@@ -19,8 +19,7 @@ std::array<CusumRow, CusumBank::kRows> cusum_rows() {
   for (const CusumInput input : {CusumInput::bias, CusumInput::gain})
     for (const double t : {0.35, 0.7, 1.4, 2.8})
       for (const double sign : {1.0, -1.0}) rows[r++] = {input, sign * t, t * t / 2};
-  for (const double k : {1.3, 1.7, 2.6, 5.0})
-    rows[r++] = {CusumInput::noise, (1 - 1 / (k * k)) / 2, std::log(k)};
+  for (const double k : {1.3, 1.7, 2.6, 5.0}) rows[r++] = {CusumInput::noise, (1 - 1 / (k * k)) / 2, std::log(k)};
   return rows;
 }
 
@@ -28,11 +27,8 @@ const std::array<CusumRow, CusumBank::kRows> kCusumRows = cusum_rows();
 
 /// All rows of four sensors: what they saw and their largest sums stay in registers. Rows of both signs of a size share
 /// their products: S + (-t z - c) = S - (t z + c) to the last bit.
-LIBCHAR_LANES void cusum_rows_step_lanes(double* __restrict sums,
-                                         double* __restrict top,
-                                         const double* const* a,
-                                         const double* const* b,
-                                         std::size_t padded) {
+LIBCHAR_LANES void cusum_rows_step_lanes(double* __restrict sums, double* __restrict top, const double* const* a,
+                                         const double* const* b, std::size_t padded) {
   const Four zero = {0, 0, 0, 0};
   for (std::size_t i = 0; i < padded; i += 4) {
     Four largest = zero;
@@ -67,14 +63,9 @@ constexpr InLanes<cusum_rows_step_lanes> cusum_rows_step;
 }  // namespace
 
 CusumBank::CusumBank(std::size_t sensors)
-    : sensors_(sensors),
-      padded_(padded(sensors)),
-      sums_(padded_ * kRows, 0.0),
-      top_(padded_, 0.0) {}
+    : sensors_(sensors), padded_(padded(sensors)), sums_(padded_ * kRows, 0.0), top_(padded_, 0.0) {}
 
-CusumInput CusumBank::input(std::size_t row) {
-  return kCusumRows[row].input;
-}
+CusumInput CusumBank::input(std::size_t row) { return kCusumRows[row].input; }
 
 double CusumBank::step(const CusumSample& sample) {
   const double* const evidence[] = {sample.z.data(), sample.uz.data(), sample.zz.data()};

@@ -55,9 +55,7 @@ class CusumBank {
 
  private:
   /// Four sensors beside each other, row after row, then the next four.
-  static std::size_t place(std::size_t row, std::size_t i) {
-    return (i / 4 * kRows + row) * 4 + i % 4;
-  }
+  static std::size_t place(std::size_t row, std::size_t i) { return (i / 4 * kRows + row) * 4 + i % 4; }
 
   std::size_t sensors_, padded_;
   std::vector<double> sums_;

@@ -46,8 +46,7 @@ LIBCHAR_LANES void predict_all_lanes(double* q, double* y, std::size_t padded) {
     LIBCHAR_GROUP_TO(kX) = centred;
     LIBCHAR_GROUP_TO(kDx) = step;
     LIBCHAR_FOUR_TO(y + i) =
-        LIBCHAR_FOUR(y + i) -
-        (LIBCHAR_GROUP(kBias) + LIBCHAR_GROUP(kGain) * centred + LIBCHAR_GROUP(kDelay) * step);
+        LIBCHAR_FOUR(y + i) - (LIBCHAR_GROUP(kBias) + LIBCHAR_GROUP(kGain) * centred + LIBCHAR_GROUP(kDelay) * step);
     LIBCHAR_GROUP_TO(kMeanF) = mean_f + a * centred;
     LIBCHAR_GROUP_TO(kSquareX) = square_x + here * a * (centred * centred - square_x);
     LIBCHAR_GROUP_TO(kSquareDx) = square_dx + here * a * (step * step - square_dx);
@@ -74,23 +73,18 @@ struct Evidence {
 };
 
 /// e and s to z, the sums of the block, and the evidence of the bank.
-LIBCHAR_LANES void standardise_all_lanes(double* q,
-                                         const Evidence& out,
-                                         std::size_t padded,
-                                         double inverse_excess) {
+LIBCHAR_LANES void standardise_all_lanes(double* q, const Evidence& out, std::size_t padded, double inverse_excess) {
   const double a = 1 / FaultBaseline::kRecent, b = 1 / FaultBaseline::kLevelMemory;
   const double root = std::sqrt(inverse_excess);
   constexpr double kMost = FaultBaseline::kMostDeviations;
   const Four least = {-kMost, -kMost, -kMost, -kMost};
   const Four most = -least;
-  const Four tail = {
-      FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail};
+  const Four tail = {FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail, FaultBaseline::kTail};
   const Four most_recent = {kMostRecent, kMostRecent, kMostRecent, kMostRecent};
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four x = LIBCHAR_GROUP(kX), dx = LIBCHAR_GROUP(kDx), here = LIBCHAR_GROUP(kHere);
-    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) +
-                          LIBCHAR_GROUP(kBiasVar) + LIBCHAR_GROUP(kGainVar) * (x * x) +
-                          LIBCHAR_GROUP(kDelayVar) * (dx * dx);
+    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) + LIBCHAR_GROUP(kBiasVar) +
+                          LIBCHAR_GROUP(kGainVar) * (x * x) + LIBCHAR_GROUP(kDelayVar) * (dx * dx);
     double* const one_over = q + 4 * FaultBaseline::kRoot;
     LIBCHAR_FOUR_TO(one_over) = 1 / variance;
     take_roots(one_over);
@@ -110,8 +104,7 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
     LIBCHAR_FOUR_TO(out.uz + i) = u * LIBCHAR_CUT(moved, end);
     LIBCHAR_GROUP_TO(kLevel) = level + here * b * (c - level);
     LIBCHAR_FOUR_TO(out.uu + i) = u * u;
-    LIBCHAR_FOUR_TO(out.zz + i) =
-        now * ((c * c * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
+    LIBCHAR_FOUR_TO(out.zz + i) = now * ((c * c * inverse_excess - 1) * LIBCHAR_GROUP(kScaleNoise) + 1);
     LIBCHAR_GROUP_TO(kSumZ) = LIBCHAR_GROUP(kSumZ) + z;
     LIBCHAR_GROUP_TO(kSumXz) = LIBCHAR_GROUP(kSumXz) + x * risen;
     LIBCHAR_GROUP_TO(kSumXx) = LIBCHAR_GROUP(kSumXx) + x * x;
@@ -119,18 +112,14 @@ LIBCHAR_LANES void standardise_all_lanes(double* q,
     LIBCHAR_GROUP_TO(kSumN) = LIBCHAR_GROUP(kSumN) + here;
     LIBCHAR_GROUP_TO(kSumTail) = LIBCHAR_GROUP(kSumTail) + (z * z > tail * tail ? here : here * 0);
     LIBCHAR_GROUP_TO(kCount) = LIBCHAR_GROUP(kCount) + here;
-    const Four square = z * z < most_recent ? z * z : most_recent,
-               recent = LIBCHAR_GROUP(kRecentSquare);
+    const Four square = z * z < most_recent ? z * z : most_recent, recent = LIBCHAR_GROUP(kRecentSquare);
     LIBCHAR_GROUP_TO(kRecentSquare) = recent + here * a * (square - recent);
   }
 }
 constexpr InLanes<standardise_all_lanes> standardise_all;
 
 /// B <- max(B (1 - k), floor), b <- b + k e: with t = z / sqrt(S), k e = B t.
-LIBCHAR_LANES void learn_all_lanes(double* q,
-                                   const double* tops,
-                                   double frozen,
-                                   std::size_t padded) {
+LIBCHAR_LANES void learn_all_lanes(double* q, const double* tops, double frozen, std::size_t padded) {
   const Four least = {-kClip, -kClip, -kClip, -kClip}, most = -least, none = {0, 0, 0, 0};
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four z = LIBCHAR_GROUP(kZ), root = LIBCHAR_GROUP(kRoot), x = LIBCHAR_GROUP(kX);
@@ -168,16 +157,14 @@ double clip_of(double tails, double of, double most) {
   constexpr double kSteepest = 2.8, kTailPart = 0.2, kLeast = 2.5;
   if (of < kFewestForTail) return kUntoldClip;
   if (tails <= kChance + kHeavy * kGaussTail * of) return most;
-  return std::max(kLeast,
-                  (kSteepest * kSteepest / 2 + std::log(kTailPart * of / tails)) / kSteepest);
+  return std::max(kLeast, (kSteepest * kSteepest / 2 + std::log(kTailPart * of / tails)) / kSteepest);
 }
 
 double believed(double ratio, double blocks, bool trusted) {
   // What the scatter of so few blocks alone would show is not believed.
   const double scatter = 1 + 3.5 * std::sqrt(2 / std::max(blocks, 1.0));
   if ((trusted || blocks >= 16) && ratio <= scatter) return 1;
-  return std::max(ratio, 1.0) *
-         (trusted || blocks >= 16 ? 1 + std::sqrt(2 / std::max(blocks, 1.0)) : scatter);
+  return std::max(ratio, 1.0) * (trusted || blocks >= 16 ? 1 + std::sqrt(2 / std::max(blocks, 1.0)) : scatter);
 }
 
 }  // namespace
@@ -223,31 +210,21 @@ FaultBaseline::FaultBaseline(std::size_t sensors)
       recent(column(kRecentSquare)),
       y(padded, 0.0),
       long_run(padded) {
-  for (SensorColumn* one :
-       {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
+  for (SensorColumn* one : {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
     one->fill(1);
   clip.fill(kUntoldClip);
   gain_var.fill(kPriorGain * kPriorGain);
   delay_var.fill(kPriorDelay * kPriorDelay);
 }
 
-SensorColumn FaultBaseline::column(Kind kind) {
-  return {block.data() + 4 * kind, kStride, padded};
-}
+SensorColumn FaultBaseline::column(Kind kind) { return {block.data() + 4 * kind, kStride, padded}; }
 
-void FaultBaseline::predict() {
-  predict_all(block.data(), y.data(), padded);
-}
+void FaultBaseline::predict() { predict_all(block.data(), y.data(), padded); }
 
 void FaultBaseline::standardise(CusumSample& sample) {
   standardise_all(block.data(),
-                  {sample.z.data(),
-                   sample.present.data(),
-                   sample.uz.data(),
-                   sample.uu.data(),
-                   sample.zz.data()},
-                  padded,
-                  1 / excess);
+                  {sample.z.data(), sample.present.data(), sample.uz.data(), sample.uu.data(), sample.zz.data()},
+                  padded, 1 / excess);
 }
 
 void FaultBaseline::learn(const std::vector<double>& tops, double frozen) {
@@ -269,9 +246,7 @@ void FaultBaseline::renew(double count_memory, std::vector<double>& scratch) {
   const double usual = scratch.empty() ? 0 : median_in_place(scratch, Middle::lower);
   for (std::size_t i = 0; i < n; ++i) {
     const double memory = std::clamp(count[i], 100.0, kMemory);
-    const auto least = [&](double square, double prior) {
-      return 1 / (memory * square / s[i] + 1 / (prior * prior));
-    };
+    const auto least = [&](double square, double prior) { return 1 / (memory * square / s[i] + 1 / (prior * prior)); };
     bias_floor[i] = s[i] / memory;
     gain_floor[i] = least(square_x[i], kPriorGain);
     delay_floor[i] = least(square_dx[i], kPriorDelay);
@@ -290,9 +265,7 @@ void FaultBaseline::end_block(bool trusted, const std::vector<double>& tops, dou
     const double off = sum_zz[i] - m;
     long_run.blocks[i] += 1;
     const double a = std::max(1 / kBlockMemory, 1 / (long_run.blocks[i] + 1));
-    const auto follow = [&](double& ratio, double now) {
-      ratio += a * (std::min(now, 1e4) - ratio);
-    };
+    const auto follow = [&](double& ratio, double now) { ratio += a * (std::min(now, 1e4) - ratio); };
     follow(long_run.bias[i], sum_z[i] * sum_z[i] / m);
     follow(long_run.gain[i], sum_xx[i] > 0 ? sum_xz[i] * sum_xz[i] / sum_xx[i] : 1);
     follow(long_run.noise[i], off * off / (2 * m));

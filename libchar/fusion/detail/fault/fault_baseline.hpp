@@ -107,10 +107,10 @@ struct FaultBaseline {
   SensorColumn square_x, square_dx;  ///< slow mean squares of x and of the last step of f
   SensorColumn bias, gain, delay, bias_var, gain_var, delay_var;
   SensorColumn bias_floor, gain_floor, delay_floor;
-  SensorColumn e, s, z;       ///< residual and its variance, e / sqrt(S)
-  SensorColumn count;         ///< of own samples
-  SensorColumn unit_x;        ///< 1 / deviation of x
-  SensorColumn start_margin;  ///< variances are taken for so many times larger
+  SensorColumn e, s, z;                               ///< residual and its variance, e / sqrt(S)
+  SensorColumn count;                                 ///< of own samples
+  SensorColumn unit_x;                                ///< 1 / deviation of x
+  SensorColumn start_margin;                          ///< variances are taken for so many times larger
   SensorColumn scale_bias, scale_gain, scale_noise;   ///< 1 / sqrt of the long-run ratios believed
   SensorColumn sum_z, sum_xz, sum_xx, sum_zz, sum_n;  ///< of the block
   SensorColumn sum_tail;                              ///< of the block: samples with |z| > kTail

@@ -25,8 +25,7 @@ constexpr double kNewcomerSamples = 256;
 constexpr double kMeansLearnt[] = {256, 2048};
 
 double threshold_of(const Array& array, const FaultDetectorOptions& options) {
-  const double samples =
-      array.rate_hz > 0 ? options.false_alarm_s * array.rate_hz : kSamplesWithoutRate;
+  const double samples = array.rate_hz > 0 ? options.false_alarm_s * array.rate_hz : kSamplesWithoutRate;
   return std::log(std::max(kBankRate * static_cast<double>(array.channels) * samples, 100.0));
 }
 
@@ -38,8 +37,7 @@ FaultDetectorOptions with_recovery(FaultDetectorOptions options, double rate_hz)
     return options;
   }
   options.recovery = kUsual;
-  if (rate_hz > 0)
-    options.recovery = std::clamp<std::int64_t>(std::llround(kLongest_s * rate_hz), kLeast, kUsual);
+  if (rate_hz > 0) options.recovery = std::clamp<std::int64_t>(std::llround(kLongest_s * rate_hz), kLeast, kUsual);
   return options;
 }
 
@@ -77,8 +75,7 @@ FaultDetector::FaultDetector(const Array& array, const FaultDetectorOptions& opt
   changes_.reserve(2 * base_.n);
   base_.forget_blocks(fault_free_ > 0);
   median_.reserve(base_.n);
-  if (!array.one_common_input())
-    general_.emplace(array.h(), ReweightingOptions{.gamma = kSlowGamma});
+  if (!array.one_common_input()) general_.emplace(array.h(), ReweightingOptions{.gamma = kSlowGamma});
 }
 
 void FaultDetector::step(const double* y) {
@@ -133,8 +130,7 @@ void FaultDetector::begin() {
     squares_[i] = std::max(squares_[i] > 0 ? squares_[i] : largest, largest * kSmallestRatio);
   if (!general_) scalar_.begin(squares_.data(), kHalfStart);
   for (std::size_t i = 0; i < base_.n; ++i) base_.bias_var[i] = squares_[i];
-  for (std::vector<double>* v : {&new_mean_, &new_square_, &new_count_})
-    std::fill(v->begin(), v->end(), 0.0);
+  for (std::vector<double>* v : {&new_mean_, &new_square_, &new_count_}) std::fill(v->begin(), v->end(), 0.0);
   std::fill(ring_e_.begin(), ring_e_.end(), std::numeric_limits<double>::quiet_NaN());
   started_ = true;
 }
@@ -193,8 +189,7 @@ bool FaultDetector::residuals(Variances& variances, const double* y) {
     base_.f.fill(x);
   else
     for (std::size_t i = 0; i < base_.n; ++i)
-      base_.f[i] =
-          base_.here[i] != 0 ? y[i] - variances.residuals()[i] : -variances.innovation(i, 0);
+      base_.f[i] = base_.here[i] != 0 ? y[i] - variances.residuals()[i] : -variances.innovation(i, 0);
   if (fresh_) {
     base_.mean_f.take(base_.f);
     base_.last_f.take(base_.f);
@@ -236,8 +231,7 @@ void FaultDetector::slow_work(Variances& variances) {
   any_armed_ = false;
   double samples = 0;
   for (std::size_t i = 0; i < base_.n; ++i) {
-    const bool armed =
-        !wait && known_[i] != 0 && base_.count[i] >= static_cast<double>(options_.learning);
+    const bool armed = !wait && known_[i] != 0 && base_.count[i] >= static_cast<double>(options_.learning);
     base_.armed[i] = armed ? 1 : 0;
     any_armed_ = any_armed_ || armed;
     deviation_[i] = std::sqrt(variances.variance(i));
@@ -249,8 +243,7 @@ void FaultDetector::slow_work(Variances& variances) {
     ++restarts_;
   }
   if (now_ < armed_again_) stood_instants_ += 64;
-  if (now_ % FaultBaseline::kBlock == 0)
-    base_.end_block(fault_free_ > 0, bank_.all_tops(), threshold_ / 2);
+  if (now_ % FaultBaseline::kBlock == 0) base_.end_block(fault_free_ > 0, bank_.all_tops(), threshold_ / 2);
 }
 
 // ---- Values that repeat.
@@ -270,8 +263,7 @@ void FaultDetector::repeat_state(std::size_t i) {
   }
   if (at_end_[i] != 0 && state == RepeatWatch::State::saturated) {
     // Where the others stand at the same end, no other knows better.
-    if (out_[i] == Out::no && m_ > inputs_ + 1 &&
-        repeats_.others_beyond(i, base_.f[i], 2 * deviation_[i])) {
+    if (out_[i] == Out::no && m_ > inputs_ + 1 && repeats_.others_beyond(i, base_.f[i], 2 * deviation_[i])) {
       out_[i] = Out::saturated;
       ++count_out_;
       sets_changed();
@@ -306,12 +298,10 @@ void FaultDetector::follow_out(Variances& variances, const double* y) {
   for (std::size_t i = 0; i < base_.n; ++i) {
     if (out_[i] != Out::judged || !usable(y[i])) continue;
     const double x = base_.f[i] - base_.mean_f[i];
-    const double sample =
-        y[i] - (base_.bias[i] + base_.gain[i] * x + base_.delay[i] * out_step_[i]);
+    const double sample = y[i] - (base_.bias[i] + base_.gain[i] * x + base_.delay[i] * out_step_[i]);
     const double e = variances.innovation(i, sample);
-    const double s = std::max(
-        variances.innovation_variance(i) * base_.start_margin[i] + base_.gain_var[i] * x * x,
-        kRoundingErrors * variances.rounding());
+    const double s = std::max(variances.innovation_variance(i) * base_.start_margin[i] + base_.gain_var[i] * x * x,
+                              kRoundingErrors * variances.rounding());
     if (!recovery_[i].add(e, s, x)) continue;
     const RecoveryWindow& window = recovery_[i];
     if (window.all_fit(base_.scale_bias[i], base_.scale_gain[i], base_.scale_noise[i])) {
@@ -345,8 +335,7 @@ void FaultDetector::meet_newcomers(Variances& variances, const double* y) {
     // Its variance is known from few samples, and the weights of all hang on it: none is judged before
     // all have been seen with it.
     variances.restart(kNewcomerSamples);
-    for (std::size_t k = 0; k < base_.n; ++k)
-      base_.count[k] = std::min(base_.count[k], kNewcomerSamples);
+    for (std::size_t k = 0; k < base_.n; ++k) base_.count[k] = std::min(base_.count[k], kNewcomerSamples);
     base_.count[i] = kNewcomerSamples;
     base_.mean_f[i] = base_.f[i];
     known_[i] = 1;

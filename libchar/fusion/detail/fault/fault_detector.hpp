@@ -73,9 +73,7 @@ class RecoveryWindow {
   /// Mean and slope are no more than the scatter makes them.
   bool mean_fits() const { return full_ >= kParts && fits(1, 1, std::max(sum_.zz / sum_.n, 1.0)); }
   /// z is worth `bias` of itself in a sum, x z `gain`, z^2 - 1 `noise` (long-run variances).
-  bool all_fit(double bias, double gain, double noise) const {
-    return fits(bias, gain, 1) && excess() * noise < 3.3;
-  }
+  bool all_fit(double bias, double gain, double noise) const { return fits(bias, gain, 1) && excess() * noise < 3.3; }
   /// The window is the first: nothing was ever wrong in it.
   bool first() const { return full_ <= kParts; }
   /// Mean square of z.
@@ -101,14 +99,12 @@ class RecoveryWindow {
   void remember_gain() {
     if (!(sum_.xx > 0)) return;
     const double explained = sum_.xe * sum_.xe / sum_.xx;
-    if (explained > 25 && explained > sum_.z * sum_.z / sum_.n)
-      gain_ = std::max(gain_, std::abs(sum_.xe / sum_.xx));
+    if (explained > 25 && explained > sum_.z * sum_.z / sum_.n) gain_ = std::max(gain_, std::abs(sum_.xe / sum_.xx));
   }
   bool fits(double bias, double gain, double scatter) const {
     if (!early_ && gain_ * gain_ * sum_.xx < (gain_ > 0 ? 30 : 0)) return false;
     const double slope = sum_.xx > 0 ? sum_.xe * sum_.xe / sum_.xx : 0;
-    return sum_.z * sum_.z / sum_.n * bias * bias < kLimit * scatter &&
-           slope * gain * gain < kLimit * scatter;
+    return sum_.z * sum_.z / sum_.n * bias * bias < kLimit * scatter && slope * gain * gain < kLimit * scatter;
   }
   double excess() const { return (sum_.zz - sum_.n) / std::sqrt(2 * sum_.n); }
 
@@ -193,9 +189,7 @@ class FaultDetector {
   void misfit(int sensor);
   bool most_judged_together() const;
   void stand_down();
-  double variance(std::size_t i) const {
-    return general_ ? general_->variance(i) : scalar_.variance(i);
-  }
+  double variance(std::size_t i) const { return general_ ? general_->variance(i) : scalar_.variance(i); }
   std::size_t at(int back, std::size_t i) const {
     return static_cast<std::size_t>((now_ + kWindow - back) % kWindow) * base_.padded + i;
   }
@@ -215,18 +209,17 @@ class FaultDetector {
   double threshold_;
 
   std::vector<Out> out_;
-  std::vector<FaultRule> rule_;  // of those out
-  std::vector<char> known_;      // seen long enough to be weighed
-  std::vector<char> at_end_;     // stands at the end of its range
-  std::vector<double> noisy_;    // its variance over what it was; 0: not noisy
-  std::vector<std::int64_t>
-      judged_at_;  // last instant: out for a bias or a gain, or noisy; -1: never
+  std::vector<FaultRule> rule_;          // of those out
+  std::vector<char> known_;              // seen long enough to be weighed
+  std::vector<char> at_end_;             // stands at the end of its range
+  std::vector<double> noisy_;            // its variance over what it was; 0: not noisy
+  std::vector<std::int64_t> judged_at_;  // last instant: out for a bias or a gain, or noisy; -1: never
   std::vector<RecoveryWindow> recovery_;
   std::vector<double> new_mean_, new_square_, new_count_;  // of newcomers
   std::vector<double> deviation_;                          // of each sensor's noise
   std::vector<double> out_step_;                           // of f, whoever is out
   std::vector<int> index_;                                 // in use now: the first m_
-  std::vector<double> ring_e_, ring_x_;  // of the last kWindow instants; NaN: not here
+  std::vector<double> ring_e_, ring_x_;                    // of the last kWindow instants; NaN: not here
   std::vector<WindowEvidence> evidence_;
   std::vector<double> squares_;  // mean of e^2 / s over the window
   std::vector<VarianceChange> changes_;

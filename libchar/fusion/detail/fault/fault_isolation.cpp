@@ -47,9 +47,7 @@ struct NormalSums {
 };
 
 /// Chi square of a consistent set: false once in some 1e5.
-bool agrees(double misfit, double freedom) {
-  return misfit <= freedom + 4 * std::sqrt(2 * freedom) + 8;
-}
+bool agrees(double misfit, double freedom) { return misfit <= freedom + 4 * std::sqrt(2 * freedom) + 8; }
 
 }  // namespace
 
@@ -58,9 +56,7 @@ struct FaultIsolation::Sums {
   int sensors = 0;
 };
 
-bool Isolation::consistent() const {
-  return agrees(misfit, freedom);
-}
+bool Isolation::consistent() const { return agrees(misfit, freedom); }
 
 FaultIsolation::FaultIsolation(const Eigen::MatrixXd& h, std::size_t sensors)
     : h_(h), inputs_(static_cast<int>(h.cols())) {
@@ -83,17 +79,11 @@ double FaultIsolation::left_over(const Sums& sums) const {
   return means + (slopes < kImpossible ? slopes : 0);
 }
 
-Isolation FaultIsolation::isolate(const std::vector<WindowEvidence>& evidence,
-                                  const int* index,
-                                  int m) {
+Isolation FaultIsolation::isolate(const std::vector<WindowEvidence>& evidence, const int* index, int m) {
   suspects_.clear();
-  const auto of = [&](int k) -> const WindowEvidence& {
-    return evidence[static_cast<std::size_t>(index[k])];
-  };
+  const auto of = [&](int k) -> const WindowEvidence& { return evidence[static_cast<std::size_t>(index[k])]; };
   for (int k = 0; k < std::min(m, 64); ++k) suspects_.push_back(k);
-  std::stable_sort(suspects_.begin(), suspects_.end(), [&](int a, int b) {
-    return of(a).suspicion > of(b).suspicion;
-  });
+  std::stable_sort(suspects_.begin(), suspects_.end(), [&](int a, int b) { return of(a).suspicion > of(b).suspicion; });
   if (suspects_.size() > kMostSuspects) suspects_.resize(kMostSuspects);
   const auto count = static_cast<unsigned>(suspects_.size());
   std::uint64_t named = 0;
@@ -132,8 +122,8 @@ Isolation FaultIsolation::isolate(const std::vector<WindowEvidence>& evidence,
   const int size = std::popcount(result.best);
   for (const auto& [cost, misfit, set] : tried_) {
     // The other half, when it agrees with itself, may be the healthy one whatever its chi square.
-    const bool other_half = 2 * size == m && (set & result.best) == 0 &&
-                            std::popcount(set) == size && agrees(misfit, result.freedom);
+    const bool other_half =
+        2 * size == m && (set & result.best) == 0 && std::popcount(set) == size && agrees(misfit, result.freedom);
     if (cost < result.cost + kDoubt || other_half) result.certain &= set;
     if ((set & result.best) == 0 && set != 0 && cost < result.other_cost) {
       result.other_cost = cost;

@@ -82,8 +82,7 @@ int FaultDetector::change_point(std::size_t i) const {
   for (int back = 0; back < most; ++back) {
     if (!sums.take(ring_e_[at(back, i)], ring_x_[at(back, i)])) continue;
     double evidence = std::max(sums.bias(s), sums.gain(s));
-    if (sums.n >= kFewInstants)
-      evidence = std::max(evidence, noise_evidence(sums.n, sums.squares / (sums.n * s)));
+    if (sums.n >= kFewInstants) evidence = std::max(evidence, noise_evidence(sums.n, sums.squares / (sums.n * s)));
     if (evidence > best) {
       best = evidence;
       where = back + 1;
@@ -120,8 +119,7 @@ void FaultDetector::judge_noise(int window) {
   int many = 0;
   for (int k = 0; k < m_; ++k) {
     const auto i = static_cast<std::size_t>(index_[static_cast<std::size_t>(k)]);
-    const double evidence =
-        noise_evidence(evidence_[i].samples, squares_[i]) * base_.scale_noise[i];
+    const double evidence = noise_evidence(evidence_[i].samples, squares_[i]) * base_.scale_noise[i];
     many += evidence > threshold_ / 2 ? 1 : 0;
     if (evidence > most) {
       most = evidence;
@@ -179,8 +177,7 @@ FaultRule FaultDetector::kind(std::size_t i, int window) const {
   ResidualSums sums;
   for (int back = 0; back < window; ++back) sums.take(ring_e_[at(back, i)], ring_x_[at(back, i)]);
   const double bias = sums.bias(base_.s[i]), gain = sums.gain(base_.s[i]);
-  if (sums.n >= kFewInstants && noise_evidence(sums.n, squares_[i]) > std::max(bias, gain) + 3)
-    return FaultRule::noise;
+  if (sums.n >= kFewInstants && noise_evidence(sums.n, squares_[i]) > std::max(bias, gain) + 3) return FaultRule::noise;
   return gain > bias ? FaultRule::gain : FaultRule::bias;
 }
 
@@ -213,17 +210,14 @@ void FaultDetector::act(const Isolation& found, int window) {
   // More than half cannot be judged by the rest; nor a quarter where it is not stated that the record
   // begins without faults.
   const int n = static_cast<int>(base_.n);
-  if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4)) || most_judged_together())
-    stand_down();
+  if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4)) || most_judged_together()) stand_down();
 }
 
 /// More than half of the sensors within one window, for whatever reason: no faults of theirs.
 bool FaultDetector::most_judged_together() const {
   int count = 0;
   for (std::size_t i = 0; i < base_.n; ++i)
-    if (judged_at_[i] >= 0 && now_ - judged_at_[i] < kWindow &&
-        (out_[i] == Out::judged || noisy_[i] > 0))
-      ++count;
+    if (judged_at_[i] >= 0 && now_ - judged_at_[i] < kWindow && (out_[i] == Out::judged || noisy_[i] > 0)) ++count;
   return 2 * count > static_cast<int>(base_.n);
 }
 
@@ -271,9 +265,8 @@ void FaultDetector::stand_down() {
 
 void FaultDetector::remarks(std::string_view algorithm, Findings& warnings) const {
   const auto at_time = [&](std::int64_t sample) {
-    return rate_hz_ > 0
-               ? shortest(std::round(static_cast<double>(sample) / rate_hz_ * 100) / 100) + " s"
-               : "instant " + std::to_string(sample);
+    return rate_hz_ > 0 ? shortest(std::round(static_cast<double>(sample) / rate_hz_ * 100) / 100) + " s"
+                        : "instant " + std::to_string(sample);
   };
   const auto list = [](std::uint64_t set) {
     std::string text;
@@ -284,24 +277,20 @@ void FaultDetector::remarks(std::string_view algorithm, Findings& warnings) cons
   const std::string who(algorithm);
   for (const FaultDoubt& doubt : log_.doubts()) {
     if (!doubt.ambiguous) continue;
-    warnings.add("faults_ambiguous",
-                 who + " saw at " + at_time(doubt.sample) + " that channels " +
-                     list(doubt.one_side) + " contradict " +
-                     (doubt.other_side != 0 ? "channels " + list(doubt.other_side) : "the others") +
-                     " and cannot tell who is right: nobody is left out");
+    warnings.add("faults_ambiguous", who + " saw at " + at_time(doubt.sample) + " that channels " +
+                                         list(doubt.one_side) + " contradict " +
+                                         (doubt.other_side != 0 ? "channels " + list(doubt.other_side) : "the others") +
+                                         " and cannot tell who is right: nobody is left out");
     break;
   }
   if (stood_down_ == 0) return;
   const double share =
-      now_ > 0
-          ? 100 * std::min(1.0, static_cast<double>(stood_instants_) / static_cast<double>(now_))
-          : 0;
-  warnings.add("fault_watch_stood_down",
-               who + " stopped judging faults of bias, gain and noise " +
-                   std::to_string(stood_down_) + (stood_down_ == 1 ? " time" : " times") +
-                   " (for " + shortest(std::round(share)) +
-                   " % of the run) because most channels were off by more than their noise "
-                   "explains: motion, misalignment or delays that differ");
+      now_ > 0 ? 100 * std::min(1.0, static_cast<double>(stood_instants_) / static_cast<double>(now_)) : 0;
+  warnings.add("fault_watch_stood_down", who + " stopped judging faults of bias, gain and noise " +
+                                             std::to_string(stood_down_) + (stood_down_ == 1 ? " time" : " times") +
+                                             " (for " + shortest(std::round(share)) +
+                                             " % of the run) because most channels were off by more than their noise "
+                                             "explains: motion, misalignment or delays that differ");
 }
 
 }  // namespace libchar::fusion

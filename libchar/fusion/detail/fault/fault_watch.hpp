@@ -40,8 +40,7 @@ class FaultWatch {
 
   /// Takes in the residuals of the m channels named in `index`; true when a moment is beyond its
   /// threshold. `expected`: of the squares, by channel, never taken for less than `least`.
-  bool beyond(
-      const double* residuals, const double* expected, double least, const int* index, int m) {
+  bool beyond(const double* residuals, const double* expected, double least, const int* index, int m) {
     for (int k = 0; not_begun_ > 0 && k < m; ++k) begin(index[k]);
     const double* __restrict const r = residuals;
     const double* __restrict const e = expected;

@@ -25,8 +25,7 @@ class RepeatWatch {
  public:
   enum class State : char { moving, stuck, saturated };
 
-  RepeatWatch(std::size_t sensors, double threshold)
-      : threshold_(threshold), last_(sensors, kNone), all_(sensors) {}
+  RepeatWatch(std::size_t sensors, double threshold) : threshold_(threshold), last_(sensors, kNone), all_(sensors) {}
 
   /// Sample y of sensor i, of deviation s; the others say the input is at x. True when it is, or was
   /// until now, anything but moving.

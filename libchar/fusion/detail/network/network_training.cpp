@@ -20,8 +20,8 @@ constexpr std::size_t kAtOnce = 64;             // rows that are not worth shari
 constexpr std::size_t kRows = 4, kColumns = 8;  // of the matrix that are summed in registers
 
 /// Four rows of the sums, from row i on, and their columns on and right of the diagonal.
-LIBCHAR_LANES void add_rows_lanes(
-    const double* panel, std::size_t rows, std::size_t width, std::size_t i, double* sums) {
+LIBCHAR_LANES void add_rows_lanes(const double* panel, std::size_t rows, std::size_t width, std::size_t i,
+                                  double* sums) {
   for (std::size_t j = i / kColumns * kColumns; j < width; j += kColumns) {
     double* const to = sums + i * width + j;
     Four a0 = LIBCHAR_FOUR(to), a1 = LIBCHAR_FOUR(to + 4);
@@ -89,9 +89,8 @@ bool NetworkNormals::linearise(const TrainingRows& rows, const double* parameter
   for (std::size_t first = 0; first < rows.count; first += kPanel) {
     fill(rows, first, parameters);
     const std::size_t count = std::min(kPanel, rows.count - first);
-    on_all_cores(width_ / kRows, 1, [&](std::size_t i) {
-      add_rows(panel_.data(), count, width_, i * kRows, sums_.data());
-    });
+    on_all_cores(width_ / kRows, 1,
+                 [&](std::size_t i) { add_rows(panel_.data(), count, width_, i * kRows, sums_.data()); });
   }
   // A square that is no number stands on the diagonal: it marks whatever was none.
   for (std::size_t i = 0; i <= network_.size(); ++i)
@@ -100,14 +99,12 @@ bool NetworkNormals::linearise(const TrainingRows& rows, const double* parameter
 }
 
 double NetworkNormals::curvature(Eigen::Index i, Eigen::Index j) const {
-  return sums_[static_cast<std::size_t>(std::min(i, j)) * width_ +
-               static_cast<std::size_t>(std::max(i, j))];
+  return sums_[static_cast<std::size_t>(std::min(i, j)) * width_ + static_cast<std::size_t>(std::max(i, j))];
 }
 
 Eigen::VectorXd NetworkNormals::slope() const {
   Eigen::VectorXd out(static_cast<Eigen::Index>(network_.size()));
-  for (Eigen::Index i = 0; i < out.size(); ++i)
-    out[i] = curvature(i, static_cast<Eigen::Index>(network_.size()));
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = curvature(i, static_cast<Eigen::Index>(network_.size()));
   return out;
 }
 
@@ -120,8 +117,7 @@ class EarlyStop {
       : normals_(normals), held_out_(held_out), patience_(patience) {}
   /// True: no gain for too long.
   bool worse(const std::vector<double>& parameters, bool moved) {
-    const double square =
-        normals_.squares(held_out_, parameters.data()) / static_cast<double>(held_out_.count);
+    const double square = normals_.squares(held_out_, parameters.data()) / static_cast<double>(held_out_.count);
     if (square < best_square) {
       best_square = square;
       best = parameters;
@@ -146,11 +142,9 @@ struct ScaledSystem {
 };
 
 ScaledSystem scaled(const NetworkNormals& normals, const Eigen::VectorXd& scale) {
-  ScaledSystem out{Eigen::MatrixXd(scale.size(), scale.size()),
-                   scale.cwiseProduct(normals.slope())};
+  ScaledSystem out{Eigen::MatrixXd(scale.size(), scale.size()), scale.cwiseProduct(normals.slope())};
   for (Eigen::Index j = 0; j < scale.size(); ++j)
-    for (Eigen::Index i = 0; i < scale.size(); ++i)
-      out.a(i, j) = scale[i] * scale[j] * normals.curvature(i, j);
+    for (Eigen::Index i = 0; i < scale.size(); ++i) out.a(i, j) = scale[i] * scale[j] * normals.curvature(i, j);
   return out;
 }
 
@@ -189,10 +183,7 @@ constexpr double kLeastChange = 1e-12;  // of the parameters
 constexpr int kMostInvalid = 5;         // systems in a row without a step
 
 /// Descends from p until it is over; returns the iterations.
-int descend(NetworkNormals& normals,
-            const TrainingRows& rows,
-            const TrainingPlan& plan,
-            std::vector<double> p,
+int descend(NetworkNormals& normals, const TrainingRows& rows, const TrainingPlan& plan, std::vector<double> p,
             EarlyStop& watch) {
   if (!normals.linearise(rows, p.data())) return 0;
   const auto size = static_cast<Eigen::Index>(p.size());
@@ -262,9 +253,7 @@ std::vector<double> start_of(const TanhNetwork& network, const TrainingRows& row
 
 }  // namespace
 
-Training train(const TanhNetwork& network,
-               const TrainingRows& rows,
-               const TrainingRows& held_out,
+Training train(const TanhNetwork& network, const TrainingRows& rows, const TrainingRows& held_out,
                const TrainingPlan& plan) {
   Training training;
   training.held_out_square = std::numeric_limits<double>::infinity();

@@ -41,7 +41,7 @@ class NetworkNormals {
   void fill(const TrainingRows& rows, std::size_t first, const double* parameters);
 
   TanhNetwork network_;
-  std::size_t width_;  // of a row of a panel: size() + 1, filled up with zeros to whole lanes
+  std::size_t width_;           // of a row of a panel: size() + 1, filled up with zeros to whole lanes
   std::vector<double> panel_;   // kPanel rows
   std::vector<double> sums_;    // width_ x width_, on and above the diagonal
   std::vector<double> errors_;  // of all rows
@@ -52,7 +52,7 @@ struct TrainingPlan {
   std::size_t iterations = 100;  ///< at most, a start
   std::uint64_t seed = 1;
   double relative_decrease = 1e-7;  ///< of the sum of squares, below which a training is over
-  int patience = 5;  ///< iterations without a gain on the held-out rows before it is over
+  int patience = 5;                 ///< iterations without a gain on the held-out rows before it is over
 };
 
 struct Training {
@@ -62,9 +62,7 @@ struct Training {
 };
 
 /// On all cores; the same arguments give the same bits, however many those are.
-Training train(const TanhNetwork& network,
-               const TrainingRows& rows,
-               const TrainingRows& held_out,
+Training train(const TanhNetwork& network, const TrainingRows& rows, const TrainingRows& held_out,
                const TrainingPlan& plan);
 
 }  // namespace libchar::fusion

@@ -9,9 +9,8 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr std::size_t kRowsPerSlice = 32;  // one pass forward each
-constexpr std::size_t kProductsPerSlice =
-    65536;  // where a row has as many as there are pairs of parameters
+constexpr std::size_t kRowsPerSlice = 32;         // one pass forward each
+constexpr std::size_t kProductsPerSlice = 65536;  // where a row has as many as there are pairs of parameters
 constexpr std::size_t kColumnsPerSlice = 4;
 constexpr int kMostIterations = 25, kPatience = 4;
 constexpr double kRidge = 1e-9;            // of the diagonal of the affine part
@@ -48,8 +47,7 @@ void solve_factored_rows(const double* l, double* b, std::size_t n) {
 }  // namespace
 
 bool solve_in_place(double* a, double* b, std::size_t n, double ridge) {
-  for (std::size_t j = 0; j < n; ++j)
-    a[j * n + j] = a[j * n + j] > 0 ? a[j * n + j] * (1 + ridge) : 1;
+  for (std::size_t j = 0; j < n; ++j) a[j * n + j] = a[j * n + j] > 0 ? a[j * n + j] * (1 + ridge) : 1;
   for (std::size_t j = 0; j < n; ++j)
     if (!factor_column(a, n, j)) return false;
   solve_factored_rows(a, b, n);
@@ -57,11 +55,7 @@ bool solve_in_place(double* a, double* b, std::size_t n, double ridge) {
 }
 
 FittedNetwork::FittedNetwork(const TanhNetwork& shape)
-    : network(shape),
-      mean(shape.inputs),
-      scale(shape.inputs),
-      affine(shape.inputs + 1),
-      parameters(shape.size()) {}
+    : network(shape), mean(shape.inputs), scale(shape.inputs), affine(shape.inputs + 1), parameters(shape.size()) {}
 
 double FittedNetwork::output(const double* input, double* scratch) const {
   double out = affine[0];
@@ -69,8 +63,7 @@ double FittedNetwork::output(const double* input, double* scratch) const {
     scratch[i] = scale[i] > 0 ? (input[i] - mean[i]) / scale[i] : 0;
     out += affine[i + 1] * scratch[i];
   }
-  return residual_scale > 0 ? out + residual_scale * network.output(parameters.data(), scratch)
-                            : out;
+  return residual_scale > 0 ? out + residual_scale * network.output(parameters.data(), scratch) : out;
 }
 
 NetworkFit::NetworkFit(const TanhNetwork& network, std::size_t most_rows)
@@ -81,16 +74,12 @@ NetworkFit::NetworkFit(const TanhNetwork& network, std::size_t most_rows)
       affine_matrix_((network.inputs + 1) * (network.inputs + 1)),
       affine_side_(network.inputs + 1) {
   const std::size_t size = network.size();
-  for (auto* part : {&lm_.p, &lm_.trial, &lm_.step, &lm_.row, &lm_.slope, &lm_.scale})
-    part->resize(size);
+  for (auto* part : {&lm_.p, &lm_.trial, &lm_.step, &lm_.row, &lm_.slope, &lm_.scale}) part->resize(size);
   lm_.a.resize(size * size);
   lm_.factor.resize(size * size);
 }
 
-void NetworkFit::begin(const FitRows& rows,
-                       std::size_t training,
-                       std::size_t held_out,
-                       std::uint64_t seed) {
+void NetworkFit::begin(const FitRows& rows, std::size_t training, std::size_t held_out, std::uint64_t seed) {
   source_ = &rows;
   training_ = training;
   held_out_ = held_out;
@@ -140,8 +129,7 @@ bool NetworkFit::advance() {
   }
   std::size_t rows = kRowsPerSlice;
   if (phase_ == Phase::slopes)
-    rows = std::clamp<std::size_t>(
-        2 * kProductsPerSlice / (lm_.p.size() * lm_.p.size()), 1, kRowsPerSlice);
+    rows = std::clamp<std::size_t>(2 * kProductsPerSlice / (lm_.p.size() * lm_.p.size()), 1, kRowsPerSlice);
   const std::size_t end = std::min(phase_rows(), at_ + rows);
   for (; at_ < end; ++at_) work(at_);
   if (at_ >= phase_rows()) end_of_phase();
@@ -209,8 +197,7 @@ void NetworkFit::add_affine(std::size_t k) {
   const std::size_t n = input_.size() + 1;
   double* const z = row(k);
   z[n - 1] = source_->row(k, input_.data());
-  for (std::size_t i = 0; i + 1 < n; ++i)
-    z[i] = out_.scale[i] > 0 ? (input_[i] - out_.mean[i]) / out_.scale[i] : 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) z[i] = out_.scale[i] > 0 ? (input_[i] - out_.mean[i]) / out_.scale[i] : 0;
   const auto value = [&](std::size_t i) { return i == 0 ? 1.0 : z[i - 1]; };
   for (std::size_t i = 0; i < n; ++i) {
     affine_side_[i] += value(i) * z[n - 1];
@@ -220,8 +207,7 @@ void NetworkFit::add_affine(std::size_t k) {
 
 bool NetworkFit::solve_affine() {
   if (!solve_in_place(affine_matrix_.data(), affine_side_.data(), affine_side_.size(), kRidge) ||
-      !std::all_of(
-          affine_side_.begin(), affine_side_.end(), [](double v) { return std::isfinite(v); }))
+      !std::all_of(affine_side_.begin(), affine_side_.end(), [](double v) { return std::isfinite(v); }))
     return false;
   out_.affine = affine_side_;
   return true;
@@ -233,8 +219,7 @@ void NetworkFit::add_residual(std::size_t k) {
   double* const z = row(k);
   if (k >= training_) {
     z[n] = source_->row(k, input_.data());
-    for (std::size_t i = 0; i < n; ++i)
-      z[i] = out_.scale[i] > 0 ? (input_[i] - out_.mean[i]) / out_.scale[i] : 0;
+    for (std::size_t i = 0; i < n; ++i) z[i] = out_.scale[i] > 0 ? (input_[i] - out_.mean[i]) / out_.scale[i] : 0;
   }
   double e = z[n] - out_.affine[0];
   for (std::size_t i = 0; i < n; ++i) e -= out_.affine[i + 1] * z[i];
@@ -251,8 +236,7 @@ void NetworkFit::end_residuals() {
   out_.held_out_square = lm_.trial_cost / static_cast<double>(held_out_);
   lm_.promised = std::sqrt(sum_ / static_cast<double>(training_));
   lm_.trial_cost = 0;
-  if (!(lm_.promised > 0) || !std::isfinite(lm_.promised) || !std::isfinite(out_.held_out_square))
-    return finish();
+  if (!(lm_.promised > 0) || !std::isfinite(lm_.promised) || !std::isfinite(out_.held_out_square)) return finish();
   for (std::size_t k = 0; k < training_ + held_out_; ++k) row(k)[input_.size()] /= lm_.promised;
   start_parameters();
   next(Phase::slopes);
@@ -372,16 +356,12 @@ void NetworkFit::judge_held_out() {
   next(Phase::slopes);
 }
 
-void NetworkFit::finish() {
-  phase_ = Phase::idle;
-}
+void NetworkFit::finish() { phase_ = Phase::idle; }
 
 void NetworkFit::finish_at_once(std::size_t starts) {
   while (busy() && phase_ != Phase::slopes) advance();
   if (!busy()) return;
-  const Training best = train(out_.network,
-                              {rows_.data(), training_},
-                              {row(training_), held_out_},
+  const Training best = train(out_.network, {rows_.data(), training_}, {row(training_), held_out_},
                               {.starts = starts, .iterations = 100, .seed = seed_});
   const double scale = lm_.unit;
   const double square = best.held_out_square * scale * scale;

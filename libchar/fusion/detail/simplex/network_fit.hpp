@@ -27,8 +27,7 @@ struct FittedNetwork {
   std::vector<double> affine;       ///< a_0, then one an input
   std::vector<double> parameters;   ///< of the network
   double residual_scale = 0;        ///< s
-  double held_out_square =
-      -1;  ///< mean square error on the held-out rows; below 0: nothing is learnt
+  double held_out_square = -1;      ///< mean square error on the held-out rows; below 0: nothing is learnt
 };
 
 /// Rows to learn from; the last ones are held out.

@@ -76,8 +76,7 @@ bool PastNetwork::pays(double variance) {
   const double s = std::max(innovation_.mean, fast_.mean);
   gain_ = c > 0 && s > 0 ? std::min(1.0, c / s) : 0;
   variance_ = std::max(variance - gain_ * c, 0.0);
-  return innovation_.count >= kSettled && variance > 0 &&
-         gain_ * c > (leads_ ? kPaysNoMore : kPays) * variance;
+  return innovation_.count >= kSettled && variance > 0 && gain_ * c > (leads_ ? kPaysNoMore : kPays) * variance;
 }
 
 bool PastNetwork::judge(double x, double variance, const double* half, const double* weight) {

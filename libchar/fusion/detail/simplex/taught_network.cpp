@@ -20,7 +20,7 @@ constexpr double kCalmAgain = 0.7;            // of its limit
 constexpr int kCalm = 32;                     // good instants before the network leads again
 constexpr double kLeastGain = 0.06;           // of the mean square error
 constexpr double kErrors = 2.5;               // standard errors of that gain
-constexpr double kAgeing = 9;  // of the square that the network has aged by since it learnt
+constexpr double kAgeing = 9;                 // of the square that the network has aged by since it learnt
 constexpr std::size_t kJudgedPerSlice = 16;
 
 }  // namespace
@@ -107,8 +107,7 @@ bool TaughtNetwork::judge(const RecentPast& past, const double* y, const Baselin
   x_ = estimate(past_.data(), z_.data());
   if (!good(HandOverReason::outside, within(z_.data()))) return false;
   const double variance = baseline.variance > 0 ? baseline.variance : 0;
-  if (!good(HandOverReason::apart,
-            std::abs(x_ - baseline.x) <= limits.apart + kSigmas * std::sqrt(variance)))
+  if (!good(HandOverReason::apart, std::abs(x_ - baseline.x) <= limits.apart + kSigmas * std::sqrt(variance)))
     return false;
   if (!good(HandOverReason::inconsistent, consistent(y))) return false;
   if (calm_ < kCalm) ++calm_;
@@ -136,10 +135,7 @@ void TaughtNetwork::exchange(LearntExchange& with) {
   with.numbers("drifts", limits.drift);
 }
 
-Teaching::Teaching(const TaughtRows& rows,
-                   std::size_t lags,
-                   const TanhNetwork& shape,
-                   std::uint64_t seed)
+Teaching::Teaching(const TaughtRows& rows, std::size_t lags, const TanhNetwork& shape, std::uint64_t seed)
     : rows_(rows),
       fit_(shape, std::max<std::size_t>(rows.training() + rows.held_out(), 1)),
       made_(rows.sensors(), lags, shape),
@@ -273,10 +269,8 @@ void Teaching::add_reading(std::size_t k) {
   const double u = (rows_.truth(k) - made_.limits.centre) / made_.limits.unit;
   const double powers[kTerms] = {1, u, u * u, u * u * u};
   for (std::size_t p = 0; p < kTerms; ++p) {
-    for (std::size_t q = 0; q < kTerms; ++q)
-      readings_.power[p * kTerms + q] += powers[p] * powers[q];
-    for (std::size_t i = 0; i < inverse_.size(); ++i)
-      readings_.side[i * kTerms + p] += powers[p] * rows_.past(k)[i];
+    for (std::size_t q = 0; q < kTerms; ++q) readings_.power[p * kTerms + q] += powers[p] * powers[q];
+    for (std::size_t i = 0; i < inverse_.size(); ++i) readings_.side[i * kTerms + p] += powers[p] * rows_.past(k)[i];
   }
 }
 
@@ -286,9 +280,7 @@ void Teaching::solve_readings() {
     std::copy(readings_.power.begin(), readings_.power.end(), matrix);
     double* const side = readings_.side.data() + i * kTerms;
     if (!solve_in_place(matrix, side, kTerms, 1e-9)) std::fill(side, side + kTerms, 0);
-    std::copy(side,
-              side + kTerms,
-              made_.limits.reading.begin() + static_cast<std::ptrdiff_t>(i * kTerms));
+    std::copy(side, side + kTerms, made_.limits.reading.begin() + static_cast<std::ptrdiff_t>(i * kTerms));
     made_.limits.deviation[i] = 1;
   }
 }
@@ -366,8 +358,7 @@ void Teaching::end_of_phase() {
       return next(Phase::held_out);
     case Phase::held_out:
       for (std::size_t i = 0; i < readings_.squares.size(); ++i)
-        made_.limits.deviation[i] =
-            std::sqrt(readings_.squares[i] / static_cast<double>(rows_.held_out()));
+        made_.limits.deviation[i] = std::sqrt(readings_.squares[i] / static_cast<double>(rows_.held_out()));
       return next(Phase::tail);
     case Phase::tail:
       return conclude();
@@ -412,8 +403,7 @@ void Teaching::conclude() {
   made_.net.held_out_square = held_.network;
   made_.right = std::isfinite(held_.network) &&
                 held_.network + kAgeing * ageing() < (1 - kLeastGain) * held_.baseline &&
-                mean > kErrors * std::sqrt(square / kBlocks) && tail_.count > 0 &&
-                tail_.network <= tail_.baseline;
+                mean > kErrors * std::sqrt(square / kBlocks) && tail_.count > 0 && tail_.network <= tail_.baseline;
 }
 
 }  // namespace libchar::fusion

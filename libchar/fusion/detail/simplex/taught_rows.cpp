@@ -30,8 +30,7 @@ void RecentPast::push(const double* y) {
 
 void RecentPast::copy_to(double* out) const {
   std::copy_n(at(0), sensors_, out);
-  for (std::size_t j = 0; j < lags_; ++j)
-    std::copy_n(at(lag(j)), sensors_, out + (j + 1) * sensors_);
+  for (std::size_t j = 0; j < lags_; ++j) std::copy_n(at(lag(j)), sensors_, out + (j + 1) * sensors_);
 }
 
 double SensorSet::centre(const double* y) const {
@@ -60,10 +59,7 @@ bool SensorSet::complete(const double* y) const {
   return true;
 }
 
-TaughtRows::TaughtRows(std::size_t sensors,
-                       std::size_t lags,
-                       std::size_t most_rows,
-                       std::int64_t expected,
+TaughtRows::TaughtRows(std::size_t sensors, std::size_t lags, std::size_t most_rows, std::int64_t expected,
                        std::uint64_t seed)
     : sensors_(sensors),
       width_((lags + 1) * sensors),
@@ -115,9 +111,7 @@ const double* TaughtRows::tail_row(std::size_t k) const {
 void TaughtRows::sort(Reservoir& in) const {
   std::vector<std::size_t> order(in.kept);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return in.when[a] < in.when[b];
-  });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return in.when[a] < in.when[b]; });
   std::vector<double> sorted;
   sorted.reserve(in.rows.size());
   const auto width = static_cast<std::ptrdiff_t>(width_ + 2);

@@ -32,9 +32,7 @@ class RecentPast {
   static std::size_t lag(std::size_t j) { return std::size_t{1} << (2 * j); }
 
  private:
-  const double* at(std::size_t back) const {
-    return ring_.data() + (seen_ - 1 - back) % room_ * sensors_;
-  }
+  const double* at(std::size_t back) const { return ring_.data() + (seen_ - 1 - back) % room_ * sensors_; }
   std::size_t sensors_, lags_, room_;
   std::size_t seen_ = 0;
   std::vector<double> ring_;
@@ -57,11 +55,7 @@ struct SensorSet {
 class TaughtRows {
  public:
   /// Of a window of `expected` instants the last quarter is held out.
-  TaughtRows(std::size_t sensors,
-             std::size_t lags,
-             std::size_t most_rows,
-             std::int64_t expected,
-             std::uint64_t seed);
+  TaughtRows(std::size_t sensors, std::size_t lags, std::size_t most_rows, std::int64_t expected, std::uint64_t seed);
   /// The past with its newest instant, the truth and the baseline's estimate of it; NaN: none.
   void add(const RecentPast& past, double truth, double estimate);
   /// The time of an instant without a truth has passed.
@@ -105,9 +99,7 @@ class TaughtRows {
 struct RowsOfSet final : FitRows {
   const TaughtRows* rows = nullptr;
   const SensorSet* set = nullptr;
-  double row(std::size_t k, double* input) const override {
-    return rows->truth(k) - set->fill(rows->past(k), input);
-  }
+  double row(std::size_t k, double* input) const override { return rows->truth(k) - set->fill(rows->past(k), input); }
 };
 
 }  // namespace libchar::fusion

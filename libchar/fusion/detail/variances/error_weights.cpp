@@ -35,9 +35,7 @@ VectorXd solve_on(const MatrixXd& s, const VectorXd& b, const std::vector<Index>
 
 }  // namespace
 
-std::vector<std::pair<int, int>> copies_of(const MatrixXd& error,
-                                           const MatrixXd& channel,
-                                           double rounding) {
+std::vector<std::pair<int, int>> copies_of(const MatrixXd& error, const MatrixXd& channel, double rounding) {
   std::vector<std::pair<int, int>> out;
   std::vector<bool> copy(static_cast<std::size_t>(error.cols()), false);
   for (Index j = 1; j < error.cols(); ++j)
@@ -72,8 +70,7 @@ double estimated_shrinkage(const MatrixXd& error, std::int64_t rows) {
 MatrixXd shrunk(const MatrixXd& error, double share) {
   MatrixXd out = MatrixXd::Zero(error.rows() + error.cols(), error.cols());
   out.topRows(error.rows()) = std::sqrt(1 - share) * error;
-  for (Index i = 0; i < error.cols(); ++i)
-    out(error.rows() + i, i) = std::sqrt(share) * error.col(i).norm();
+  for (Index i = 0; i < error.cols(); ++i) out(error.rows() + i, i) = std::sqrt(share) * error.col(i).norm();
   return out;
 }
 

@@ -15,8 +15,7 @@ namespace libchar::fusion {
 
 /// Channels that follow an earlier one to the precision of a float (or of the triangle), by less
 /// than a thousandth of either's error: {copy, original}. `error` and `channel` hold a column a channel.
-std::vector<std::pair<int, int>> copies_of(const Eigen::MatrixXd& error,
-                                           const Eigen::MatrixXd& channel,
+std::vector<std::pair<int, int>> copies_of(const Eigen::MatrixXd& error, const Eigen::MatrixXd& channel,
                                            double rounding);
 
 /// Shrinkage that makes the expected loss least for independent Gaussian errors of `rows` instants:

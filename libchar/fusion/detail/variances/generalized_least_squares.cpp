@@ -15,11 +15,7 @@ constexpr double kDependent = 1e-11;
 }  // namespace
 
 GeneralizedLeastSquares::GeneralizedLeastSquares(const Eigen::MatrixXd& h)
-    : h_(h),
-      q_(h.rows(), h.cols()),
-      upper_(h.cols(), h.cols()),
-      inverse_(h.cols(), h.cols()),
-      root_(h.rows()) {
+    : h_(h), q_(h.rows(), h.cols()), upper_(h.cols(), h.cols()), inverse_(h.cols(), h.cols()), root_(h.rows()) {
   q_.setZero();
   upper_.setZero();
   inverse_.setZero();
@@ -80,9 +76,7 @@ void GeneralizedLeastSquares::solve(const double* y, double* x, double* residual
   }
 }
 
-double GeneralizedLeastSquares::leverage(int k) const {
-  return q_.row(k).squaredNorm();
-}
+double GeneralizedLeastSquares::leverage(int k) const { return q_.row(k).squaredNorm(); }
 
 double GeneralizedLeastSquares::predicted_variance(Eigen::Index i) const {
   double sum = 0;
@@ -114,8 +108,7 @@ bool GeneralMean::take_present(const Sample& y) {
     if (usable(y[i])) before_.push_back(i);
   if (before_ == present_) return determined_;
   present_.assign(before_.begin(), before_.end());
-  determined_ = !present_.empty() &&
-                gls_.factor(variances_.data(), present_.data(), static_cast<int>(present_.size()));
+  determined_ = !present_.empty() && gls_.factor(variances_.data(), present_.data(), static_cast<int>(present_.size()));
   return determined_;
 }
 

@@ -16,15 +16,9 @@ constexpr double kUncertainGain = 0.1;
 }  // namespace
 
 OneFactor::OneFactor(Eigen::Index channels)
-    : factor_(Eigen::VectorXd::Zero(channels)),
-      noise_(factor_),
-      scaled_(factor_),
-      product_(factor_) {}
+    : factor_(Eigen::VectorXd::Zero(channels)), noise_(factor_), scaled_(factor_), product_(factor_) {}
 
-bool OneFactor::solve(const Eigen::MatrixXd& products,
-                      double divisor,
-                      double instants,
-                      const Eigen::VectorXd& known) {
+bool OneFactor::solve(const Eigen::MatrixXd& products, double divisor, double instants, const Eigen::VectorXd& known) {
   const Eigen::Index n = factor_.size();
   const auto covariance = products.selfadjointView<Eigen::Lower>();
   for (Eigen::Index i = 0; i < n; ++i)
@@ -60,8 +54,7 @@ bool OneFactor::certain(double instants) const {
   for (Eigen::Index i = 0; i < factor_.size(); ++i) {
     if (!(std::abs(factor_[i]) > 1e-6 * strongest)) return false;
     // var(g) / g^2 = v / (N g^2), as if the factor itself were known.
-    if (noise_[i] > kUncertainGain * kUncertainGain * instants * factor_[i] * factor_[i])
-      return false;
+    if (noise_[i] > kUncertainGain * kUncertainGain * instants * factor_[i] * factor_[i]) return false;
   }
   return true;
 }

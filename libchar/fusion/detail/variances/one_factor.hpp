@@ -14,10 +14,7 @@ class OneFactor {
   /// From C = products / divisor (lower triangle). `known` variances of the noise, or empty: estimated,
   /// which needs three channels. Starts from the last solution. False: the channels share nothing,
   /// or some gain is not known to a tenth of itself from so many instants.
-  bool solve(const Eigen::MatrixXd& products,
-             double divisor,
-             double instants,
-             const Eigen::VectorXd& known);
+  bool solve(const Eigen::MatrixXd& products, double divisor, double instants, const Eigen::VectorXd& known);
   const Eigen::VectorXd& factor() const { return factor_; }  ///< g
   const Eigen::VectorXd& noise() const { return noise_; }    ///< D
 

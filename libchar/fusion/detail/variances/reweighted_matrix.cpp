@@ -11,8 +11,7 @@ namespace libchar::fusion {
 ReweightedMatrix::ReweightedMatrix(const Eigen::MatrixXd& h, const ReweightingOptions& options)
     : options_(options),
       gls_(h),
-      v_(static_cast<std::size_t>(h.rows()),
-         options.start_variance > 0 ? options.start_variance : 1),
+      v_(static_cast<std::size_t>(h.rows()), options.start_variance > 0 ? options.start_variance : 1),
       residual_variance_(v_.size(), 0),
       r_(Eigen::VectorXd::Zero(h.rows())),
       right_(h.rows()),
@@ -54,8 +53,7 @@ void ReweightedMatrix::start() {
   for (int k = 0; k < m_; ++k)
     squares += r_[index_[static_cast<std::size_t>(k)]] * r_[index_[static_cast<std::size_t>(k)]];
   if (!(squares > 0) || m_ <= gls_.inputs()) return;
-  std::fill(
-      v_.begin(), v_.end(), std::max(squares / static_cast<double>(m_ - gls_.inputs()), kTiny));
+  std::fill(v_.begin(), v_.end(), std::max(squares / static_cast<double>(m_ - gls_.inputs()), kTiny));
   started_ = true;
   factored_ = false;
 }
@@ -84,8 +82,7 @@ void ReweightedMatrix::improve() {
     a = std::max(a, gathered_ / (instants_ + kStart));
   }
   for (int k = 0; k < m_; ++k)
-    right_[k] = squares_[k] / (gathered_ *
-                               v_[static_cast<std::size_t>(index_[static_cast<std::size_t>(k)])]) -
+    right_[k] = squares_[k] / (gathered_ * v_[static_cast<std::size_t>(index_[static_cast<std::size_t>(k)])]) -
                 (1 - gls_.leverage(k));
   // The ridge of one instant, whatever is gathered: it bounds the spread of the result, not the
   // step.
@@ -130,18 +127,15 @@ void ReweightedMatrix::apply(double a) {
     largest = std::max(largest, v);
   }
   const double others = std::max(sum - heaviest, heaviest * 1e-20);
-  const double lowest = std::max({options_.floor / others,
-                                  largest * std::max(options_.floor_largest, kSmallestRatio),
-                                  rounding_});
+  const double lowest =
+      std::max({options_.floor / others, largest * std::max(options_.floor_largest, kSmallestRatio), rounding_});
   for (int k = 0; k < m_; ++k) {
     double& v = v_[static_cast<std::size_t>(index_[static_cast<std::size_t>(k)])];
     v = std::max(v, lowest);
   }
 }
 
-void ReweightedMatrix::restart(double instants) {
-  instants_ = std::min(instants_, instants);
-}
+void ReweightedMatrix::restart(double instants) { instants_ = std::min(instants_, instants); }
 
 void ReweightedMatrix::assume(std::size_t i, double variance) {
   v_[i] = variance;
@@ -169,8 +163,7 @@ Eigen::MatrixXd ReweightedMatrix::weights() const {
   Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(gls_.h().rows(), gls_.h().cols());
   if (!factored_ || !determined_) return weights;
   const Eigen::MatrixXd gain = gls_.gain();
-  for (int k = 0; k < m_; ++k)
-    weights.row(index_[static_cast<std::size_t>(k)]) = gain.col(k).transpose();
+  for (int k = 0; k < m_; ++k) weights.row(index_[static_cast<std::size_t>(k)]) = gain.col(k).transpose();
   return weights;
 }
 

@@ -55,9 +55,7 @@ double ReweightedVariances::fuse_in_use(const double* y) {
 }
 
 double ReweightedVariances::fuse(const double* y, const int* index, int m) {
-  if (index == nullptr ? !all()
-                       : m != m_ || (!all() && !std::equal(index, index + m, index_.data())))
-    use(index, m);
+  if (index == nullptr ? !all() : m != m_ || (!all() && !std::equal(index, index + m, index_.data()))) use(index, m);
   y_ = y;
   x_ = !started_ ? median(y) : all() ? fuse_in_use<true>(y) : fuse_in_use<false>(y);
   const double ulp = std::numeric_limits<double>::epsilon() * x_;
@@ -83,9 +81,7 @@ void ReweightedVariances::begin(const double* variances, double instants) {
   weigh();
 }
 
-void ReweightedVariances::restart(double instants) {
-  instants_ = std::min(instants_, instants);
-}
+void ReweightedVariances::restart(double instants) { instants_ = std::min(instants_, instants); }
 
 void ReweightedVariances::assume(std::size_t i, double variance) {
   if (gathered_gain_ > 0) renew(last_gain_);
@@ -134,8 +130,7 @@ void ReweightedVariances::start_from_pairs() {
     for (std::size_t j = 0; j < i; ++j) {
       double sum = 0, count = 0;
       for (int k = 0; k < kFirstInstants; ++k) {
-        const double d = first_[static_cast<std::size_t>(k) * n + i] -
-                         first_[static_cast<std::size_t>(k) * n + j];
+        const double d = first_[static_cast<std::size_t>(k) * n + i] - first_[static_cast<std::size_t>(k) * n + j];
         if (!(std::abs(d) >= 0)) continue;
         sum += d * d;
         count += 1;
@@ -246,9 +241,8 @@ void ReweightedVariances::apply() {
     others += i == heaviest_ ? 0 : inverse[i];
     largest = v[i] > largest ? v[i] : largest;
   }
-  const double lowest = std::max({options_.floor / others,
-                                  largest * std::max(options_.floor_largest, kSmallestRatio),
-                                  gathered_rounding_});
+  const double lowest = std::max(
+      {options_.floor / others, largest * std::max(options_.floor_largest, kSmallestRatio), gathered_rounding_});
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
     const double kept = v[i] > lowest ? v[i] : lowest;

@@ -30,9 +30,9 @@
 namespace libchar::fusion {
 
 struct ReweightingOptions {
-  double gamma = 0.999;  ///< memory: 1 / (1 - gamma) instants
-  double damping = 10;   ///< lambda = damping x a
-  double floor = 1e-4;   ///< of a variance, relative to the fused variance of the other channels
+  double gamma = 0.999;      ///< memory: 1 / (1 - gamma) instants
+  double damping = 10;       ///< lambda = damping x a
+  double floor = 1e-4;       ///< of a variance, relative to the fused variance of the other channels
   double floor_largest = 0;  ///< of a variance, relative to the largest one
   /// 0: from the first instant, with a gain that falls as 1/k to 1 - gamma
   double start_variance = 0;
@@ -121,7 +121,7 @@ class ReweightedVariances {
   std::vector<double> b_, e_;     // right side, 1 / (1 - 2p + lambda)
   std::vector<int> index_;        // channels in use, rising: the first m_
   std::vector<double> sorted_;    // scratch of the start
-  std::vector<double> first_;  // samples of the first instants, NaN where a channel was not in use
+  std::vector<double> first_;     // samples of the first instants, NaN where a channel was not in use
   int m_ = 0;
   double fused_ = 1;  // 1 / sum of the inverse variances in use
   double x_ = 0, rounding_ = 0;

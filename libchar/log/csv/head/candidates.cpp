@@ -43,8 +43,7 @@ struct LineWorth {
   bool ends_empty = false;  // the last cell
   Worth worth;
   bool row(std::size_t columns) const {  // more than words
-    return cells == columns &&
-           std::max(worth.point, worth.comma) > kWord * (static_cast<double>(cells) + 1) - 0.1;
+    return cells == columns && std::max(worth.point, worth.comma) > kWord * (static_cast<double>(cells) + 1) - 0.1;
   }
 };
 
@@ -52,8 +51,7 @@ LineWorth worth_of(const Line& line, char delimiter) {
   LineWorth out;
   const auto fields = split(line.text, delimiter);
   out.cells = fields.size();
-  out.ends_empty =
-      fields.size() > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ';
+  out.ends_empty = fields.size() > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ';
   for (const Field& field : fields) {
     const bool mark = field.text.find_first_of(".,") != std::string::npos;
     const double point = worth_of(field, '.');
@@ -69,8 +67,7 @@ void drop_empty_ends(std::vector<LineWorth>& lines) {
   for (const LineWorth& line : lines)
     if (!line.ends_empty) widest = std::max(widest, line.cells);
   for (LineWorth& line : lines)
-    if (line.ends_empty && line.cells != widest)
-      --line.cells, --line.worth.point, --line.worth.comma;
+    if (line.ends_empty && line.cells != widest) --line.cells, --line.worth.point, --line.worth.comma;
 }
 
 std::size_t usual_width(const std::vector<LineWorth>& lines) {
@@ -84,18 +81,14 @@ std::size_t usual_width(const std::vector<LineWorth>& lines) {
 
 // Does the line in front of the first row have a name for every column? One that has no line in front may be.
 bool names_fit(const std::vector<LineWorth>& lines, std::size_t columns) {
-  const auto row = std::find_if(
-      lines.begin(), lines.end(), [&](const LineWorth& line) { return line.row(columns); });
+  const auto row = std::find_if(lines.begin(), lines.end(), [&](const LineWorth& line) { return line.row(columns); });
   if (row == lines.end() || row == lines.begin()) return true;
   const LineWorth& names = *(row - 1);
   return names.cells == columns && (columns > 1 || names.worth.point > 0);
 }
 
 // What stands in front of a table is no table: of many lines the last ones say how it is written.
-void add_candidates(const std::vector<Line>& lines,
-                    char delimiter,
-                    char decimal,
-                    std::vector<Candidate>& out) {
+void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal, std::vector<Candidate>& out) {
   std::vector<LineWorth> all;
   constexpr std::size_t kLooked = 24;  // at either end
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -122,9 +115,8 @@ void add_candidates(const std::vector<Line>& lines,
 }
 
 bool occurs(const std::vector<Line>& lines, char delimiter) {
-  return std::any_of(lines.begin(), lines.end(), [&](const Line& line) {
-    return line.text.find(delimiter) != std::string_view::npos;
-  });
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const Line& line) { return line.text.find(delimiter) != std::string_view::npos; });
 }
 
 }  // namespace
@@ -139,9 +131,8 @@ std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter
     add_candidates(lines, by, decimal, out);
   }
   // Tabs count as blanks, and names behind tabs have blanks inside: those must win clearly.
-  const bool tabs = std::any_of(out.begin(), out.end(), [](const Candidate& one) {
-    return one.delimiter == '\t' && one.columns > 1;
-  });
+  const bool tabs = std::any_of(out.begin(), out.end(),
+                                [](const Candidate& one) { return one.delimiter == '\t' && one.columns > 1; });
   for (Candidate& one : out)
     if (one.delimiter == ' ' && tabs) one.score *= kTabsToo;
   std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
@@ -170,8 +161,8 @@ char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal
 char named_delimiter(const std::string& name) {
   if (name == "tab" || name == "\\t" || name == "\t") return '\t';
   if (name == "space" || name == " ") return ' ';
-  if (name.size() == 1 && !is_digit(name[0]) && name[0] != '"' && name[0] != '\r' &&
-      name[0] != '\n' && name[0] != '-' && name[0] != '+')
+  if (name.size() == 1 && !is_digit(name[0]) && name[0] != '"' && name[0] != '\r' && name[0] != '\n' &&
+      name[0] != '-' && name[0] != '+')
     return name[0];
   throw usage_error("E0202", "`delimiter`")
       .says("unknown delimiter")

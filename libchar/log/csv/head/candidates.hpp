@@ -18,9 +18,7 @@ struct Candidate {
 };
 
 /// Every one that agrees with `delimiter` and `decimal` (0: not known), best first; never empty.
-std::vector<Candidate> candidates(const std::vector<Line>& lines,
-                                  char delimiter = 0,
-                                  char decimal = 0);
+std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter = 0, char decimal = 0);
 
 /// What stands between groups of three digits in three cells or more, 0 when nothing does.
 char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal);

@@ -20,18 +20,14 @@ std::string utf8_of(std::string_view text) {
   return windows1252_to_utf8(text).value_or("");
 }
 
-bool letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
 // Words begin with a letter, or hold several; "+-1" and "1d5" are numbers gone wrong.
 bool like_words(std::string_view text) {
   const auto outside = static_cast<unsigned char>(text[0]);
   const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
-  if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset))
-    return true;
-  return std::count_if(text.begin(), text.end(), letter) > 1 ||
-         text.find(':') != std::string_view::npos;
+  if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset)) return true;
+  return std::count_if(text.begin(), text.end(), letter) > 1 || text.find(':') != std::string_view::npos;
 }
 
 using KindCounts = std::array<std::size_t, static_cast<std::size_t>(CellKind::odd) + 1>;
@@ -39,12 +35,8 @@ using KindCounts = std::array<std::size_t, static_cast<std::size_t>(CellKind::od
 ColumnKind kind_of(const KindCounts& counts) {
   const auto count = [&](CellKind kind) { return counts[static_cast<std::size_t>(kind)]; };
   CellKind most = CellKind::blank;
-  for (const CellKind kind : {CellKind::stamp,
-                              CellKind::date,
-                              CellKind::clock,
-                              CellKind::number,
-                              CellKind::word,
-                              CellKind::odd})
+  for (const CellKind kind :
+       {CellKind::stamp, CellKind::date, CellKind::clock, CellKind::number, CellKind::word, CellKind::odd})
     if (count(kind) > (most == CellKind::blank ? 0 : count(most))) most = kind;
   switch (most) {
     case CellKind::blank:
@@ -81,16 +73,15 @@ std::string without_thousands(std::string_view text, NumberStyle style) {
     ++groups;
     group = 0;
   }
-  if (groups == 0 || group != 3 || (i < text.size() && text[i] != style.decimal))
-    return std::string(text);
+  if (groups == 0 || group != 3 || (i < text.size() && text[i] != style.decimal)) return std::string(text);
   return out + std::string(text.substr(i));
 }
 
 std::size_t label_length(std::string_view text) {
   if (text.empty() || !letter(text[0])) return 0;
   std::size_t i = 1;
-  while (i < text.size() && (letter(text[i]) || is_digit(text[i]) || text[i] == '.' ||
-                             text[i] == '-' || text[i] == '[' || text[i] == ']'))
+  while (i < text.size() &&
+         (letter(text[i]) || is_digit(text[i]) || text[i] == '.' || text[i] == '-' || text[i] == '[' || text[i] == ']'))
     ++i;
   while (i < text.size() && text[i] == ' ') ++i;
   if (i + 1 >= text.size() || (text[i] != '=' && text[i] != ':')) return 0;
@@ -102,8 +93,7 @@ std::size_t label_length(std::string_view text) {
 Cell read_styled(std::string_view text, NumberStyle style) {
   const Cell plain = read_cell(text, style.decimal);
   if (plain.kind != Cell::bad) return plain;
-  if (const std::size_t label = label_length(text); label > 0)
-    return read_styled(text.substr(label), style);
+  if (const std::size_t label = label_length(text); label > 0) return read_styled(text.substr(label), style);
   return style.thousands == 0 ? plain : read_cell(without_thousands(text, style), style.decimal);
 }
 
@@ -111,8 +101,7 @@ std::optional<MeasuredCell> number_and_unit(std::string_view text) {
   constexpr std::size_t kLongestUnit = 24;
   const std::size_t end = text.find_first_not_of(kOfNumbers);
   if (end != std::string_view::npos && text.size() - end > kLongestUnit) return std::nullopt;
-  if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end)
-    return std::nullopt;
+  if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end) return std::nullopt;
   const MeasuredCell cell{trimmed(text.substr(0, end)), text.substr(end)};
   const auto unit = find_unit(utf8_of(cell.unit));
   return unit && !dimensionless(unit->symbol) ? std::optional(cell) : std::nullopt;
@@ -143,9 +132,7 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
   return word ? CellKind::word : CellKind::odd;
 }
 
-std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
-                                     std::size_t columns,
-                                     NumberStyle style) {
+std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows, std::size_t columns, NumberStyle style) {
   std::vector<KindCounts> counts(columns, KindCounts{});
   for (const Cells& row : rows)
     for (std::size_t c = 0; c < std::min(columns, row.size()); ++c)

@@ -55,8 +55,6 @@ enum class ColumnKind {
 };
 
 /// Of the rows that have `columns` cells.
-std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows,
-                                     std::size_t columns,
-                                     NumberStyle style);
+std::vector<ColumnKind> column_kinds(const std::vector<Cells>& rows, std::size_t columns, NumberStyle style);
 
 }  // namespace libchar::csv

@@ -69,8 +69,7 @@ void find_lead(Study& study) {
     std::size_t found = 0, after = 0;
     for (const Line& line : study.sample)
       if (const auto field = lead_of(line.text, lead, after))
-        found += read_calendar(field->text, DateOrder::day_first) ||
-                 read_calendar(field->text, DateOrder::month_first);
+        found += read_calendar(field->text, DateOrder::day_first) || read_calendar(field->text, DateOrder::month_first);
     if (found * 4 < study.sample.size() * 3) continue;
     study.dialect.lead = lead;
     study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead));
@@ -95,8 +94,7 @@ char given_delimiter(Study& study, char separator) {
   const bool given = study.options.delimiter != "auto";
   const char delimiter = given ? named_delimiter(study.options.delimiter) : separator;
   if (delimiter != 0)
-    study.info.dialect.push_back("delimiter " + delimiter_name(delimiter) +
-                                 (given ? " (given)" : " (sep= in line 1)"));
+    study.info.dialect.push_back("delimiter " + delimiter_name(delimiter) + (given ? " (given)" : " (sep= in line 1)"));
   return delimiter;
 }
 
@@ -109,24 +107,19 @@ void say_cells(Study& study, const std::vector<Candidate>& all, bool given) {
   if (!given && best.columns > 1) info.dialect.push_back("delimiter " + name);
   if (!given && best.columns > 1 && best.delimiter != ',')
     info.guesses.push_back(fmt::format("delimiter: {}, {}", name, sampled));
-  if (study.options.decimal == "auto" && best.decimal == ',')
-    info.guesses.push_back("decimal mark: comma, " + sampled);
+  if (study.options.decimal == "auto" && best.decimal == ',') info.guesses.push_back("decimal mark: comma, " + sampled);
   if (best.decimal == ',') info.dialect.emplace_back("decimal comma");
   constexpr double kTie = 0.7;
   for (const Candidate& other : all) {
-    if (other.columns == best.columns || other.score <= 0 || other.score < kTie * best.score)
-      continue;
-    info.guesses.push_back(
-        fmt::format("{}; with a decimal {} it could be {} (`delimiter` and `decimal` decide)",
-                    plural(best.columns, "column"),
-                    other.decimal == ',' ? "comma" : "point",
-                    other.columns));
+    if (other.columns == best.columns || other.score <= 0 || other.score < kTie * best.score) continue;
+    info.guesses.push_back(fmt::format("{}; with a decimal {} it could be {} (`delimiter` and `decimal` decide)",
+                                       plural(best.columns, "column"), other.decimal == ',' ? "comma" : "point",
+                                       other.columns));
     break;
   }
   if (const char mark = study.dialect.thousands; mark != 0)
-    info.guesses.push_back(fmt::format("thousands are separated by {}, {}",
-                                       mark == ' ' ? "blanks" : std::string(1, mark),
-                                       sampled));
+    info.guesses.push_back(
+        fmt::format("thousands are separated by {}, {}", mark == ' ' ? "blanks" : std::string(1, mark), sampled));
 }
 
 // A delimiter that was given, and that leaves every line whole though its lines are no numbers.
@@ -139,11 +132,9 @@ void refuse_wrong_delimiter(const Study& study, const std::vector<Line>& lines) 
   const Candidate looks = candidates(lines).front();
   if (odd == lines.end() || looks.columns < 2) return;
   throw refusal(study, *odd, 0, "E0304")
-      .says("with the delimiter {} the line is one field and not a number",
-            delimiter_name(study.dialect.delimiter))
+      .says("with the delimiter {} the line is one field and not a number", delimiter_name(study.dialect.delimiter))
       .got(std::string(odd->text))
-      .hint("the file looks separated by {} ({} columns): leave `delimiter` out",
-            delimiter_name(looks.delimiter),
+      .hint("the file looks separated by {} ({} columns): leave `delimiter` out", delimiter_name(looks.delimiter),
             looks.columns);
 }
 
@@ -151,8 +142,7 @@ void choose_cells(Study& study, char separator) {
   std::vector<Line> lines = study.sample;
   std::size_t after = 0;
   for (Line& line : lines)
-    if (!study.dialect.lead.empty() && lead_of(line.text, study.dialect.lead, after))
-      line.text.remove_prefix(after);
+    if (!study.dialect.lead.empty() && lead_of(line.text, study.dialect.lead, after)) line.text.remove_prefix(after);
   const char given = given_delimiter(study, separator);
   const std::vector<Candidate> all = candidates(lines, given, given_decimal(study.options));
   const Candidate& best = all.front();
@@ -172,8 +162,7 @@ TableStart table_start(const Study& study) {
   for (const Line& line : study.sample) lines.push_back(table_cells(study, line.text));
   for (std::size_t i = lines.size() / 2; i < lines.size(); ++i)
     if (lines[i].size() == study.columns) body.push_back(lines[i]);
-  TableStart start =
-      find_table_start(lines, column_kinds(body, study.columns, study.style()), study.style());
+  TableStart start = find_table_start(lines, column_kinds(body, study.columns, study.style()), study.style());
   if (study.options.header == "no") return {start.data, {}, {}};
   if (study.options.header == "yes" && !start.names) return {start.data + 1, start.data, {}};
   return start;
@@ -182,10 +171,7 @@ TableStart table_start(const Study& study) {
 void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
-    throw usage_error("E0202", "`header`")
-        .says("unknown header option")
-        .got(option)
-        .hint("use auto, yes or no");
+    throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -193,9 +179,7 @@ void choose_header(Study& study) {
   const auto place = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   study.preamble.assign(lines.begin(), lines.begin() + place(first));
   study.sample.erase(study.sample.begin(), study.sample.begin() + place(first));
-  if (first > 0)
-    study.info.dialect.push_back(
-        fmt::format("{} in front of the table left out", plural(first, "line")));
+  if (first > 0) study.info.dialect.push_back(fmt::format("{} in front of the table left out", plural(first, "line")));
   const Line& above = lines[start.data - (start.names ? 1 : 0)];
   study.dialect.data_offset = start.names ? above.after : above.offset;
   study.dialect.first_data_line = above.number + (start.names ? above.lines : 0);
@@ -212,8 +196,7 @@ bool counts_rows(const Study& study, std::size_t column) {
   for (const Cells& row : study.rows) {
     if (column >= row.size()) return false;
     const Cell cell = read_cell(row[column].text, '.');
-    if (cell.kind != Cell::value || !cell.integer || (last && cell.number != *last + 1))
-      return false;
+    if (cell.kind != Cell::value || !cell.integer || (last && cell.number != *last + 1)) return false;
     if (!last && cell.number != 0 && cell.number != 1) return false;
     last = cell.number;
   }
@@ -228,17 +211,14 @@ LeftOut why_left_out(const Study& study, std::size_t c) {
   const Column& column = dialect.columns[c];
   const int index = static_cast<int>(c);
   const ColumnKind kind = c < study.kinds.size() ? study.kinds[c] : ColumnKind::number;
-  const bool filter =
-      std::any_of(dialect.filters.begin(), dialect.filters.end(), [&](const RowFilter& one) {
-        return one.column == index && !one.must;
-      });
+  const bool filter = std::any_of(dialect.filters.begin(), dialect.filters.end(),
+                                  [&](const RowFilter& one) { return one.column == index && !one.must; });
   if (filter || index == dialect.group_column) return LeftOut::chosen;
   if (index == dialect.time.column || index == dialect.more_time.column) return LeftOut::none;
   if (kind == ColumnKind::text) return LeftOut::words;
-  if (kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock)
-    return LeftOut::dates;
-  const bool unnamed = dialect.has_header && (column.text.empty() || column.text == "#" ||
-                                              column.text.starts_with("Unnamed: "));
+  if (kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock) return LeftOut::dates;
+  const bool unnamed =
+      dialect.has_header && (column.text.empty() || column.text == "#" || column.text.starts_with("Unnamed: "));
   const bool counts = kind == ColumnKind::empty || (c == 0 && counts_rows(study, c));
   return unnamed && counts ? LeftOut::counts : LeftOut::none;
 }
@@ -250,16 +230,13 @@ void leave_out(Study& study) {
     const LeftOut why = why_left_out(study, c);
     column.left_out = why != LeftOut::none;
     names[why].push_back(column.name.empty() ? fmt::format("c{}", c) : column.name);
-    if (why == LeftOut::none && column.unnamed &&
-        static_cast<int>(c) != study.dialect.time.column &&
+    if (why == LeftOut::none && column.unnamed && static_cast<int>(c) != study.dialect.time.column &&
         static_cast<int>(c) != study.dialect.more_time.column)
-      study.info.warnings.add("unnamed_column",
-                              "columns without a name are named by their position, c0, c1…",
+      study.info.warnings.add("unnamed_column", "columns without a name are named by their position, c0, c1…",
                               place_name(column.line, column.position));
   }
   for (const auto& [why, what] :
-       {std::pair(LeftOut::words, "columns of words"),
-        std::pair(LeftOut::dates, "columns of dates"),
+       {std::pair(LeftOut::words, "columns of words"), std::pair(LeftOut::dates, "columns of dates"),
         std::pair(LeftOut::counts, "columns without a name that count the rows or hold nothing")})
     if (!names[why].empty())
       study.info.dialect.push_back(fmt::format("left out {}: {}", what, first_names(names[why])));
@@ -289,8 +266,7 @@ void gather_rows(Study& study) {
   const auto& filters = study.dialect.filters;
   if (filters.empty()) {
     for (const Line& line : study.sample)
-      if (line.offset >= study.dialect.data_offset)
-        study.rows.push_back(cells_in(study.dialect, line.text));
+      if (line.offset >= study.dialect.data_offset) study.rows.push_back(cells_in(study.dialect, line.text));
     return;
   }
   std::size_t offset = study.dialect.data_offset;
@@ -321,9 +297,8 @@ void find_kinds(Study& study) {
     if (!later.empty()) later.push_back({Field{}});
     study.kinds[c] = column_kinds(later, 1, study.style())[0];
   }
-  if (!study.kinds.empty() && std::all_of(study.kinds.begin(),
-                                          study.kinds.end(),
-                                          [](ColumnKind kind) { return kind == ColumnKind::text; }))
+  if (!study.kinds.empty() &&
+      std::all_of(study.kinds.begin(), study.kinds.end(), [](ColumnKind kind) { return kind == ColumnKind::text; }))
     throw refusal(study, study.sample[0], 0, "E0326")
         .says("no column holds numbers")
         .got(std::string(study.sample[0].text))
@@ -332,15 +307,14 @@ void find_kinds(Study& study) {
 
 // Words in front of averaging times or frequencies: a table of curves, whose rows are no samples.
 void refuse_curve(const Study& study) {
-  static constexpr std::array<std::string_view, 5> kAbscissas = {
-      "tau", "tau_s", "averaging_time_s", "frequency_hz", "freq_hz"};
+  static constexpr std::array<std::string_view, 5> kAbscissas = {"tau", "tau_s", "averaging_time_s", "frequency_hz",
+                                                                 "freq_hz"};
   const auto abscissa = [](const std::string& name) {
     return std::find(kAbscissas.begin(), kAbscissas.end(), ascii_lower(name)) != kAbscissas.end();
   };
   const auto& columns = study.dialect.columns;
   if (std::find(study.kinds.begin(), study.kinds.end(), ColumnKind::text) != study.kinds.end() &&
-      study.options.channels.empty() &&
-      std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
+      study.options.channels.empty() && std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
         return abscissa(column.name) || abscissa(column.text);
       }))
     throw refusal(study, study.sample[0], 0, "E0326")
@@ -357,17 +331,14 @@ void choose_time(Study& study) {
     for (Cells& cells : cells_further_on(study, column)) all.push_back(std::move(cells));
     return all;
   };
-  choose_stamps({study.rows, study.kinds, study.style(), rate, stated_tick(study), all_cells},
-                study.options,
-                study.dialect,
-                info);
+  choose_stamps({study.rows, study.kinds, study.style(), rate, stated_tick(study), all_cells}, study.options,
+                study.dialect, info);
   choose_groups(study.rows, study.options, study.dialect, info);
   refuse_long_table(study.rows, study.kinds, study.options, study.dialect, info);
   if (!rate || study.dialect.time.column >= 0 || info.time.rate_hz > 0) return;
   info.time.rate_hz = *rate;
-  info.dialect.push_back(fmt::format("rate {} Hz from {}",
-                                     shortest(*rate),
-                                     study.comments.empty() ? "the preamble" : "a comment"));
+  info.dialect.push_back(
+      fmt::format("rate {} Hz from {}", shortest(*rate), study.comments.empty() ? "the preamble" : "a comment"));
 }
 
 }  // namespace

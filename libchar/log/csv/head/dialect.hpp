@@ -18,9 +18,8 @@ namespace libchar::csv {
 
 inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;  // 1 MiB
 inline constexpr std::size_t kMaxName = 1024;
-inline constexpr std::size_t kMaxColumns = 100001;  // 100 000 channels and the stamps
-inline constexpr std::size_t kHeadBytes =
-    2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
+inline constexpr std::size_t kMaxColumns = 100001;       // 100 000 channels and the stamps
+inline constexpr std::size_t kHeadBytes = 2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
 
 struct Column {
   std::string name, unit;
@@ -73,9 +72,9 @@ struct Dialect {
   StampPart more_time;  ///< added to it: a clock time to its date, nanoseconds to their seconds
   DateOrder date_order = DateOrder::day_first;
   std::vector<RowFilter> filters;
-  int group_column = -1;            ///< its values make channels of their own
-  std::vector<std::string> groups;  ///< these, in the order of the file
-  bool cycles = false;  ///< each group once, in turn: a turn is a row, at its first stamp
+  int group_column = -1;              ///< its values make channels of their own
+  std::vector<std::string> groups;    ///< these, in the order of the file
+  bool cycles = false;                ///< each group once, in turn: a turn is a row, at its first stamp
   std::int64_t clock_period_ns = 0;   ///< stamps begin again at midnight, or every hour; 0 = never
   std::size_t data_offset = 0;        ///< byte at which the first line after the header starts
   std::uint64_t first_data_line = 1;  ///< its physical line number

@@ -29,15 +29,13 @@ struct Statement {
 Statement statement_in(std::string_view lower) {
   Statement out;
   const std::size_t word = lower.find("rate");
-  const std::size_t at =
-      lower.find_first_of("0123456789", word == std::string_view::npos ? 0 : word);
+  const std::size_t at = lower.find_first_of("0123456789", word == std::string_view::npos ? 0 : word);
   if (at == std::string_view::npos) return out;
   for (const char c : lower.substr(0, at))
     if (c >= 'a' && c <= 'z') out.key += c;
   std::size_t end = at;
   while (end < lower.size() &&
-         ((lower[end] >= '0' && lower[end] <= '9') || lower[end] == '.' || lower[end] == '+' ||
-          lower[end] == '-' ||
+         ((lower[end] >= '0' && lower[end] <= '9') || lower[end] == '.' || lower[end] == '+' || lower[end] == '-' ||
           (lower[end] == 'e' && end + 1 < lower.size() &&
            std::string_view("+-0123456789").find(lower[end + 1]) != std::string_view::npos)))
     ++end;
@@ -61,37 +59,22 @@ Statement statement_in(std::string_view lower) {
 
 template <std::size_t N>
 bool ends_with_any(std::string_view key, const std::array<std::string_view, N>& ends) {
-  return std::any_of(
-      ends.begin(), ends.end(), [&](std::string_view end) { return key.ends_with(end); });
+  return std::any_of(ends.begin(), ends.end(), [&](std::string_view end) { return key.ends_with(end); });
 }
 
 double hertz_of(const Statement& said) {
-  static constexpr std::array<std::string_view, 16> kKeys = {"samplerate",
-                                                             "samplingrate",
-                                                             "samplesrate",
-                                                             "outputrate",
-                                                             "updaterate",
-                                                             "acquisitionrate",
-                                                             "scanrate",
-                                                             "datarate",
-                                                             "samplingfrequency",
-                                                             "samplefrequency",
-                                                             "samplefreq",
-                                                             "samplingfreq",
-                                                             "loggingrate",
-                                                             "recordingrate",
-                                                             "imurate",
-                                                             "odr"};
-  const bool rate =
-      said.key.find("rate") != std::string::npos || said.key.find("frequency") != std::string::npos;
+  static constexpr std::array<std::string_view, 16> kKeys = {
+      "samplerate",        "samplingrate",    "samplesrate", "outputrate",
+      "updaterate",        "acquisitionrate", "scanrate",    "datarate",
+      "samplingfrequency", "samplefrequency", "samplefreq",  "samplingfreq",
+      "loggingrate",       "recordingrate",   "imurate",     "odr"};
+  const bool rate = said.key.find("rate") != std::string::npos || said.key.find("frequency") != std::string::npos;
   const double factor = said.unit.starts_with("khz") ? 1e3 : said.unit.starts_with("mhz") ? 1e6 : 1;
-  const bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") ||
-                     said.unit.starts_with("mhz") || said.unit.starts_with("sps") ||
-                     said.unit.starts_with("samples/s");
+  const bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") || said.unit.starts_with("mhz") ||
+                     said.unit.starts_with("sps") || said.unit.starts_with("samples/s");
   if (rate && hertz && said.key.find("baud") == std::string::npos) return *said.number * factor;
   if (hertz || said.unit.empty() || !ends_with_any(said.key, std::array<std::string_view, 1>{"hz"}))
-    return (hertz || said.unit.empty()) && ends_with_any(said.key, kKeys) ? *said.number * factor
-                                                                          : 0;
+    return (hertz || said.unit.empty()) && ends_with_any(said.key, kKeys) ? *said.number * factor : 0;
   std::string_view key = said.key;  // "Sample Rate (Hz)": 100
   key.remove_suffix(2);
   const double kilo = key.ends_with("k") ? 1e3 : 1;
@@ -100,15 +83,9 @@ double hertz_of(const Statement& said) {
 }
 
 double interval_of(const Statement& said) {
-  static constexpr std::array<std::string_view, 9> kKeys = {"sampleinterval",
-                                                            "samplinginterval",
-                                                            "sampleperiod",
-                                                            "samplingperiod",
-                                                            "deltax",
-                                                            "timestep",
-                                                            "sampletime",
-                                                            "samplingtime",
-                                                            "xincrement"};
+  static constexpr std::array<std::string_view, 9> kKeys = {"sampleinterval", "samplinginterval", "sampleperiod",
+                                                            "samplingperiod", "deltax",           "timestep",
+                                                            "sampletime",     "samplingtime",     "xincrement"};
   std::string_view key = said.key, unit = said.unit;
   double factor = 1;
   if (unit == "ms") factor = 1e-3;
@@ -121,8 +98,7 @@ double interval_of(const Statement& said) {
 
 std::optional<double> stated_rate_hz(std::string_view line) {
   const std::string lower = ascii_lower(line);
-  const std::size_t sps =
-      lower.find(" sps,");  // "12000 samples, 20 sps, 2018-01-01T00:00:00, SLIST"
+  const std::size_t sps = lower.find(" sps,");  // "12000 samples, 20 sps, 2018-01-01T00:00:00, SLIST"
   const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
   if (before != std::string::npos)
     return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
@@ -157,9 +133,8 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
     const CellKind kind = cell_kind(line[c], style);
     if (kind == CellKind::blank) continue;
-    const bool good = kinds[c] == ColumnKind::number
-                          ? kind == CellKind::number
-                          : kind > CellKind::number && kind < CellKind::word;
+    const bool good =
+        kinds[c] == ColumnKind::number ? kind == CellKind::number : kind > CellKind::number && kind < CellKind::word;
     ++(good ? out.good : out.bad);
   }
   return out;
@@ -167,10 +142,8 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
 
 // "(ms)", "V", "second", and what stands there for columns without a unit.
 bool unit_cell(std::string_view text) {
-  static constexpr std::array<std::string_view, 6> kNone = {
-      "ts", "rn", "sequence", "-", "n/a", "none"};
-  if (text.size() > 2 &&
-      ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']')))
+  static constexpr std::array<std::string_view, 6> kNone = {"ts", "rn", "sequence", "-", "n/a", "none"};
+  if (text.size() > 2 && ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']')))
     return true;
   const std::string lower = ascii_lower(text);
   return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
@@ -197,18 +170,15 @@ bool campbell(const std::vector<Cells>& lines) {
 
 }  // namespace
 
-TableStart find_table_start(const std::vector<Cells>& lines,
-                            const std::vector<ColumnKind>& kinds,
-                            NumberStyle style) {
+TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<ColumnKind>& kinds, NumberStyle style) {
   if (campbell(lines)) return {4, 1, 2};
   if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());
   for (const Cells& line : lines) census.push_back(census_of(line, kinds, style));
-  const auto first_row = std::find_if(census.begin(), census.end(), [](const LineCensus& line) {
-    return line.row() && line.good > 0;
-  });
+  const auto first_row =
+      std::find_if(census.begin(), census.end(), [](const LineCensus& line) { return line.row() && line.good > 0; });
   if (first_row == census.end() && census[0].fits && census[0].bad > 0) {  // a header, then damage
     out.names = 0;
     out.data = 1;
@@ -219,9 +189,7 @@ TableStart find_table_start(const std::vector<Cells>& lines,
   out.data = rows_at;
   // Back over rows that are damaged to the last line of words alone.
   std::size_t last = rows_at;
-  while (last > 0 && !census[last - 1].words() &&
-         (census[last - 1].fits || census[last - 1].good > 0))
-    --last;
+  while (last > 0 && !census[last - 1].words() && (census[last - 1].fits || census[last - 1].good > 0)) --last;
   if (last > 0 && census[last - 1].words()) {
     out.data = last;
     out.names = last - 1;
@@ -230,13 +198,11 @@ TableStart find_table_start(const std::vector<Cells>& lines,
       out.units = last - 1;
       out.names = last - 2;
     }
-    if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words())
-      --*out.names;
+    if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words()) --*out.names;
     return out;
   }
   // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.
-  const auto fitting = std::find_if(census.begin() + static_cast<std::ptrdiff_t>(last),
-                                    first_row,
+  const auto fitting = std::find_if(census.begin() + static_cast<std::ptrdiff_t>(last), first_row,
                                     [](const LineCensus& line) { return line.fits; });
   if (fitting != first_row) {
     const auto at = static_cast<std::size_t>(fitting - census.begin());

@@ -30,8 +30,6 @@ struct TableStart {
 
 /// `lines` are the cells of the first lines, an empty cell behind a delimiter at the end of a line
 /// taken off; `kinds` what the columns hold further down.
-TableStart find_table_start(const std::vector<Cells>& lines,
-                            const std::vector<ColumnKind>& kinds,
-                            NumberStyle style);
+TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<ColumnKind>& kinds, NumberStyle style);
 
 }  // namespace libchar::csv

@@ -32,8 +32,7 @@ std::optional<std::string> decoded(Study& study, const std::string& text) {
   if (encoding == "utf-8" || study.marked_utf8) return std::nullopt;
   auto guessed = windows1252_to_utf8(text);
   if (guessed && !std::exchange(study.encoding_guessed, true))
-    study.info.guesses.emplace_back(
-        "encoding: the header is not UTF-8 and read as Windows-1252 (`encoding` chooses)");
+    study.info.guesses.emplace_back("encoding: the header is not UTF-8 and read as Windows-1252 (`encoding` chooses)");
   return guessed;
 }
 
@@ -48,8 +47,7 @@ std::string header_text(Study& study, const Field& field, const Line& line, std:
       field.offset + (field.quoted ? 1 : 0) + indent + (invalid == std::string::npos ? 0 : invalid);
   throw refusal(study, line, column, "E0302")
       .says("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
-            static_cast<unsigned char>(field.text[invalid]),
-            line.offset + column)
+            static_cast<unsigned char>(field.text[invalid]), line.offset + column)
       .got(field.text)
       .hint("`encoding` latin1 takes every byte for the character of ISO 8859-1");
 }
@@ -94,14 +92,12 @@ bool named_by_labels(Study& study, const Cells& first) {
 }
 
 // "0.005 sec" and "21.3 °C": the unit behind the first number of a column is that of the column.
-void take_cell_unit(
-    Study& study, std::string unit, const Line& line, const Field& field, Column& column) {
+void take_cell_unit(Study& study, std::string unit, const Line& line, const Field& field, Column& column) {
   const std::string named = name_and_unit(column.text).second;
   const std::string& said = named.empty() ? column.unit_below : named;
   if (!said.empty() && !same_unit(said, unit))
     throw refusal(study, line, field.offset, "E0333")
-        .says("a value in {}, and the header says {}",
-              printable(decoded(study, unit).value_or(unit), 20),
+        .says("a value in {}, and the header says {}", printable(decoded(study, unit).value_or(unit), 20),
               printable(said, 20))
         .got(field.text)
         .hint("mend the one that is wrong");
@@ -132,12 +128,11 @@ void find_trailing(Study& study) {
   for (std::size_t i = 0; i < study.sample.size() && !study.dialect.trailing_delimiter; ++i) {
     const Line& line = study.sample[i];
     const Cells fields = cells_in(study.dialect, line.text);
-    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 ||
-        !fields.back().text.empty() || fields.back().quoted)
+    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
+        fields.back().quoted)
       continue;
     study.dialect.trailing_delimiter = true;
-    study.info.warnings.add("trailing_delimiter",
-                            "lines end with a delimiter: the empty last column is dropped",
+    study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
                             place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
   }
 }
@@ -157,8 +152,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
         .says("a quote is opened here and never closed in the header");
   const Cells fields = table_cells(study, text);
   if (fields.size() > kMaxColumns)
-    throw refusal(study, line, 0, "E0305")
-        .says("{} columns, the limit is {}", fields.size(), kMaxColumns);
+    throw refusal(study, line, 0, "E0305").says("{} columns, the limit is {}", fields.size(), kMaxColumns);
   std::size_t counted = 0, newline = std::string_view::npos;
   std::uint64_t lines = 0;
   for (const Field& field : fields) {
@@ -170,8 +164,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
     Column& added = dialect.columns.emplace_back();
     added.text = header_text(study, field, line, indent);
     added.line = line.number + lines;
-    added.position =
-        newline == std::string_view::npos ? field.offset + indent + 1 : field.offset - newline;
+    added.position = newline == std::string_view::npos ? field.offset + indent + 1 : field.offset - newline;
   }
 }
 
@@ -179,8 +172,7 @@ void read_units(Study& study, const Line& line) {
   const Cells fields = cells_in(study.dialect, line.text);
   for (std::size_t c = 0; c < std::min(fields.size(), study.dialect.columns.size()); ++c) {
     std::string_view unit = fields[c].text;
-    if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') ||
-                            (unit.front() == '[' && unit.back() == ']')))
+    if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') || (unit.front() == '[' && unit.back() == ']')))
       unit = trimmed(unit.substr(1, unit.size() - 2));
     if (unit != "TS" && unit != "RN" && unit != "Sequence" && unit.size() <= 40)
       study.dialect.columns[c].unit_below = decoded(study, std::string(unit)).value_or("");
@@ -193,44 +185,37 @@ void do_without_names(Study& study) {
   const Line& first = study.sample[0];
   // What looks like the end of the first rows may be a column that is filled further on.
   const Cells all = cells_in(study.dialect, first.text);
-  if (all.size() > table_cells(study, first.text).size() &&
-      !filled_cells(study, study.columns, 1).empty())
+  if (all.size() > table_cells(study, first.text).size() && !filled_cells(study, study.columns, 1).empty())
     ++study.columns;
   const Cells fields = table_cells(study, first.text);
-  for (const Field& field : fields)
-    study.dialect.columns.emplace_back().position = field.offset + 1;
+  for (const Field& field : fields) study.dialect.columns.emplace_back().position = field.offset + 1;
   const bool labelled = named_by_labels(study, fields);
   find_trailing(study);
   study.info.dialect.push_back("no header");
   if (study.options.header == "auto" && !labelled)
-    study.info.warnings.add(
-        "no_header",
-        "no header line: the columns are named c0, c1… and the first line is data",
-        place_name(first.number, 1));
+    study.info.warnings.add("no_header", "no header line: the columns are named c0, c1… and the first line is data",
+                            place_name(first.number, 1));
 }
 
 /// Sensor Logger writes a file for each sensor, columns z, y, x without units; the file's name says which.
 void find_units_of_phone(Study& study) {
-  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-      {"accelerometer", "m/s^2"},
-      {"totalacceleration", "m/s^2"},
-      {"gravity", "m/s^2"},
-      {"gyroscope", "rad/s"},
-      {"magnetometer", "uT"}};
+  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"accelerometer", "m/s^2"},
+                                                                             {"totalacceleration", "m/s^2"},
+                                                                             {"gravity", "m/s^2"},
+                                                                             {"gyroscope", "rad/s"},
+                                                                             {"magnetometer", "uT"}};
   const auto& columns = study.dialect.columns;
   const auto has_column = [&](std::string_view text) {
-    return std::any_of(
-        columns.begin(), columns.end(), [&](const Column& column) { return column.text == text; });
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& column) { return column.text == text; });
   };
-  if (!has_column("seconds_elapsed") || !has_column("x") || !has_column("y") || !has_column("z"))
-    return;
+  if (!has_column("seconds_elapsed") || !has_column("x") || !has_column("y") || !has_column("z")) return;
   const std::string stem = ascii_lower(std::filesystem::path(study.info.file).stem().string());
   for (const auto& [name, unit] : kUnits) {
     if (stem != name) continue;
     for (Column& column : study.dialect.columns)
       if (column.text == "x" || column.text == "y" || column.text == "z") column.unit_below = unit;
-    study.info.guesses.push_back(fmt::format(
-        "units: {}, those of Sensor Logger in a file of this name (`units` says otherwise)", unit));
+    study.info.guesses.push_back(
+        fmt::format("units: {}, those of Sensor Logger in a file of this name (`units` says otherwise)", unit));
   }
 }
 
@@ -239,8 +224,7 @@ void find_other_units(Study& study) {
   if (find_cell_units(study)) study.info.dialect.emplace_back("units behind the numbers");
   // Gyroflow's .gcsv holds counts: gx, gy, gz and ax, ay, az.
   for (const Line& line : study.preamble)
-    for (const auto& [key, axes, unit] :
-         {std::tuple("gscale", 'g', "rad/s"), std::tuple("ascale", 'a', "g")})
+    for (const auto& [key, axes, unit] : {std::tuple("gscale", 'g', "rad/s"), std::tuple("ascale", 'a', "g")})
       if (const auto count = stated_count(line.text, key))
         for (Column& column : study.dialect.columns)
           if (column.text.size() == 2 && column.text[0] == axes)
@@ -248,8 +232,7 @@ void find_other_units(Study& study) {
 }
 
 std::string place_name(std::uint64_t line, std::uint64_t column) {
-  return column <= 1 ? fmt::format("line {}", line)
-                     : fmt::format("line {}, column {}", line, column);
+  return column <= 1 ? fmt::format("line {}", line) : fmt::format("line {}, column {}", line, column);
 }
 
 void name_columns(Dialect& dialect, LogInfo& info) {
@@ -267,8 +250,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       column.name = fmt::format("c{}", i);
       column.unnamed = true;
     } else if (stripped[column.name] > 1) {
-      column.name =
-          std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
+      column.name = std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
     }
     if (std::string_view("=+-@\t\r").find(column.name[0]) != std::string_view::npos)
       info.warnings.add("formula_name",
@@ -277,16 +259,13 @@ void name_columns(Dialect& dialect, LogInfo& info) {
                         place_name(column.line, column.position));
     if (printable(column.name).find("\\u{") != std::string::npos ||
         printable(column.name).find("\\x") != std::string::npos)
-      info.warnings.add(
-          "control_in_name",
-          "channel names with invisible or direction-changing characters: shown escaped",
-          place_name(column.line, column.position));
+      info.warnings.add("control_in_name",
+                        "channel names with invisible or direction-changing characters: shown escaped",
+                        place_name(column.line, column.position));
     const auto [other, fresh] = seen.emplace(column.name, &column);
     if (!fresh)
       throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
-          .says("two columns have the same name (first at {}:{})",
-                other->second->line,
-                other->second->position)
+          .says("two columns have the same name (first at {}:{})", other->second->line, other->second->position)
           .got(column.name)
           .hint("rename one, or read with `header` no and `skip_rows` 1 to use positions");
   }

@@ -21,8 +21,7 @@ struct Magic {
   const char *what, *hint;
 };
 
-constexpr const char* kPandas =
-    "pandas reads it: df = pandas.read_parquet(FILE); df.to_csv('log.csv', index=False)";
+constexpr const char* kPandas = "pandas reads it: df = pandas.read_parquet(FILE); df.to_csv('log.csv', index=False)";
 
 constexpr std::array kMagics = {
     Magic{0, "\x93NUMPY"sv, "a NumPy array (NPY)", "read it with `format` npy"},
@@ -35,62 +34,38 @@ constexpr std::array kMagics = {
     Magic{0, "%PDF"sv, "PDF", "export the table as CSV"},
     Magic{0, "\x89HDF"sv, "HDF5", "export it as CSV or .npy"},
     Magic{0, "PAR1"sv, "a Parquet table", kPandas},
-    Magic{0,
-          "ARROW1"sv,
-          "an Arrow or Feather table",
+    Magic{0, "ARROW1"sv, "an Arrow or Feather table",
           "pandas reads it: pandas.read_feather(FILE).to_csv('log.csv', index=False)"},
-    Magic{0,
-          "TDSm"sv,
-          "a TDMS file of LabVIEW",
+    Magic{0, "TDSm"sv, "a TDMS file of LabVIEW",
           "npTDMS reads it: nptdms.TdmsFile(FILE).as_dataframe().to_csv('log.csv')"},
     Magic{0, "\xD0\xCF\x11\xE0"sv, "an old Excel workbook (XLS)", "save it as CSV"},
     Magic{0, "\xB5\x62"sv, "messages of u-blox (UBX)", "u-center or pyubx2 export them as CSV"},
-    Magic{0,
-          "H Product:Blackbox"sv,
-          "a Blackbox log of Betaflight or INAV",
-          "blackbox_decode FILE makes a CSV of it"},
-    Magic{0,
-          "$GP"sv,
-          "sentences of a GNSS receiver (NMEA)",
-          "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
-    Magic{0,
-          "$GN"sv,
-          "sentences of a GNSS receiver (NMEA)",
-          "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
-    Magic{0,
-          "\x80\x03"sv,
-          "a Python pickle",
-          "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
-    Magic{0,
-          "\x80\x04"sv,
-          "a Python pickle",
-          "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
-    Magic{60,
-          "RINEX VERSION"sv,
-          "observations of a GNSS receiver (RINEX)",
-          "gfzrnx or georinex export them as CSV"},
+    Magic{0, "H Product:Blackbox"sv, "a Blackbox log of Betaflight or INAV", "blackbox_decode FILE makes a CSV of it"},
+    Magic{0, "$GP"sv, "sentences of a GNSS receiver (NMEA)", "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
+    Magic{0, "$GN"sv, "sentences of a GNSS receiver (NMEA)", "gpsbabel -i nmea -f FILE -o unicsv -F log.csv"},
+    Magic{0, "\x80\x03"sv, "a Python pickle", "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
+    Magic{0, "\x80\x04"sv, "a Python pickle", "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
+    Magic{60, "RINEX VERSION"sv, "observations of a GNSS receiver (RINEX)", "gfzrnx or georinex export them as CSV"},
     Magic{0, "\xC3\x40\xF1"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
     Magic{0, "C 1 CLIENT"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
 };
 
 /// MAVLink messages behind stamps of eight bytes: the first two of them are 0 until the year 2100.
 bool is_telemetry_log(std::string_view head) {
-  return head.size() > 9 && head[0] == 0 && head[1] != 0 &&
-         (head[8] == '\xFE' || head[8] == '\xFD') && head[2] != 0;
+  return head.size() > 9 && head[0] == 0 && head[1] != 0 && (head[8] == '\xFE' || head[8] == '\xFD') && head[2] != 0;
 }
 
 /// "000001D ": a number of six digits, the quality, a blank.
 bool is_miniseed(std::string_view head) {
-  return head.size() > 8 &&
-         std::all_of(head.begin(), head.begin() + 6, [](char c) { return c >= '0' && c <= '9'; }) &&
+  return head.size() > 8 && std::all_of(head.begin(), head.begin() + 6, [](char c) { return c >= '0' && c <= '9'; }) &&
          std::string_view("DRQM").find(head[6]) != std::string_view::npos && head[7] == ' ' &&
          head.substr(0, 64).find('\n') == std::string_view::npos;
 }
 
 bool is_utf16(std::string_view head) {
   return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF") ||
-         (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) &&
-          ((head[2] == 0) != (head[3] == 0)) && head[0] == head[2 * (head[0] == 0)]);
+         (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) && ((head[2] == 0) != (head[3] == 0)) &&
+          head[0] == head[2 * (head[0] == 0)]);
 }
 
 /// Messages as `rostopic echo` and `ros2 topic echo` print them.
@@ -110,8 +85,7 @@ void refuse_binary(std::string_view head, const std::string& file) {
   for (std::size_t i = 0; i < std::min<std::size_t>(head.size(), 4096); ++i) {
     const auto byte = static_cast<unsigned char>(head[i]);
     if (byte == 0) continue;
-    const bool control =
-        byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
+    const bool control = byte < 0x20 && std::string_view("\t\n\v\f\r\x1A").find(head[i]) == std::string_view::npos;
     if (control && controls++ == 0) first = i;
     ++others;
   }
@@ -120,8 +94,7 @@ void refuse_binary(std::string_view head, const std::string& file) {
   for (std::size_t i = 0; i < first; ++i, ++column)
     if (head[i] == '\n') ++line, column = 0;
   throw input_error("E0301", at(file, line, column, first))
-      .says("content is binary, not text: {} control characters in the first {} bytes",
-            controls,
+      .says("content is binary, not text: {} control characters in the first {} bytes", controls,
             std::min<std::size_t>(head.size(), 4096))
       .hint("`format` raw with a sidecar reads raw binary (docs: raw binary)");
 }
@@ -132,8 +105,7 @@ void refuse_other_format(std::string_view head, const std::string& file) {
   for (const Magic& magic : kMagics)
     if (head.size() > magic.at && head.substr(magic.at).starts_with(magic.bytes))
       throw refusal(file, std::string(magic.what) + ", not CSV").hint(magic.hint);
-  if (is_utf16(head))
-    throw refusal(file, "UTF-16, not UTF-8").hint("convert it: iconv -f utf-16 -t utf-8");
+  if (is_utf16(head)) throw refusal(file, "UTF-16, not UTF-8").hint("convert it: iconv -f utf-16 -t utf-8");
   if (is_telemetry_log(head))
     throw refusal(file, "a telemetry log (tlog) of MAVLink, not CSV")
         .hint("mavlogdump.py of pymavlink exports it as CSV");
@@ -155,8 +127,7 @@ void refuse_other_content(std::string_view head, const std::string& file) {
             "echo has a form in CSV too");
   if (head[front] == '<')
     throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
-  if (head[front] == '{')
-    throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");
+  if (head[front] == '{') throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");
 }
 
 }  // namespace libchar::csv

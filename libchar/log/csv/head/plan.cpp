@@ -10,8 +10,7 @@ Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info) {
   TableColumns table;
   table.positions_skip_time = true;
   if (dialect.time.column >= 0) table.time = static_cast<std::size_t>(dialect.time.column);
-  if (dialect.more_time.column >= 0)
-    table.more_time = static_cast<std::size_t>(dialect.more_time.column);
+  if (dialect.more_time.column >= 0) table.more_time = static_cast<std::size_t>(dialect.more_time.column);
   std::size_t values = 0;
   for (std::size_t i = 0; i < dialect.columns.size(); ++i) {
     Column& column = dialect.columns[i];

@@ -12,8 +12,7 @@ bool semicolons_comment(std::string_view head, std::size_t offset) {
     const Line line = line_at(head, offset, 0);
     const std::string_view text = trimmed(line.text);
     offset = line.after;
-    if (!text.empty() && text[0] != ';' && !is_comment(text))
-      return any && text.find(';') == std::string_view::npos;
+    if (!text.empty() && text[0] != ';' && !is_comment(text)) return any && text.find(';') == std::string_view::npos;
     any = any || (!text.empty() && text[0] == ';');
   }
   return false;
@@ -21,10 +20,7 @@ bool semicolons_comment(std::string_view head, std::size_t offset) {
 
 }  // namespace
 
-Sample sample_lines(std::string_view head,
-                    bool whole,
-                    std::size_t offset,
-                    std::uint64_t number,
+Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::uint64_t number,
                     const std::string& file) {
   Sample sample;
   sample.semicolon_comments = semicolons_comment(head, offset);

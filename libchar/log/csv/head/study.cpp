@@ -20,9 +20,7 @@ void fit_names(const Study& study, std::string_view text, Cells& fields) {
       std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; }) &&
       cells_in(study.dialect, study.sample[1].text)[0].quoted)
     fields.insert(fields.begin(), Field{"", 0, true});
-  const auto joined = [&](const Field& field) {
-    return &field != fields.data() && text[field.offset - 1] == ' ';
-  };
+  const auto joined = [&](const Field& field) { return &field != fields.data() && text[field.offset - 1] == ' '; };
   const auto count = std::count_if(fields.begin(), fields.end(), joined);
   if (study.dialect.delimiter != ',' || fields.size() < columns ||
       columns + static_cast<std::size_t>(count) != fields.size())
@@ -36,11 +34,7 @@ void fit_names(const Study& study, std::string_view text, Cells& fields) {
   fields = std::move(out);
 }
 
-void add_cells(const Dialect& dialect,
-               std::string_view text,
-               bool whole,
-               std::size_t column,
-               std::size_t most,
+void add_cells(const Dialect& dialect, std::string_view text, bool whole, std::size_t column, std::size_t most,
                std::vector<Cells>& out) {
   for (std::size_t offset = 0; offset < text.size() && out.size() < most;) {
     const Line line = line_at(text, offset, 0);
@@ -55,8 +49,7 @@ void add_cells(const Dialect& dialect,
 }  // namespace
 
 Refusal refusal(const Study& study, const Line& line, std::size_t column, std::string code) {
-  return input_error(std::move(code),
-                     at(study.info.file, line.number, column + 1, line.offset + column));
+  return input_error(std::move(code), at(study.info.file, line.number, column + 1, line.offset + column));
 }
 
 Cells cells_in(const Dialect& dialect, std::string_view text, bool* open) {
@@ -70,8 +63,7 @@ Cells cells_in(const Dialect& dialect, std::string_view text, bool* open) {
 
 Cells table_cells(const Study& study, std::string_view text) {
   Cells out = cells_in(study.dialect, text);
-  const bool ends_empty =
-      study.dialect.delimiter != ' ' && out.back().text.empty() && !out.back().quoted;
+  const bool ends_empty = study.dialect.delimiter != ' ' && out.back().text.empty() && !out.back().quoted;
   if (ends_empty && out.size() == study.columns + 1) out.pop_back();
   if (out.size() != study.columns) fit_names(study, text, out);
   return out;
@@ -79,8 +71,7 @@ Cells table_cells(const Study& study, std::string_view text) {
 
 std::vector<Cells> filled_cells(const Study& study, std::size_t column, std::size_t most) {
   std::vector<Cells> out;
-  const std::string_view body =
-      study.head.substr(std::min(study.dialect.data_offset, study.head.size()));
+  const std::string_view body = study.head.substr(std::min(study.dialect.data_offset, study.head.size()));
   if (study.dialect.lead.empty()) add_cells(study.dialect, body, study.whole, column, most, out);
   return out;
 }
@@ -101,11 +92,7 @@ std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
   for (std::size_t k = 1; k <= kPlaces; ++k) {
     if (!look_at(size / kPlaces * k - std::min<std::uint64_t>(kLook, size / kPlaces))) break;
     const std::size_t row = std::min(text.find('\n'), kLook - 1) + 1;
-    add_cells(study.dialect,
-              std::string_view(text).substr(row),
-              false,
-              column,
-              std::numeric_limits<std::size_t>::max(),
+    add_cells(study.dialect, std::string_view(text).substr(row), false, column, std::numeric_limits<std::size_t>::max(),
               out);
   }
   return out;

@@ -10,9 +10,7 @@
 namespace libchar::csv {
 namespace {
 
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool is_word(std::string_view text, std::string_view word) {
   if (text.size() != word.size()) return false;
@@ -24,8 +22,7 @@ bool is_word(std::string_view text, std::string_view word) {
 bool means_missing(std::string_view text) {
   if (text.empty() || text == "-" || text == "--") return true;
   if (is_digit(text.back())) return false;
-  for (const char* word :
-       {"nan", "na", "n/a", "null", "none", "-nan", "+nan", "-nan(ind)", "nan(ind)", "#n/a", "nil"})
+  for (const char* word : {"nan", "na", "n/a", "null", "none", "-nan", "+nan", "-nan(ind)", "nan(ind)", "#n/a", "nil"})
     if (is_word(text, word)) return true;
   return false;
 }
@@ -73,8 +70,7 @@ Cell explain(std::string_view text, char point) {
   if (rest[0] == '\0')
     cell.reason = "a NUL byte, a number was expected";
   else if (rest[0] == '\x1A')
-    cell.reason =
-        "a Ctrl-Z byte (0x1A, the end-of-file mark of old systems), a number was expected";
+    cell.reason = "a Ctrl-Z byte (0x1A, the end-of-file mark of old systems), a number was expected";
   else if (begins("\xE2\x88\x92"))
     cell.reason = "a minus sign of typesetting (U+2212) where '-' was expected";
   else if (begins("\xC2\xA0"))
@@ -101,8 +97,8 @@ bool below_one(std::string_view text) {
   const std::size_t point = std::min(digits.find('.'), digits.size());
   if (first == std::string_view::npos) return true;
   // Decimal exponent of the first digit that counts.
-  const double position = first < point ? static_cast<double>(point - first) - 1
-                                        : static_cast<double>(point) - static_cast<double>(first);
+  const double position =
+      first < point ? static_cast<double>(point - first) - 1 : static_cast<double>(point) - static_cast<double>(first);
   double exponent = 0;
   if (e != std::string_view::npos) {
     const bool down = e + 1 < text.size() && text[e + 1] == '-';
@@ -160,8 +156,7 @@ StampDefect read_exponent(std::string_view text, Written& number) {
   const auto [stop, status] = std::from_chars(from, end, exponent);
   if (stop == from) return StampDefect::malformed;
   number.end = static_cast<std::size_t>(stop - text.data());
-  if (status != std::errc() || exponent > 10000 || exponent < -10000)
-    return StampDefect::out_of_range;
+  if (status != std::errc() || exponent > 10000 || exponent < -10000) return StampDefect::out_of_range;
   number.q += exponent;
   return StampDefect::none;
 }
@@ -201,15 +196,12 @@ Cell read_cell(std::string_view text, char point) {
       return cell;
     }
     with_point = std::string(text);
-    if (const std::size_t comma = with_point.find(point); comma != std::string::npos)
-      with_point[comma] = '.';
+    if (const std::size_t comma = with_point.find(point); comma != std::string::npos) with_point[comma] = '.';
     digits = with_point;
   }
-  if (digits.size() > 1 && digits[0] == '+' && (is_digit(digits[1]) || digits[1] == '.'))
-    digits.remove_prefix(1);
+  if (digits.size() > 1 && digits[0] == '+' && (is_digit(digits[1]) || digits[1] == '.')) digits.remove_prefix(1);
   double value = 0;
-  const auto [end, status] =
-      detail::read_double(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, status] = detail::read_double(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (whole && status == std::errc::result_out_of_range) {
     if (!below_one(digits)) {
@@ -217,14 +209,12 @@ Cell read_cell(std::string_view text, char point) {
       cell.reason = "number out of range";
       return cell;
     }
-    cell.kind =
-        Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
+    cell.kind = Cell::value;  // nearer to zero than to the least double: zero is the correct rounding
     cell.number = digits[0] == '-' ? -0.0 : 0.0;
     // 700 zeros written out are somebody's way of rounding; an exponent that no double has is lost digits.
     const std::size_t exponent = digits.find_first_of("eE");
-    cell.too_small =
-        exponent != std::string_view::npos &&
-        digits.substr(0, exponent).find_first_of("123456789") != std::string_view::npos;
+    cell.too_small = exponent != std::string_view::npos &&
+                     digits.substr(0, exponent).find_first_of("123456789") != std::string_view::npos;
     return cell;
   }
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
@@ -235,17 +225,12 @@ Cell read_cell(std::string_view text, char point) {
     Int128 exact = 0;
     for (const char c : digits)
       if (is_digit(c) && exact < (static_cast<Int128>(1) << 100U)) exact = exact * 10 + (c - '0');
-    cell.inexact_integer =
-        std::fabs(value) < 1e30 && static_cast<Int128>(std::fabs(value)) != exact;
+    cell.inexact_integer = std::fabs(value) < 1e30 && static_cast<Int128>(std::fabs(value)) != exact;
   }
   return cell;
 }
 
-StampDefect read_stamp(std::string_view text,
-                       char point,
-                       std::int64_t unit_ns,
-                       std::int64_t& out,
-                       std::size_t& offset,
+StampDefect read_stamp(std::string_view text, char point, std::int64_t unit_ns, std::int64_t& out, std::size_t& offset,
                        double zero) {
   offset = 0;
   if (means_missing(text)) return StampDefect::missing;
@@ -270,15 +255,13 @@ StampDefect read_stamp(std::string_view text,
   }
   if (number.q < 0) ns = rounded_quotient(ns, number.q, number.lost);
   if (zero > 0 && !negative && ns < limit * limit / 4) {
-    const auto from =
-        static_cast<Int128>(ns) - static_cast<Int128>(zero * static_cast<double>(unit_ns));
+    const auto from = static_cast<Int128>(ns) - static_cast<Int128>(zero * static_cast<double>(unit_ns));
     if (from > INT64_MAX || from < INT64_MIN) return StampDefect::out_of_range;
     out = static_cast<std::int64_t>(from);
     return StampDefect::none;
   }
   if (ns > limit - (negative ? 0U : 1U)) return StampDefect::out_of_range;
-  out = negative ? static_cast<std::int64_t>(-static_cast<Int128>(ns))
-                 : static_cast<std::int64_t>(ns);
+  out = negative ? static_cast<std::int64_t>(-static_cast<Int128>(ns)) : static_cast<std::int64_t>(ns);
   return StampDefect::none;
 }
 

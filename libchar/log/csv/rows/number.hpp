@@ -46,8 +46,7 @@ constexpr Reciprocal reciprocal_of_power_of_five(int n) {
   Reciprocal r;
   r.shift = width - (n == 0 ? 1 : 0);
   Uint128 quotient = 0;
-  for (int bit = 127 + r.shift; bit >= 0;
-       --bit) {  // schoolbook division of a single set bit, one bit at a time
+  for (int bit = 127 + r.shift; bit >= 0; --bit) {  // schoolbook division of a single set bit, one bit at a time
     remainder = (remainder << 1U) | (bit == 127 + r.shift ? 1U : 0U);
     quotient <<= 1U;
     if (remainder >= divisor) {
@@ -61,14 +60,13 @@ constexpr Reciprocal reciprocal_of_power_of_five(int n) {
 
 inline constexpr auto kReciprocal = [] {
   std::array<Reciprocal, kReciprocals> table{};
-  for (int n = 0; n < kReciprocals; ++n)
-    table[static_cast<std::size_t>(n)] = reciprocal_of_power_of_five(n);
+  for (int n = 0; n < kReciprocals; ++n) table[static_cast<std::size_t>(n)] = reciprocal_of_power_of_five(n);
   return table;
 }();
 
-inline constexpr std::array<double, 23> kPowerOfTen = {
-    1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+inline constexpr std::array<double, 23> kPowerOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                       1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                       1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /// The nearest double to w / 10^n for 1 <= n <= 27; false when 128 bits do not decide the rounding.
 inline bool divide_by_power_of_ten(std::uint64_t w, int n, double& out) {
@@ -77,8 +75,7 @@ inline bool divide_by_power_of_ten(std::uint64_t w, int n, double& out) {
   w <<= zeros;
   const Uint128 upper = static_cast<Uint128>(w) * r.bits.high;
   const Uint128 lower = static_cast<Uint128>(w) * r.bits.low;
-  const Uint128 product =
-      upper + static_cast<std::uint64_t>(lower >> 64U);  // top 128 of 192 bits, at most 2 too small
+  const Uint128 product = upper + static_cast<std::uint64_t>(lower >> 64U);  // top 128 of 192 bits, at most 2 too small
   const std::uint64_t high = static_cast<std::uint64_t>(product >> 64U);
   const std::uint64_t low = static_cast<std::uint64_t>(product);
   const int top = static_cast<int>(high >> 63U);
@@ -125,12 +122,10 @@ inline bool nearest_double(std::uint64_t w, std::ptrdiff_t digits, int q, double
   return true;
 }
 
-inline constexpr std::array<std::int64_t, 10> kNanoseconds = {
-    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+inline constexpr std::array<std::int64_t, 10> kNanoseconds = {1,      10,      100,      1000,      10000,
+                                                              100000, 1000000, 10000000, 100000000, 1000000000};
 
-inline bool is_digit(char c) {
-  return static_cast<unsigned char>(c - '0') < 10;
-}
+inline bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
 inline std::uint64_t load8(const char* p) {
   std::uint64_t v = 0;
@@ -146,8 +141,7 @@ inline std::uint64_t value_of_eight(std::uint64_t digits) {
          32U;
 }
 
-inline constexpr std::array<std::uint64_t, 8> kShift = {
-    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
+inline constexpr std::array<std::uint64_t, 8> kShift = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
 
 /// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past
 /// its end. Eight bytes are looked at together; how many of them are digits decides a shift, not a
@@ -209,8 +203,8 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
   }
   double magnitude = 0;
   if (!nearest_double(w, digits, q, magnitude)) return nullptr;
-  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) |
-                                (static_cast<std::uint64_t>(negative) << 63U));
+  value =
+      std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (static_cast<std::uint64_t>(negative) << 63U));
   return p;
 }
 
@@ -233,8 +227,7 @@ inline const char* quick_stamp(const char* p, char point, int unit_digits, std::
   }
   std::int64_t ns = 0;
   if (digits > 19 || w > INT64_MAX || scale < 0 || scale > 9 ||
-      __builtin_mul_overflow(
-          static_cast<std::int64_t>(w), kNanoseconds[static_cast<std::size_t>(scale)], &ns))
+      __builtin_mul_overflow(static_cast<std::int64_t>(w), kNanoseconds[static_cast<std::size_t>(scale)], &ns))
     return nullptr;
   stamp = negative ? -ns : ns;
   return p;
@@ -258,11 +251,7 @@ Cell read_cell(std::string_view text, char point);
 /// A time stamp: decimal text times `unit_ns` nanoseconds, exact, the half nanosecond rounded to
 /// even. `zero`, in the same unit, is taken off first.
 enum class StampDefect { none, missing, malformed, out_of_range };
-StampDefect read_stamp(std::string_view text,
-                       char point,
-                       std::int64_t unit_ns,
-                       std::int64_t& out,
-                       std::size_t& offset,
+StampDefect read_stamp(std::string_view text, char point, std::int64_t unit_ns, std::int64_t& out, std::size_t& offset,
                        double zero = 0);
 
 }  // namespace libchar::csv

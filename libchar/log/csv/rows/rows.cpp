@@ -14,14 +14,11 @@
 namespace libchar::csv {
 namespace {
 
-bool blank(char c) {
-  return c == ' ' || c == '\t';
-}
+bool blank(char c) { return c == ' ' || c == '\t'; }
 
 /// The rows of a chunk as they are filled.
 struct Filling {
-  Filling(const Plan& which, ParsedChunk& chunk)
-      : plan(which), dialect(*which.dialect), out(chunk) {
+  Filling(const Plan& which, ParsedChunk& chunk) : plan(which), dialect(*which.dialect), out(chunk) {
     ParsedChunk empty;
     std::swap(empty.rows, out.rows);  // keeps its memory
     out = std::move(empty);
@@ -43,18 +40,15 @@ struct Filling {
       block.time_ns.clear();
     }
     point_at_columns();
-    const bool one_number =
-        !dialect.time.calendar && dialect.more_time.column < 0 && dialect.time.fraction_ns == 0;
+    const bool one_number = !dialect.time.calendar && dialect.more_time.column < 0 && dialect.time.fraction_ns == 0;
     for (std::size_t i = 0; one_number && i < kNanoseconds.size(); ++i)
       if (dialect.time.unit_ns == kNanoseconds[i]) stamp_digits = static_cast<int>(i);
     // Of two parts of a stamp the one that stands first in a row sets it, the other is added.
-    first_part = dialect.more_time.column >= 0 && dialect.more_time.column < dialect.time.column
-                     ? Plan::kMoreTime
-                     : Plan::kTime;
+    first_part =
+        dialect.more_time.column >= 0 && dialect.more_time.column < dialect.time.column ? Plan::kMoreTime : Plan::kTime;
     line_by_line = !dialect.lead.empty() || !dialect.filters.empty() || dialect.group_column >= 0;
     for (std::size_t c = 0; c < plan.target.size(); ++c)  // a number without its unit is an error
-      line_by_line =
-          line_by_line || (plan.target[c] != Plan::kSkip && !dialect.columns[c].cell_unit.empty());
+      line_by_line = line_by_line || (plan.target[c] != Plan::kSkip && !dialect.columns[c].cell_unit.empty());
   }
 
   void point_at_columns() {
@@ -112,8 +106,7 @@ struct Filling {
 /// Rows of nothing but numbers: nearly all of a file.
 class QuickRows {
  public:
-  QuickRows(Filling& to, std::string_view text)
-      : to_(to), end_(text.data() + text.size()), try_vector_(text.data()) {}
+  QuickRows(Filling& to, std::string_view text) : to_(to), end_(text.data() + text.size()), try_vector_(text.data()) {}
 
   // As many rows as are plain numbers, from p on; at the first that is anything else it stops,
   // having changed nothing but scratch.
@@ -128,8 +121,7 @@ class QuickRows {
   std::uint64_t taken() const { return taken_; }
 
  private:
-  static constexpr std::size_t kVectorRows =
-      1024;  // at a time: their text fits the second-level cache
+  static constexpr std::size_t kVectorRows = 1024;  // at a time: their text fits the second-level cache
   static constexpr std::ptrdiff_t kPatience = std::ptrdiff_t{1} << 18U;
 
   // The fast way of vector_rows.hpp, from p to the first row that it does not take.
@@ -157,12 +149,8 @@ class QuickRows {
         }
       }
       const std::size_t wanted = std::min(kVectorRows, to_.capacity - to_.rows);
-      const VectorRows taken = parse_vector_rows({p, static_cast<std::size_t>(end_ - p)},
-                                                 to_.dialect.delimiter,
-                                                 crlf,
-                                                 columns,
-                                                 wanted,
-                                                 separators_);
+      const VectorRows taken = parse_vector_rows({p, static_cast<std::size_t>(end_ - p)}, to_.dialect.delimiter, crlf,
+                                                 columns, wanted, separators_);
       p += taken.consumed;
       if (to_.lines_listed)
         for (std::size_t i = 0; i < taken.rows; ++i)
@@ -179,8 +167,8 @@ class QuickRows {
 
   // The same number by number: delimiters between them, and the file's line end.
   const char* quick_rows(const char* p, const char* const end) {
-    if (to_.dialect.delimiter == ' ' || to_.dialect.line_end == LineEnd::cr ||
-        to_.dialect.line_end == LineEnd::none || to_.line_by_line)
+    if (to_.dialect.delimiter == ' ' || to_.dialect.line_end == LineEnd::cr || to_.dialect.line_end == LineEnd::none ||
+        to_.line_by_line)
       return p;
     const std::size_t before = to_.rows;
     const int* const target = to_.plan.target.data();
@@ -218,8 +206,7 @@ class QuickRows {
       p = q + (crlf ? 2 : 1);
       ++to_.rows;
       if (to_.lines_listed)
-        to_.out.rows.line_offset.push_back(
-            static_cast<std::uint32_t>(to_.line + (to_.rows - before - 1)));
+        to_.out.rows.line_offset.push_back(static_cast<std::uint32_t>(to_.line + (to_.rows - before - 1)));
     }
     taken_ += to_.rows - before;
     to_.line += to_.rows - before;
@@ -230,15 +217,13 @@ class QuickRows {
   const char* quick_text(const char* p, std::size_t column, int to) {
     const char* const start = p;
     while (p < end_ && *p != to_.dialect.delimiter && *p != '\n' && *p != '\r' && *p != '"') ++p;
-    if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField))
-      return nullptr;
-    if (column == 0 && (p == start || *start == '#' || *start == '%' || *start == '/' ||
-                        *start == ';' || blank(*start)))
+    if (p == end_ || *p == '"' || p - start > static_cast<std::ptrdiff_t>(kMaxField)) return nullptr;
+    if (column == 0 &&
+        (p == start || *start == '#' || *start == '%' || *start == '/' || *start == ';' || blank(*start)))
       return nullptr;
     std::size_t offset = 0;
     if (to != Plan::kSkip &&
-        to_.take_part(trimmed({start, static_cast<std::size_t>(p - start)}), to, offset) !=
-            StampDefect::none)
+        to_.take_part(trimmed({start, static_cast<std::size_t>(p - start)}), to, offset) != StampDefect::none)
       return nullptr;
     return p;
   }
@@ -253,15 +238,13 @@ class QuickRows {
 /// Any line, cell by cell, with the reasons why one cannot be read.
 class CarefulLines {
  public:
-  CarefulLines(Filling& to, std::string_view text)
-      : to_(to), begin_(text.data()), end_(text.data() + text.size()) {}
+  CarefulLines(Filling& to, std::string_view text) : to_(to), begin_(text.data()), end_(text.data() + text.size()) {}
 
   const char* take(const char* start) {
     const char* stop = start;
     while (stop < end_ && *stop != '\n' && *stop != '\r') ++stop;
     std::uint64_t more_lines = 0;
-    if (to_.dialect.lines.quotes && std::count(start, stop, '"') % 2 != 0)
-      stop = end_of_row(start, stop, more_lines);
+    if (to_.dialect.lines.quotes && std::count(start, stop, '"') % 2 != 0) stop = end_of_row(start, stop, more_lines);
     const char* after = stop;
     LineEnd kind = LineEnd::none;
     if (stop < end_) {
@@ -272,21 +255,16 @@ class CarefulLines {
     const std::string_view line(start, static_cast<std::size_t>(stop - start));
     const auto bytes = static_cast<std::uint64_t>(after - start);
     line_start_ = start;
-    if (const std::size_t nul = line.find('\0');
-        line.size() > kMaxLine && nul != std::string_view::npos) {
-      fail("E0308",
-           "NUL bytes between the rows",
-           "",
-           "a damaged file: copy it again, or read the part before with `to_s`",
-           nul);
+    if (const std::size_t nul = line.find('\0'); line.size() > kMaxLine && nul != std::string_view::npos) {
+      fail("E0308", "NUL bytes between the rows", "",
+           "a damaged file: copy it again, or read the part before with `to_s`", nul);
       return after;
     }
     if (line.size() > kMaxLine) {
       fail("E0305", "line longer than 1 MiB", "", "is this a text file with line ends?", 0);
       return after;
     }
-    if (kind != LineEnd::none && kind != to_.dialect.line_end)
-      to_.out.mixed_end.add(to_.line, line.size() + 1);
+    if (kind != LineEnd::none && kind != to_.dialect.line_end) to_.out.mixed_end.add(to_.line, line.size() + 1);
     if (line.find_first_not_of(" \t") == std::string_view::npos) {
       to_.out.blank.add(to_.line, 1);
       to_.out.account.blank_bytes += bytes;
@@ -297,11 +275,8 @@ class CarefulLines {
       to_.list_lines();
     } else if (to_.dialect.has_header && line == to_.dialect.header) {
       if (!to_.plan.skip_repeated_header) {
-        fail("E0309",
-             "the header line again, a row of numbers was expected (concatenated logs?)",
-             std::string(line),
-             "`skip_repeated_header` counts it and goes on",
-             0);
+        fail("E0309", "the header line again, a row of numbers was expected (concatenated logs?)", std::string(line),
+             "`skip_repeated_header` counts it and goes on", 0);
         return after;
       }
       to_.out.repeated.add(to_.line, 1);
@@ -326,18 +301,16 @@ class CarefulLines {
   const char* end_of_row(const char* start, const char* stop, std::uint64_t& more_lines) {
     const std::string_view rest(start, static_cast<std::size_t>(end_ - start));
     const char* const end = start + row_end(rest, 0, to_.dialect.delimiter);
-    more_lines = static_cast<std::uint64_t>(
-        std::count(stop, end, to_.dialect.line_end == LineEnd::cr ? '\r' : '\n'));
+    more_lines = static_cast<std::uint64_t>(std::count(stop, end, to_.dialect.line_end == LineEnd::cr ? '\r' : '\n'));
     if (more_lines > 0) to_.list_lines();
     return end;
   }
 
-  void fail(
-      std::string code, std::string what, std::string got, std::string hint, std::size_t column) {
-    to_.out.problem = RowProblem{
-        {ErrorKind::input, std::move(code), "", std::move(what), std::move(got), std::move(hint)},
-        {to_.line, column + 1},
-        static_cast<std::uint64_t>(line_start_ - begin_) + column};
+  void fail(std::string code, std::string what, std::string got, std::string hint, std::size_t column) {
+    to_.out.problem =
+        RowProblem{{ErrorKind::input, std::move(code), "", std::move(what), std::move(got), std::move(hint)},
+                   {to_.line, column + 1},
+                   static_cast<std::uint64_t>(line_start_ - begin_) + column};
   }
 
   struct Span {
@@ -347,9 +320,7 @@ class CarefulLines {
     bool last = false, ok = true;
   };
 
-  bool ends(char c) const {
-    return to_.dialect.delimiter == ' ' ? blank(c) : c == to_.dialect.delimiter;
-  }
+  bool ends(char c) const { return to_.dialect.delimiter == ' ' ? blank(c) : c == to_.dialect.delimiter; }
 
   // The stamp that a terminal put in front of the line.
   bool lead_field(std::string_view line, Span& span) const {
@@ -367,9 +338,7 @@ class CarefulLines {
   Span field(std::string_view line, std::size_t i) {
     Span span;
     if (i == 0 && !to_.dialect.lead.empty() && lead_field(line, span)) return span;
-    const auto pad = [&](std::size_t k) {
-      return k < line.size() && blank(line[k]) && !ends(line[k]);
-    };
+    const auto pad = [&](std::size_t k) { return k < line.size() && blank(line[k]) && !ends(line[k]); };
     if (to_.dialect.delimiter == ' ')
       while (i < line.size() && blank(line[i])) ++i;
     while (pad(i)) ++i;
@@ -378,11 +347,7 @@ class CarefulLines {
       std::size_t close = line.find('"', i + 1);
       while (close < line.size() - 1 && line[close + 1] == '"') close = line.find('"', close + 2);
       if (close == std::string_view::npos) {
-        fail("E0306",
-             "a quote is opened here and not closed in this line",
-             std::string(line.substr(i)),
-             "",
-             i);
+        fail("E0306", "a quote is opened here and not closed in this line", std::string(line.substr(i)), "", i);
         span.ok = false;
         return span;
       }
@@ -390,10 +355,7 @@ class CarefulLines {
       span.to = close;
       i = close + 1;
       if (i < line.size() && !ends(line[i]) && !blank(line[i])) {
-        fail("E0306",
-             "text after a closing quote, a delimiter was expected",
-             std::string(line.substr(span.start)),
-             "",
+        fail("E0306", "text after a closing quote, a delimiter was expected", std::string(line.substr(span.start)), "",
              i);
         span.ok = false;
         return span;
@@ -411,11 +373,8 @@ class CarefulLines {
     span.last = i >= line.size() || (to_.dialect.delimiter == ' ' && i + 1 >= line.size());
     span.next = i + 1;
     if (i - span.start > kMaxField) {
-      fail("E0305",
-           fmt::format("field longer than 128 KiB ({} bytes)", i - span.start),
-           std::string(line.substr(span.start, 60)),
-           "",
-           span.start);
+      fail("E0305", fmt::format("field longer than 128 KiB ({} bytes)", i - span.start),
+           std::string(line.substr(span.start, 60)), "", span.start);
       span.ok = false;
     }
     return span;
@@ -493,12 +452,8 @@ class CarefulLines {
 
   void refuse_kind(std::string_view text, const Span& span, const RowFilter& filter) {
     const std::string& name = to_.dialect.columns[static_cast<std::size_t>(filter.column)].name;
-    fail("E0327",
-         fmt::format("rows of another kind begin: {} was {} before", name, filter.value),
-         std::string(text),
-         fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each",
-                     name,
-                     filter.value,
+    fail("E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
+         fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each", name, filter.value,
                      name),
          span.start);
   }
@@ -509,9 +464,7 @@ class CarefulLines {
       fail("E0332",
            fmt::format("a value of the column of `group_by` that the first {} do not have",
                        plural(to_.dialect.groups.size(), "value")),
-           std::string(text),
-           "`where` reads one of them",
-           span.start);
+           std::string(text), "`where` reads one of them", span.start);
       return false;
     }
     to_.out.groups.resize(to_.rows);
@@ -530,11 +483,8 @@ class CarefulLines {
       if (!cell(line, span, c)) return false;
       ++to_.out.account.cells;
       if (c + 1 < count && span.last) {
-        fail("E0304",
-             fmt::format("{} field{}, {} expected", c + 1, c == 0 ? "" : "s", count),
-             std::string(line),
-             few_hint(line),
-             line.size());
+        fail("E0304", fmt::format("{} field{}, {} expected", c + 1, c == 0 ? "" : "s", count), std::string(line),
+             few_hint(line), line.size());
         return false;
       }
       i = span.next;
@@ -545,13 +495,8 @@ class CarefulLines {
     if (to_.dialect.trailing_delimiter && extra.last && extra.from == extra.to) return true;
     std::size_t fields = count + 1;
     for (Span s = extra; s.ok && !s.last; ++fields) s = field(line, s.next);
-    to_.out.problem
-        .reset();  // a quote problem in the fields that are too many says less than their number
-    fail("E0304",
-         fmt::format("{} fields, {} expected", fields, count),
-         std::string(line),
-         many_hint(fields),
-         i);
+    to_.out.problem.reset();  // a quote problem in the fields that are too many says less than their number
+    fail("E0304", fmt::format("{} fields, {} expected", fields, count), std::string(line), many_hint(fields), i);
     return false;
   }
 
@@ -561,13 +506,11 @@ class CarefulLines {
       return fmt::format(
           "the lines before end with '{}' and nothing behind it, which makes no column: name the "
           "columns in a header line{}",
-          to_.dialect.delimiter,
-          to_.dialect.has_header ? ", this one too" : "");
+          to_.dialect.delimiter, to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')
       return "are these decimal commas? write the file with another delimiter, such as ;";
-    return fmt::format(
-        "`drop_bad_rows` leaves such rows out; `delimiter`, if '{}' does not separate the fields",
-        to_.dialect.delimiter);
+    return fmt::format("`drop_bad_rows` leaves such rows out; `delimiter`, if '{}' does not separate the fields",
+                       to_.dialect.delimiter);
   }
 
   std::string few_hint(std::string_view line) const {
@@ -584,11 +527,9 @@ class CarefulLines {
       ++to_.out.account.unread;
       return true;
     }
-    if (!to_.dialect.columns[c].cell_unit.empty() &&
-        !take_off_unit(text, span, to_.dialect.columns[c].cell_unit))
+    if (!to_.dialect.columns[c].cell_unit.empty() && !take_off_unit(text, span, to_.dialect.columns[c].cell_unit))
       return false;
-    return target < 0 ? stamp(text, span, target)
-                      : value(text, span, static_cast<std::size_t>(target));
+    return target < 0 ? stamp(text, span, target) : value(text, span, static_cast<std::size_t>(target));
   }
 
   // "0.005 sec" → "0.005" in a column of seconds. What is no number with a known unit is left as it is.
@@ -603,9 +544,7 @@ class CarefulLines {
     fail("E0333",
          bare ? fmt::format("a value without a unit, those before it are in {}", unit)
               : fmt::format("a value in {}, those before it are in {}", measured->unit, unit),
-         std::string(text),
-         "export the column with one unit, or with plain numbers",
-         span.start);
+         std::string(text), "export the column with one unit, or with plain numbers", span.start);
     return false;
   }
 
@@ -616,36 +555,24 @@ class CarefulLines {
         ++to_.out.account.stamps;
         return true;
       case StampDefect::missing:
-        fail("E0313",
-             "missing time stamp",
-             std::string(text),
-             "`time_column` none and `rate_hz` HZ ignore the stamps",
+        fail("E0313", "missing time stamp", std::string(text), "`time_column` none and `rate_hz` HZ ignore the stamps",
              span.start);
         break;
       case StampDefect::malformed: {
         if ((to == Plan::kTime ? to_.dialect.time : to_.dialect.more_time).calendar) {
-          fail("E0321",
-               "no date or clock time like those before it",
-               std::string(text),
-               "`date_order` day or month says which number of 05/01/2024 is the day",
-               span.start);
+          fail("E0321", "no date or clock time like those before it", std::string(text),
+               "`date_order` day or month says which number of 05/01/2024 is the day", span.start);
           break;
         }
         const Cell why = read_cell(text, to_.dialect.decimal);
         fail("E0311",
-             fmt::format("{} in the time column",
-                         why.kind == Cell::bad ? why.reason : "a number was expected"),
-             std::string(text),
-             "",
-             span.from + (why.kind == Cell::bad ? why.offset : offset));
+             fmt::format("{} in the time column", why.kind == Cell::bad ? why.reason : "a number was expected"),
+             std::string(text), "", span.from + (why.kind == Cell::bad ? why.offset : offset));
         break;
       }
       case StampDefect::out_of_range:
-        fail("E0314",
-             "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong `time_unit`?)",
-             std::string(text),
-             "`time_unit` s|ms|us|ns",
-             span.start);
+        fail("E0314", "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong `time_unit`?)",
+             std::string(text), "`time_unit` s|ms|us|ns", span.start);
         break;
     }
     return false;
@@ -667,10 +594,7 @@ class CarefulLines {
         break;
       case Cell::out_of_range:
         if (!to_.plan.overflow_as_missing) {
-          fail("E0312",
-               "number out of range",
-               std::string(text),
-               "`overflow_as_missing` counts it as missing",
+          fail("E0312", "number out of range", std::string(text), "`overflow_as_missing` counts it as missing",
                span.start);
           return false;
         }
@@ -680,10 +604,7 @@ class CarefulLines {
         to_.out.missing.add(to_.line, span.start + 1);
         break;
       case Cell::bad:
-        fail("E0311",
-             cell.reason,
-             std::string(text),
-             bad_hint(text, channel),
+        fail("E0311", cell.reason, std::string(text), bad_hint(text, channel),
              span.from == span.to || cell.offset == 0 ? span.start : span.from + cell.offset);
         return false;
     }
@@ -698,11 +619,9 @@ class CarefulLines {
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
-    const bool word =
-        !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
+    const bool word = !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
     if (!word) return "";
-    const auto column =
-        std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
+    const auto column = std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
     return fmt::format(
         "`drop_bad_rows` leaves such rows out, `channels` '!{}' the column; `skip_rows`, if the "
         "table "
@@ -719,8 +638,7 @@ class CarefulLines {
 void account_for(Filling& to, std::uint64_t quick, std::uint64_t consumed) {
   const Plan& plan = to.plan;
   Account& account = to.out.account;
-  const std::uint64_t stamps =
-      (to.dialect.time.column >= 0 ? 1 : 0) + (to.dialect.more_time.column >= 0 ? 1 : 0);
+  const std::uint64_t stamps = (to.dialect.time.column >= 0 ? 1 : 0) + (to.dialect.more_time.column >= 0 ? 1 : 0);
   account.cells += quick * plan.target.size();
   account.values += quick * plan.channels;
   account.stamps += quick * stamps;

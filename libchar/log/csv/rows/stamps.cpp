@@ -20,10 +20,9 @@ struct StampPair {
 
 // "MJD" and "sod".
 bool days_and_seconds(std::string_view a, std::string_view b) {
-  static constexpr std::array<std::string_view, 6> kSeconds = {
-      "sod", "second of day", "seconds of day", "second_of_day", "seconds_of_day", "sec_of_day"};
-  return ascii_lower(a) == "mjd" &&
-         std::find(kSeconds.begin(), kSeconds.end(), ascii_lower(b)) != kSeconds.end();
+  static constexpr std::array<std::string_view, 6> kSeconds = {"sod",           "second of day",  "seconds of day",
+                                                               "second_of_day", "seconds_of_day", "sec_of_day"};
+  return ascii_lower(a) == "mjd" && std::find(kSeconds.begin(), kSeconds.end(), ascii_lower(b)) != kSeconds.end();
 }
 
 bool is_calendar(ColumnKind kind) {
@@ -33,16 +32,11 @@ bool is_calendar(ColumnKind kind) {
 // "header.stamp.secs" and "header.stamp.nsecs".
 bool seconds_and_nanoseconds(std::string_view a, std::string_view b) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {
-      {{"nanosecs", "secs"},
-       {"nanosec", "sec"},
-       {"nsecs", "secs"},
-       {"nsec", "sec"},
-       {"nanoseconds", "seconds"}}};
+      {{"nanosecs", "secs"}, {"nanosec", "sec"}, {"nsecs", "secs"}, {"nsec", "sec"}, {"nanoseconds", "seconds"}}};
   const std::string first = ascii_lower(a), second = ascii_lower(b);
   for (const auto& [nano, whole] : kWords)
     if (first.ends_with(whole) && second.ends_with(nano) &&
-        first.substr(0, first.size() - whole.size()) ==
-            second.substr(0, second.size() - nano.size()))
+        first.substr(0, first.size() - whole.size()) == second.substr(0, second.size() - nano.size()))
       return true;
   return false;
 }
@@ -62,8 +56,7 @@ bool epoch_and_rest(const std::vector<Cells>& rows) {
   std::int64_t last = 0, largest = 0;
   for (const Cells& row : rows) {
     const auto s = whole_number(row, 0), ns = whole_number(row, 1);
-    if (!s || !ns || *s < 1000000000 || *s > 2200000000 || *ns < 0 || *ns >= 1000000000)
-      return false;
+    if (!s || !ns || *s < 1000000000 || *s > 2200000000 || *ns < 0 || *ns >= 1000000000) return false;
     const std::int64_t stamp = *s * 1000000000 + *ns;
     if (stamp <= last) return false;
     last = stamp;
@@ -128,17 +121,14 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
       if (at >= row.size()) continue;
       std::int64_t ns = 0;
       std::size_t offset = 0;
-      if (read_stamp(row[at].text, study.style.decimal, 1000000000, ns, offset) !=
-          StampDefect::none)
-        continue;
+      if (read_stamp(row[at].text, study.style.decimal, 1000000000, ns, offset) != StampDefect::none) continue;
       const auto clock = clock_of_digits(ns);
       if (!clock) return false;
       take(1e-9 * static_cast<double>(ns), 1e-9 * static_cast<double>(*clock));
     }
     return true;
   };
-  if (study.kinds[column] != ColumnKind::number || study.rows.empty() ||
-      column >= study.rows.front().size())
+  if (study.kinds[column] != ColumnKind::number || study.rows.empty() || column >= study.rows.front().size())
     return false;
   std::vector<double> numbers, clocks;
   bool rises = true;
@@ -154,19 +144,15 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
   const std::string& front = study.rows.front()[column].text;
   const std::string name = ascii_lower(named_so);
   const auto called = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-  const bool named =
-      called("utc") || called("hhmmss") || (called("time") && usual_step(numbers) > kFastest);
-  if (!named && std::min(front.find(study.style.decimal), front.size()) < kFewestDigits)
-    return false;
+  const bool named = called("utc") || called("hhmmss") || (called("time") && usual_step(numbers) > kFastest);
+  if (!named && std::min(front.find(study.style.decimal), front.size()) < kFewestDigits) return false;
   numbers.clear();
   clocks.clear();
   if (!study.whole_head || !times(study.whole_head(column), 0, collect) || !rises) return false;
   return odd_steps(clocks) < odd_steps(numbers);
 }
 
-FirstValues first_stamps(const StampStudy& study,
-                         const Dialect& dialect,
-                         const StampPart& part,
+FirstValues first_stamps(const StampStudy& study, const Dialect& dialect, const StampPart& part,
                          const StampPart& more) {
   FirstValues first;
   std::optional<std::int64_t> begin;
@@ -178,8 +164,7 @@ FirstValues first_stamps(const StampStudy& study,
       std::int64_t ns = 0;
       std::size_t offset = 0;
       const auto column = static_cast<std::size_t>(one->column);
-      good = good && column < row.size() &&
-             read_part(row[column].text, *one, dialect, ns, offset) == StampDefect::none;
+      good = good && column < row.size() && read_part(row[column].text, *one, dialect, ns, offset) == StampDefect::none;
       good = good && !__builtin_add_overflow(sum, ns, &sum);
     }
     if (!good) continue;
@@ -189,10 +174,7 @@ FirstValues first_stamps(const StampStudy& study,
   return first;
 }
 
-void choose_date_order(const StampStudy& study,
-                       const ReadOptions& options,
-                       Dialect& dialect,
-                       LogInfo& info) {
+void choose_date_order(const StampStudy& study, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   std::vector<std::string_view> texts;
   std::string example;
   std::size_t dates = 0;
@@ -208,19 +190,16 @@ void choose_date_order(const StampStudy& study,
   if (style.ambiguous && options.date_order == "auto") {
     const std::vector<Cells> all = study.whole_head(dates);
     texts.assign(all.size(), "");
-    std::transform(all.begin(), all.end(), texts.begin(), [](const Cells& cell) {
-      return std::string_view(cell[0].text);
-    });
+    std::transform(all.begin(), all.end(), texts.begin(),
+                   [](const Cells& cell) { return std::string_view(cell[0].text); });
     style = date_style(texts, study.style.decimal == ',');
   }
   if (options.date_order != "auto")
     style = {options.date_order == "day" ? DateOrder::day_first : DateOrder::month_first, false};
   dialect.date_order = style.order;
   if (style.ambiguous)
-    info.guesses.push_back(
-        fmt::format("dates: {} is read with the {} first (`date_order` day or month decides)",
-                    printable(example, 40),
-                    style.order == DateOrder::day_first ? "day" : "month"));
+    info.guesses.push_back(fmt::format("dates: {} is read with the {} first (`date_order` day or month decides)",
+                                       printable(example, 40), style.order == DateOrder::day_first ? "day" : "month"));
 }
 
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
@@ -229,20 +208,19 @@ void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   for (const Cells& row : study.rows)
     for (const StampPart* part : {&dialect.time, &dialect.more_time})
       if (part->column >= 0 && static_cast<std::size_t>(part->column) < row.size())
-        if (const auto stamp = read_calendar(row[static_cast<std::size_t>(part->column)].text,
-                                             dialect.date_order)) {
+        if (const auto stamp = read_calendar(row[static_cast<std::size_t>(part->column)].text, dialect.date_order)) {
           zone = zone || stamp->zone;
           of_hour = of_hour || stamp->of_hour;
         }
   constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
-  const bool clock_only = dialect.time.clock_digits ||
-                          (study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0);
+  const bool clock_only =
+      dialect.time.clock_digits || (study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0);
   dialect.clock_period_ns = clock_only ? (of_hour ? kHour : 24 * kHour) : 0;
   info.dialect.push_back(of_hour                     ? "stamps are minutes and seconds of an hour"
                          : dialect.time.clock_digits ? "stamps are times of day, hhmmss"
                          : clock_only                ? "stamps are times of day"
                          : zone                      ? "calendar stamps, with their time zone"
-                                : "calendar stamps, as written, without a time zone");
+                                                     : "calendar stamps, as written, without a time zone");
   info.time.unit = "ns";
   info.time.unit_ns = 1;
   info.time.local = !zone;
@@ -262,9 +240,7 @@ Fractions fractions_of(const StampStudy& study, const Dialect& dialect, const St
     const auto column = static_cast<std::size_t>(part.column);
     std::int64_t ns = 0;
     std::size_t offset = 0;
-    if (column >= row.size() ||
-        read_part(row[column].text, part, dialect, ns, offset) != StampDefect::none)
-      continue;
+    if (column >= row.size() || read_part(row[column].text, part, dialect, ns, offset) != StampDefect::none) continue;
     const std::string& text = row[column].text;
     const std::size_t mark = text.find(dialect.decimal);
     const std::size_t behind = mark == std::string::npos ? 0 : text.size() - mark - 1;
@@ -284,29 +260,25 @@ void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info
   if (part.unit_ns != 1000000000 || as_read.rise || as_read.alike) return;
   part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
   if (fractions_of(study, dialect, part).rise)
-    info.guesses.push_back(
-        fmt::format("stamps: the digits behind the mark are {} without leading zeros",
-                    part.fraction_ns == 1      ? "nanoseconds"
-                    : part.fraction_ns == 1000 ? "microseconds"
-                                               : "milliseconds"));
+    info.guesses.push_back(fmt::format("stamps: the digits behind the mark are {} without leading zeros",
+                                       part.fraction_ns == 1      ? "nanoseconds"
+                                       : part.fraction_ns == 1000 ? "microseconds"
+                                                                  : "milliseconds"));
   else
     part.fraction_ns = 0;
 }
 
-TableFront front_of(const StampStudy& study,
-                    const Dialect& dialect,
-                    const std::optional<StampPair>& pair) {
+TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::optional<StampPair>& pair) {
   TableFront table;
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
     const Column& column = dialect.columns[c];
     ColumnLabel label{column.text, column.unit_below};
     const bool first = pair && c == pair->first, second = pair && c == pair->second;
     label.calendar = (c < study.kinds.size() && is_calendar(study.kinds[c])) || first;
-    label.text = second || (c < study.kinds.size() && (study.kinds[c] == ColumnKind::text ||
-                                                       study.kinds[c] == ColumnKind::empty));
+    label.text = second || (c < study.kinds.size() &&
+                            (study.kinds[c] == ColumnKind::text || study.kinds[c] == ColumnKind::empty));
     if (column.left_out) label.text = true;
-    label.calendar =
-        label.calendar || (!pair && !label.text && is_clock_digits(study, c, column.text));
+    label.calendar = label.calendar || (!pair && !label.text && is_clock_digits(study, c, column.text));
     table.columns.push_back(label);
   }
   table.named = dialect.has_header;
@@ -318,10 +290,7 @@ TableFront front_of(const StampStudy& study,
 
 }  // namespace
 
-StampDefect read_part(std::string_view text,
-                      const StampPart& part,
-                      const Dialect& dialect,
-                      std::int64_t& out,
+StampDefect read_part(std::string_view text, const StampPart& part, const Dialect& dialect, std::int64_t& out,
                       std::size_t& offset) {
   if (part.clock_digits) {
     const StampDefect defect = read_stamp(text, dialect.decimal, 1000000000, out, offset);
@@ -332,14 +301,11 @@ StampDefect read_part(std::string_view text,
   }
   if (!part.calendar) {
     const std::size_t label = dialect.has_header ? 0 : label_length(text);
-    if (const std::size_t mark = text.find(dialect.decimal);
-        part.fraction_ns > 0 && mark != std::string_view::npos) {
+    if (const std::size_t mark = text.find(dialect.decimal); part.fraction_ns > 0 && mark != std::string_view::npos) {
       std::int64_t behind = 0;
-      StampDefect defect =
-          read_stamp(text.substr(mark + 1), dialect.decimal, part.fraction_ns, behind, offset);
+      StampDefect defect = read_stamp(text.substr(mark + 1), dialect.decimal, part.fraction_ns, behind, offset);
       if (defect == StampDefect::none)
-        defect = read_stamp(
-            text.substr(label, mark - label), dialect.decimal, part.unit_ns, out, offset);
+        defect = read_stamp(text.substr(label, mark - label), dialect.decimal, part.unit_ns, out, offset);
       out += defect == StampDefect::none ? behind : 0;
       return defect;
     }
@@ -348,24 +314,19 @@ StampDefect read_part(std::string_view text,
   offset = 0;
   const auto stamp = read_calendar(text, dialect.date_order);
   if (!stamp)
-    return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing
-                                                                  : StampDefect::malformed;
+    return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
   out = stamp->ns;
   return StampDefect::none;
 }
 
-void choose_stamps(const StampStudy& study,
-                   const ReadOptions& options,
-                   Dialect& dialect,
-                   LogInfo& info) {
+void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   choose_date_order(study, options, dialect, info);
   const auto pair = find_pair(study, dialect);
   TableFront table = front_of(study, dialect, pair);
   const auto part_of = [&](std::size_t column) {
     const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
     StampPart part{static_cast<int>(column), calendar};
-    part.clock_digits =
-        table.columns[column].calendar && !calendar && (!pair || column != pair->first);
+    part.clock_digits = table.columns[column].calendar && !calendar && (!pair || column != pair->first);
     part.calendar = part.calendar || part.clock_digits;
     if (!pair || pair->calendar) return part;
     constexpr std::int64_t kSecond = 1000000000;
@@ -378,9 +339,8 @@ void choose_stamps(const StampStudy& study,
     return pair && column == pair->first ? part_of(pair->second) : StampPart{};
   };
   table.first_values = [&](std::size_t column) {
-    return table.columns[column].calendar
-               ? first_stamps(study, dialect, part_of(column), partner_of(column))
-               : first_numbers(study, column);
+    return table.columns[column].calendar ? first_stamps(study, dialect, part_of(column), partner_of(column))
+                                          : first_numbers(study, column);
   };
   auto index = find_time_column(table, options, info);
   if (!index) return;
@@ -395,12 +355,9 @@ void choose_stamps(const StampStudy& study,
     info.time.unit = "s";
     info.time.unit_ns = 1;
     const std::string& rest = dialect.columns[pair->second].name;
-    const std::string sentence =
-        fmt::format("stamps: {} in {} and {} in {}",
-                    pair->days ? "days (MJD)" : "seconds",
-                    printable(info.time.column),
-                    pair->days ? "seconds" : "nanoseconds",
-                    rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
+    const std::string sentence = fmt::format("stamps: {} in {} and {} in {}", pair->days ? "days (MJD)" : "seconds",
+                                             printable(info.time.column), pair->days ? "seconds" : "nanoseconds",
+                                             rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
     if (dialect.has_header)
       info.dialect.push_back(sentence);
     else

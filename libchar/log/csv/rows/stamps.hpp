@@ -20,16 +20,10 @@ struct StampStudy {
 };
 
 /// Fills the stamps of `dialect`, and what is known of the time base and guessed of it in `info`.
-void choose_stamps(const StampStudy& study,
-                   const ReadOptions& options,
-                   Dialect& dialect,
-                   LogInfo& info);
+void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect& dialect, LogInfo& info);
 
 /// A stamp of one part, in nanoseconds.
-StampDefect read_part(std::string_view text,
-                      const StampPart& part,
-                      const Dialect& dialect,
-                      std::int64_t& out,
+StampDefect read_part(std::string_view text, const StampPart& part, const Dialect& dialect, std::int64_t& out,
                       std::size_t& offset);
 
 }  // namespace libchar::csv

@@ -22,9 +22,7 @@ namespace {
 
 /// Offsets of the delimiters and line feeds of `text` into `positions` (grown as needed), until
 /// there are `enough`; returns their number.
-__attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text,
-                                                          char delimiter,
-                                                          std::size_t enough,
+__attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text, char delimiter, std::size_t enough,
                                                           std::vector<std::uint32_t>& positions) {
   const __m256i wanted = _mm256_set1_epi8(delimiter), line_feed = _mm256_set1_epi8('\n');
   std::size_t count = 0;
@@ -32,12 +30,9 @@ __attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text,
     if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
     std::uint64_t mask = 0;
     for (unsigned half = 0; half < 2; ++half) {
-      const __m256i bytes =
-          _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text.data() + at + 32 * half));
-      const __m256i hit =
-          _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, line_feed));
-      mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit)))
-              << (32 * half);
+      const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text.data() + at + 32 * half));
+      const __m256i hit = _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, line_feed));
+      mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit))) << (32 * half);
     }
     if (at + 64 > text.size()) mask &= (std::uint64_t{1} << (text.size() - at)) - 1;
     const auto found = static_cast<std::size_t>(_mm_popcnt_u64(mask));
@@ -71,14 +66,11 @@ __attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, cons
   if (begin == end || end - begin > 64) return out;
   const auto [stop, status] = detail::read_double(begin, end, out.value);
   out.good = status == std::errc() && stop == end && std::fabs(out.value) < 0x1p53;
-  out.integer =
-      std::all_of(begin + (*begin == '-'), end, [](char c) { return c >= '0' && c <= '9'; });
+  out.integer = std::all_of(begin + (*begin == '-'), end, [](char c) { return c >= '0' && c <= '9'; });
   return out;
 }
 
-__attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin,
-                                                               const char* end,
-                                                               int stamp_digits) {
+__attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin, const char* end, int stamp_digits) {
   Slow<std::int64_t> out;
   if (stamp_digits != 0) return out;
   const auto [stop, status] = std::from_chars(begin, end, out.value);
@@ -89,9 +81,7 @@ __attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin
 /// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the
 /// first row that it refuses.
 template <bool kLast, class Take>
-LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column,
-                                                   std::size_t first,
-                                                   const std::size_t last,
+LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column, std::size_t first, const std::size_t last,
                                                    Take take) {
   const char* const text = column.text;
   const std::size_t width = column.width;
@@ -108,52 +98,38 @@ LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column,
     const char* const begin = text + from;
     // Arithmetic instead of a branch: the sign of noise is a coin toss that no predictor guesses.
     const std::uint32_t negative =
-        ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) -
-         1U) >>
-        31U;
-    if (__builtin_expect(
-            !take(row,
-                  begin,
-                  text + to,
-                  negative,
-                  read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative)),
-            0))
+        ((static_cast<std::uint32_t>(static_cast<unsigned char>(*begin)) ^ std::uint32_t{'-'}) - 1U) >> 31U;
+    if (__builtin_expect(!take(row, begin, text + to, negative,
+                               read_field(begin + negative, static_cast<std::uint32_t>(to - from) - negative)),
+                         0))
       return row;
   }
   return last;
 }
 
 template <class Take>
-LIBCHAR_AVX2_INLINE inline std::size_t take_column(const Column& column,
-                                                   std::size_t first,
-                                                   std::size_t last,
+LIBCHAR_AVX2_INLINE inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last,
                                                    Take take) {
   return column.index + 1 == column.width ? take_fields<true>(column, first, last, take)
                                           : take_fields<false>(column, first, last, take);
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column,
-                                                      std::size_t first,
-                                                      std::size_t last,
+__attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column, std::size_t first, std::size_t last,
                                                       const VectorColumn& to) {
   double* const values = to.values;
   std::uint32_t behind = 0;  // of all fields together
-  const auto one = [&](std::size_t row,
-                       const char* begin,
-                       const char* end,
-                       std::uint32_t negative,
+  const auto one = [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative,
                        const Field& field) LIBCHAR_AVX2_INLINE {
     if (__builtin_expect(!field.regular || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
-      behind |= static_cast<std::uint32_t>(
-          slow.good && !slow.integer);  // a refused field says nothing about the column
+      behind |=
+          static_cast<std::uint32_t>(slow.good && !slow.integer);  // a refused field says nothing about the column
       return slow.good;
     }
     behind |= field.behind;
     const double magnitude = static_cast<double>(field.digits) / kPowers[field.behind];
-    values[row] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) |
-                                        (std::uint64_t{negative} << 63U));
+    values[row] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) | (std::uint64_t{negative} << 63U));
     return true;
   };
   std::size_t row = first, alone = 1;  // the very first row goes alone
@@ -172,53 +148,35 @@ __attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column,
   return row;
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t take_stamps(const Column& column,
-                                                      std::size_t first,
-                                                      std::size_t last,
+__attribute__((LIBCHAR_AVX2)) std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last,
                                                       const VectorColumn& to) {
   return take_column(
-      column,
-      first,
-      last,
-      [&](std::size_t row,
-          const char* begin,
-          const char* end,
-          std::uint32_t negative,
-          const Field& field) LIBCHAR_AVX2_INLINE {
-        const int shift = to.stamp_digits - static_cast<int>(field.behind);
-        if (__builtin_expect(field.regular && shift >= 0, 1))
-          return !__builtin_mul_overflow(negative ? -field.digits : field.digits,
-                                         kIntegerPowers[static_cast<std::size_t>(shift)],
-                                         &to.stamps[row]);
-        const Slow<std::int64_t> slow = read_stamp_slowly(begin, end, to.stamp_digits);
-        to.stamps[row] = slow.value;
-        return slow.good;
-      });
+      column, first, last,
+      [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field)
+          LIBCHAR_AVX2_INLINE {
+            const int shift = to.stamp_digits - static_cast<int>(field.behind);
+            if (__builtin_expect(field.regular && shift >= 0, 1))
+              return !__builtin_mul_overflow(negative ? -field.digits : field.digits,
+                                             kIntegerPowers[static_cast<std::size_t>(shift)], &to.stamps[row]);
+            const Slow<std::int64_t> slow = read_stamp_slowly(begin, end, to.stamp_digits);
+            to.stamps[row] = slow.value;
+            return slow.good;
+          });
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t check_fields(const Column& column,
-                                                       std::size_t first,
-                                                       std::size_t last) {
-  return take_column(
-      column,
-      first,
-      last,
-      [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field)
-          LIBCHAR_AVX2_INLINE { return field.regular || read_value_slowly(begin, end).good; });
+__attribute__((LIBCHAR_AVX2)) std::size_t check_fields(const Column& column, std::size_t first, std::size_t last) {
+  return take_column(column, first, last,
+                     [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field)
+                         LIBCHAR_AVX2_INLINE { return field.regular || read_value_slowly(begin, end).good; });
 }
 
-constexpr std::size_t kBatch =
-    128;  // rows read column by column while their text is in the first-level cache
+constexpr std::size_t kBatch = 128;  // rows read column by column while their text is in the first-level cache
 
-__attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
-                                               char delimiter,
-                                               bool crlf,
-                                               std::span<const VectorColumn> columns,
-                                               std::size_t max_rows,
+__attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text, char delimiter, bool crlf,
+                                               std::span<const VectorColumn> columns, std::size_t max_rows,
                                                std::vector<std::uint32_t>& scratch) {
   const std::size_t width = columns.size();
-  const std::size_t rows =
-      std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
+  const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
   std::size_t good = 0;
   std::vector<char> fractional(width, 0);  // before the batch
   for (std::size_t first = 0; first < rows; first = good) {
@@ -245,8 +203,7 @@ __attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
     for (std::size_t c = 0; c < width; ++c) {
       if (columns[c].use != VectorColumn::Use::value) continue;
       if (columns[c].fractional != nullptr) *columns[c].fractional = fractional[c];
-      take_values(
-          Column{text.data(), scratch.data(), width, c, delimiter, crlf}, first, good, columns[c]);
+      take_values(Column{text.data(), scratch.data(), width, c, delimiter, crlf}, first, good, columns[c]);
     }
     break;
   }
@@ -255,23 +212,15 @@ __attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text,
 
 }  // namespace
 
-VectorRows parse_vector_rows(std::string_view text,
-                             char delimiter,
-                             bool crlf,
-                             std::span<const VectorColumn> columns,
-                             std::size_t max_rows,
-                             std::vector<std::uint32_t>& scratch) {
+VectorRows parse_vector_rows(std::string_view text, char delimiter, bool crlf, std::span<const VectorColumn> columns,
+                             std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
   if (detail::instructions() < detail::Instructions::avx2 || columns.empty()) return {};
   return parse(text, delimiter, crlf, columns, max_rows, scratch);
 }
 
 #else
 
-VectorRows parse_vector_rows(std::string_view,
-                             char,
-                             bool,
-                             std::span<const VectorColumn>,
-                             std::size_t,
+VectorRows parse_vector_rows(std::string_view, char, bool, std::span<const VectorColumn>, std::size_t,
                              std::vector<std::uint32_t>&) {
   return {};
 }

@@ -14,9 +14,9 @@ struct VectorColumn {
   enum class Use { skip, value, stamp } use = Use::skip;
   double* values = nullptr;        ///< Use::value: destination of row 0
   std::int64_t* stamps = nullptr;  ///< Use::stamp: destination of row 0
-  char* fractional = nullptr;  ///< Use::value: set when some value was not written as an integer
-  int stamp_digits = 9;  ///< Use::stamp: decimal digits between the stamp's unit and nanoseconds (9
-                         ///< s, 6 ms, 3 us, 0 ns)
+  char* fractional = nullptr;      ///< Use::value: set when some value was not written as an integer
+  int stamp_digits = 9;            ///< Use::stamp: decimal digits between the stamp's unit and nanoseconds (9
+                                   ///< s, 6 ms, 3 us, 0 ns)
 };
 
 struct VectorRows {
@@ -31,11 +31,7 @@ inline constexpr std::size_t kVectorPadding = 64;  ///< readable bytes that must
 /// empty field, a quote, a word, a value that does not fit, another line end than `crlf` says.
 /// Looks at no more text than `max_rows` need. Numbers are rounded correctly, the same bits as
 /// std::from_chars. `scratch` is reused between calls. On a processor without AVX2 no row is taken.
-VectorRows parse_vector_rows(std::string_view text,
-                             char delimiter,
-                             bool crlf,
-                             std::span<const VectorColumn> columns,
-                             std::size_t max_rows,
-                             std::vector<std::uint32_t>& scratch);
+VectorRows parse_vector_rows(std::string_view text, char delimiter, bool crlf, std::span<const VectorColumn> columns,
+                             std::size_t max_rows, std::vector<std::uint32_t>& scratch);
 
 }  // namespace libchar

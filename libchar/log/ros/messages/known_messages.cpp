@@ -432,8 +432,7 @@ const std::vector<MessageType>& known_types() {
 KnownMember known_member(std::string_view type, std::string_view member) {
   KnownMember known;
   known.usual = !member.ends_with("covariance") && !member.ends_with("covariance_type") &&
-                !(member == "variance" && type.starts_with("sensor_msgs/")) &&
-                type != "std_msgs/MultiArrayLayout" &&
+                !(member == "variance" && type.starts_with("sensor_msgs/")) && type != "std_msgs/MultiArrayLayout" &&
                 std::find(kBeside.begin(), kBeside.end(), member) == kBeside.end();
   for (const MemberUnit& row : kUnits)
     if (row.type == type && row.member == member) known.unit = row.unit;
@@ -441,8 +440,8 @@ KnownMember known_member(std::string_view type, std::string_view member) {
 }
 
 bool sensor_type(std::string_view type) {
-  return (type.starts_with("sensor_msgs/") || type.starts_with("px4_msgs/Sensor")) &&
-         no_numbers_of(type).empty() && type != "sensor_msgs/Joy";
+  return (type.starts_with("sensor_msgs/") || type.starts_with("px4_msgs/Sensor")) && no_numbers_of(type).empty() &&
+         type != "sensor_msgs/Joy";
 }
 
 std::string_view no_numbers_of(std::string_view type) {
@@ -473,8 +472,8 @@ void complete_types(MessageTypes& types) {
     wanted.pop_back();
     if (types.contains(name)) continue;
     const auto& known = known_types();
-    const auto found = std::find_if(
-        known.begin(), known.end(), [&](const MessageType& one) { return one.name == name; });
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const MessageType& one) { return one.name == name; });
     if (found == known.end()) continue;
     types.emplace(name, *found);
     for (const MessageField& field : found->fields)

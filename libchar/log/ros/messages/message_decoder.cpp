@@ -46,9 +46,7 @@ class NumberSax final : public Sax {
   }
   bool end_object() override { return leave(); }
   bool end_array() override { return leave(); }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
-    return false;
-  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
  private:
   struct Level {
@@ -110,8 +108,7 @@ class JsonDecoder final : public MessageDecoder {
         return;
       }
       const std::size_t dot = std::min(name.find_first_of(".["), name.size());
-      const KnownMember known =
-          known_member(plain_type_name(format.type), std::string_view(name).substr(0, dot));
+      const KnownMember known = known_member(plain_type_name(format.type), std::string_view(name).substr(0, dot));
       fields_.push_back({name, known.unit, Primitive::f64, known.usual});
     });
     if (oversized_) drop_long_arrays(lengths);
@@ -133,9 +130,7 @@ class JsonDecoder final : public MessageDecoder {
     if (stamp == stamp_ && stamp_nanoseconds_) nanoseconds_ = fields_[*stamp_nanoseconds_].name;
   }
 
-  Decoded decode(std::span<const std::byte> message,
-                 std::span<double> row,
-                 std::int64_t& stamp,
+  Decoded decode(std::span<const std::byte> message, std::span<double> row, std::int64_t& stamp,
                  std::uint64_t&) override {
     std::fill(row.begin(), row.end(), kMissing);
     double seconds = kMissing, nanoseconds = 0;
@@ -226,8 +221,7 @@ class CompiledDecoder final : public MessageDecoder {
 
   void select(const std::vector<std::size_t>& fields, std::optional<std::size_t> stamp) override {
     options_.slots.assign(compiled_.fields.size(), kNoSlot);
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      options_.slots[fields[i]] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < fields.size(); ++i) options_.slots[fields[i]] = static_cast<std::uint32_t>(i);
     copy_ = kNoSlot;
     if (stamp) {
       // A field may be both a channel and the time: the channel is then made of the stamp.
@@ -238,9 +232,7 @@ class CompiledDecoder final : public MessageDecoder {
     options_.slots.clear();
   }
 
-  Decoded decode(std::span<const std::byte> message,
-                 std::span<double> row,
-                 std::int64_t& stamp,
+  Decoded decode(std::span<const std::byte> message, std::span<double> row, std::int64_t& stamp,
                  std::uint64_t& rounded) override {
     const Decoded result = run_program(program_, message, row, stamp, rounded);
     if (copy_ != kNoSlot) row[copy_] = static_cast<double>(stamp) * 1e-9;
@@ -258,13 +250,10 @@ class CompiledDecoder final : public MessageDecoder {
 };
 
 // A fixed number of bytes can tell versions of a type from each other.
-DecoderOrReason decoder_of_versions(const std::vector<MessageTypes>& versions,
-                                    const MessageFormat& format,
-                                    Wire wire) {
+DecoderOrReason decoder_of_versions(const std::vector<MessageTypes>& versions, const MessageFormat& format, Wire wire) {
   DecoderOrReason result;
   for (const MessageTypes& types : versions) {
-    auto decoder = std::make_unique<CompiledDecoder>(
-        types, plain_type_name(format.type), wire, format.example);
+    auto decoder = std::make_unique<CompiledDecoder>(types, plain_type_name(format.type), wire, format.example);
     if (!decoder->problem().empty()) {
       result.why_not = decoder->problem();
     } else if (!decoder->fits()) {
@@ -282,12 +271,10 @@ DecoderOrReason decoder_of_versions(const std::vector<MessageTypes>& versions,
 
 DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
   const bool ros1 = wire == Wire::ros1;
-  const bool readable =
-      ros1 ? format.definition_encoding == "ros1msg" : format.definition_encoding == "ros2msg";
+  const bool readable = ros1 ? format.definition_encoding == "ros1msg" : format.definition_encoding == "ros2msg";
   const bool said = !format.definition_encoding.empty() && !format.definition.empty();
   if (said && !readable)
-    return {nullptr,
-            fmt::format("its definition is in {}", printable(format.definition_encoding, 40))};
+    return {nullptr, fmt::format("its definition is in {}", printable(format.definition_encoding, 40))};
   if (said) {
     MessageTypes types;
     std::string problem = add_message_types(format.type, format.definition, ros1, types);
@@ -295,8 +282,7 @@ DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
     complete_types(types);
     return decoder_of_versions({types}, format, wire);
   }
-  const auto versions =
-      ros1 ? std::vector<MessageTypes>{} : known_definitions(plain_type_name(format.type));
+  const auto versions = ros1 ? std::vector<MessageTypes>{} : known_definitions(plain_type_name(format.type));
   if (versions.empty()) return {nullptr, "the log has no definition of this type"};
   return decoder_of_versions(versions, format, wire);
 }
@@ -304,8 +290,7 @@ DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
 }  // namespace
 
 DecoderOrReason make_decoder(const MessageFormat& format) {
-  if (const auto why = no_numbers_of(plain_type_name(format.type)); !why.empty())
-    return {nullptr, std::string(why)};
+  if (const auto why = no_numbers_of(plain_type_name(format.type)); !why.empty()) return {nullptr, std::string(why)};
   if (format.message_encoding == "json") return json_decoder(format);
   if (format.message_encoding == "ros1") return compiled_decoder(format, Wire::ros1);
   if (format.message_encoding != "cdr")

@@ -24,9 +24,7 @@ class MessageDecoder {
   /// What `decode` is to do: slot i of a row is fields[i]; `stamp` is taken as one.
   virtual void select(const std::vector<std::size_t>& fields, std::optional<std::size_t> stamp) = 0;
   /// One message; `rounded` counts integers that no double holds.
-  virtual Decoded decode(std::span<const std::byte> message,
-                         std::span<double> row,
-                         std::int64_t& stamp,
+  virtual Decoded decode(std::span<const std::byte> message, std::span<double> row, std::int64_t& stamp,
                          std::uint64_t& rounded) = 0;
 };
 

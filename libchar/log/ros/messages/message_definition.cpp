@@ -20,21 +20,15 @@ struct PrimitiveName {
   Primitive kind;
 };
 
-constexpr std::array kPrimitives = {PrimitiveName{"bool", Primitive::boolean},
-                                    PrimitiveName{"byte", Primitive::u8},
-                                    PrimitiveName{"char", Primitive::u8},
-                                    PrimitiveName{"int8", Primitive::i8},
-                                    PrimitiveName{"uint8", Primitive::u8},
-                                    PrimitiveName{"int16", Primitive::i16},
-                                    PrimitiveName{"uint16", Primitive::u16},
-                                    PrimitiveName{"int32", Primitive::i32},
-                                    PrimitiveName{"uint32", Primitive::u32},
-                                    PrimitiveName{"int64", Primitive::i64},
-                                    PrimitiveName{"uint64", Primitive::u64},
-                                    PrimitiveName{"float32", Primitive::f32},
-                                    PrimitiveName{"float64", Primitive::f64},
-                                    PrimitiveName{"string", Primitive::text},
-                                    PrimitiveName{"wstring", Primitive::wide_text}};
+constexpr std::array kPrimitives = {
+    PrimitiveName{"bool", Primitive::boolean},     PrimitiveName{"byte", Primitive::u8},
+    PrimitiveName{"char", Primitive::u8},          PrimitiveName{"int8", Primitive::i8},
+    PrimitiveName{"uint8", Primitive::u8},         PrimitiveName{"int16", Primitive::i16},
+    PrimitiveName{"uint16", Primitive::u16},       PrimitiveName{"int32", Primitive::i32},
+    PrimitiveName{"uint32", Primitive::u32},       PrimitiveName{"int64", Primitive::i64},
+    PrimitiveName{"uint64", Primitive::u64},       PrimitiveName{"float32", Primitive::f32},
+    PrimitiveName{"float64", Primitive::f64},      PrimitiveName{"string", Primitive::text},
+    PrimitiveName{"wstring", Primitive::wide_text}};
 
 bool name_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -48,10 +42,8 @@ bool read_repeat(std::string_view brackets, MessageField& field) {
     return true;
   }
   field.repeat = Repeat::fixed;
-  const auto [end, code] =
-      std::from_chars(inside.data(), inside.data() + inside.size(), field.count);
-  return code == std::errc() && end == inside.data() + inside.size() &&
-         field.count <= kLongestArray;
+  const auto [end, code] = std::from_chars(inside.data(), inside.data() + inside.size(), field.count);
+  return code == std::errc() && end == inside.data() + inside.size() && field.count <= kLongestArray;
 }
 
 // The type of a field without brackets and bounds.
@@ -68,8 +60,7 @@ void read_type(std::string_view word, std::string_view package, bool ros1, Messa
   field.type = word == "Header"                           ? "std_msgs/Header"
                : word.find('/') == std::string_view::npos ? fmt::format("{}/{}", package, word)
                                                           : plain_type_name(word);
-  const bool stamp =
-      field.type == "builtin_interfaces/Time" || field.type == "builtin_interfaces/Duration";
+  const bool stamp = field.type == "builtin_interfaces/Time" || field.type == "builtin_interfaces/Duration";
   field.kind = stamp ? Primitive::time : Primitive::message;
 }
 
@@ -99,13 +90,10 @@ bool read_line(std::string_view line, std::string_view package, bool ros1, Messa
   return true;
 }
 
-std::string_view package_of(std::string_view type) {
-  return type.substr(0, type.find('/'));
-}
+std::string_view package_of(std::string_view type) { return type.substr(0, type.find('/')); }
 
 bool parting_line(std::string_view line) {
-  return line.size() >= 20 &&
-         std::all_of(line.begin(), line.end(), [](char c) { return c == '='; });
+  return line.size() >= 20 && std::all_of(line.begin(), line.end(), [](char c) { return c == '='; });
 }
 
 }  // namespace
@@ -116,10 +104,7 @@ std::string plain_type_name(std::string_view type) {
   return fmt::format("{}/{}", type.substr(0, first), type.substr(last + 1));
 }
 
-std::string add_message_types(std::string_view type,
-                              std::string_view text,
-                              bool ros1,
-                              MessageTypes& types) {
+std::string add_message_types(std::string_view type, std::string_view text, bool ros1, MessageTypes& types) {
   std::vector<MessageType> found(1);
   found.back().name = plain_type_name(type);
   std::size_t fields = 0;
@@ -141,8 +126,7 @@ std::string add_message_types(std::string_view type,
     }
     if (!read_line(line, package_of(found.back().name), ros1, found.back()))
       return fmt::format("its definition cannot be read (\"{}\")", printable(line, 40));
-    if (++fields > kMostFields)
-      return fmt::format("a definition of more than {} lines", kMostFields);
+    if (++fields > kMostFields) return fmt::format("a definition of more than {} lines", kMostFields);
   }
   for (MessageType& one : found) {
     std::string name = one.name;

@@ -57,9 +57,6 @@ std::string plain_type_name(std::string_view type);
 /// Adds `type` and the types behind it in `text` to `types`; those that are there already stay.
 /// Returns what is wrong with the text, "" when nothing is. `ros1`: time and duration are those of
 /// ROS 1.
-std::string add_message_types(std::string_view type,
-                              std::string_view text,
-                              bool ros1,
-                              MessageTypes& types);
+std::string add_message_types(std::string_view type, std::string_view text, bool ros1, MessageTypes& types);
 
 }  // namespace libchar

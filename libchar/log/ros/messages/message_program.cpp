@@ -47,12 +47,9 @@ std::uint64_t padding(std::uint64_t position, std::uint64_t alignment) {
 
 template <typename T>
 T load(const std::byte* from, bool swap) {
-  using Bits = std::conditional_t<
-      sizeof(T) == 1,
-      std::uint8_t,
-      std::conditional_t<sizeof(T) == 2,
-                         std::uint16_t,
-                         std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
+  using Bits = std::conditional_t<sizeof(T) == 1, std::uint8_t,
+                                  std::conditional_t<sizeof(T) == 2, std::uint16_t,
+                                                     std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
   Bits bits = 0;
   std::memcpy(&bits, from, sizeof bits);
   if (swap) {
@@ -70,8 +67,7 @@ std::int64_t saturated(std::int64_t seconds, std::int64_t nanoseconds) {
 }
 
 std::int64_t load_time(const std::byte* from, Primitive kind, bool swap) {
-  if (kind == Primitive::time1)
-    return saturated(load<std::uint32_t>(from, swap), load<std::uint32_t>(from + 4, swap));
+  if (kind == Primitive::time1) return saturated(load<std::uint32_t>(from, swap), load<std::uint32_t>(from + 4, swap));
   if (kind == Primitive::duration1)
     return saturated(load<std::int32_t>(from, swap), load<std::int32_t>(from + 4, swap));
   return saturated(load<std::int32_t>(from, swap), load<std::uint32_t>(from + 4, swap));
@@ -80,8 +76,7 @@ std::int64_t load_time(const std::byte* from, Primitive kind, bool swap) {
 // Microseconds of a stamp that is a plain number (px4_msgs).
 std::int64_t stamp_of_number(const std::byte* from, bool swap) {
   const auto us = load<std::uint64_t>(from, swap);
-  return us < std::uint64_t{1} << 53U ? static_cast<std::int64_t>(us) * 1000
-                                      : std::numeric_limits<std::int64_t>::max();
+  return us < std::uint64_t{1} << 53U ? static_cast<std::int64_t>(us) * 1000 : std::numeric_limits<std::int64_t>::max();
 }
 
 struct Walk {
@@ -119,14 +114,12 @@ double load_number(const std::byte* from, Primitive kind, const Walk& walk) {
     case Primitive::i64: {
       const auto whole = load<std::int64_t>(from, swap);
       const auto value = static_cast<double>(whole);
-      return count_rounded(
-          value, value < 0x1p63 && static_cast<std::int64_t>(value) == whole, walk.rounded);
+      return count_rounded(value, value < 0x1p63 && static_cast<std::int64_t>(value) == whole, walk.rounded);
     }
     case Primitive::u64: {
       const auto whole = load<std::uint64_t>(from, swap);
       const auto value = static_cast<double>(whole);
-      return count_rounded(
-          value, value < 0x1p64 && static_cast<std::uint64_t>(value) == whole, walk.rounded);
+      return count_rounded(value, value < 0x1p64 && static_cast<std::uint64_t>(value) == whole, walk.rounded);
     }
     case Primitive::f32:
       return load<float>(from, swap);
@@ -142,8 +135,7 @@ double load_number(const std::byte* from, Primitive kind, const Walk& walk) {
 
 void take(const std::byte* from, Primitive kind, std::uint32_t slot, Walk& walk) {
   if (slot == kStampSlot)
-    *walk.stamp = kind == Primitive::u64 ? stamp_of_number(from, walk.swap)
-                                         : load_time(from, kind, walk.swap);
+    *walk.stamp = kind == Primitive::u64 ? stamp_of_number(from, walk.swap) : load_time(from, kind, walk.swap);
   else
     walk.row[slot] = load_number(from, kind, walk);
 }
@@ -181,22 +173,18 @@ bool walk_numbers(const ProgramStep& step, Wire wire, std::uint64_t count, Walk&
   if ((walk.size - walk.at) / size < count) return false;
   const std::size_t listed = std::min(detail::in_memory(count), step.slots.size());
   for (std::size_t i = 0; i < listed; ++i)
-    if (step.slots[i] != kNoSlot)
-      take(walk.data + walk.at + i * size, step.number, step.slots[i], walk);
+    if (step.slots[i] != kNoSlot) take(walk.data + walk.at + i * size, step.number, step.slots[i], walk);
   walk.at += count * size;
   return true;
 }
 
 bool walk_messages(const ProgramStep& step, std::uint64_t count, Walk& walk) {
-  if (step.counted && count != step.elements.size() && !step.elements.empty())
-    walk.other_length = true;
+  if (step.counted && count != step.elements.size() && !step.elements.empty()) walk.other_length = true;
   if (step.rest.empty()) return true;
   // Every element has a byte at least, so that no count keeps this loop going beyond the message.
   if (walk.size - walk.at < count) return false;
   for (std::uint64_t i = 0; i < count; ++i)
-    if (!walk_steps(
-            i < step.elements.size() ? step.elements[detail::in_memory(i)] : step.rest.front(),
-            walk))
+    if (!walk_steps(i < step.elements.size() ? step.elements[detail::in_memory(i)] : step.rest.front(), walk))
       return false;
   return true;
 }
@@ -218,10 +206,9 @@ bool walk_steps(const MessageProgram& program, Walk& walk) {
     }
     std::uint64_t count = step.count;
     if (step.counted && !read_count(program.wire, walk, count)) return false;
-    const bool well = step.kind == ProgramStep::Kind::texts ? walk_texts(program.wire, count, walk)
-                      : step.kind == ProgramStep::Kind::numbers
-                          ? walk_numbers(step, program.wire, count, walk)
-                          : walk_messages(step, count, walk);
+    const bool well = step.kind == ProgramStep::Kind::texts     ? walk_texts(program.wire, count, walk)
+                      : step.kind == ProgramStep::Kind::numbers ? walk_numbers(step, program.wire, count, walk)
+                                                                : walk_messages(step, count, walk);
     if (!well) return false;
   }
   return true;
@@ -236,8 +223,7 @@ struct Piece {
 
 class Compiler {
  public:
-  Compiler(const MessageTypes& types, const CompileOptions& options)
-      : types_(types), options_(options) {
+  Compiler(const MessageTypes& types, const CompileOptions& options) : types_(types), options_(options) {
     walk_.data = options.example.data();
     walk_.size = options.example.size();
     if (options.wire != Wire::ros1 && walk_.size >= 4) {
@@ -288,8 +274,7 @@ class Compiler {
     if (found == nullptr) return fail(fmt::format("the definition of {} is missing", type));
     if (place.depth > kDeepest) return fail(fmt::format("{} is nested too deep", type));
     // An empty type has one byte in CDR.
-    if (found->fields.empty() && options_.wire != Wire::ros1)
-      add_piece({Primitive::u8, 1, kNoSlot}, draft);
+    if (found->fields.empty() && options_.wire != Wire::ros1) add_piece({Primitive::u8, 1, kNoSlot}, draft);
     for (const MessageField& field : found->fields) {
       if (!problem_.empty()) return;
       if (++nodes_ > kMostNodes) return fail("its definition is too large");
@@ -302,10 +287,7 @@ class Compiler {
     return found != types_.end() ? &found->second : nullptr;
   }
 
-  void add_field(const std::string& type,
-                 const MessageField& field,
-                 const Place& around,
-                 Draft& draft) {
+  void add_field(const std::string& type, const MessageField& field, const Place& around, Draft& draft) {
     Place place = around;
     place.prefix += (around.prefix.empty() ? "" : ".") + field.name;
     const KnownMember known = known_member(type, field.name);
@@ -347,10 +329,7 @@ class Compiler {
     return false;
   }
 
-  void add_numbers(const std::string& type,
-                   const MessageField& field,
-                   const Place& place,
-                   Draft& draft) {
+  void add_numbers(const std::string& type, const MessageField& field, const Place& place, Draft& draft) {
     if (field.repeat != Repeat::variable) {
       const bool listed = place.listed && room_for(field.count);
       Piece piece{field.kind, field.count, listed ? fields_.size() : kNoSlot};
@@ -370,8 +349,7 @@ class Compiler {
       for (std::size_t i = 0; i < count; ++i) step.slots.push_back(slot(first + i));
     }
     draft.program.least_bytes += 4;
-    const bool wanted = std::any_of(
-        step.slots.begin(), step.slots.end(), [](std::uint32_t s) { return s != kNoSlot; });
+    const bool wanted = std::any_of(step.slots.begin(), step.slots.end(), [](std::uint32_t s) { return s != kNoSlot; });
     if (!wanted) step.slots.clear();
     draft.program.wanted |= wanted;
     draft.program.lists |= wanted;
@@ -387,12 +365,11 @@ class Compiler {
   }
 
   void list_fields(const MessageField& field, const Place& place, std::uint64_t count) {
-    const bool seconds = field.kind == Primitive::time || field.kind == Primitive::time1 ||
-                         field.kind == Primitive::duration1;
+    const bool seconds =
+        field.kind == Primitive::time || field.kind == Primitive::time1 || field.kind == Primitive::duration1;
     for (std::uint64_t i = 0; i < count; ++i) {
       NumberField number;
-      number.name =
-          field.repeat == Repeat::once ? place.prefix : fmt::format("{}[{}]", place.prefix, i);
+      number.name = field.repeat == Repeat::once ? place.prefix : fmt::format("{}[{}]", place.prefix, i);
       number.unit = seconds ? "s" : place.unit;
       number.kind = field.kind;
       number.usual = place.usual;
@@ -403,8 +380,7 @@ class Compiler {
   bool is_stamp(const std::string& type, const MessageField& field, const Place& place) const {
     if (stamp_ != kNoSlot || field.repeat != Repeat::once) return false;
     const bool time = field.kind == Primitive::time || field.kind == Primitive::time1;
-    if (time && field.name == "stamp")
-      return (place.depth == 2 && type == "std_msgs/Header") || place.depth == 1;
+    if (time && field.name == "stamp") return (place.depth == 2 && type == "std_msgs/Header") || place.depth == 1;
     return place.depth == 1 && field.kind == Primitive::u64 && field.name == "timestamp" &&
            type.starts_with("px4_msgs/");
   }
@@ -442,22 +418,16 @@ class Compiler {
     }
     add_elements(field, place, count, step);
     draft.program.least_bytes += step.counted ? 4 : step.rest.empty() ? 0 : 1;
-    const auto any = [&](auto what) {
-      return std::any_of(step.elements.begin(), step.elements.end(), what);
-    };
+    const auto any = [&](auto what) { return std::any_of(step.elements.begin(), step.elements.end(), what); };
     const bool wanted = any([](const MessageProgram& p) { return p.wanted; });
-    draft.program.lists |=
-        (wanted && step.counted) || any([](const MessageProgram& p) { return p.lists; });
+    draft.program.lists |= (wanted && step.counted) || any([](const MessageProgram& p) { return p.lists; });
     draft.program.wanted |= wanted;
     if (!wanted) step.elements.clear();
     draft.program.steps.push_back(std::move(step));
   }
 
   // Programs of the first elements, each with fields of its own, and the example up to the end of the last.
-  void add_elements(const MessageField& field,
-                    const Place& place,
-                    std::uint64_t count,
-                    ProgramStep& step) {
+  void add_elements(const MessageField& field, const Place& place, std::uint64_t count, ProgramStep& step) {
     if (step.rest.empty()) return;
     const bool listed = place.listed && room_for(count) && (!step.counted || has_example_);
     for (std::uint64_t i = 0; listed && i < count && problem_.empty(); ++i) {
@@ -475,8 +445,7 @@ class Compiler {
     if (piece.count == 0) return;
     draft.open.push_back(piece);
     const std::uint64_t size = size_of_primitive(piece.kind);
-    draft.program.least_bytes =
-        std::min<std::uint64_t>(draft.program.least_bytes + size * piece.count, kHuge);
+    draft.program.least_bytes = std::min<std::uint64_t>(draft.program.least_bytes + size * piece.count, kHuge);
   }
 
   // Lays the open stretch out for every position that it may begin at.
@@ -542,17 +511,12 @@ Encapsulation read_encapsulation(std::span<const std::byte> message) {
   return result;
 }
 
-CompiledMessage compile_message(const MessageTypes& types,
-                                std::string_view type,
-                                const CompileOptions& options) {
+CompiledMessage compile_message(const MessageTypes& types, std::string_view type, const CompileOptions& options) {
   return Compiler(types, options).compile(type);
 }
 
-Decoded run_program(const MessageProgram& program,
-                    std::span<const std::byte> message,
-                    std::span<double> row,
-                    std::int64_t& stamp,
-                    std::uint64_t& rounded) {
+Decoded run_program(const MessageProgram& program, std::span<const std::byte> message, std::span<double> row,
+                    std::int64_t& stamp, std::uint64_t& rounded) {
   Walk walk;
   walk.data = message.data();
   walk.size = message.size();

@@ -41,7 +41,7 @@ struct MessageProgram {
   std::vector<ProgramStep> steps;
   std::uint64_t least_bytes = 0;  ///< of a message, without what aligns it
   bool wanted = false;            ///< some number is taken
-  bool lists = false;  ///< some of them out of arrays of variable length, which may be shorter
+  bool lists = false;             ///< some of them out of arrays of variable length, which may be shorter
 };
 
 /// One number to take: its distance from the beginning of its stretch.
@@ -59,12 +59,11 @@ struct FixedStretch {
 struct ProgramStep {
   enum class Kind : std::uint8_t { stretch, texts, numbers, messages };
   Kind kind = Kind::stretch;
-  bool counted = false;     ///< a count stands in front (variable arrays)
-  std::uint64_t count = 1;  ///< where none does
-  std::array<FixedStretch, 8>
-      stretch;  ///< by the position in front, modulo 8; of ROS 1 the first only
-  Primitive number = Primitive::f64;  ///< of `numbers`
-  std::vector<std::uint32_t> slots;   ///< of the first elements of `numbers`; kNoSlot = not wanted
+  bool counted = false;                  ///< a count stands in front (variable arrays)
+  std::uint64_t count = 1;               ///< where none does
+  std::array<FixedStretch, 8> stretch;   ///< by the position in front, modulo 8; of ROS 1 the first only
+  Primitive number = Primitive::f64;     ///< of `numbers`
+  std::vector<std::uint32_t> slots;      ///< of the first elements of `numbers`; kNoSlot = not wanted
   std::vector<MessageProgram> elements;  ///< of the first elements of `messages`
   std::vector<MessageProgram> rest;      ///< of all others: one, or none for what has no bytes
 };
@@ -82,15 +81,12 @@ struct CompiledMessage {
 
 struct CompileOptions {
   Wire wire = Wire::cdr;
-  std::vector<std::uint32_t> slots;  ///< by field; those behind its end are not wanted
-  std::span<const std::byte>
-      example;  ///< a message of the type, for the lengths of variable arrays; may be empty
+  std::vector<std::uint32_t> slots;    ///< by field; those behind its end are not wanted
+  std::span<const std::byte> example;  ///< a message of the type, for the lengths of variable arrays; may be empty
 };
 
 /// Compiles `type` of `types`. Arrays of up to kListedElements have fields; variable ones as many as in the example.
-CompiledMessage compile_message(const MessageTypes& types,
-                                std::string_view type,
-                                const CompileOptions& options);
+CompiledMessage compile_message(const MessageTypes& types, std::string_view type, const CompileOptions& options);
 
 inline constexpr std::size_t kListedElements = 64;
 inline constexpr std::size_t kMostNumbers = 4096;  // of a topic
@@ -101,10 +97,7 @@ enum class Decoded : std::uint8_t { well, misfit, other_length };
 /// Takes the numbers of `message` into `row` by their slots (NaN where an array is shorter), the
 /// stamp into `stamp` in ns. misfit: the bytes are not those of the type. other_length: they are,
 /// but an array is longer or shorter than in the example.
-Decoded run_program(const MessageProgram& program,
-                    std::span<const std::byte> message,
-                    std::span<double> row,
-                    std::int64_t& stamp,
-                    std::uint64_t& rounded);
+Decoded run_program(const MessageProgram& program, std::span<const std::byte> message, std::span<double> row,
+                    std::int64_t& stamp, std::uint64_t& rounded);
 
 }  // namespace libchar

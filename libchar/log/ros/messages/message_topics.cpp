@@ -13,14 +13,10 @@
 namespace libchar {
 namespace {
 
-bool whole_number(Primitive kind) {
-  return kind <= Primitive::u64;
-}
+bool whole_number(Primitive kind) { return kind <= Primitive::u64; }
 
 // Fields whose covariance begins with -1 are not measured, says sensor_msgs.
-bool not_measured(const MessageDecoder& decoder,
-                  const std::vector<double>& example,
-                  std::size_t i) {
+bool not_measured(const MessageDecoder& decoder, const std::vector<double>& example, std::size_t i) {
   const std::string& name = decoder.fields()[i].name;
   const std::string front = name.substr(0, name.find('.')) + "_covariance[0]";
   for (std::size_t k = 0; k < decoder.fields().size(); ++k)
@@ -38,9 +34,7 @@ std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic) {
     if (known.name != topic.name && known.name != other_name) continue;
     taken = true;
     const MessageFormat &a = known.format, &b = topic.format;
-    if (a.type != b.type || a.message_encoding != b.message_encoding ||
-        a.definition != b.definition)
-      continue;
+    if (a.type != b.type || a.message_encoding != b.message_encoding || a.definition != b.definition) continue;
     if (topic.rows > 0) {
       known.first_ns = known.rows == 0 ? topic.first_ns : std::min(known.first_ns, topic.first_ns);
       known.last_ns = known.rows == 0 ? topic.last_ns : std::max(known.last_ns, topic.last_ns);
@@ -57,9 +51,7 @@ std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic) {
 MessageTopics::MessageTopics(std::string path, std::string time_source, bool publishes)
     : path_(std::move(path)), time_source_(std::move(time_source)), publishes_(publishes) {}
 
-std::string MessageTopics::place(const RawMessage& message) const {
-  return fmt::format("byte {}", message.at);
-}
+std::string MessageTopics::place(const RawMessage& message) const { return fmt::format("byte {}", message.at); }
 
 void MessageTopics::set_topics(std::vector<RawTopic> raw) {
   for (RawTopic& one : raw) add_topic(one);
@@ -70,16 +62,13 @@ void MessageTopics::add_topic(RawTopic& raw) {
   topic.name = raw.name;
   topic.type = raw.format.type;
   topic.rows = raw.rows;
-  const double seconds =
-      (static_cast<double>(raw.last_ns) - static_cast<double>(raw.first_ns)) * 1e-9;
+  const double seconds = (static_cast<double>(raw.last_ns) - static_cast<double>(raw.first_ns)) * 1e-9;
   topic.rate_hz = raw.rate_hz;
-  if (topic.rate_hz == 0 && raw.rows > 1 && seconds > 0)
-    topic.rate_hz = static_cast<double>(raw.rows - 1) / seconds;
+  if (topic.rate_hz == 0 && raw.rows > 1 && seconds > 0) topic.rate_hz = static_cast<double>(raw.rows - 1) / seconds;
   topic.sensor = sensor_type(plain_type_name(raw.format.type));
   Topic mine;
   const std::vector<std::byte> example = raw.format.example;
-  DecoderOrReason made =
-      raw.rows > 0 ? make_decoder(raw.format) : DecoderOrReason{nullptr, "no messages"};
+  DecoderOrReason made = raw.rows > 0 ? make_decoder(raw.format) : DecoderOrReason{nullptr, "no messages"};
   topic.why_not = made.why_not;
   mine.decoder = std::move(made.decoder);
   if (mine.decoder) {
@@ -90,22 +79,18 @@ void MessageTopics::add_topic(RawTopic& raw) {
     std::vector<std::size_t> all(fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) all[i] = i;
     mine.decoder->select(all, mine.decoder->stamp());
-    const bool seen =
-        !example.empty() && mine.decoder->decode(example, row, stamp, rounded) != Decoded::misfit;
+    const bool seen = !example.empty() && mine.decoder->decode(example, row, stamp, rounded) != Decoded::misfit;
     mine.stamped = mine.decoder->stamp() && (!seen || stamp != 0);
     for (std::size_t i = 0; i < fields.size(); ++i) {
       topic.fields.push_back({fields[i].name, fields[i].unit, whole_number(fields[i].kind)});
-      if (fields[i].usual && !(seen && not_measured(*mine.decoder, row, i)))
-        mine.usual.push_back(i);
+      if (fields[i].usual && !(seen && not_measured(*mine.decoder, row, i))) mine.usual.push_back(i);
     }
   }
   topics_.push_back(std::move(topic));
   decoders_.push_back(std::move(mine));
 }
 
-std::vector<std::size_t> MessageTopics::usual_fields(std::size_t topic) const {
-  return decoders_[topic].usual;
-}
+std::vector<std::size_t> MessageTopics::usual_fields(std::size_t topic) const { return decoders_[topic].usual; }
 
 void MessageTopics::refuse_source(std::size_t topic, std::string what) const {
   throw usage_error("E0440", path_)
@@ -137,9 +122,7 @@ std::string MessageTopics::stamps(std::size_t topic) const {
   return source == Source::log ? "log time" : "publish time";
 }
 
-void MessageTopics::select(std::size_t topic,
-                           const std::vector<std::size_t>& fields,
-                           std::optional<std::size_t> time,
+void MessageTopics::select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
                            StampUnit unit) {
   selected_ = true;
   topic_ = topic;
@@ -150,8 +133,7 @@ void MessageTopics::select(std::size_t topic,
   unit_ns_ = unit.ns;
   if (time && !time_field_) source_ = Source::header;
   if (!time && source_ == Source::log && time_source_ == "auto" && decoder.stamp())
-    early_.add("zero_stamp",
-               "stamps of messages that are 0: the time of recording is taken instead");
+    early_.add("zero_stamp", "stamps of messages that are 0: the time of recording is taken instead");
   std::vector<std::size_t> slots = fields;
   if (time_field_) slots.push_back(*time);
   row_.assign(slots.size(), kMissing);
@@ -167,9 +149,7 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
   std::uint64_t rounded = 0;
   const Decoded result = decoders_[topic_].decoder->decode(message.data, row_, stamp_, rounded);
   if (result == Decoded::misfit) {
-    warnings.add("unreadable_message",
-                 "messages that are not of their topic's type were left out",
-                 place(message));
+    warnings.add("unreadable_message", "messages that are not of their topic's type were left out", place(message));
     return false;
   }
   if (result == Decoded::other_length)
@@ -178,9 +158,7 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
                  "it are left out, those they lack are missing",
                  place(message));
   if (rounded > 0)
-    warnings.add("rounded_integer",
-                 "64-bit integers above 2^53 do not fit a double and were rounded",
-                 place(message),
+    warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded", place(message),
                  rounded);
   if (!time_field_) return true;
   const double ns = row_.back() * static_cast<double>(unit_ns_);

@@ -38,9 +38,7 @@ class MessageTopics : public TopicReader {
   const std::vector<LogTopic>& topics() const override { return topics_; }
   std::vector<std::size_t> usual_fields(std::size_t topic) const override;
   std::string stamps(std::size_t topic) const override;
-  void select(std::size_t topic,
-              const std::vector<std::size_t>& fields,
-              std::optional<std::size_t> time,
+  void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
               StampUnit unit) override;
   bool next(RowBlock& block, std::size_t most, Findings& warnings) override;
   /// What was found when topics were listed, unless rows were read, whose warnings say it too.

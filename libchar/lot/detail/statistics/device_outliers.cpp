@@ -22,9 +22,7 @@ struct DeviceMeans {
   double within = 0;  ///< mean square of a value about its device and channel
 };
 
-DeviceMeans device_means(std::span<const double> y,
-                         std::span<const double> v,
-                         std::size_t channels,
+DeviceMeans device_means(std::span<const double> y, std::span<const double> v, std::size_t channels,
                          const std::vector<bool>& out) {
   DeviceMeans m;
   const auto count = static_cast<double>(channels);
@@ -80,16 +78,14 @@ Outlier worst_device(const DeviceMeans& m, double channels) {
   for (std::size_t k = 0; k < weight.size(); ++k) {
     shared[k] = k == 0 ? 0 : kLow * std::pow(kHigh / kLow, static_cast<double>(k - 1) / 11);
     const double factor = 1 + channels * shared[k], s = others / factor + f_w * within;
-    weight[k] = std::log(k == 0 ? kNone : (1 - kNone) / 12) -
-                (f_b * std::log(factor) + f * std::log(s)) / 2;
+    weight[k] = std::log(k == 0 ? kNone : (1 - kNone) / 12) - (f_b * std::log(factor) + f * std::log(s)) / 2;
     most = std::max(most, weight[k]);
   }
   for (double& w : weight) sum += w = std::exp(w - most);
   double square = 0;
   for (std::size_t k = 0; k < weight.size(); ++k) {
     const double factor = 1 + channels * shared[k], s2 = (others / factor + f_w * within) / f;
-    const double variance =
-        s2 / channels * (scale(worst) + channels * shared[k] + factor / (devices - 1));
+    const double variance = s2 / channels * (scale(worst) + channels * shared[k] + factor / (devices - 1));
     p += weight[k] / sum * 2 * student_tail(std::abs(off) / std::sqrt(variance), f);
     square += weight[k] / sum * variance;
   }
@@ -98,18 +94,15 @@ Outlier worst_device(const DeviceMeans& m, double channels) {
 
 }  // namespace
 
-std::vector<Outlier> find_device_outliers(std::span<const double> value,
-                                          std::span<const double> variance,
-                                          std::size_t channels,
-                                          double probability) {
+std::vector<Outlier> find_device_outliers(std::span<const double> value, std::span<const double> variance,
+                                          std::size_t channels, double probability) {
   constexpr std::size_t kFew = 60;  // among more, nobody hides a second one
   const std::size_t devices = value.size() / channels;
   std::vector<bool> out(devices);
   std::vector<Outlier> found;
   std::size_t last = 0;
   while (devices - found.size() >= kFewestForOutliers && 3 * (found.size() + 1) <= devices) {
-    const Outlier worst =
-        worst_device(device_means(value, variance, channels, out), static_cast<double>(channels));
+    const Outlier worst = worst_device(device_means(value, variance, channels, out), static_cast<double>(channels));
     found.push_back(worst);
     out[worst.index] = true;
     if (worst.p < probability / 2)

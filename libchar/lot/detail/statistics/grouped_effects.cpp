@@ -42,10 +42,8 @@ GroupMeans means_at(const Groups& in, double square) {
 
 }  // namespace
 
-GroupedEffects grouped_effects(std::span<const double> value,
-                               std::span<const double> variance,
-                               std::span<const std::size_t> group,
-                               std::size_t groups) {
+GroupedEffects grouped_effects(std::span<const double> value, std::span<const double> variance,
+                               std::span<const std::size_t> group, std::size_t groups) {
   const Groups in{value, variance, group, groups};
   GroupedEffects out;
   std::vector<bool> filled(groups);
@@ -67,8 +65,7 @@ GroupedEffects grouped_effects(std::span<const double> value,
   }
   out.between = random_effects(means, variances);
   const double q = weighted(means, variances, 0).q;
-  out.p = dof < 1 ? out.between.p
-                  : fisher_tail(q / (full - 1) / std::max(1.0, at.q / dof), full - 1, dof);
+  out.p = dof < 1 ? out.between.p : fisher_tail(q / (full - 1) / std::max(1.0, at.q / dof), full - 1, dof);
   return out;
 }
 

@@ -16,8 +16,7 @@
 namespace libchar {
 
 struct GroupedEffects {
-  double within =
-      0;  ///< standard deviation of d, the same in all groups; NaN where no group has two values
+  double within = 0;  ///< standard deviation of d, the same in all groups; NaN where no group has two values
   Interval within_ci95;
   std::vector<double> mean,
       variance;           ///< of each group, the spread within counted; NaN for one without values
@@ -26,10 +25,8 @@ struct GroupedEffects {
 };
 
 /// `group` has one index below `groups` a value; `variance` > 0; two groups with values at least.
-GroupedEffects grouped_effects(std::span<const double> value,
-                               std::span<const double> variance,
-                               std::span<const std::size_t> group,
-                               std::size_t groups);
+GroupedEffects grouped_effects(std::span<const double> value, std::span<const double> variance,
+                               std::span<const std::size_t> group, std::size_t groups);
 
 // The spread within groups from Q(s²) = sum (y - fit)² / (v + s²), which is chi-square with `dof`
 // degrees of freedom at the true s² and falls as s² grows: Q(s²) = dof, and an interval by the
@@ -64,10 +61,8 @@ WithinSpread within_spread(Function&& q, double dof, std::span<const double> var
 
 /// The means over the channels held against those of the other devices, as find_outliers does with values; index: the
 /// device. `value` and `variance` device by device, `channels` of each, two at least.
-std::vector<Outlier> find_device_outliers(std::span<const double> value,
-                                          std::span<const double> variance,
-                                          std::size_t channels,
-                                          double probability);
+std::vector<Outlier> find_device_outliers(std::span<const double> value, std::span<const double> variance,
+                                          std::size_t channels, double probability);
 
 // Values in groups that lie on a straight line in each: recordings of devices at several
 // temperatures.
@@ -75,8 +70,7 @@ std::vector<Outlier> find_device_outliers(std::span<const double> value,
 // A group without a slope is one at x = 0 as it stands anywhere: y_i = a_g + d_i + e_i.
 
 struct GroupedLines {
-  double within =
-      0;  ///< standard deviation of d, the same in all groups; NaN without a degree of freedom
+  double within = 0;  ///< standard deviation of d, the same in all groups; NaN without a degree of freedom
   Interval within_ci95;
   double dof = 0;  ///< of the values about the lines, over all groups: `within` is known by as many
   /// Of each group, from v and `within` (from v alone where that is NaN); NaN for one without
@@ -90,10 +84,7 @@ struct GroupedLines {
 };
 
 /// `sloped`: of each group below `groups` whether it has a line; its x must differ. `variance` > 0.
-GroupedLines grouped_lines(std::span<const double> value,
-                           std::span<const double> variance,
-                           std::span<const double> x,
-                           std::span<const std::size_t> group,
-                           const std::vector<bool>& sloped);
+GroupedLines grouped_lines(std::span<const double> value, std::span<const double> variance, std::span<const double> x,
+                           std::span<const std::size_t> group, const std::vector<bool>& sloped);
 
 }  // namespace libchar

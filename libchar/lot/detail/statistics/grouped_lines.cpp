@@ -27,12 +27,8 @@ struct Lines {
 
 Lines lines_at(const LineValues& in, double square) {
   const std::size_t groups = in.sloped.size();
-  Lines out{std::vector<double>(groups),
-            std::vector<double>(groups),
-            std::vector<double>(groups),
-            std::vector<double>(groups),
-            std::vector<double>(groups),
-            0};
+  Lines out{std::vector<double>(groups), std::vector<double>(groups), std::vector<double>(groups),
+            std::vector<double>(groups), std::vector<double>(groups), 0};
   for (std::size_t i = 0; i < in.y.size(); ++i) {
     const std::size_t g = in.group[i];
     const double weight = 1 / (in.v[i] + square);
@@ -74,11 +70,8 @@ std::vector<double> slope_variances(const LineValues& in, double within) {
 
 }  // namespace
 
-GroupedLines grouped_lines(std::span<const double> value,
-                           std::span<const double> variance,
-                           std::span<const double> x,
-                           std::span<const std::size_t> group,
-                           const std::vector<bool>& sloped) {
+GroupedLines grouped_lines(std::span<const double> value, std::span<const double> variance, std::span<const double> x,
+                           std::span<const std::size_t> group, const std::vector<bool>& sloped) {
   const LineValues in{value, variance, x, group, sloped};
   const std::size_t groups = sloped.size();
   GroupedLines out;

@@ -38,10 +38,8 @@ struct ErrorModel {
   Eigen::Vector2d beneath{0, 0};      ///< e, f
   double excess = 0;
   double sd_at(double square) const {
-    const double by_information =
-        std::sqrt(variance[0] + square * (variance[1] + square * variance[2]));
-    return by_information *
-           std::sqrt(1 + excess * by_information / (square + 1.5 * by_information));
+    const double by_information = std::sqrt(variance[0] + square * (variance[1] + square * variance[2]));
+    return by_information * std::sqrt(1 + excess * by_information / (square + 1.5 * by_information));
   }
   double beneath_at(double square) const {
     return std::max(beneath[0] + beneath[1] * square, kLeastShare * sd_at(square) - square);
@@ -98,9 +96,7 @@ Eigen::Vector3d variance_line(const Eigen::ArrayXd& square, const Eigen::ArrayXd
 }
 
 /// What a chi-square of this skewness has beneath the square.
-Eigen::Vector2d beneath_line(const Eigen::ArrayXd& square,
-                             const Eigen::ArrayXd& sd,
-                             const Eigen::ArrayXd& skewness) {
+Eigen::Vector2d beneath_line(const Eigen::ArrayXd& square, const Eigen::ArrayXd& sd, const Eigen::ArrayXd& skewness) {
   std::vector<Eigen::Index> known;
   for (Eigen::Index r = 0; r < square.size(); ++r)
     if (skewness[r] > 0) known.push_back(r);
@@ -142,15 +138,12 @@ std::vector<Point> points_of(const SquareEstimates& in) {
   for (auto& [length, records] : by_length(in.samples)) {
     const ErrorModel error = error_model(in, records);
     Indices sorted = records;
-    std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
-      return in.square[a] < in.square[b];
-    });
+    std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) { return in.square[a] < in.square[b]; });
     double first = -kNoEnd;
     for (const std::size_t i : sorted) {
       const double square = in.square[i];
-      const bool joins =
-          in.square.size() > kEach &&
-          square - first < std::max(kTogether * error.sd_at(std::max(first, 0.0)), kAlike * first);
+      const bool joins = in.square.size() > kEach &&
+                         square - first < std::max(kTogether * error.sd_at(std::max(first, 0.0)), kAlike * first);
       if (!joins) {
         out.push_back({0, 0, error});
         first = square;
@@ -190,8 +183,7 @@ class Likelihood {
     for (Eigen::Index r = 0; r < count_.size(); ++r) {
       const Point& p = points[static_cast<std::size_t>(r)];
       count_[r] = p.count;
-      for (Eigen::Index c = 0; c < cells; ++c)
-        table_(r, c) = log_density(p, std::exp(edges_[c] + edges_[c + 1]));
+      for (Eigen::Index c = 0; c < cells; ++c) table_(r, c) = log_density(p, std::exp(edges_[c] + edges_[c + 1]));
       table_.row(r) = (table_.row(r).array() - table_.row(r).maxCoeff()).exp();
     }
   }
@@ -206,9 +198,7 @@ class Likelihood {
     Eigen::VectorXd share(cells);
     double below = 0;
     for (Eigen::Index c = 0; c < cells; ++c) {
-      const double next =
-          c + 1 == cells ? 1
-                         : std::erfc((mean - edges_[c + 1]) / (spread * std::numbers::sqrt2)) / 2;
+      const double next = c + 1 == cells ? 1 : std::erfc((mean - edges_[c + 1]) / (spread * std::numbers::sqrt2)) / 2;
       share[c] = next - below;
       below = next;
     }
@@ -218,8 +208,7 @@ class Likelihood {
  private:
   static constexpr double kFlat = 1e-2;  ///< of an sd: squares that small are all alike
   static constexpr double kCellsASd = 6, kMostCells = 400;
-  static constexpr double kCoarsest =
-      0.5;  ///< sd of ln c for which cells are made, however little is known
+  static constexpr double kCoarsest = 0.5;  ///< sd of ln c for which cells are made, however little is known
   Eigen::ArrayXd edges_, count_;
   Eigen::MatrixXd table_;
 };
@@ -244,12 +233,9 @@ double rises(Function&& f, double at, double step, double end, double rise) {
     step *= 1.5;
     if (f(outside) >= value) {
       std::uintmax_t iterations = 60;
-      const auto ends =
-          boost::math::tools::toms748_solve([&](double x) { return f(x) - value; },
-                                            std::min(inside, outside),
-                                            std::max(inside, outside),
-                                            boost::math::tools::eps_tolerance<double>(kBits),
-                                            iterations);
+      const auto ends = boost::math::tools::toms748_solve([&](double x) { return f(x) - value; },
+                                                          std::min(inside, outside), std::max(inside, outside),
+                                                          boost::math::tools::eps_tolerance<double>(kBits), iterations);
       return (ends.first + ends.second) / 2;
     }
   } while (outside != end);
@@ -267,23 +253,21 @@ struct Profile {
                  const double spread = std::exp(ln_spread);
                  return likelihood(x - half * spread * spread, spread);
                },
-               std::log(likelihood.least_spread()),
-               std::log(kMostSpread))
+               std::log(likelihood.least_spread()), std::log(kMostSpread))
         .second;
   }
 };
 
 /// Where the likelihood is largest at a spread, and -ln L there.
 std::pair<double, double> best_mean(const Likelihood& likelihood, double spread) {
-  return least(
-      [&](double mean) { return likelihood(mean, spread); }, likelihood.low(), likelihood.high());
+  return least([&](double mean) { return likelihood(mean, spread); }, likelihood.low(), likelihood.high());
 }
 /// Of -ln L over the mean; above zero.
 double curvature(const Likelihood& likelihood, double mean, double spread, double n) {
   const double step = 0.5 * std::hypot(spread, 0.1) / std::sqrt(n);
-  const double second = (likelihood(mean - step, spread) - 2 * likelihood(mean, spread) +
-                         likelihood(mean + step, spread)) /
-                        (step * step);
+  const double second =
+      (likelihood(mean - step, spread) - 2 * likelihood(mean, spread) + likelihood(mean + step, spread)) /
+      (step * step);
   return std::max(second, 1e-6 * n);
 }
 

@@ -14,10 +14,7 @@ constexpr Eigen::Index kAlignedBlock = 2048;
 // Keeps as many instants as the interpolation needs on either side of the next one.
 class HeldBack {
  public:
-  HeldBack(const SceneAlignment& alignment,
-           std::int64_t from,
-           std::int64_t to,
-           std::int64_t count,
+  HeldBack(const SceneAlignment& alignment, std::int64_t from, std::int64_t to, std::int64_t count,
            const AlignedInstant& one)
       : alignment_(alignment), aligner_(alignment.alignment), next_(from), to_(to), one_(one) {
     // Between its first and its last sample every sensor has a value of its own time.
@@ -25,8 +22,7 @@ class HeldBack {
     for (const fusion::ChannelAlignment& channel : alignment.alignment.channels) {
       if (!channel.used) continue;
       first_whole_ = std::max<std::int64_t>(first_whole_, std::llround(std::ceil(-channel.delay)));
-      last_whole_ =
-          std::min<std::int64_t>(last_whole_, count - 1 - std::llround(std::ceil(channel.delay)));
+      last_whole_ = std::min<std::int64_t>(last_whole_, count - 1 - std::llround(std::ceil(channel.delay)));
     }
   }
 
@@ -41,8 +37,7 @@ class HeldBack {
     truth_.conservativeResize(truth.rows(), kept + truth.cols());
     truth_.rightCols(truth.cols()) = truth;
     give(base_ + samples_.cols() - fusion::kAlignmentMargin);
-    const auto drop = static_cast<Eigen::Index>(
-        std::max<std::int64_t>(0, next_ - fusion::kAlignmentMargin - base_));
+    const auto drop = static_cast<Eigen::Index>(std::max<std::int64_t>(0, next_ - fusion::kAlignmentMargin - base_));
     if (drop == 0) return;
     samples_ = samples_.rightCols(samples_.cols() - drop).eval();
     truth_ = truth_.rightCols(truth_.cols() - drop).eval();
@@ -71,28 +66,17 @@ class HeldBack {
 
 }  // namespace
 
-void each_aligned(const Instants& instants,
-                  const SceneAlignment& alignment,
-                  std::int64_t from,
-                  std::int64_t to,
-                  Progress& progress,
-                  const AlignedInstant& one) {
+void each_aligned(const Instants& instants, const SceneAlignment& alignment, std::int64_t from, std::int64_t to,
+                  Progress& progress, const AlignedInstant& one) {
   HeldBack held(alignment, from, to, instants.info().count, one);
   instants.pass_recorded(std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
-                         std::min(instants.info().count, to + fusion::kAlignmentMargin),
-                         kAlignedBlock,
-                         progress,
+                         std::min(instants.info().count, to + fusion::kAlignmentMargin), kAlignedBlock, progress,
                          [&](const InstantBlock& b) { held.take(b.first, b.samples, b.truth); });
   held.finish();
 }
 
-void pass_aligned(const Instants& instants,
-                  const SceneAlignment& alignment,
-                  std::int64_t from,
-                  std::int64_t to,
-                  std::size_t size,
-                  Progress& progress,
-                  const InstantsBlock& block) {
+void pass_aligned(const Instants& instants, const SceneAlignment& alignment, std::int64_t from, std::int64_t to,
+                  std::size_t size, Progress& progress, const InstantsBlock& block) {
   const auto width = static_cast<Eigen::Index>(std::max<std::size_t>(size, 1));
   Eigen::MatrixXd samples(alignment.h.size(), width), truths;
   Eigen::Index filled = 0;

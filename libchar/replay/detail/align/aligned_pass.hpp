@@ -35,20 +35,11 @@ struct AlignedSamples {
 };
 using AlignedInstant = std::function<void(const AlignedSamples& instant)>;
 
-void each_aligned(const Instants& instants,
-                  const SceneAlignment& alignment,
-                  std::int64_t from,
-                  std::int64_t to,
-                  Progress& progress,
-                  const AlignedInstant& one);
+void each_aligned(const Instants& instants, const SceneAlignment& alignment, std::int64_t from, std::int64_t to,
+                  Progress& progress, const AlignedInstant& one);
 
 /// Instants [from, to) in blocks of `size` columns, as Instants::pass.
-void pass_aligned(const Instants& instants,
-                  const SceneAlignment& alignment,
-                  std::int64_t from,
-                  std::int64_t to,
-                  std::size_t size,
-                  Progress& progress,
-                  const InstantsBlock& block);
+void pass_aligned(const Instants& instants, const SceneAlignment& alignment, std::int64_t from, std::int64_t to,
+                  std::size_t size, Progress& progress, const InstantsBlock& block);
 
 }  // namespace libchar

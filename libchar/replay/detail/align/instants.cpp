@@ -44,14 +44,9 @@ std::string unit_after_scale(const SceneSensor& sensor, const std::string& recor
 // Fills blocks of equal size whatever the source delivers.
 class Instants::Columns {
  public:
-  Columns(const Instants& instants,
-          std::int64_t from,
-          std::int64_t to,
-          std::size_t size,
-          const InstantsBlock& out)
+  Columns(const Instants& instants, std::int64_t from, std::int64_t to, std::size_t size, const InstantsBlock& out)
       : instants_(instants),
-        prepared_(instants.preparation_,
-                  instants.rows_ + (instants.info_.has_reference ? instants.inputs_ : 0)),
+        prepared_(instants.preparation_, instants.rows_ + (instants.info_.has_reference ? instants.inputs_ : 0)),
         from_(from),
         to_(to),
         // A filter remembers all that was before.
@@ -92,9 +87,7 @@ class Instants::Columns {
     if (n > 0 && row >= n) return y * instants_.scene_->sensors[row % n].scale;
     return (y * instants_.factors_[row]) - (instants_.preparation_.filter ? 0 : offset(row));
   }
-  double offset(std::size_t row) const {
-    return row < instants_.sensors_ ? instants_.offsets_[row] : 0;
-  }
+  double offset(std::size_t row) const { return row < instants_.sensors_ ? instants_.offsets_[row] : 0; }
 
   void put(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
     for (std::size_t i = 0; i < instants_.rows_; ++i)
@@ -109,12 +102,10 @@ class Instants::Columns {
   }
 
   // The interval of the reference that a sample falls into.
-  void average(std::int64_t sample,
-               std::span<const std::span<const double>> columns,
-               std::size_t k) {
+  void average(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
     const double t = static_cast<double>(sample) / instants_.source_.info().rate_hz;
-    const auto instant = static_cast<std::int64_t>(
-        std::floor((t - instants_.info_.start_s) * instants_.info_.rate_hz + kOnGrid));
+    const auto instant =
+        static_cast<std::int64_t>(std::floor((t - instants_.info_.start_s) * instants_.info_.rate_hz + kOnGrid));
     if (instant != interval_) {
       close_interval();
       interval_ = instant;
@@ -131,13 +122,10 @@ class Instants::Columns {
     if (seen_ > 0 && interval_ >= first_ && interval_ < to_) {
       for (std::size_t i = 0; i < instants_.rows_; ++i)
         samples_(static_cast<Eigen::Index>(i), filled_) =
-            2 * counts_[i] >= instants_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i])
-                                                       : kMissing;
+            2 * counts_[i] >= instants_.info_.averaged ? sums_[i] / static_cast<double>(counts_[i]) : kMissing;
       // The middle of the interval is unambiguous whatever its ends round to.
-      const double middle = instants_.info_.start_s +
-                            (static_cast<double>(interval_) + 0.5) / instants_.info_.rate_hz;
-      const double place =
-          (middle - instants_.lag_s_ - instants_.track_->start_s) * instants_.track_->rate_hz;
+      const double middle = instants_.info_.start_s + (static_cast<double>(interval_) + 0.5) / instants_.info_.rate_hz;
+      const double place = (middle - instants_.lag_s_ - instants_.track_->start_s) * instants_.track_->rate_hz;
       const auto j = static_cast<std::size_t>(std::max(0.0, std::floor(place)));
       truth_of([&](std::size_t c) {
         const auto& track = instants_.track_->values[c];
@@ -157,9 +145,7 @@ class Instants::Columns {
       const double place = (t - instants_.lag_s_ - track.start_s) * track.rate_hz;
       const double off_s = std::abs(place - std::round(place)) / track.rate_hz;
       const bool nearest = off_s * instants_.source_.info().rate_hz <= 0.5 + kOnGrid;
-      return truth_of([&](std::size_t c) {
-        return nearest ? track.curved(c, t - instants_.lag_s_) : kMissing;
-      });
+      return truth_of([&](std::size_t c) { return nearest ? track.curved(c, t - instants_.lag_s_) : kMissing; });
     }
     truth_of([&](std::size_t c) { return instants_.track_->at(c, t - instants_.lag_s_); });
   }
@@ -171,8 +157,7 @@ class Instants::Columns {
       double sum = 0;
       const std::size_t n = instants_.scene_->reference->channels.size();
       for (std::size_t c = 0; c < n; ++c) sum += reference(c);
-      truth_(0, filled_) =
-          instants_.truth_factor_ * sum / static_cast<double>(n) - instants_.reference_offset_;
+      truth_(0, filled_) = instants_.truth_factor_ * sum / static_cast<double>(n) - instants_.reference_offset_;
     } else {
       for (std::size_t c = 0; c < instants_.inputs_; ++c)
         truth_(static_cast<Eigen::Index>(c), filled_) =
@@ -194,8 +179,7 @@ class Instants::Columns {
       if (instants_.preparation_.filter) y -= offset(row);
     }
     for (Eigen::Index j = 0; j < truth_.rows(); ++j)
-      truth_(j, filled_) =
-          prepared_(static_cast<std::size_t>(samples_.rows() + j), instant, truth_(j, filled_));
+      truth_(j, filled_) = prepared_(static_cast<std::size_t>(samples_.rows() + j), instant, truth_(j, filled_));
   }
 
   void flush() {
@@ -245,14 +229,12 @@ Instants::Instants(const Scene& scene, Progress& progress)
       const double start_s = track_->start_s + scene.reference->lag_s;
       const double length_s = static_cast<double>(info_.count) / info_.rate_hz;
       const double covers_s = static_cast<double>(track_->values[0].size()) / track_->rate_hz;
-      if (!scene.reference->estimate_lag && (start_s > length_s || start_s + covers_s < 0))
-        refuse_apart(length_s);
+      if (!scene.reference->estimate_lag && (start_s > length_s || start_s + covers_s < 0)) refuse_apart(length_s);
       info_.slow_reference = track_->rate_hz < 0.5 * source.rate_hz;
     }
     const std::size_t inputs = scene.reference->mean ? 1 : scene.reference->channels.size();
     for (std::size_t j = 0; j < inputs; ++j) {
-      info_.input_names.push_back(scene.reference->mean ? "mean of the reference"
-                                                        : scene.reference->channels[j]);
+      info_.input_names.push_back(scene.reference->mean ? "mean of the reference" : scene.reference->channels[j]);
       info_.input_units.push_back(reference_units[j]);
     }
   } else {
@@ -291,10 +273,8 @@ void Instants::prepare(Progress& progress) {
   const double most_hz = info_.rate_hz / 2, highest_hz = std::max(asked.from_hz, asked.to_hz);
   if (highest_hz >= most_hz)
     throw input_error("E0912", scene_->file)
-        .says("{}: instants at {} Hz have nothing above {} Hz",
-              asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
-              brief_text(info_.rate_hz, 6),
-              brief_text(most_hz, 6))
+        .says("{}: instants at {} Hz have nothing above {} Hz", asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
+              brief_text(info_.rate_hz, 6), brief_text(most_hz, 6))
         .got(brief_text(highest_hz, 6))
         .hint("corners are below half the rate");
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
@@ -339,15 +319,12 @@ void Instants::read_slow_reference(Progress& progress) {
   lag_s_ = reading.lag_s;
   info_.slow_samples = reading.samples == "instant";
   if (info_.slow_samples)
-    info_.reference_use =
-        fmt::format("at its own stamps, every {}", duration_text(1 / track_->rate_hz, 6));
+    info_.reference_use = fmt::format("at its own stamps, every {}", duration_text(1 / track_->rate_hz, 6));
   else
     take_means_over_intervals(track_->start_s + interval_start(reading.samples) / track_->rate_hz);
   if (reading.margin > 0)
-    info_.reference_use +=
-        fmt::format(" (its values are {} by the sensors; log-likelihood {} above the next reading)",
-                    info_.slow_samples ? "samples" : reading.samples,
-                    brief_text(reading.margin, 3));
+    info_.reference_use += fmt::format(" (its values are {} by the sensors; log-likelihood {} above the next reading)",
+                                       info_.slow_samples ? "samples" : reading.samples, brief_text(reading.margin, 3));
 }
 
 // One instant for each interval of the reference that lies within the recording; `start_s`: of its first.
@@ -362,8 +339,7 @@ void Instants::take_means_over_intervals(double start_s) {
                                std::floor((length_s - info_.start_s) * track_->rate_hz + kOnGrid));
   info_.count = static_cast<std::int64_t>(std::max(0.0, last));
   info_.rate_hz = track_->rate_hz;
-  info_.reference_use =
-      fmt::format("the sensors' means over its intervals of {}", duration_text(interval_s, 6));
+  info_.reference_use = fmt::format("the sensors' means over its intervals of {}", duration_text(interval_s, 6));
   note_partial_intervals(length_s);
   if (info_.count == 0) refuse_apart(length_s);
 }
@@ -374,8 +350,7 @@ void Instants::refuse_apart(double length_s) const {
   const double end_s = start_s + static_cast<double>(track_->values[0].size()) / track_->rate_hz;
   const bool behind = start_s > length_s;
   throw input_error("E0902", scene_->file)
-      .says("reference and recording have no time in common: the reference {} {} {}",
-            behind ? "begins" : "ends",
+      .says("reference and recording have no time in common: the reference {} {} {}", behind ? "begins" : "ends",
             duration_text(behind ? start_s - length_s : -end_s),
             behind ? "after the recording ends" : "before the recording begins")
       .hint(
@@ -396,18 +371,15 @@ void Instants::note_partial_intervals(double length_s) {
   if (ended_s > length_s && length_s - end_s > least_s)
     parts.push_back(fmt::format("the last {} s", brief_text(length_s - end_s, 6)));
   if (!parts.empty())
-    info_.reference_use +=
-        fmt::format("; {} of the recording, only a part of an interval{}, not used",
-                    fmt::join(parts, " and "),
-                    parts.size() > 1 ? " each, are" : ", are");
+    info_.reference_use += fmt::format("; {} of the recording, only a part of an interval{}, not used",
+                                       fmt::join(parts, " and "), parts.size() > 1 ? " each, are" : ", are");
 }
 
 // Filters work in radians; scores speak the reference's unit.
 void Instants::convert_tilt() {
   const std::size_t gyroscope = scene_->tilt->gyroscope;
   const std::string& own = scene_->sensors[gyroscope].unit;
-  factors_[gyroscope] =
-      to_si(own.empty() ? source_.info().units[gyroscope] : own, Quantity::angular_rate);
+  factors_[gyroscope] = to_si(own.empty() ? source_.info().units[gyroscope] : own, Quantity::angular_rate);
   info_.units[gyroscope] = "rad/s";
   truth_factor_ = to_si(info_.input_units[0], Quantity::angle);
   info_.output_scale = 1 / truth_factor_;
@@ -427,34 +399,24 @@ std::int64_t Instants::instant_at(double time_s) const {
   return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(place - kOnGrid)));
 }
 
-void Instants::pass(std::int64_t from,
-                    std::int64_t to,
-                    std::size_t size,
-                    Progress& progress,
+void Instants::pass(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress,
                     const InstantsBlock& block) const {
-  if (alignment_ != nullptr)
-    return pass_aligned(*this, *alignment_, from, to, size, progress, block);
+  if (alignment_ != nullptr) return pass_aligned(*this, *alignment_, from, to, size, progress, block);
   if (rows_ == sensors_) return pass_recorded(from, to, size, progress, block);
   pass_recorded(from, to, size, progress, [&](const InstantBlock& b) {
     block({b.first, b.samples.topRows(static_cast<Eigen::Index>(sensors_)), b.truth});
   });
 }
 
-void Instants::pass_recorded(std::int64_t from,
-                             std::int64_t to,
-                             std::size_t size,
-                             Progress& progress,
+void Instants::pass_recorded(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress,
                              const InstantsBlock& block) const {
   Columns columns(*this, from, to, std::max<std::size_t>(size, 1), block);
   const double end_s = info_.start_s + static_cast<double>(to) / info_.rate_hz;
   const auto until = std::min<std::uint64_t>(
-      source_.info().samples,
-      static_cast<std::uint64_t>(std::ceil(end_s * source_.info().rate_hz - kOnGrid)));
+      source_.info().samples, static_cast<std::uint64_t>(std::ceil(end_s * source_.info().rate_hz - kOnGrid)));
   source_.stream(
       until,
-      [&](std::uint64_t first, std::span<const std::span<const double>> samples) {
-        columns.take(first, samples);
-      },
+      [&](std::uint64_t first, std::span<const std::span<const double>> samples) { columns.take(first, samples); },
       progress);
   columns.finish();
 }

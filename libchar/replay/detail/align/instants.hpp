@@ -24,14 +24,13 @@ struct InstantsInfo {
   double start_s = 0;        ///< of instant 0, seconds from the recording's first sample
   std::size_t averaged = 1;  ///< samples in an instant (a slow reference)
   bool has_reference = false;
-  bool slow_reference = false;     ///< it has less than half as many values as there are samples
-  bool slow_samples = false;       ///< and they stand for the instants of their stamps
-  std::string reference_use;       ///< how truth and samples are matched, a phrase
-  std::vector<std::string> units;  ///< of the sensors, as fused
+  bool slow_reference = false;                        ///< it has less than half as many values as there are samples
+  bool slow_samples = false;                          ///< and they stand for the instants of their stamps
+  std::string reference_use;                          ///< how truth and samples are matched, a phrase
+  std::vector<std::string> units;                     ///< of the sensors, as fused
   std::vector<std::string> input_names, input_units;  ///< of the true inputs, as scored
   std::vector<LogInfo> logs;
-  double output_scale =
-      1;  ///< estimates and truth times this are in `input_units` (tilt: rad inside)
+  double output_scale = 1;  ///< estimates and truth times this are in `input_units` (tilt: rad inside)
 };
 
 class Instants {
@@ -43,16 +42,9 @@ class Instants {
 
   /// Instants [from, to) in blocks of `size` columns, the last one shorter; aligned when there is an
   /// alignment.
-  void pass(std::int64_t from,
-            std::int64_t to,
-            std::size_t size,
-            Progress& progress,
-            const InstantsBlock& block) const;
+  void pass(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress, const InstantsBlock& block) const;
   /// The same as recorded; below the sensors the rows of their further axes, axis by axis.
-  void pass_recorded(std::int64_t from,
-                     std::int64_t to,
-                     std::size_t size,
-                     Progress& progress,
+  void pass_recorded(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress,
                      const InstantsBlock& block) const;
   /// A sensor's samples are multiplied by it (deg/s to rad/s for a tilt), beside the scene's scale.
   double factor(std::size_t sensor) const { return factors_[sensor]; }

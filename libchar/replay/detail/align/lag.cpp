@@ -85,8 +85,7 @@ double coefficient(const Series& sensor, const Series& reference, std::int64_t l
 
 Series block_means(const Series& values, std::int64_t size) {
   Series out;
-  for (std::size_t k = 0; k + static_cast<std::size_t>(size) <= values.size();
-       k += static_cast<std::size_t>(size)) {
+  for (std::size_t k = 0; k + static_cast<std::size_t>(size) <= values.size(); k += static_cast<std::size_t>(size)) {
     double sum = 0, seen = 0;
     for (std::size_t i = k; i < k + static_cast<std::size_t>(size); ++i)
       if (!std::isnan(values[i])) sum += values[i], ++seen;
@@ -102,14 +101,9 @@ struct Curve {
   std::int64_t lag(std::size_t i) const { return from + static_cast<std::int64_t>(i); }
 };
 
-Curve correlate(const Series& sensor,
-                const Series& reference,
-                std::int64_t from,
-                std::int64_t to,
-                double fewest) {
+Curve correlate(const Series& sensor, const Series& reference, std::int64_t from, std::int64_t to, double fewest) {
   Curve curve{from, {}};
-  for (std::int64_t lag = from; lag <= to; ++lag)
-    curve.r.push_back(coefficient(sensor, reference, lag, fewest));
+  for (std::int64_t lag = from; lag <= to; ++lag) curve.r.push_back(coefficient(sensor, reference, lag, fewest));
   return curve;
 }
 
@@ -189,17 +183,14 @@ std::vector<Top> tops(const Curve& curve, std::int64_t most, double best) {
 
 }  // namespace
 
-LagEstimate estimate_lag(std::span<const double> sensor,
-                         std::span<const double> reference,
-                         double rate_hz,
+LagEstimate estimate_lag(std::span<const double> sensor, std::span<const double> reference, double rate_hz,
                          double most_s) {
   const std::size_t count = std::min(sensor.size(), reference.size());
   LagEstimate result;
   if (count < kFewestPairs || !(rate_hz > 0) || !(most_s >= 0)) return result;
   const Series s = centred(sensor, count), x = centred(reference, count);
   const std::size_t half = count / 2;
-  const auto most = static_cast<std::int64_t>(
-      std::min(std::floor(most_s * rate_hz + 1e-9), static_cast<double>(half)));
+  const auto most = static_cast<std::int64_t>(std::min(std::floor(most_s * rate_hz + 1e-9), static_cast<double>(half)));
   double common = 0;
   for (std::size_t k = 0; k < count; ++k) common += std::isnan(s[k] + x[k]) ? 0 : 1;
   const double fewest = std::max<double>(kFewestPairs, common / 4);
@@ -208,10 +199,7 @@ LagEstimate estimate_lag(std::span<const double> sensor,
   const double work = static_cast<double>(count) * static_cast<double>(2 * most + 1);
   const auto block = static_cast<std::int64_t>(std::ceil(std::sqrt(work / kMostWork)));
   if (block > 1) {
-    const Curve coarse = correlate(block_means(s, block),
-                                   block_means(x, block),
-                                   -most / block - 1,
-                                   most / block + 1,
+    const Curve coarse = correlate(block_means(s, block), block_means(x, block), -most / block - 1, most / block + 1,
                                    fewest / static_cast<double>(block));
     const auto at = largest(coarse);
     if (!at) return result;
@@ -230,8 +218,7 @@ LagEstimate estimate_lag(std::span<const double> sensor,
   if (best < largest_sampled - kTie) return result;  // it grows towards the end of the range
   const Top* chosen = nullptr;
   for (const Top& top : all)
-    if (top.correlation >= best - kTie && (!chosen || std::abs(top.lag) < std::abs(chosen->lag)))
-      chosen = &top;
+    if (top.correlation >= best - kTie && (!chosen || std::abs(top.lag) < std::abs(chosen->lag))) chosen = &top;
   if (!chosen) return result;
   return {chosen->lag / rate_hz, chosen->correlation};
 }
@@ -251,11 +238,7 @@ struct Pair {
   std::vector<double> sensor, reference;
 };
 
-Pair series(const Scene& scene,
-            const Instants& instants,
-            std::int64_t from,
-            std::int64_t to,
-            Progress& progress) {
+Pair series(const Scene& scene, const Instants& instants, std::int64_t from, std::int64_t to, Progress& progress) {
   Pair out;
   double before = kMissing;
   instants.pass(from, to, kBlock, progress, [&](const InstantBlock& b) {
@@ -275,10 +258,7 @@ Pair series(const Scene& scene,
 
 }  // namespace
 
-double find_lag(const Scene& scene,
-                const Instants& instants,
-                const TimeWindow& window,
-                Progress& progress) {
+double find_lag(const Scene& scene, const Instants& instants, const TimeWindow& window, Progress& progress) {
   const std::int64_t from = instants.instant_at(window.from_s);
   const std::int64_t to = std::min(instants.instant_at(window.to_s), from + kMostInstants);
   const Pair pair = series(scene, instants, from, to, progress);
@@ -313,8 +293,7 @@ class BatchMeans {
     sum_ = 0;
     filled_ = 0;
     if (means_.size() < kMostBatches) return;
-    for (std::size_t k = 0; 2 * k + 1 < means_.size(); ++k)
-      means_[k] = 0.5 * (means_[2 * k] + means_[2 * k + 1]);
+    for (std::size_t k = 0; 2 * k + 1 < means_.size(); ++k) means_[k] = 0.5 * (means_[2 * k] + means_[2 * k + 1]);
     means_.resize(means_.size() / 2);
     size_ *= 2;
   }
@@ -333,10 +312,7 @@ class BatchMeans {
   std::size_t size_ = 1, filled_ = 0;
 };
 
-double sensors_say(const Scene& scene,
-                   const Eigen::VectorXd& h,
-                   const Eigen::MatrixXd& samples,
-                   Eigen::Index k) {
+double sensors_say(const Scene& scene, const Eigen::VectorXd& h, const Eigen::MatrixXd& samples, Eigen::Index k) {
   if (scene.tilt)
     return std::atan2(samples(static_cast<Eigen::Index>(scene.tilt->accelerometer_x), k),
                       samples(static_cast<Eigen::Index>(scene.tilt->accelerometer_z), k));
@@ -355,20 +331,15 @@ Refusal offset_refusal(const Scene& scene, const std::string& what) {
 
 }  // namespace
 
-OffsetEstimate find_reference_offset(const Scene& scene,
-                                     const Instants& instants,
-                                     std::int64_t from,
-                                     std::int64_t to,
+OffsetEstimate find_reference_offset(const Scene& scene, const Instants& instants, std::int64_t from, std::int64_t to,
                                      Progress& progress) {
   if (instants.info().input_names.size() != 1)
     throw offset_refusal(scene,
-                         fmt::format("there are {} true inputs, and one is needed",
-                                     instants.info().input_names.size()))
+                         fmt::format("there are {} true inputs, and one is needed", instants.info().input_names.size()))
         .hint("give the offset as a number");
   const Eigen::MatrixXd rows = observations(scene, 1);
-  const Eigen::VectorXd h =
-      rows.size() == 0 ? Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()))
-                       : Eigen::VectorXd(rows.col(0));
+  const Eigen::VectorXd h = rows.size() == 0 ? Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()))
+                                             : Eigen::VectorXd(rows.col(0));
   BatchMeans differences;
   double origin = kMissing;
   instants.pass(from, to, kOffsetBlock, progress, [&](const InstantBlock& b) {

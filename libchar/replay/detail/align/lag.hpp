@@ -19,19 +19,14 @@ struct LagEstimate {
 
 /// Both on one grid, NaN = missing, of one length (the shorter counts). Lags within +-most_s, at
 /// most half the length. A periodic signal has many; the smallest is taken.
-LagEstimate estimate_lag(std::span<const double> sensor,
-                         std::span<const double> reference,
-                         double rate_hz,
+LagEstimate estimate_lag(std::span<const double> sensor, std::span<const double> reference, double rate_hz,
                          double most_s);
 
 // The lag between sensors and reference of a scene, estimated.
 
 /// Seconds by which the sensors lag the reference, from the stretch `window`. Throws Error(numeric)
 /// when they are too little alike, Error(input) when the reference is slower than the sensors.
-double find_lag(const Scene& scene,
-                const Instants& instants,
-                const TimeWindow& window,
-                Progress& progress);
+double find_lag(const Scene& scene, const Instants& instants, const TimeWindow& window, Progress& progress);
 
 // By how much the reference reads more than the sensors.
 
@@ -43,10 +38,7 @@ struct OffsetEstimate {
   double offset = 0, reach95 = 0;
   bool long_memory = false;  ///< the difference drifts within the stretch
 };
-OffsetEstimate find_reference_offset(const Scene& scene,
-                                     const Instants& instants,
-                                     std::int64_t from,
-                                     std::int64_t to,
+OffsetEstimate find_reference_offset(const Scene& scene, const Instants& instants, std::int64_t from, std::int64_t to,
                                      Progress& progress);
 
 }  // namespace libchar

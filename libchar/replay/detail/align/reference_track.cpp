@@ -30,12 +30,10 @@ double ReferenceTrack::at(std::size_t channel, double time_s) const {
 double ReferenceTrack::curved(std::size_t channel, double time_s) const {
   const std::vector<double>& y = values[channel];
   const double place = (time_s - start_s) * rate_hz, below = std::floor(place + kOnSample);
-  if (period > 0 || !(below >= 1) || below + 2 >= static_cast<double>(y.size()))
-    return at(channel, time_s);
+  if (period > 0 || !(below >= 1) || below + 2 >= static_cast<double>(y.size())) return at(channel, time_s);
   const auto k = static_cast<std::size_t>(below);
   const double f = place - below;
-  const double value = -f * (f - 1) * (f - 2) / 6 * y[k - 1] +
-                       (f + 1) * (f - 1) * (f - 2) / 2 * y[k] -
+  const double value = -f * (f - 1) * (f - 2) / 6 * y[k - 1] + (f + 1) * (f - 1) * (f - 2) / 2 * y[k] -
                        (f + 1) * f * (f - 2) / 2 * y[k + 1] + (f + 1) * f * (f - 1) / 6 * y[k + 2];
   return std::isfinite(value) && f > kOnSample ? value : at(channel, time_s);
 }

@@ -10,8 +10,7 @@
 namespace libchar {
 
 struct ReferenceTrack {
-  double start_s =
-      0;  ///< of its first sample, on the clock of the scene's recording (0: its first sample)
+  double start_s = 0;  ///< of its first sample, on the clock of the scene's recording (0: its first sample)
   double rate_hz = 0;
   std::vector<std::vector<double>> values;  ///< [channel][sample], NaN: missing
   std::vector<std::string> units;

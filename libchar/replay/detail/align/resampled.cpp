@@ -27,23 +27,19 @@ double median_step(const std::vector<double>& stamps) {
 }
 
 // Rows in rising order of time, within the window that was asked for.
-std::vector<std::size_t> rows_in_order(const std::vector<double>& stamps,
-                                       const ReadOptions& reading,
-                                       LogInfo& log) {
+std::vector<std::size_t> rows_in_order(const std::vector<double>& stamps, const ReadOptions& reading, LogInfo& log) {
   std::vector<std::size_t> rows;
   double last = -std::numeric_limits<double>::infinity();
   const double zero = stamps.empty() ? 0 : stamps[0];
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     if (!(stamps[k] > last)) {
-      log.warnings.add("stamp_not_rising",
-                       "rows whose stamp does not advance were left out",
+      log.warnings.add("stamp_not_rising", "rows whose stamp does not advance were left out",
                        fmt::format("row {}", k + 1));
       continue;
     }
     last = stamps[k];
     const double t = stamps[k] - zero;
-    if (t >= reading.from_s.value_or(0) &&
-        t < reading.to_s.value_or(std::numeric_limits<double>::infinity()))
+    if (t >= reading.from_s.value_or(0) && t < reading.to_s.value_or(std::numeric_limits<double>::infinity()))
       rows.push_back(k);
   }
   return rows;
@@ -71,8 +67,7 @@ struct Column {
   double period = 0;  ///< of an angle; 0: none
 };
 
-std::vector<Column> columns_of(const StampedRows& rows,
-                               const std::vector<std::string>& wanted,
+std::vector<Column> columns_of(const StampedRows& rows, const std::vector<std::string>& wanted,
                                std::size_t first_angle) {
   std::vector<Column> out;
   for (const std::string& name : wanted) {
@@ -85,11 +80,8 @@ std::vector<Column> columns_of(const StampedRows& rows,
 
 // Values at i / rate of a column, through the rows `used` in which it has a sample, which stand at times `t`; missing
 // within a gap and beyond its samples.
-std::vector<double> at_rate(const Column& column,
-                            const std::vector<std::size_t>& used,
-                            const std::vector<double>& t,
-                            std::size_t instants,
-                            double rate_hz) {
+std::vector<double> at_rate(const Column& column, const std::vector<std::size_t>& used, const std::vector<double>& t,
+                            std::size_t instants, double rate_hz) {
   std::vector<double> times, values;
   for (std::size_t k = 0; k < used.size(); ++k) {
     const double value = (*column.values)[used[k]];
@@ -115,12 +107,8 @@ std::vector<double> at_rate(const Column& column,
 
 }  // namespace
 
-ResampledLog read_resampled(const std::string& path,
-                            const ReadOptions& reading,
-                            const std::vector<std::string>& wanted,
-                            double rate_hz,
-                            std::size_t first_angle,
-                            Progress& progress) {
+ResampledLog read_resampled(const std::string& path, const ReadOptions& reading, const std::vector<std::string>& wanted,
+                            double rate_hz, std::size_t first_angle, Progress& progress) {
   if (!reading.names.empty())
     throw input_error("E0907", path)
         .says("recording: names and resample_hz do not go together")
@@ -142,8 +130,7 @@ ResampledLog read_resampled(const std::string& path,
   const std::vector<double> stamps = seconds_since_first(rows.time_ns);
   const std::vector<std::size_t> used = rows_in_order(stamps, reading, out.log);
   if (used.size() < 2)
-    throw input_error("E0907", path)
-        .says("recording.resample_hz: fewer than two rows with rising stamps");
+    throw input_error("E0907", path).says("recording.resample_hz: fewer than two rows with rising stamps");
   std::vector<double> t;
   t.reserve(used.size());
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);

@@ -11,7 +11,7 @@
 namespace libchar {
 
 struct ResampledLog {
-  LogInfo log;  ///< of the file as it is; rate and samples are those of the even grid
+  LogInfo log;                               ///< of the file as it is; rate and samples are those of the even grid
   std::vector<std::vector<double>> samples;  ///< [wanted channel][instant], NaN: missing
 };
 
@@ -19,11 +19,7 @@ struct ResampledLog {
 /// four of the channel's median steps apart. Rows whose stamp does not advance are left out and counted. Whole in
 /// memory. Wanted channels from `first_angle` on are angles, joined the short way round. Throws
 /// Error(input) for a log without stamps.
-ResampledLog read_resampled(const std::string& path,
-                            const ReadOptions& reading,
-                            const std::vector<std::string>& wanted,
-                            double rate_hz,
-                            std::size_t first_angle,
-                            Progress& progress);
+ResampledLog read_resampled(const std::string& path, const ReadOptions& reading, const std::vector<std::string>& wanted,
+                            double rate_hz, std::size_t first_angle, Progress& progress);
 
 }  // namespace libchar

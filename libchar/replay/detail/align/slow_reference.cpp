@@ -15,8 +15,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMostReferences =
-    20000;  // of the reference; those in the middle of a longer one
+constexpr std::size_t kMostReferences = 20000;  // of the reference; those in the middle of a longer one
 constexpr std::size_t kFewestReferences = 12;
 constexpr double kMostSlowLag_s = 2, kMostLagIntervals = 2;
 constexpr std::size_t kMostLags = 2001;
@@ -77,10 +76,7 @@ struct Fit {
 
 class Readings {
  public:
-  Readings(const Level& level,
-           double rate_hz,
-           const ReferenceTrack& track,
-           const std::vector<double>& reference)
+  Readings(const Level& level, double rate_hz, const ReferenceTrack& track, const std::vector<double>& reference)
       : level_(level),
         reference_(reference),
         start_s_(track.start_s),
@@ -103,8 +99,7 @@ class Readings {
       n += 1, sp += p, sr += r, pp += p * p, rr += r * r, pr += p * r;
     }
     if (n < kFewestReferences) return {};
-    const double vp = pp / n - sp * sp / n / n, vr = rr / n - sr * sr / n / n,
-                 c = pr / n - sp * sr / n / n;
+    const double vp = pp / n - sp * sp / n / n, vr = rr / n - sr * sr / n / n, c = pr / n - sp * sr / n / n;
     if (!(vp > 0) || !(vr > 0)) return {};
     const double gain = c / vp, error = std::max(vr - gain * c, 1e-12 * vr);
     const double own = gain * gain * noise_ / (samples == "instant" ? 1 : per_interval_);
@@ -113,8 +108,7 @@ class Readings {
 
   Fit best_lag(const std::string& samples) const {
     const double most_s = std::max(kMostSlowLag_s, kMostLagIntervals * interval_s_);
-    const double step_s =
-        std::max(interval_s_ / per_interval_, 2 * most_s / static_cast<double>(kMostLags - 1));
+    const double step_s = std::max(interval_s_ / per_interval_, 2 * most_s / static_cast<double>(kMostLags - 1));
     Fit best;
     const auto steps = static_cast<int>(most_s / step_s);
     for (int k = -steps; k <= steps; ++k)
@@ -142,14 +136,10 @@ double interval_start(const std::string& samples) {
   return samples == "mean_before" ? -1 : samples == "mean_centred" ? -0.5 : 0;
 }
 
-SlowReading read_slowly(const SlowQuestion& question,
-                        const std::vector<double>& level,
-                        double rate_hz,
-                        const ReferenceTrack& track,
-                        const std::vector<double>& reference) {
+SlowReading read_slowly(const SlowQuestion& question, const std::vector<double>& level, double rate_hz,
+                        const ReferenceTrack& track, const std::vector<double>& reference) {
   const bool open = question.samples == "estimate";
-  SlowReading out{
-      open ? std::string(SceneReference::kReadings[0]) : question.samples, question.lag_s, 0};
+  SlowReading out{open ? std::string(SceneReference::kReadings[0]) : question.samples, question.lag_s, 0};
   if (!open && !question.estimate_lag) return out;
   const Level sums(level, rate_hz);
   const Readings readings(sums, rate_hz, track, reference);
@@ -160,8 +150,7 @@ SlowReading read_slowly(const SlowQuestion& question,
     if (!open && samples != question.samples) continue;
     // A mean over another interval is the same mean with another lag.
     if (open && question.estimate_lag && interval_start(samples) != 0) continue;
-    const Fit fit =
-        question.estimate_lag ? readings.best_lag(samples) : readings.at(samples, question.lag_s);
+    const Fit fit = question.estimate_lag ? readings.best_lag(samples) : readings.at(samples, question.lag_s);
     if (fit.likelihood > best.likelihood + (std::isfinite(best.likelihood) ? kApart : 0)) {
       next = best.likelihood;
       best = fit;

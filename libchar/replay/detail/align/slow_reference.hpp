@@ -27,10 +27,7 @@ struct SlowQuestion {
 /// `level`: the sensors' common value at each sample of the recording, at `rate_hz` (NaN: missing).
 /// Each reading predicts the reference by it: a sample by the level at its stamp, a mean by that of
 /// the level over the interval. The most likely one is taken, with its lag where that is asked for.
-SlowReading read_slowly(const SlowQuestion& question,
-                        const std::vector<double>& level,
-                        double rate_hz,
-                        const ReferenceTrack& track,
-                        const std::vector<double>& reference);
+SlowReading read_slowly(const SlowQuestion& question, const std::vector<double>& level, double rate_hz,
+                        const ReferenceTrack& track, const std::vector<double>& reference);
 
 }  // namespace libchar

@@ -27,9 +27,7 @@ struct Score {
   bool known() const { return std::isfinite(weighted) && std::isfinite(mean); }
 };
 
-bool any(const fusion::AlignmentOptions& o) {
-  return o.delay || o.bias || o.gain || o.misalignment;
-}
+bool any(const fusion::AlignmentOptions& o) { return o.delay || o.bias || o.gain || o.misalignment; }
 
 // Columns [from, to) of the data, a whole number of stretches or a part of the only one.
 fusion::AlignmentData part(const fusion::AlignmentData& all, Index from, Index to) {
@@ -44,8 +42,7 @@ fusion::AlignmentData part(const fusion::AlignmentData& all, Index from, Index t
 }
 
 // Errors of the channels that have samples at most instants, a column an instant at which all of them and the truth do.
-Eigen::MatrixXd errors(const fusion::AlignmentData& data,
-                       const fusion::Alignment* alignment,
+Eigen::MatrixXd errors(const fusion::AlignmentData& data, const fusion::Alignment* alignment,
                        const std::vector<Index>& used) {
   Eigen::MatrixXd samples = data.samples;
   std::optional<fusion::Aligner> aligner;
@@ -55,8 +52,7 @@ Eigen::MatrixXd errors(const fusion::AlignmentData& data,
   Eigen::VectorXd column;
   for (std::size_t s = 0; s < data.starts.size(); ++s) {
     const Index end = s + 1 < data.starts.size() ? data.starts[s + 1] : samples.cols();
-    for (Index t = data.starts[s] + fusion::kAlignmentMargin; t < end - fusion::kAlignmentMargin;
-         ++t) {
+    for (Index t = data.starts[s] + fusion::kAlignmentMargin; t < end - fusion::kAlignmentMargin; ++t) {
       if (aligner)
         aligner->column(samples, t, column);
       else
@@ -100,8 +96,7 @@ Squares judged(const Eigen::MatrixXd& taught, const Eigen::MatrixXd& other) {
   covariance.diagonal() = own.array() + 1e-12 * own.sum();
   const Eigen::VectorXd solved = covariance.ldlt().solve(Eigen::VectorXd::Ones(n));
   const Eigen::VectorXd w = solved / solved.sum();
-  return {(w.transpose() * (other.colwise() - centre)).squaredNorm(),
-          other.colwise().mean().squaredNorm(),
+  return {(w.transpose() * (other.colwise() - centre)).squaredNorm(), other.colwise().mean().squaredNorm(),
           static_cast<double>(other.cols())};
 }
 
@@ -126,8 +121,7 @@ class Halves {
         return {};
       }
       const fusion::Alignment* alignment = learnt ? &*learnt : nullptr;
-      const Eigen::MatrixXd taught = errors(from, alignment, used_),
-                            other = errors(to, alignment, used_);
+      const Eigen::MatrixXd taught = errors(from, alignment, used_), other = errors(to, alignment, used_);
       if (used_.empty() || taught.cols() < kFewestJudged || other.cols() < kFewestJudged) return {};
       const Squares one = judged(taught, other);
       all.weighted += one.weighted;
@@ -144,15 +138,13 @@ class Halves {
 
 bool pays(const Score& with, const Score& without) {
   const double better = 1 - kPracticalTolerance;
-  return with.known() && with.weighted <= kNoWorse * without.weighted &&
-         with.mean <= kNoWorse * without.mean &&
+  return with.known() && with.weighted <= kNoWorse * without.weighted && with.mean <= kNoWorse * without.mean &&
          (with.weighted < better * without.weighted || with.mean < better * without.mean);
 }
 
 }  // namespace
 
-TermChoice choose_terms(const fusion::AlignmentData& data,
-                        const fusion::AlignmentOptions& allowed) {
+TermChoice choose_terms(const fusion::AlignmentData& data, const fusion::AlignmentOptions& allowed) {
   TermChoice out;
   out.options = {false, false, false, false};
   const Halves halves(data);
@@ -169,9 +161,7 @@ TermChoice choose_terms(const fusion::AlignmentData& data,
     out.options = options;
   };
   using Options = fusion::AlignmentOptions;
-  const auto add = [&](const char* term,
-                       bool Options::*which,
-                       std::optional<fusion::Interpolation> by = std::nullopt) {
+  const auto add = [&](const char* term, bool Options::*which, std::optional<fusion::Interpolation> by = std::nullopt) {
     if (!(allowed.*which)) return;
     Options options = out.options;
     options.*which = true;

@@ -7,9 +7,8 @@
 namespace libchar {
 
 struct TermChoice {
-  fusion::AlignmentOptions options;  ///< what is kept
-  std::vector<AlignmentResult::Trial>
-      trials;  ///< in their order, the first as recorded; empty: nothing could be tried
+  fusion::AlignmentOptions options;            ///< what is kept
+  std::vector<AlignmentResult::Trial> trials;  ///< in their order, the first as recorded; empty: nothing could be tried
   bool any() const { return options.delay || options.bias || options.gain || options.misalignment; }
 };
 

@@ -42,9 +42,7 @@ bool combines_sensors(const AlgorithmResult& algorithm) {
   return !(largest > kAlone * sum);
 }
 
-std::optional<std::size_t> choose_method(const ReplayResult& result,
-                                         const std::vector<double>& costs,
-                                         bool fusions) {
+std::optional<std::size_t> choose_method(const ReplayResult& result, const std::vector<double>& costs, bool fusions) {
   const double most = most_available(result);
   std::vector<std::size_t> all, known;
   for (std::size_t k = 0; k < result.algorithms.size(); ++k) {

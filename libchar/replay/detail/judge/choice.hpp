@@ -20,8 +20,7 @@ bool combines_sensors(const AlgorithmResult& algorithm);
 /// mended form wins before the one as published, then the cheaper one by `costs` (declared, one an algorithm). A
 /// method whose interval spans a decade is not chosen while there is another. `fusions`: only of those that combine
 /// sensors.
-std::optional<std::size_t> choose_method(const ReplayResult& result,
-                                         const std::vector<double>& costs,
+std::optional<std::size_t> choose_method(const ReplayResult& result, const std::vector<double>& costs,
                                          bool fusions = false);
 
 /// Without scores: of the methods that ran, the highest of those that a failing sensor does not lead

@@ -28,27 +28,22 @@ Eigen::VectorXd gauss_markov(const std::vector<double>& rms, const fusion::Array
 
 double regret_of(const AlgorithmResult& algorithm) {
   double squares = 0;
-  for (const InputScore& input : algorithm.inputs)
-    squares += input.optimum_ratio * input.optimum_ratio;
-  return algorithm.inputs.empty()
-             ? kNone
-             : std::sqrt(squares / static_cast<double>(algorithm.inputs.size())) - 1;
+  for (const InputScore& input : algorithm.inputs) squares += input.optimum_ratio * input.optimum_ratio;
+  return algorithm.inputs.empty() ? kNone : std::sqrt(squares / static_cast<double>(algorithm.inputs.size())) - 1;
 }
 
 }  // namespace
 
-void judge_optimum(ReplayResult& result,
-                   const std::vector<AlgorithmRun>& optimum,
-                   const std::vector<double>& healthy_rms,
-                   const fusion::Array& array) {
+void judge_optimum(ReplayResult& result, const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& healthy_rms, const fusion::Array& array) {
   if (!result.has_reference) return;
   ScoreOptions quick;
   quick.intervals = false;
   if (array.one_common_input() || array.tilt) {
     for (const AlgorithmRun& bound : optimum)
       if (bound.alive())
-        result.inputs[0].optimum_rmse = std::fmin(
-            result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
+        result.inputs[0].optimum_rmse =
+            std::fmin(result.inputs[0].optimum_rmse, score(bound.meters()[0], result.rate_hz, quick).rmse);
   } else {
     const Eigen::VectorXd best = gauss_markov(healthy_rms, array);
     for (std::size_t j = 0; j < result.inputs.size(); ++j)
@@ -56,27 +51,20 @@ void judge_optimum(ReplayResult& result,
   }
   for (AlgorithmResult& algorithm : result.algorithms) {
     for (std::size_t j = 0; j < algorithm.inputs.size(); ++j)
-      algorithm.inputs[j].optimum_ratio =
-          algorithm.inputs[j].error.rmse / result.inputs[j].optimum_rmse;
+      algorithm.inputs[j].optimum_ratio = algorithm.inputs[j].error.rmse / result.inputs[j].optimum_rmse;
     algorithm.regret = regret_of(algorithm);
   }
 }
 
-void judge_tracking(AlgorithmResult& algorithm,
-                    const AlgorithmRun& run,
-                    const std::vector<AlgorithmRun>& optimum,
-                    const ReplayResult& result,
-                    const fusion::Array& array) {
-  if (!algorithm.ran || !result.has_reference || !array.one_common_input() ||
-      !array.section_starts.empty())
-    return;
+void judge_tracking(AlgorithmResult& algorithm, const AlgorithmRun& run, const std::vector<AlgorithmRun>& optimum,
+                    const ReplayResult& result, const fusion::Array& array) {
+  if (!algorithm.ran || !result.has_reference || !array.one_common_input() || !array.section_starts.empty()) return;
   const auto& weights = run.weight_samples();
   if (!weights.empty() && !optimum.empty() && optimum[0].alive())
     if (const auto best = optimum[0].weights()) {
       double squares = 0;
       for (std::size_t i = 0; i < weights.size(); ++i)
-        for (const double w : weights[i])
-          squares += std::pow(w - (*best)(static_cast<Eigen::Index>(i), 0), 2);
+        for (const double w : weights[i]) squares += std::pow(w - (*best)(static_cast<Eigen::Index>(i), 0), 2);
       algorithm.weight_distance = std::sqrt(squares / static_cast<double>(weights[0].size()));
     }
   double squares = 0, count = 0;
@@ -106,8 +94,7 @@ constexpr double kMostOffsets = 0.9;
 std::optional<std::size_t> robust_instead(const ReplayResult& result, const AlgorithmResult& best) {
   if (result.has_reference || result.inputs.size() != 1 || !best.blind) return std::nullopt;
   const std::vector<double>& left = best.blind->leave_one_out;
-  const auto scored =
-      std::count_if(left.begin(), left.end(), [](double rms) { return std::isfinite(rms); });
+  const auto scored = std::count_if(left.begin(), left.end(), [](double rms) { return std::isfinite(rms); });
   const std::optional<std::size_t> robust = choose_robust(result);
   if (scored < 3 || !robust) return std::nullopt;
   if (result.offsets_decide || !std::isfinite(result.algorithms[*robust].rmse)) return robust;
@@ -116,9 +103,7 @@ std::optional<std::size_t> robust_instead(const ReplayResult& result, const Algo
 
 }  // namespace
 
-void judge_best(ReplayResult& result,
-                const std::vector<Meters>& meters,
-                const std::vector<double>& costs,
+void judge_best(ReplayResult& result, const std::vector<Meters>& meters, const std::vector<double>& costs,
                 const ScoreOptions& scoring) {
   result.best = choose_method(result, costs);
   const auto fusion = choose_method(result, costs, true);
@@ -147,10 +132,8 @@ void judge_best(ReplayResult& result,
     AlgorithmResult& a = result.algorithms[k];
     if (k == best || meters[k].empty() || !std::isfinite(a.rmse)) continue;
     CommonMeters pair;
-    if (on_stretches(a) || on_stretches(result.algorithms[best]))
-      pair = in_common(meters[k], meters[best]);
-    const Meters &ours = pair.a.empty() ? meters[k] : pair.a,
-                 &its = pair.b.empty() ? meters[best] : pair.b;
+    if (on_stretches(a) || on_stretches(result.algorithms[best])) pair = in_common(meters[k], meters[best]);
+    const Meters &ours = pair.a.empty() ? meters[k] : pair.a, &its = pair.b.empty() ? meters[best] : pair.b;
     a.ratio_to_best = rms_ratio_interval(ours, its, scoring);
     const Interval corrected = rms_ratio_interval(ours, its, scoring, level);
     const double smallest = result.algorithms[best].rmse;
@@ -161,12 +144,9 @@ void judge_best(ReplayResult& result,
   }
 }
 
-void judge_best_sensor(ReplayResult& result,
-                       const std::vector<Meters>& meters,
-                       const Meters& sensors,
+void judge_best_sensor(ReplayResult& result, const std::vector<Meters>& meters, const Meters& sensors,
                        const ScoreOptions& scoring) {
-  if (!result.best || !result.has_reference || result.scene.tilt || result.inputs.size() != 1)
-    return;
+  if (!result.best || !result.has_reference || result.scene.tilt || result.inputs.size() != 1) return;
   double most_available = 0;
   for (const SensorResult& sensor : result.sensors)
     most_available = std::max(most_available, sensor.error.availability);
@@ -180,8 +160,7 @@ void judge_best_sensor(ReplayResult& result,
   const AlgorithmResult* fusion = result.find(result.best_fusion);
   if (!result.best_sensor || fusion == nullptr) return;
   const Meters& errors = meters[static_cast<std::size_t>(fusion - result.algorithms.data())];
-  if (!errors.empty())
-    result.best_over_sensor = rms_ratio_interval(errors, {sensors[*result.best_sensor]}, scoring);
+  if (!errors.empty()) result.best_over_sensor = rms_ratio_interval(errors, {sensors[*result.best_sensor]}, scoring);
 }
 
 namespace {
@@ -193,11 +172,9 @@ constexpr double kFalseAlarmsEvery_s[] = {1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
 bool detects(const PlannedAlgorithm& planned) {
   const auto on = [&](std::string_view option) {
     const auto table = planned.settings.table();
-    return std::any_of(
-        table.begin(), table.end(), [&](const auto& one) { return one.name == option; });
+    return std::any_of(table.begin(), table.end(), [&](const auto& one) { return one.name == option; });
   };
-  return planned.runs() && on("false_alarm_s") &&
-         (!on("fault_detection") || planned.settings["fault_detection"] == 1);
+  return planned.runs() && on("false_alarm_s") && (!on("fault_detection") || planned.settings["fault_detection"] == 1);
 }
 
 }  // namespace
@@ -210,8 +187,7 @@ DetectionSweep::DetectionSweep(const ReplayPlan& plan, const std::vector<SensorF
       array.channels > fusion::kMostPaired)
     return;
   for (Eigen::Index i = 0; i < array.channels; ++i)
-    sensors_.push_back(
-        static_cast<std::size_t>(plan.live.empty() ? i : plan.live[static_cast<std::size_t>(i)]));
+    sensors_.push_back(static_cast<std::size_t>(plan.live.empty() ? i : plan.live[static_cast<std::size_t>(i)]));
   const fusion::Entry& mean = fusion::algorithm("mean");
   for (const double false_alarm_s : kFalseAlarmsEvery_s) {
     fusion::Settings settings(mean.options);
@@ -234,15 +210,12 @@ void DetectionSweep::push(const Eigen::MatrixXd& samples) {
   }
 }
 
-std::vector<DetectionAt> DetectionSweep::result(double start_s,
-                                                double rate_hz,
-                                                double end_s) const {
+std::vector<DetectionAt> DetectionSweep::result(double start_s, double rate_hz, double end_s) const {
   std::vector<DetectionAt> out;
   for (const Setting& setting : settings_) {
     const auto found = found_faults(*setting.watched->faults(), sensors_, start_s, rate_hz);
-    out.push_back({setting.false_alarm_s,
-                   answers_to(known_, found, start_s, end_s),
-                   alarms_without_fault(known_, found)});
+    out.push_back(
+        {setting.false_alarm_s, answers_to(known_, found, start_s, end_s), alarms_without_fault(known_, found)});
   }
   return out;
 }

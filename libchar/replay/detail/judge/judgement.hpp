@@ -21,17 +21,12 @@ namespace libchar {
 /// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one
 /// input, or rows of H that differ: from the sensors' own errors without known
 /// faults (`healthy_rms`), (H' R^-1 H)^-1.
-void judge_optimum(ReplayResult& result,
-                   const std::vector<AlgorithmRun>& optimum,
-                   const std::vector<double>& healthy_rms,
-                   const fusion::Array& array);
+void judge_optimum(ReplayResult& result, const std::vector<AlgorithmRun>& optimum,
+                   const std::vector<double>& healthy_rms, const fusion::Array& array);
 
 /// Distances over time; needs `sensors` of the result.
-void judge_tracking(AlgorithmResult& algorithm,
-                    const AlgorithmRun& run,
-                    const std::vector<AlgorithmRun>& optimum,
-                    const ReplayResult& result,
-                    const fusion::Array& array);
+void judge_tracking(AlgorithmResult& algorithm, const AlgorithmRun& run, const std::vector<AlgorithmRun>& optimum,
+                    const ReplayResult& result, const fusion::Array& array);
 
 /// Which known faults were found, and when.
 void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
@@ -39,15 +34,11 @@ void answer_faults(AlgorithmResult& algorithm, const ReplayResult& result);
 /// The best method and who cannot be told from it. `meters`: the errors that `rmse` came from, for
 /// each algorithm, empty where there are none.
 /// `costs`: of choice.hpp.
-void judge_best(ReplayResult& result,
-                const std::vector<Meters>& meters,
-                const std::vector<double>& costs,
+void judge_best(ReplayResult& result, const std::vector<Meters>& meters, const std::vector<double>& costs,
                 const ScoreOptions& scoring);
 
 /// The best single sensor beside the best fusion: one input, a reference. `sensors`: of their errors, in order.
-void judge_best_sensor(ReplayResult& result,
-                       const std::vector<Meters>& meters,
-                       const Meters& sensors,
+void judge_best_sensor(ReplayResult& result, const std::vector<Meters>& meters, const Meters& sensors,
                        const ScoreOptions& scoring);
 
 // The fault detector beside itself: the same samples with one threshold after another. What a higher
@@ -64,8 +55,7 @@ class DetectionSweep {
  private:
   struct Setting {
     double false_alarm_s = 0;
-    std::unique_ptr<fusion::Runner>
-        watched;  ///< the cheapest algorithm with the detector in front of it
+    std::unique_ptr<fusion::Runner> watched;  ///< the cheapest algorithm with the detector in front of it
   };
   std::vector<SensorFault> known_;
   std::vector<std::size_t> sensors_;  // of the detectors' channels

@@ -54,13 +54,11 @@ struct Plot {
 };
 
 double expected(const BatchVariance& batch, const std::array<double, 2>& weight) {
-  return std::max(weight[0] * batch.unit[0] + weight[1] * batch.unit[1],
-                  std::numeric_limits<double>::min());
+  return std::max(weight[0] * batch.unit[0] + weight[1] * batch.unit[1], std::numeric_limits<double>::min());
 }
 
 /// Least squares of two terms, neither negative, each row over what it is expected to be.
-std::array<double, 2> weighted_fit(std::span<const BatchVariance> batches,
-                                   const std::vector<double>& scale,
+std::array<double, 2> weighted_fit(std::span<const BatchVariance> batches, const std::vector<double>& scale,
                                    bool both) {
   double aa = 0, ab = 0, bb = 0, ay = 0, by = 0;
   for (std::size_t i = 0; i < batches.size(); ++i) {
@@ -75,8 +73,7 @@ std::array<double, 2> weighted_fit(std::span<const BatchVariance> batches,
   const std::array<double, 2> first = {ay / aa, 0}, second = {0, by / bb};
   if (!both) return first;
   const double determinant = aa * bb - ab * ab;
-  const std::array<double, 2> free = {(bb * ay - ab * by) / determinant,
-                                      (aa * by - ab * ay) / determinant};
+  const std::array<double, 2> free = {(bb * ay - ab * by) / determinant, (aa * by - ab * ay) / determinant};
   if (free[0] >= 0 && free[1] >= 0) return free;
   return ay * ay / aa > by * by / bb ? first : second;
 }
@@ -114,8 +111,7 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
     const double share = static_cast<double>(whole) / static_cast<double>(series.size());
     const double variance = variance_of(batch_means(series, count));
     if (!(variance > 0)) return {0, 0, false};
-    batches.push_back(
-        {variance, static_cast<double>(count - 1), {1 / share - 1, std::pow(share, -kSlow) - 1}});
+    batches.push_back({variance, static_cast<double>(count - 1), {1 / share - 1, std::pow(share, -kSlow) - 1}});
   }
   if (batches.empty()) return {kNone, kNone, false};
   constexpr std::size_t kFewest = 4;  // lengths, to tell two terms apart
@@ -123,8 +119,7 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
   for (std::size_t first = 0; first == 0 || first + kFewest <= batches.size(); ++first) {
     const auto rest = all.subspan(first);
     const Plot one = fitted(rest, false);
-    if (one.deviance - fitted(rest, true).deviance < kAsked)
-      return answer(one, (rest[0].freedom + 1) / 4, level);
+    if (one.deviance - fitted(rest, true).deviance < kAsked) return answer(one, (rest[0].freedom + 1) / 4, level);
   }
   return answer(fitted(all, true), kBatches.back() - 1, level);
 }

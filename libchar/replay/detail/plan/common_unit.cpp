@@ -16,27 +16,16 @@ struct Stated {
   std::string name, unit;
 };
 
-[[noreturn]] void refuse_pair(const Scene& scene,
-                              const Stated& from,
-                              const Stated& to,
-                              const char* why) {
-  throw Error({ErrorKind::input,
-               "E0918",
-               scene.file,
-               fmt::format("{} is in {}, and {} in {}: {}",
-                           printable(from.name, 40),
-                           printable(from.unit, 40),
-                           printable(to.name, 40),
-                           printable(to.unit, 40),
-                           why),
-               "",
-               "leave one of them out, or say with `scale` and `unit` what its samples are"});
+[[noreturn]] void refuse_pair(const Scene& scene, const Stated& from, const Stated& to, const char* why) {
+  throw Error({ErrorKind::input, "E0918", scene.file,
+               fmt::format("{} is in {}, and {} in {}: {}", printable(from.name, 40), printable(from.unit, 40),
+                           printable(to.name, 40), printable(to.unit, 40), why),
+               "", "leave one of them out, or say with `scale` and `unit` what its samples are"});
 }
 
 double factor_between(const Scene& scene, const Stated& from, const Stated& to) {
   if (const auto factor = Unit::sample_factor(from.unit, to.unit)) return *factor;
-  refuse_pair(
-      scene, from, to, "these are not one quantity, or no factor converts one to the other");
+  refuse_pair(scene, from, to, "these are not one quantity, or no factor converts one to the other");
 }
 
 // A scale of the scene's own makes what the recording says untrue.
@@ -45,18 +34,15 @@ std::string stated_unit(const SceneSensor& sensor, const std::string& unit) {
 }
 
 bool seen_alike(const Scene& scene) {
-  const bool one =
-      !scene.reference || scene.reference->mean || scene.reference->channels.size() == 1;
-  return one && !scene.tilt &&
-         std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const auto& s) {
+  const bool one = !scene.reference || scene.reference->mean || scene.reference->channels.size() == 1;
+  return one && !scene.tilt && std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const auto& s) {
            return s.h.size() == 1 && s.h[0] == 1;
          });
 }
 
 }  // namespace
 
-std::vector<double> to_common_unit(const Scene& scene,
-                                   const std::vector<std::string>& reference_units,
+std::vector<double> to_common_unit(const Scene& scene, const std::vector<std::string>& reference_units,
                                    std::vector<std::string>& units) {
   std::vector<double> out(units.size(), 1.0);
   if (!seen_alike(scene)) return out;

@@ -11,14 +11,10 @@ constexpr std::uint64_t kLeastInstants = 100;
 /// Candidates a sensor: hundreds of sensors that are all alike must not cost their square.
 constexpr std::size_t kMostOriginals = 8;
 
-bool agree(double a, double b) {
-  return std::abs(a - b) <= kFloat * std::max(std::abs(a), std::abs(b));
-}
+bool agree(double a, double b) { return std::abs(a - b) <= kFloat * std::max(std::abs(a), std::abs(b)); }
 
 /// Instants in which both have a sample; none when one of them differs.
-std::optional<std::uint64_t> in_common(const Eigen::MatrixXd& samples,
-                                       Eigen::Index i,
-                                       Eigen::Index j) {
+std::optional<std::uint64_t> in_common(const Eigen::MatrixXd& samples, Eigen::Index i, Eigen::Index j) {
   std::uint64_t common = 0;
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
     const double a = samples(i, k), b = samples(j, k);

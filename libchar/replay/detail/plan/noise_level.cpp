@@ -152,11 +152,9 @@ class Held {
   // Long after the start. Too many phases to take all: spread evenly over one hold.
   std::int64_t at(int phase) const {
     const auto settled =
-        chain_.step * static_cast<std::int64_t>(
-                          std::ceil((chain_.pole > 0 ? kForgotten / -std::log(chain_.pole) : 1) /
-                                    static_cast<double>(chain_.step)));
-    const auto start =
-        end(static_cast<std::int64_t>(std::ceil(static_cast<double>(settled) / length_)));
+        chain_.step * static_cast<std::int64_t>(std::ceil((chain_.pole > 0 ? kForgotten / -std::log(chain_.pole) : 1) /
+                                                          static_cast<double>(chain_.step)));
+    const auto start = end(static_cast<std::int64_t>(std::ceil(static_cast<double>(settled) / length_)));
     const auto begin = (start / chain_.step + 1) * chain_.step;
     const double samples_per_hold = length_ / static_cast<double>(chain_.step);
     const double stride = std::max(1.0, samples_per_hold / most_phases());
@@ -215,14 +213,11 @@ double sample_noise_variance(const SensorModel& m, double rate_hz, std::uint64_t
         .says("the noise of a sample needs a sampling rate and an oversampling above zero")
         .got(shortest(rate_hz) + " Hz, " + std::to_string(oversampling));
   if (m.noise_sampling == NoiseSampling::band_limited && !m.bandwidth_hz)
-    throw usage_error("E0915")
-        .says("noise that is band-limited before sampling needs a bandwidth")
-        .got(m.channel);
-  Chain chain{
-      rate_hz * static_cast<double>(oversampling), 0, static_cast<std::int64_t>(oversampling)};
+    throw usage_error("E0915").says("noise that is band-limited before sampling needs a bandwidth").got(m.channel);
+  Chain chain{rate_hz * static_cast<double>(oversampling), 0, static_cast<std::int64_t>(oversampling)};
   if (m.bandwidth_hz) chain.pole = std::exp(-2 * kPi * *m.bandwidth_hz / chain.rate_hz);
-  const double noise = white_variance(m, chain) + flicker_variance(m, chain) +
-                       walk_variance(m, chain) + quantization_variance(m, chain);
+  const double noise =
+      white_variance(m, chain) + flicker_variance(m, chain) + walk_variance(m, chain) + quantization_variance(m, chain);
   const double step = m.resolution.value_or(0);
   return noise * m.sensitivity.gain * m.sensitivity.gain + step * step / 12;
 }

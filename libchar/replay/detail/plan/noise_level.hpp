@@ -14,8 +14,6 @@ namespace libchar {
 ///   rounding to the resolution      step^2 / 12
 /// Bias, ramp and temperature are no noise. Throws Error(usage) when rate or oversampling is not
 /// positive or the model's noise makes no sense (band-limited without a bandwidth).
-double sample_noise_variance(const SensorModel& model,
-                             double rate_hz,
-                             std::uint64_t oversampling = 1);
+double sample_noise_variance(const SensorModel& model, double rate_hz, std::uint64_t oversampling = 1);
 
 }  // namespace libchar

@@ -31,40 +31,31 @@ Eigen::MatrixXd observation_matrix(const Scene& scene, std::size_t inputs) {
   if (scene.simulate && scene.reference) {
     const auto& names = scene.simulate->truth_names;
     for (std::size_t j = 0; j < inputs; ++j)
-      columns[j] = static_cast<std::size_t>(
-          std::find(names.begin(), names.end(), scene.reference->channels[j]) - names.begin());
+      columns[j] =
+          static_cast<std::size_t>(std::find(names.begin(), names.end(), scene.reference->channels[j]) - names.begin());
   }
   Eigen::MatrixXd h(scene.sensors.size(), inputs);
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
     for (std::size_t j = 0; j < inputs; ++j)
-      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          scene.sensors[i].h[columns[j]];
+      h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = scene.sensors[i].h[columns[j]];
   if (inputs == 1 && (h.array() == 1).all()) return {};
   return h;
 }
 
 // Up to where no sensor is known to fail; 0 where it is not known.
-std::int64_t fault_free(const Scene& scene,
-                        const Instants& instants,
-                        std::int64_t run_from,
-                        std::int64_t run_to) {
+std::int64_t fault_free(const Scene& scene, const Instants& instants, std::int64_t run_from, std::int64_t run_to) {
   if (scene.fault_free_s)
-    return std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(*scene.fault_free_s * instants.info().rate_hz),
-        0,
-        run_to - run_from);
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(*scene.fault_free_s * instants.info().rate_hz), 0,
+                                    run_to - run_from);
   const auto& faults = instants.source().known_faults();
   if (faults.empty() && !scene.simulate && !scene.simulated) return 0;
   std::int64_t first = run_to;
   for (const SensorFault& fault : faults)
-    if (instants.instant_at(fault.to_s) > run_from)
-      first = std::min(first, instants.instant_at(fault.from_s));
+    if (instants.instant_at(fault.to_s) > run_from) first = std::min(first, instants.instant_at(fault.from_s));
   return std::max<std::int64_t>(0, first - run_from);
 }
 
-std::vector<std::int64_t> section_starts(const Instants& instants,
-                                         std::int64_t run_from,
-                                         std::int64_t run_to) {
+std::vector<std::int64_t> section_starts(const Instants& instants, std::int64_t run_from, std::int64_t run_to) {
   std::set<std::int64_t> starts;
   for (const SensorFault& fault : instants.source().known_faults())
     for (const double t : {fault.from_s, fault.to_s}) {
@@ -86,27 +77,21 @@ fusion::NoiseModel noise_model(const SensorModel& model, double scale, double le
   return out;
 }
 
-fusion::Array describe_array(const Scene& scene,
-                             const Instants& instants,
-                             const SensorKnowledge& knowledge,
+fusion::Array describe_array(const Scene& scene, const Instants& instants, const SensorKnowledge& knowledge,
                              const ReplayPlan& plan) {
   fusion::Array array;
   const InstantsInfo& info = instants.info();
   array.channels = static_cast<Eigen::Index>(scene.sensors.size());
   array.observation_matrix = observation_matrix(scene, info.input_names.size());
   const Eigen::Map<const Eigen::VectorXd> levels(knowledge.noise_variances.data(), array.channels);
-  const bool known =
-      plan.live.empty() ? (levels.array() > 0).all() : (levels(plan.live).array() > 0).all();
+  const bool known = plan.live.empty() ? (levels.array() > 0).all() : (levels(plan.live).array() > 0).all();
   if (known) array.noise_levels = levels;
   // A filter takes out the drifts that the models describe.
   if (known && !scene.preparation.filters() &&
-      std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const SceneSensor& s) {
-        return s.model.has_value();
-      }))
+      std::all_of(scene.sensors.begin(), scene.sensors.end(), [](const SceneSensor& s) { return s.model.has_value(); }))
     for (std::size_t i = 0; i < scene.sensors.size(); ++i)
       array.noise_models.push_back(noise_model(
-          *scene.sensors[i].model,
-          scene.sensors[i].scale * model_factor(scene, instants, i) * instants.factor(i),
+          *scene.sensors[i].model, scene.sensors[i].scale * model_factor(scene, instants, i) * instants.factor(i),
           levels[static_cast<Eigen::Index>(i)]));
   array.rate_hz = info.rate_hz;
   array.learning_samples = info.has_reference ? plan.learn_to - plan.learn_from : 0;
@@ -126,40 +111,33 @@ constexpr double kLeastPresent = 1e-3;
 constexpr double kMostFrozen = 0.5;
 
 // A dead sensor must not leave every instant of the others incomplete.
-std::vector<Eigen::Index> live_sensors(const Scene& scene,
-                                       const Instants& instants,
-                                       ReplayPlan& plan) {
+std::vector<Eigen::Index> live_sensors(const Scene& scene, const Instants& instants, ReplayPlan& plan) {
   std::vector<Eigen::Index> live;
   const SourceInfo& source = instants.source().info();
   if (scene.tilt || source.presence.empty()) return live;
   const auto sample = [&](std::int64_t instant) {
-    return (instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz) *
-           source.rate_hz;
+    return (instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz) * source.rate_hz;
   };
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
     if (std::find(source.frozen.begin(), source.frozen.end(), i) != source.frozen.end()) {
       const auto still = static_cast<double>(at.still_from);
-      const double inside =
-          std::min(to, still + static_cast<double>(at.still)) - std::max(from, still);
+      const double inside = std::min(to, still + static_cast<double>(at.still)) - std::max(from, still);
       const bool whole = inside >= kMostFrozen * (to - from);
       plan.warnings.add(
           "frozen_sensor",
-          whole ? "sensors that stand still where the others move were left out of everything"
-                : kFrozenMissing,
+          whole ? "sensors that stand still where the others move were left out of everything" : kFrozenMissing,
           still_words(scene.sensors[i].name, at, source.rate_hz));
       if (whole) continue;
     }
-    const double overlap = std::min(to, static_cast<double>(at.last) + 1) -
-                           std::max(from, static_cast<double>(at.first));
-    if (at.samples > 0 &&
-        std::min(static_cast<double>(at.samples), overlap) > kLeastPresent * (to - from))
+    const double overlap =
+        std::min(to, static_cast<double>(at.last) + 1) - std::max(from, static_cast<double>(at.first));
+    if (at.samples > 0 && std::min(static_cast<double>(at.samples), overlap) > kLeastPresent * (to - from))
       live.push_back(static_cast<Eigen::Index>(i));
     else
       plan.warnings.add("sensor_without_samples",
-                        "sensors without samples in the evaluation were left out of everything",
-                        scene.sensors[i].name);
+                        "sensors without samples in the evaluation were left out of everything", scene.sensors[i].name);
   }
   if (live.size() == source.presence.size())
     live.clear();
@@ -175,17 +153,14 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
   plan.learn_from = std::min(std::max(plan.learn_from, settled), plan.learn_to);
   if (learning && plan.learn_from == plan.learn_to)
     plan.warnings.add(
-        "learning_before_settled",
-        "the learning window ends before the filter has settled: nothing is learnt there",
-        fmt::format("settled after {}",
-                    duration_text(static_cast<double>(settled) / instants.info().rate_hz)));
-  plan.warm_up = std::max<std::int64_t>(
-      std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz), settled - plan.run_from);
+        "learning_before_settled", "the learning window ends before the filter has settled: nothing is learnt there",
+        fmt::format("settled after {}", duration_text(static_cast<double>(settled) / instants.info().rate_hz)));
+  plan.warm_up = std::max<std::int64_t>(std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz),
+                                        settled - plan.run_from);
   if (plan.warm_up > plan.run_to - plan.run_from - 2)
     throw input_error("E0903", scene.file)
-        .says(settled > plan.run_from
-                  ? "the evaluation ends before the filter has settled"
-                  : "warm_up_s: it leaves fewer than two instants of the evaluation to score")
+        .says(settled > plan.run_from ? "the evaluation ends before the filter has settled"
+                                      : "warm_up_s: it leaves fewer than two instants of the evaluation to score")
         .got(duration_text(static_cast<double>(plan.warm_up) / instants.info().rate_hz));
 }
 
@@ -195,30 +170,21 @@ TimeWindow first_half(const Instants& instants) {
 }
 
 // Seconds from the recording's first sample to instants.
-void place_windows(const Scene& scene,
-                   const ReplayOptions& options,
-                   const Instants& instants,
-                   ReplayPlan& plan) {
+void place_windows(const Scene& scene, const ReplayOptions& options, const Instants& instants, ReplayPlan& plan) {
   auto learning = options.learning ? options.learning : scene.learning;
   if (!learning && scene.align && scene.align->choose && instants.info().count >= kFewestTaught)
     learning = first_half(instants);
   const auto evaluation = options.evaluation ? options.evaluation : scene.evaluation;
-  const double end_s = instants.info().start_s +
-                       static_cast<double>(instants.info().count) / instants.info().rate_hz;
+  const double end_s = instants.info().start_s + static_cast<double>(instants.info().count) / instants.info().rate_hz;
   const auto check = [&](const TimeWindow& window, const char* key) {
     if (window.from_s >= end_s)
       throw input_error("E0903", scene.file)
-          .says("{}: the window begins after the end of the recording, which is at {} s",
-                key,
-                brief_text(end_s, 6))
+          .says("{}: the window begins after the end of the recording, which is at {} s", key, brief_text(end_s, 6))
           .got(brief_text(window.from_s, 6));
     if (std::isfinite(window.to_s) && window.to_s > end_s + 1 / instants.info().rate_hz)
-      plan.warnings.add("window_beyond_end",
-                        "a window reaches beyond the end of the recording and ends with it",
-                        fmt::format("{} to {} s, the end is at {} s",
-                                    key,
-                                    brief_text(window.to_s, 6),
-                                    brief_text(end_s, 6)));
+      plan.warnings.add(
+          "window_beyond_end", "a window reaches beyond the end of the recording and ends with it",
+          fmt::format("{} to {} s, the end is at {} s", key, brief_text(window.to_s, 6), brief_text(end_s, 6)));
   };
   if (learning) {
     check(*learning, "learning");
@@ -235,16 +201,12 @@ void place_windows(const Scene& scene,
   plan.run_from = instants.instant_at(plan.evaluation.from_s);
   plan.run_to = instants.instant_at(plan.evaluation.to_s);
   if (plan.run_to - plan.run_from < 2)
-    throw input_error("E0903", scene.file)
-        .says("evaluation: the window holds fewer than two instants");
+    throw input_error("E0903", scene.file).says("evaluation: the window holds fewer than two instants");
   place_warm_up(scene, instants, plan);
   for (const SensorFault& fault : instants.source().known_faults())
     if (fault.from_s >= end_s)
-      plan.warnings.add(
-          "fault_after_end",
-          "a fault begins after the end of the recording and changes nothing",
-          fmt::format(
-              "{} from {} s", scene.sensors[fault.sensor].name, brief_text(fault.from_s, 6)));
+      plan.warnings.add("fault_after_end", "a fault begins after the end of the recording and changes nothing",
+                        fmt::format("{} from {} s", scene.sensors[fault.sensor].name, brief_text(fault.from_s, 6)));
   if (plan.learn_to > plan.run_from && plan.learn_from < plan.run_to)
     plan.warnings.add("learning_in_evaluation",
                       "the evaluation holds instants of the learning window: methods that learn "
@@ -264,8 +226,7 @@ std::string label_of(const SceneAlgorithm& algorithm, bool repeated) {
 PlannedAlgorithm planned(const SceneAlgorithm& asked, bool repeated, const Scene& scene) {
   try {
     const fusion::Entry& entry = fusion::algorithm(asked.name);
-    PlannedAlgorithm out{
-        label_of(asked, repeated), &entry, fusion::Settings(entry.options), "", true};
+    PlannedAlgorithm out{label_of(asked, repeated), &entry, fusion::Settings(entry.options), "", true};
     for (const auto& [name, value] : asked.options) out.settings.set(name, value);
     return out;
   } catch (const Error& error) {
@@ -293,14 +254,11 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
   if (asked.empty() || options.no_skip)
     for (const fusion::Entry& entry : fusion::algorithms())
       if (const std::string name(entry.description->name); !times.contains(name))
-        out.push_back(
-            {name,
-             &entry,
-             fusion::Settings(entry.options),
-             asked.empty() && entry.description->as_published && !options.published
-                 ? name + " is the form as published: it runs by name, or with `published`"
-                 : "",
-             asked.empty()});
+        out.push_back({name, &entry, fusion::Settings(entry.options),
+                       asked.empty() && entry.description->as_published && !options.published
+                           ? name + " is the form as published: it runs by name, or with `published`"
+                           : "",
+                       asked.empty()});
   return out;
 }
 
@@ -319,12 +277,8 @@ std::vector<PlannedAlgorithm> optimum(const fusion::Array& array) {
     if (bound.runs()) out.push_back(std::move(bound));
   };
   if (array.tilt) {
-    for (const char* name : {"tilt-kalman-tuned",
-                             "tilt-complementary-tuned",
-                             "tilt-kalman",
-                             "tilt-complementary",
-                             "tilt-gyroscope",
-                             "tilt-accelerometer"})
+    for (const char* name : {"tilt-kalman-tuned", "tilt-complementary-tuned", "tilt-kalman", "tilt-complementary",
+                             "tilt-gyroscope", "tilt-accelerometer"})
       add(name, {});
     return out;
   }
@@ -342,8 +296,7 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
         .hint("10 s is the default");
   for (PlannedAlgorithm& a : plan.algorithms)
     if (a.runs() && !a.learns_before() && !a.learns_run()) {
-      a.blind = blind_share(
-          *a.entry, a.settings, live, plan.run_to - plan.run_from, plan.warm_up, options.budget_s);
+      a.blind = blind_share(*a.entry, a.settings, live, plan.run_to - plan.run_from, plan.warm_up, options.budget_s);
       if (a.blind.whole || !a.asked || live.reference_throughout) continue;
       plan.warnings.add("leave_one_out_budget",
                         "leave-one-out that costs more than its budget ran on a part of the "
@@ -360,16 +313,13 @@ Scene taught(const Scene& scene, const ReplayOptions& options) {
   const bool learns =
       asked.empty() || std::any_of(asked.begin(), asked.end(), [](const SceneAlgorithm& a) {
         const fusion::Entry* entry = fusion::find_algorithm(a.name);
-        return entry != nullptr &&
-               (entry->description->needs.reference || entry->description->needs.reference_helps);
+        return entry != nullptr && (entry->description->needs.reference || entry->description->needs.reference_helps);
       });
-  const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation ||
-                    scene.align || scene.fault_free_s || !scene.faults.empty() ||
+  const bool said = scene.learning || scene.evaluation || options.learning || options.evaluation || scene.align ||
+                    scene.fault_free_s || !scene.faults.empty() ||
                     (scene.simulated && !scene.simulated->faults.empty());
-  const bool one =
-      scene.reference && (scene.reference->mean || scene.reference->channels.size() == 1);
-  if (!learns || said || !one || !scene.reference->teach || scene.simulate || scene.tilt ||
-      scene.sensors.size() < 2)
+  const bool one = scene.reference && (scene.reference->mean || scene.reference->channels.size() == 1);
+  if (!learns || said || !one || !scene.reference->teach || scene.simulate || scene.tilt || scene.sensors.size() < 2)
     return out;
   out.align = SceneAlign{};
   out.align->learn = "learning";
@@ -377,9 +327,7 @@ Scene taught(const Scene& scene, const ReplayOptions& options) {
   return out;
 }
 
-ReplayPlan make_plan(const Scene& scene,
-                     const ReplayOptions& options,
-                     const Instants& instants,
+ReplayPlan make_plan(const Scene& scene, const ReplayOptions& options, const Instants& instants,
                      const SensorKnowledge& knowledge) {
   ReplayPlan plan;
   place_windows(scene, options, instants, plan);
@@ -388,8 +336,7 @@ ReplayPlan make_plan(const Scene& scene,
       const auto& channels = scene.reference->channels;
       if (std::find(channels.begin(), channels.end(), sensor.channel) != channels.end())
         plan.warnings.add("reference_is_a_sensor",
-                          "a sensor is part of the reference: its error is hidden in every score",
-                          sensor.name);
+                          "a sensor is part of the reference: its error is hidden in every score", sensor.name);
     }
   plan.live = live_sensors(scene, instants, plan);
   plan.array = describe_array(scene, instants, knowledge, plan);
@@ -403,46 +350,37 @@ ReplayPlan make_plan(const Scene& scene,
     }
   if (instants.info().has_reference) plan.optimum = optimum(live);
   const auto any = [&](auto&& wanted) {
-    return std::any_of(plan.algorithms.begin(), plan.algorithms.end(), [&](const auto& a) {
-      return a.runs() && wanted(a);
-    });
+    return std::any_of(plan.algorithms.begin(), plan.algorithms.end(),
+                       [&](const auto& a) { return a.runs() && wanted(a); });
   };
-  plan.learning_pass = any([](const auto& a) { return a.learns_before(); }) ||
-                       (options.no_skip && plan.learn_to > plan.learn_from);
-  plan.run_learning_pass =
-      !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
+  plan.learning_pass =
+      any([](const auto& a) { return a.learns_before(); }) || (options.no_skip && plan.learn_to > plan.learn_from);
+  plan.run_learning_pass = !plan.optimum.empty() || any([](const auto& a) { return a.learns_run(); });
   plan.looking_pass = any([](const auto& a) { return a.looks_ahead(); });
   plan.without_reference = (!instants.info().has_reference || options.no_skip) && !scene.tilt;
   if (plan.without_reference) keep_budget(options, live, plan);
   if (!any([](const auto&) { return true; }))
     throw numeric_error("E0905", scene.file)
-        .says("no algorithm can run on this scene: " + (plan.algorithms.empty()
-                                                            ? std::string("none was asked for")
-                                                            : plan.algorithms[0].why))
+        .says("no algorithm can run on this scene: " +
+              (plan.algorithms.empty() ? std::string("none was asked for") : plan.algorithms[0].why))
         .hint("`explain_replay` says what each of them needs");
   const std::int64_t run = plan.run_to - plan.run_from;
-  plan.block =
-      options.block > 0
-          ? options.block
-          : static_cast<std::size_t>(std::clamp(run / kBlocks, kSmallestBlock, kLargestBlock));
+  plan.block = options.block > 0 ? options.block
+                                 : static_cast<std::size_t>(std::clamp(run / kBlocks, kSmallestBlock, kLargestBlock));
   return plan;
 }
 
-Eigen::MatrixXd observations(const Scene& scene, std::size_t inputs) {
-  return observation_matrix(scene, inputs);
-}
+Eigen::MatrixXd observations(const Scene& scene, std::size_t inputs) { return observation_matrix(scene, inputs); }
 
 fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>& channels) {
   fusion::Array part = array;
   if (channels.empty()) return part;
   part.channels = static_cast<Eigen::Index>(channels.size());
-  if (array.observation_matrix.size() > 0)
-    part.observation_matrix = array.observation_matrix(channels, Eigen::all);
+  if (array.observation_matrix.size() > 0) part.observation_matrix = array.observation_matrix(channels, Eigen::all);
   if (array.noise_levels.size() > 0) part.noise_levels = array.noise_levels(channels);
   if (!array.noise_models.empty()) {
     part.noise_models.clear();
-    for (const Eigen::Index i : channels)
-      part.noise_models.push_back(array.noise_models[static_cast<std::size_t>(i)]);
+    for (const Eigen::Index i : channels) part.noise_models.push_back(array.noise_models[static_cast<std::size_t>(i)]);
   }
   return part;
 }

@@ -51,9 +51,7 @@ Scene taught(const Scene& scene, const ReplayOptions& options);
 
 /// Throws Error(input) for unknown algorithms or options of the scene (with place), windows outside
 /// the recording, an empty run.
-ReplayPlan make_plan(const Scene& scene,
-                     const ReplayOptions& options,
-                     const Instants& instants,
+ReplayPlan make_plan(const Scene& scene, const ReplayOptions& options, const Instants& instants,
                      const SensorKnowledge& knowledge);
 
 /// H of a scene, a row a sensor; empty: one input, seen alike by all.

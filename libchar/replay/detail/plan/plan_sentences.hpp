@@ -9,9 +9,7 @@
 namespace libchar {
 
 /// The plan in words, a sentence a line.
-std::vector<std::string> sentences(const ReplayPlan& plan,
-                                   const Scene& scene,
-                                   const Instants& instants,
+std::vector<std::string> sentences(const ReplayPlan& plan, const Scene& scene, const Instants& instants,
                                    const SensorKnowledge& knowledge);
 
 /// "kalman-takens: on 16 stretches, 11 % of the evaluation, all of it would take about 44 s".

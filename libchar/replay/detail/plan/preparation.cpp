@@ -26,8 +26,7 @@ void TrendMeter::push(std::int64_t first, const Eigen::MatrixXd& series) {
 std::vector<TrendLine> TrendMeter::lines(bool sloped) const {
   std::vector<TrendLine> out;
   for (const Sums& s : sums_)
-    out.push_back(
-        {s.value, sloped && s.time_squares > 0 ? s.products / s.time_squares : 0, s.time});
+    out.push_back({s.value, sloped && s.time_squares > 0 ? s.products / s.time_squares : 0, s.time});
   return out;
 }
 

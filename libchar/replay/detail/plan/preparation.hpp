@@ -16,9 +16,7 @@ struct TrendLine {
   double level = 0;   ///< at `middle`
   double slope = 0;   ///< an instant
   double middle = 0;  ///< instant
-  double at(std::int64_t instant) const {
-    return level + slope * (static_cast<double>(instant) - middle);
-  }
+  double at(std::int64_t instant) const { return level + slope * (static_cast<double>(instant) - middle); }
 };
 
 /// The mean, or the line of least squares, of each of several series; NaN = missing. One pass, constant memory.

@@ -22,9 +22,8 @@ constexpr double kUsual = 0.9;        // of the blocks are within what counts as
 constexpr double kOfHalf = 2.44;      // the same over the median, of means that are normal
 constexpr double kOfHalfRms = 1.1;    // of rms
 constexpr double kBeyondUsual = 4;    // times the usual mean of a block
-constexpr double kBeyondNoise =
-    0.5;                         // of the noise: a smaller change of the mean is not worth a word
-constexpr double kLouder = 2.5;  // times the usual rms of a block
+constexpr double kBeyondNoise = 0.5;  // of the noise: a smaller change of the mean is not worth a word
+constexpr double kLouder = 2.5;       // times the usual rms of a block
 
 // Of a sensor that stands apart from the others, at least:
 constexpr double kLeastOffset = 3;  // times the noise
@@ -52,9 +51,8 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
 
 /// One sensor that is far off moves the median by as much as the others scatter: what moves no further than
 /// that is its doing.
-std::vector<ReadingMeter::Change> own_changes(
-    std::vector<ReadingMeter::Change> changes,
-    const std::vector<std::optional<LearntSensor::Reading>>& learnt) {
+std::vector<ReadingMeter::Change> own_changes(std::vector<ReadingMeter::Change> changes,
+                                              const std::vector<std::optional<LearntSensor::Reading>>& learnt) {
   if (changes.size() < 2) return changes;
   std::vector<double> noise;
   for (const auto& one : learnt)
@@ -63,8 +61,7 @@ std::vector<ReadingMeter::Change> own_changes(
   double furthest = 0;
   for (const auto& change : changes) furthest = std::max(furthest, std::abs(change.offset));
   std::erase_if(changes, [&](const ReadingMeter::Change& change) {
-    return change.scatter <= kLouder && std::abs(change.offset) < furthest &&
-           std::abs(change.offset) <= usual;
+    return change.scatter <= kLouder && std::abs(change.offset) < furthest && std::abs(change.offset) <= usual;
   });
   return changes;
 }
@@ -72,9 +69,7 @@ std::vector<ReadingMeter::Change> own_changes(
 }  // namespace
 
 ReadingMeter::ReadingMeter(Eigen::Index sensors, std::int64_t instants)
-    : n_(static_cast<std::size_t>(sensors)),
-      block_(instants >= kManyInstants ? kLongBlock : kShortBlock),
-      now_(n_) {}
+    : n_(static_cast<std::size_t>(sensors)), block_(instants >= kManyInstants ? kLongBlock : kShortBlock), now_(n_) {}
 
 void ReadingMeter::push(const Eigen::MatrixXd& samples) {
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
@@ -119,9 +114,7 @@ ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
   return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
 }
 
-ReadingMeter::Readings ReadingMeter::readings(double share,
-                                              double mean_factor,
-                                              double rms_factor) const {
+ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, double rms_factor) const {
   Readings out(n_);
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<std::pair<double, double>> slopes;
@@ -129,8 +122,7 @@ ReadingMeter::Readings ReadingMeter::readings(double share,
     for (const auto& block : blocks_) {
       const Sums& s = block[i];
       const double variance = s.uu - s.u * s.u / std::max(1.0, s.n);
-      if (s.n >= kLeastInBlock && variance > 0)
-        slopes.emplace_back((s.ur - s.u * s.r / s.n) / variance, variance);
+      if (s.n >= kLeastInBlock && variance > 0) slopes.emplace_back((s.ur - s.u * s.r / s.n) / variance, variance);
     }
     if (slopes.size() < kLeastBlocks) continue;
     LearntSensor::Reading reading;
@@ -151,17 +143,12 @@ ReadingMeter::Readings ReadingMeter::readings(double share,
   return out;
 }
 
-ReadingMeter::Readings ReadingMeter::result() const {
-  return readings(kUsual, 1, 1);
-}
+ReadingMeter::Readings ReadingMeter::result() const { return readings(kUsual, 1, 1); }
 
-ReadingMeter::Readings ReadingMeter::steady() const {
-  return readings(0.5, kOfHalf, kOfHalfRms);
-}
+ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHalf, kOfHalfRms); }
 
 bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual) {
-  return std::abs(block.mean) >
-             std::max(kBeyondUsual * usual.usual_mean, kBeyondNoise * usual.usual_rms) ||
+  return std::abs(block.mean) > std::max(kBeyondUsual * usual.usual_mean, kBeyondNoise * usual.usual_rms) ||
          block.rms > kLouder * usual.usual_rms;
 }
 
@@ -176,8 +163,7 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
     bool before = false;
     for (const auto& block : blocks_) {
       const Sums& s = block[i];
-      const bool now =
-          s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i]);
+      const bool now = s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i]);
       times += now && !before ? 1 : 0;
       before = now;
     }
@@ -228,20 +214,14 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) 
 namespace {
 
 /// "g1: up to 5 deg/s off, 12 times its scatter, from 4 min to the end"
-std::string change_text(const ReadingMeter::Change& change,
-                        const std::vector<std::string>& names,
-                        const std::vector<std::string>& units,
-                        const Clock& clock) {
+std::string change_text(const ReadingMeter::Change& change, const std::vector<std::string>& names,
+                        const std::vector<std::string>& units, const Clock& clock) {
   const auto at = [&](std::int64_t instant) {
     return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
   };
   const std::string& unit = units[change.sensor];
-  return fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}",
-                     printable(names[change.sensor], 40),
-                     brief_text(change.offset, 2),
-                     unit.empty() ? "" : " ",
-                     unit,
-                     brief_text(change.scatter, 2),
+  return fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}", printable(names[change.sensor], 40),
+                     brief_text(change.offset, 2), unit.empty() ? "" : " ", unit, brief_text(change.scatter, 2),
                      change.from == 0 ? std::string("the start") : at(change.from),
                      change.to_end ? std::string("the end") : at(change.to));
 }
@@ -268,9 +248,7 @@ double apart_from(std::vector<double> others, double value, double usual_sd) {
 }
 
 /// Of each value, beyond 1 in magnitude: it stands apart, and by `least` at least; 0: unknown.
-std::vector<double> apart(const std::vector<std::optional<double>>& values,
-                          double least,
-                          double usual_sd) {
+std::vector<double> apart(const std::vector<std::optional<double>>& values, double least, double usual_sd) {
   std::vector<double> out(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::vector<double> others;
@@ -292,28 +270,22 @@ struct ApartSensor {
 /// What is said of one sensor.
 std::string apart_text(const ApartSensor& sensor, const LearntSensor::Reading& reading) {
   std::vector<std::string> what;
-  if (std::abs(sensor.gain) > 1)
-    what.push_back(fmt::format("gain {}", brief_text(1 + reading.gain, 3)));
+  if (std::abs(sensor.gain) > 1) what.push_back(fmt::format("gain {}", brief_text(1 + reading.gain, 3)));
   if (std::abs(sensor.offset) > 1)
-    what.push_back(fmt::format("offset {}{}{}",
-                               brief_text(reading.offset, 2),
-                               sensor.unit.empty() ? "" : " ",
-                               sensor.unit));
+    what.push_back(
+        fmt::format("offset {}{}{}", brief_text(reading.offset, 2), sensor.unit.empty() ? "" : " ", sensor.unit));
   if (sensor.noise > 1) what.push_back(fmt::format("noise {}", brief_text(reading.usual_rms, 2)));
   return fmt::format("{}: {}", printable(sensor.name, 40), fmt::join(what, ", "));
 }
 
-void warn_of_apart(const ReadingMeter::Readings& steady,
-                   const std::vector<std::string>& names,
-                   const std::vector<std::string>& units,
-                   Findings& warnings) {
+void warn_of_apart(const ReadingMeter::Readings& steady, const std::vector<std::string>& names,
+                   const std::vector<std::string>& units, Findings& warnings) {
   std::vector<std::optional<double>> offset, gain, noise;
   std::vector<double> rms;
   for (const auto& one : steady) {
     offset.push_back(one ? std::optional(one->offset) : std::nullopt);
     gain.push_back(one ? std::optional(one->gain) : std::nullopt);
-    noise.push_back(one && one->usual_rms > 0 ? std::optional(std::log(one->usual_rms))
-                                              : std::nullopt);
+    noise.push_back(one && one->usual_rms > 0 ? std::optional(std::log(one->usual_rms)) : std::nullopt);
     if (one) rms.push_back(one->usual_rms);
   }
   if (rms.size() < 3) return;
@@ -324,35 +296,26 @@ void warn_of_apart(const ReadingMeter::Readings& steady,
   for (std::size_t i = 0; i < steady.size(); ++i) {
     const ApartSensor one{names[i], units[i], offsets[i], gains[i], levels[i]};
     if (std::abs(one.offset) > 1 || std::abs(one.gain) > 1 || one.noise > 1)
-      warnings.add("sensor_apart",
-                   "sensors read otherwise than all others, throughout",
-                   apart_text(one, *steady[i]));
+      warnings.add("sensor_apart", "sensors read otherwise than all others, throughout", apart_text(one, *steady[i]));
   }
 }
 
 }  // namespace
 
-void warn_of_readings(const ReadingMeter& meter,
-                      const std::vector<std::string>& names,
-                      const std::vector<std::string>& units,
-                      const Clock& clock,
-                      Findings& warnings) {
+void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
   const ReadingMeter::Readings steady = meter.steady();
   std::vector<ReadingMeter::Change> changes = meter.changes(steady);
   // Where most change it is what they see that does: motion, and how the sensors differ in it.
   if (2 * changes.size() > steady.size()) changes.clear();
   for (const ReadingMeter::Change& change : changes)
-    warnings.add("sensor_failing",
-                 "sensors read otherwise, relative to the others, than for most of the run",
+    warnings.add("sensor_failing", "sensors read otherwise, relative to the others, than for most of the run",
                  change_text(change, names, units, clock));
   warn_of_apart(steady, names, units, warnings);
 }
 
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
-                     const std::vector<std::string>& names,
-                     const std::vector<std::string>& units,
-                     const Clock& clock,
-                     Findings& warnings) {
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
+                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
   for (const ReadingMeter::Change& change : changes)
     warnings.add("sensor_changed",
                  "sensors read otherwise, relative to the others, than where this was learnt: "

@@ -72,16 +72,10 @@ struct Clock {
 
 /// Sensors that read otherwise than they do for most of the log they are judged by, or than all
 /// others throughout: offset, gain and noise of one that stand apart from those of the rest.
-void warn_of_readings(const ReadingMeter& meter,
-                      const std::vector<std::string>& names,
-                      const std::vector<std::string>& units,
-                      const Clock& clock,
-                      Findings& warnings);
+void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
 
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes,
-                     const std::vector<std::string>& names,
-                     const std::vector<std::string>& units,
-                     const Clock& clock,
-                     Findings& warnings);
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
+                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
 
 }  // namespace libchar::detail

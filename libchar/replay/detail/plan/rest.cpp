@@ -31,8 +31,7 @@ void RestMeter::push(const Eigen::MatrixXd& samples) {
 
 std::vector<double> RestMeter::means() const {
   std::vector<double> out;
-  for (const Sums& s : sensors_)
-    out.push_back(s.samples > 0 ? s.origin + s.sum / static_cast<double>(s.samples) : 0);
+  for (const Sums& s : sensors_) out.push_back(s.samples > 0 ? s.origin + s.sum / static_cast<double>(s.samples) : 0);
   return out;
 }
 

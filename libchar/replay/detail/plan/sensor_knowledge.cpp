@@ -24,8 +24,7 @@ RestMeter at_rest(const Scene& scene, const Instants& instants, Progress& progre
     throw input_error("E0903", scene.file)
         .says("rest: the window holds fewer than two instants of the recording")
         .hint(instants.settled() > 0 ? "the filter has to settle first" : "");
-  instants.pass(
-      from, to, kRestBlock, progress, [&](const InstantBlock& b) { meter.push(b.samples); });
+  instants.pass(from, to, kRestBlock, progress, [&](const InstantBlock& b) { meter.push(b.samples); });
   return meter;
 }
 
@@ -53,14 +52,13 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
     out.noise_variances = scene.preparation.filters() ? rest.variances() : rest.noise_variances();
     out.noise_sources.assign(n, "rest");
     // Gravity is no offset.
-    if (scene.tilt)
-      out.offsets[scene.tilt->accelerometer_x] = out.offsets[scene.tilt->accelerometer_z] = 0;
+    if (scene.tilt) out.offsets[scene.tilt->accelerometer_x] = out.offsets[scene.tilt->accelerometer_z] = 0;
   }
   const InstantsInfo& info = instants.info();
   for (std::size_t i = 0; i < n; ++i) {
     const SceneSensor& sensor = scene.sensors[i];
-    const double to_fused = instants.factor(i) * instants.factor(i) * instants.noise_gain() /
-                            static_cast<double>(info.averaged);
+    const double to_fused =
+        instants.factor(i) * instants.factor(i) * instants.noise_gain() / static_cast<double>(info.averaged);
     if (sensor.noise) {
       out.noise_variances[i] = *sensor.noise * *sensor.noise * to_fused;
       out.noise_sources[i] = "the scene";
@@ -69,8 +67,7 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
       const std::uint64_t oversampling = scene.simulate    ? scene.simulate->oversampling
                                          : scene.simulated ? scene.simulated->oversampling
                                                            : 1;
-      const double variance =
-          sample_noise_variance(*sensor.model, instants.source().info().rate_hz, oversampling);
+      const double variance = sample_noise_variance(*sensor.model, instants.source().info().rate_hz, oversampling);
       if (variance > 0) {
         out.noise_variances[i] = variance * scale * to_fused;
         out.noise_sources[i] = "the models";

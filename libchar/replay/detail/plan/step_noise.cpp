@@ -21,9 +21,7 @@ constexpr std::int64_t kPairsInStretch = 16;
 constexpr double kBeyondDoubt = 6;
 constexpr double kWorthSaying = 1.25;  // of deviations
 
-double median_of_stretches(std::vector<double> values) {
-  return median_in_place(values, Middle::upper);
-}
+double median_of_stretches(std::vector<double> values) { return median_in_place(values, Middle::upper); }
 
 /// Beyond, what grows with the cube of the number of sensors is done in closed form.
 constexpr Eigen::Index kManySensors = 64;
@@ -60,8 +58,7 @@ StepNoiseMeter::StepNoiseMeter(const Eigen::MatrixXd& h, std::int64_t instants)
 
 void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
   for (Eigen::Index k = 0; k < samples.cols(); ++k, ++now_) {
-    const bool complete =
-        (samples.col(k).array().abs() <= fusion::kLargestSample).all();  // NaN fails
+    const bool complete = (samples.col(k).array().abs() <= fusion::kLargestSample).all();  // NaN fails
     if (now_ % 2 == 0) {
       has_last_ = complete;
       if (complete) last_ = samples.col(k);
@@ -94,8 +91,7 @@ void StepNoiseMeter::close() {
   squares_.setZero();
   pairs_ = 0;
   if (std::ssize(stretches_) < 2 * kStretchesOfNoise) return;
-  for (std::size_t s = 0; s < kStretchesOfNoise; ++s)
-    stretches_[s] = 0.5 * (stretches_[2 * s] + stretches_[2 * s + 1]);
+  for (std::size_t s = 0; s < kStretchesOfNoise; ++s) stretches_[s] = 0.5 * (stretches_[2 * s] + stretches_[2 * s + 1]);
   stretches_.resize(kStretchesOfNoise);
   each_ *= 2;
 }
@@ -112,10 +108,8 @@ std::vector<std::optional<StepNoise>> StepNoiseMeter::result() const {
   return out;
 }
 
-void warn_of_noise(const std::vector<std::string>& names,
-                   const std::vector<std::optional<StepNoise>>& learnt,
-                   const std::vector<std::optional<StepNoise>>& here,
-                   Findings& warnings) {
+void warn_of_noise(const std::vector<std::string>& names, const std::vector<std::optional<StepNoise>>& learnt,
+                   const std::vector<std::optional<StepNoise>>& here, Findings& warnings) {
   std::vector<std::pair<std::size_t, double>> changes;  // ln of the ratio of deviations
   std::size_t compared = 0;
   double low = 0, high = 0;
@@ -138,11 +132,10 @@ void warn_of_noise(const std::vector<std::string>& names,
     return;
   }
   for (const auto& [i, change] : changes)
-    warnings.add(
-        "noise_changed",
-        "sensors scatter from sample to sample as they did not where this was learnt: weights "
-        "and standard deviations of there may not fit",
-        fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
+    warnings.add("noise_changed",
+                 "sensors scatter from sample to sample as they did not where this was learnt: weights "
+                 "and standard deviations of there may not fit",
+                 fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
 }
 
 }  // namespace libchar

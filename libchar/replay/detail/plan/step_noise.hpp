@@ -38,9 +38,9 @@ class StepNoiseMeter {
   void close();
   Eigen::VectorXd solved(const Eigen::VectorXd& squares) const;
 
-  Eigen::MatrixXd residual_;  // M; empty where many_alike_
-  bool one_input_alike_;      // one input seen alike by all: M d = d - mean
-  bool many_alike_;  // one_input_alike_, and so many sensors that the inverse is not written out
+  Eigen::MatrixXd residual_;                // M; empty where many_alike_
+  bool one_input_alike_;                    // one input seen alike by all: M d = d - mean
+  bool many_alike_;                         // one_input_alike_, and so many sensors that the inverse is not written out
   std::optional<Eigen::MatrixXd> inverse_;  // of M o M
   double trace_ = 0;
   std::int64_t each_, now_ = 0, pairs_ = 0;
@@ -51,9 +51,7 @@ class StepNoiseMeter {
 
 /// What differs between here and where it was learnt, beyond doubt (six standard errors: below 1e-4 a
 /// sensor and log for noise that is the same) and by more than a quarter of the deviation.
-void warn_of_noise(const std::vector<std::string>& names,
-                   const std::vector<std::optional<StepNoise>>& learnt,
-                   const std::vector<std::optional<StepNoise>>& here,
-                   Findings& warnings);
+void warn_of_noise(const std::vector<std::string>& names, const std::vector<std::optional<StepNoise>>& learnt,
+                   const std::vector<std::optional<StepNoise>>& here, Findings& warnings);
 
 }  // namespace libchar

@@ -13,9 +13,9 @@ namespace libchar::detail {
 namespace {
 
 constexpr double kWindow_s = 1;
-constexpr std::int64_t kShortest = 16;  ///< samples
-constexpr double kFewest = 30;          ///< changes
-constexpr double kMoves = 0.02;  ///< rad from window to window: less is no rotation to judge by
+constexpr std::int64_t kShortest = 16;      ///< samples
+constexpr double kFewest = 30;              ///< changes
+constexpr double kMoves = 0.02;             ///< rad from window to window: less is no rotation to judge by
 constexpr double kSure = 0.7, kNone = 0.3;  ///< correlations
 constexpr double kScale = 1.3;              ///< ratio of the sizes
 
@@ -81,8 +81,7 @@ double TiltCheck::delay_s() const {
 
 void TiltCheck::tell(Findings& warnings) const {
   if (n_ < kFewest) return;
-  const double gg = std::max(0.0, gg_ / n_ - g_ / n_ * (g_ / n_)),
-               aa = std::max(0.0, aa_ / n_ - a_ / n_ * (a_ / n_)),
+  const double gg = std::max(0.0, gg_ / n_ - g_ / n_ * (g_ / n_)), aa = std::max(0.0, aa_ / n_ - a_ / n_ * (a_ / n_)),
                ga = ga_ / n_ - g_ / n_ * (a_ / n_);
   const double rate = std::sqrt(gg), angle = std::sqrt(aa);
   if (!(angle > kMoves)) return;
@@ -95,19 +94,16 @@ void TiltCheck::tell(Findings& warnings) const {
         "accelerometer is wrong, or the two accelerometer axes are exchanged",
         Severity::bad);
   else if (r > kSure && (ratio > kScale || ratio < 1 / kScale))
-    say(fmt::format(
-            "the gyroscope reads {} times the rate at which gravity turns: its unit or scale "
-            "is wrong",
-            brief_text(ratio, 3)),
+    say(fmt::format("the gyroscope reads {} times the rate at which gravity turns: its unit or scale "
+                    "is wrong",
+                    brief_text(ratio, 3)),
         Severity::bad);
   else if (const double delay = delay_s(); r > kSure && delay != 0)
-    say(fmt::format("the {} {} late: what is fused is of two times",
-                    delay > 0 ? "accelerometers are" : "gyroscope is",
+    say(fmt::format("the {} {} late: what is fused is of two times", delay > 0 ? "accelerometers are" : "gyroscope is",
                     duration_text(std::abs(delay))),
         Severity::caution);
   else if (std::abs(r) < kNone)
-    say("the gyroscope does not turn as gravity does: it is another axis, or it does not work",
-        Severity::caution);
+    say("the gyroscope does not turn as gravity does: it is another axis, or it does not work", Severity::caution);
 }
 
 }  // namespace libchar::detail

@@ -41,7 +41,7 @@ class TiltCheck {
   double integrated_ = 0;  // of the rate, from the start on
   bool has_last_ = false;
   double last_g_ = 0, last_a_ = 0, last_rate_ = 0;
-  double rr_ = 0, re_ = 0, ee_ = 0;  // of changes of the mean rate, and of e = dG - dA
+  double rr_ = 0, re_ = 0, ee_ = 0;                          // of changes of the mean rate, and of e = dG - dA
   double n_ = 0, g_ = 0, a_ = 0, gg_ = 0, ga_ = 0, aa_ = 0;  // sums of the changes
 };
 

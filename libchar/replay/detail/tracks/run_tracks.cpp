@@ -20,8 +20,8 @@ constexpr std::int64_t kCloseInstants = 400, kLeastCloseInstants = 50;
 }  // namespace
 
 Envelope::Envelope(std::int64_t instants, std::size_t bins)
-    : size_(std::max<std::int64_t>(
-          1, (instants + static_cast<std::int64_t>(bins) - 1) / static_cast<std::int64_t>(bins))),
+    : size_(std::max<std::int64_t>(1,
+                                   (instants + static_cast<std::int64_t>(bins) - 1) / static_cast<std::int64_t>(bins))),
       instants_(instants),
       low_(static_cast<std::size_t>((instants + size_ - 1) / size_), kNone),
       high_(low_) {}
@@ -29,28 +29,24 @@ Envelope::Envelope(std::int64_t instants, std::size_t bins)
 void Envelope::add_to(Timeline& timeline, double start_s, double rate_hz) const {
   if (timeline.time_s.empty())
     for (std::int64_t from = 0; from < instants_; from += size_)
-      timeline.time_s.push_back(
-          start_s +
-          0.5 * static_cast<double>(from + std::min(from + size_, instants_) - 1) / rate_hz);
+      timeline.time_s.push_back(start_s +
+                                0.5 * static_cast<double>(from + std::min(from + size_, instants_) - 1) / rate_hz);
   timeline.low.push_back(low_);
   timeline.high.push_back(high_);
 }
 
-std::vector<CloseUpPlace> close_up_places(std::int64_t instants,
-                                          std::int64_t scored_from,
-                                          const std::vector<std::int64_t>& starts,
-                                          std::size_t series) {
+std::vector<CloseUpPlace> close_up_places(std::int64_t instants, std::int64_t scored_from,
+                                          const std::vector<std::int64_t>& starts, std::size_t series) {
   std::vector<CloseUpPlace> out;
   if (instants <= static_cast<std::int64_t>(kRunBins)) return out;
-  const auto room = static_cast<std::int64_t>(
-      kMostCloseNumbers / (2 * kMostCloseUps * std::max<std::size_t>(series, 1)));
+  const auto room =
+      static_cast<std::int64_t>(kMostCloseNumbers / (2 * kMostCloseUps * std::max<std::size_t>(series, 1)));
   const std::int64_t count = std::min(kCloseInstants, room);
   if (count < kLeastCloseInstants) return out;
   const auto add = [&](std::int64_t from, std::optional<std::size_t> fault) {
     from = std::clamp<std::int64_t>(from, 0, instants - count);
-    const bool free = std::all_of(out.begin(), out.end(), [&](const CloseUpPlace& other) {
-      return std::abs(other.from - from) >= count;
-    });
+    const bool free = std::all_of(out.begin(), out.end(),
+                                  [&](const CloseUpPlace& other) { return std::abs(other.from - from) >= count; });
     if (free && out.size() < kMostCloseUps) out.push_back({from, count, fault});
   };
   add(scored_from, {});
@@ -61,70 +57,51 @@ std::vector<CloseUpPlace> close_up_places(std::int64_t instants,
   return out;
 }
 
-RunTracker::Kept RunTracker::kept(const CloseUpPlace& place,
-                                  std::size_t bins,
-                                  std::size_t algorithms,
+RunTracker::Kept RunTracker::kept(const CloseUpPlace& place, std::size_t bins, std::size_t algorithms,
                                   bool alike) const {
   const auto inputs = static_cast<std::size_t>(frame_->array->inputs());
   const auto sensors = alike ? static_cast<std::size_t>(frame_->array->channels) : 0;
   const Envelope empty(place.count, bins);
-  return {place,
-          std::vector<Envelope>(inputs, empty),
-          std::vector<Pair>(algorithms * inputs, {empty, empty}),
+  return {place, std::vector<Envelope>(inputs, empty), std::vector<Pair>(algorithms * inputs, {empty, empty}),
           std::vector<Pair>(sensors, {empty, empty})};
 }
 
-RunTracker::RunTracker(const RunFrame& frame,
-                       std::int64_t instants,
-                       std::size_t algorithms,
-                       bool alike,
+RunTracker::RunTracker(const RunFrame& frame, std::int64_t instants, std::size_t algorithms, bool alike,
                        const std::vector<std::int64_t>& fault_starts)
     : frame_(&frame) {
   const auto inputs = static_cast<std::size_t>(frame.array->inputs());
   const auto sensors = alike ? static_cast<std::size_t>(frame.array->channels) : 0;
   const std::size_t series = inputs + 2 * (algorithms * inputs + sensors);
-  kept_.push_back(
-      kept({0, instants, {}},
-           std::clamp(
-               kMostTrackNumbers / (2 * std::max<std::size_t>(series, 1)), kLeastRunBins, kRunBins),
-           algorithms,
-           alike));
-  const auto scored = static_cast<std::int64_t>(
-      std::llround((frame.scored_from_s - frame.start_s) * frame.rate_hz));
+  kept_.push_back(kept({0, instants, {}},
+                       std::clamp(kMostTrackNumbers / (2 * std::max<std::size_t>(series, 1)), kLeastRunBins, kRunBins),
+                       algorithms, alike));
+  const auto scored = static_cast<std::int64_t>(std::llround((frame.scored_from_s - frame.start_s) * frame.rate_hz));
   for (const CloseUpPlace& place : close_up_places(instants, scored, fault_starts, series))
     kept_.push_back(kept(place, static_cast<std::size_t>(place.count), algorithms, alike));
   if (alike) h_ = frame.array->h().col(0);
 }
 
-void RunTracker::push(std::int64_t first,
-                      const Eigen::MatrixXd& samples,
-                      const Eigen::MatrixXd& truth,
+void RunTracker::push(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth,
                       const std::vector<AlgorithmRun>& runs) {
   const double scale = frame_->output_scale;
   referenced_ = truth.rows() > 0;
   if (!referenced_ && !kept_[0].sensors.empty()) find_medians(samples);
   for (Kept& kept : kept_) {
     const std::int64_t from = std::max(first, kept.place.from),
-                       to = std::min<std::int64_t>(first + samples.cols(),
-                                                   kept.place.from + kept.place.count);
+                       to = std::min<std::int64_t>(first + samples.cols(), kept.place.from + kept.place.count);
     if (from >= to) continue;
-    const Part part{from - kept.place.from,
-                    static_cast<Eigen::Index>(from - first),
+    const Part part{from - kept.place.from, static_cast<Eigen::Index>(from - first),
                     static_cast<Eigen::Index>(to - from)};
     for (Eigen::Index j = 0; j < truth.rows(); ++j)
-      kept.reference[static_cast<std::size_t>(j)].push(
-          part.first, part.count, [&](Eigen::Index k) { return truth(j, part.skip + k) * scale; });
+      kept.reference[static_cast<std::size_t>(j)].push(part.first, part.count,
+                                                       [&](Eigen::Index k) { return truth(j, part.skip + k) * scale; });
     for (std::size_t i = 0; i < runs.size(); ++i)
-      if (runs[i].alive())
-        push_run(part, runs[i], truth, &kept.estimates[i * kept.reference.size()]);
+      if (runs[i].alive()) push_run(part, runs[i], truth, &kept.estimates[i * kept.reference.size()]);
     push_sensors(part, samples, truth, kept.sensors);
   }
 }
 
-void RunTracker::push_run(const Part& part,
-                          const AlgorithmRun& run,
-                          const Eigen::MatrixXd& truth,
-                          Pair* to) {
+void RunTracker::push_run(const Part& part, const AlgorithmRun& run, const Eigen::MatrixXd& truth, Pair* to) {
   const Eigen::MatrixXd& x = run.estimates();
   const double scale = frame_->output_scale;
   for (Eigen::Index j = 0; j < x.rows(); ++j) {
@@ -137,9 +114,7 @@ void RunTracker::push_run(const Part& part,
   }
 }
 
-void RunTracker::push_sensors(const Part& part,
-                              const Eigen::MatrixXd& samples,
-                              const Eigen::MatrixXd& truth,
+void RunTracker::push_sensors(const Part& part, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth,
                               std::vector<Pair>& to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -147,8 +122,7 @@ void RunTracker::push_sensors(const Part& part,
     const auto value = [&](Eigen::Index k) { return samples(row, part.skip + k) / h; };
     if (referenced_) to[i].value.push(part.first, part.count, value);
     to[i].error.push(part.first, part.count, [&](Eigen::Index k) {
-      return value(k) - (referenced_ ? truth(0, part.skip + k)
-                                     : median_[static_cast<std::size_t>(part.skip + k)]);
+      return value(k) - (referenced_ ? truth(0, part.skip + k) : median_[static_cast<std::size_t>(part.skip + k)]);
     });
   }
 }
@@ -175,16 +149,12 @@ Timeline RunTracker::timeline(const Kept& kept, const Envelope& envelope) const 
   return out;
 }
 
-RunStretch RunTracker::stretch(const Kept& kept,
-                               std::size_t run,
-                               std::optional<std::size_t> sensor) const {
+RunStretch RunTracker::stretch(const Kept& kept, std::size_t run, std::optional<std::size_t> sensor) const {
   RunStretch out;
   const std::size_t inputs = kept.reference.size();
   for (std::size_t j = 0; j < inputs; ++j) {
     const Pair& pair = kept.estimates[run * inputs + j];
-    out.inputs.push_back({timeline(kept, kept.reference[j]),
-                          timeline(kept, pair.value),
-                          timeline(kept, pair.error)});
+    out.inputs.push_back({timeline(kept, kept.reference[j]), timeline(kept, pair.value), timeline(kept, pair.error)});
   }
   if (sensor && *sensor < kept.sensors.size()) {
     out.sensor = timeline(kept, kept.sensors[*sensor].value);
@@ -192,8 +162,7 @@ RunStretch RunTracker::stretch(const Kept& kept,
   }
   if (referenced_) return out;
   for (InputTracks& input : out.inputs) input.reference = input.error = {};
-  for (const Pair& pair : kept.sensors)
-    pair.error.add_to(out.deviations, start_s(kept), frame_->rate_hz);
+  for (const Pair& pair : kept.sensors) pair.error.add_to(out.deviations, start_s(kept), frame_->rate_hz);
   return out;
 }
 
@@ -202,11 +171,9 @@ RunTracks RunTracker::result(std::size_t run, std::optional<std::size_t> sensor)
   out.whole = stretch(kept_[0], run, sensor);
   for (std::size_t i = 1; i < kept_.size(); ++i) {
     const double from_s = start_s(kept_[i]);
-    out.close_ups.push_back(
-        {kept_[i].place.fault,
-         from_s,
-         from_s + static_cast<double>(kept_[i].place.count - 1) / frame_->rate_hz,
-         stretch(kept_[i], run, sensor)});
+    out.close_ups.push_back({kept_[i].place.fault, from_s,
+                             from_s + static_cast<double>(kept_[i].place.count - 1) / frame_->rate_hz,
+                             stretch(kept_[i], run, sensor)});
   }
   return out;
 }

@@ -25,8 +25,7 @@ class Envelope {
   void push(std::int64_t first, Eigen::Index count, const Value& value) {
     for (Eigen::Index k = 0; k < count;) {
       const std::int64_t bin = (first + k) / size_;
-      const auto stop =
-          static_cast<Eigen::Index>(std::min<std::int64_t>(count, (bin + 1) * size_ - first));
+      const auto stop = static_cast<Eigen::Index>(std::min<std::int64_t>(count, (bin + 1) * size_ - first));
       double low = low_[static_cast<std::size_t>(bin)], high = high_[static_cast<std::size_t>(bin)];
       for (; k < stop; ++k) {
         const double v = value(k);
@@ -58,10 +57,8 @@ struct CloseUpPlace {
 /// Around the start of the first faults, and where scoring begins; without faults in the middle too.
 /// They do not overlap. `starts`: instants of the run at which the faults begin; `series`: that are
 /// kept of each.
-std::vector<CloseUpPlace> close_up_places(std::int64_t instants,
-                                          std::int64_t scored_from,
-                                          const std::vector<std::int64_t>& starts,
-                                          std::size_t series);
+std::vector<CloseUpPlace> close_up_places(std::int64_t instants, std::int64_t scored_from,
+                                          const std::vector<std::int64_t>& starts, std::size_t series);
 
 /// Listens to a run: the reference, each method's estimate and its error, each sensor and its error
 /// (without a reference: its distance from the median of all).
@@ -69,15 +66,10 @@ class RunTracker {
  public:
   RunTracker() = default;
   /// `alike`: all sensors see one input, in one unit; without that sensors are not compared.
-  RunTracker(const RunFrame& frame,
-             std::int64_t instants,
-             std::size_t algorithms,
-             bool alike,
+  RunTracker(const RunFrame& frame, std::int64_t instants, std::size_t algorithms, bool alike,
              const std::vector<std::int64_t>& fault_starts);
   /// A block that starts at instant `first` of the run, after `runs` have scored it.
-  void push(std::int64_t first,
-            const Eigen::MatrixXd& samples,
-            const Eigen::MatrixXd& truth,
+  void push(std::int64_t first, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth,
             const std::vector<AlgorithmRun>& runs);
   /// Of the `run`-th of the runs, beside the single `sensor` (none: without).
   RunTracks result(std::size_t run, std::optional<std::size_t> sensor) const;
@@ -100,9 +92,7 @@ class RunTracker {
   };
   Kept kept(const CloseUpPlace& place, std::size_t bins, std::size_t algorithms, bool alike) const;
   void push_run(const Part& part, const AlgorithmRun& run, const Eigen::MatrixXd& truth, Pair* to);
-  void push_sensors(const Part& part,
-                    const Eigen::MatrixXd& samples,
-                    const Eigen::MatrixXd& truth,
+  void push_sensors(const Part& part, const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth,
                     std::vector<Pair>& to);
   void find_medians(const Eigen::MatrixXd& samples);
   RunStretch stretch(const Kept& kept, std::size_t run, std::optional<std::size_t> sensor) const;

@@ -24,9 +24,7 @@ bool same_lists(const std::vector<double>& a, const std::vector<double>& b) {
 // Where each stretch is one instant, smallest and largest are the same.
 template <bool Plain>
 bool is_plain(const Timeline& track) {
-  return Plain ==
-         std::equal(
-             track.low.begin(), track.low.end(), track.high.begin(), track.high.end(), same_lists);
+  return Plain == std::equal(track.low.begin(), track.low.end(), track.high.begin(), track.high.end(), same_lists);
 }
 
 template <auto Track>
@@ -133,9 +131,7 @@ const Fields<SensorResult>& reported_sensor_fields() {
   using T = SensorResult;
   static const Fields<ErrorScore> own = [] {
     Fields<ErrorScore> kept = kErrorFields;
-    std::erase_if(kept.rows, [](const Field& row) {
-      return row.key == "availability" || row.key == "converged_s";
-    });
+    std::erase_if(kept.rows, [](const Field& row) { return row.key == "availability" || row.key == "converged_s"; });
     return kept;
   }();
   static const Fields<T> rows = always(Fields<T>{
@@ -163,8 +159,7 @@ const Fields<AllanCurve> kScoreAllan = always(Fields<AllanCurve>{
     computed<[](const AllanCurve& curve) { return name_of(curve.type); }>("type"),
     columns_of<&AllanCurve::points>("", kScorePoints),
 });
-const auto kScoreHasAllan =
-    when<[](const InputScore& score) { return !score.allan.points.empty(); }>;
+const auto kScoreHasAllan = when<[](const InputScore& score) { return !score.allan.points.empty(); }>;
 const Fields<InputScore> kScoreFields = always(Fields<InputScore>{
     field<&InputScore::name>("name"),
     field<&InputScore::unit>("unit"),
@@ -214,9 +209,7 @@ void read_weights(const MapReader& at, std::string_view key, AlgorithmResult& al
   }
 }
 
-void write_options_used(const Field& row,
-                        const ReplayReport::Algorithm& a,
-                        std::vector<Entry>& out) {
+void write_options_used(const Field& row, const ReplayReport::Algorithm& a, std::vector<Entry>& out) {
   Entry options = part_entry(std::string(row.key), {});
   for (const auto& [name, value] : a.options) options.below.push_back({name, value});
   out.push_back(std::move(options));
@@ -240,9 +233,8 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
       field<&L::lead>("lead", {.meaning = "network, retrained, past"}),
       field<&L::from_s>("from_s"),
       field<&L::to_s>("to_s"),
-      field<&L::ended>("ended",
-                       {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
-                                   "right: another network led"}),
+      field<&L::ended>("ended", {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
+                                            "right: another network led"}),
   });
   static const Fields<T> description = always(Fields<T>{
       field<&T::title>("title"),
@@ -273,9 +265,7 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
       field<&T::learning_s>("learning_s"),
       field<&T::peak_bytes>("peak_bytes"),
       custom<AlgorithmResult, read_weights, write_weights>(
-          "weights",
-          "",
-          {.meaning = "at the end, one a sensor; of several inputs a list a sensor"}),
+          "weights", "", {.meaning = "at the end, one a sensor; of several inputs a list a sensor"}),
       field_or_null<&T::variances>("variances"),
       list_of<&T::found>("faults", ReplayReport::Fault::found_fields()),
       field<&T::faults_not_kept>("faults_not_kept"),
@@ -304,8 +294,7 @@ constexpr Word kInterpolationWords[] = {{"sinc", 0}, {"cubic", 1}};
 
 const Fields<TimeWindow> kWindowFields = always(Fields<TimeWindow>{
     field<&TimeWindow::from_s>("from_s"),
-    field<&TimeWindow::to_s>(
-        "to_s", {.known = when<[](const TimeWindow& w) { return std::isfinite(w.to_s); }>}),
+    field<&TimeWindow::to_s>("to_s", {.known = when<[](const TimeWindow& w) { return std::isfinite(w.to_s); }>}),
 });
 
 // ---- alignment ----
@@ -314,8 +303,7 @@ const Fields<TimeWindow> kWindowFields = always(Fields<TimeWindow>{
 void write_savings(const Field& row, const ReplayReport::Alignment& a, std::vector<Entry>& out) {
   Entry savings = part_entry(std::string(row.key), {});
   for (std::size_t p = 0; p < a.budget.savings.size(); ++p)
-    savings.below.push_back(
-        {std::string(name_of(static_cast<fusion::ErrorPart>(p))), a.budget.savings[p]});
+    savings.below.push_back({std::string(name_of(static_cast<fusion::ErrorPart>(p))), a.budget.savings[p]});
   out.push_back(std::move(savings));
 }
 
@@ -323,9 +311,8 @@ void write_parts(const Field& row, const ReplayReport::Sensor& channel, std::vec
   Entry parts = part_entry(std::string(row.key), {});
   for (std::size_t p = 0; p < channel.budget.parts.size(); ++p) {
     const fusion::PartShare& part = channel.budget.parts[p];
-    parts.below.push_back(
-        part_entry(std::string(name_of(static_cast<fusion::ErrorPart>(p))),
-                   {{"share", part.share}, {"share_ci95", part.ci95}, {"saving", part.saving}}));
+    parts.below.push_back(part_entry(std::string(name_of(static_cast<fusion::ErrorPart>(p))),
+                                     {{"share", part.share}, {"share_ci95", part.ci95}, {"saving", part.saving}}));
   }
   out.push_back(std::move(parts));
 }
@@ -360,20 +347,18 @@ const Fields<ReplayReport::Alignment> kAlignmentBudget = always(Fields<ReplayRep
 });
 const Fields<AlignmentResult::Trial> kTrialFields = always(Fields<AlignmentResult::Trial>{
     field<&AlignmentResult::Trial::term>("term", {.meaning = "that was tried; empty: as recorded"}),
-    field<&AlignmentResult::Trial::rmse>("rmse",
-                                         {.meaning = "of weights learnt on the other half"}),
+    field<&AlignmentResult::Trial::rmse>("rmse", {.meaning = "of weights learnt on the other half"}),
     field<&AlignmentResult::Trial::of_mean>("rmse_of_mean"),
     field<&AlignmentResult::Trial::kept>("kept"),
 });
 const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayReport::Alignment>{
     beside<&ReplayReport::Alignment::window>(kWindowFields),
     computed<[](const ReplayReport::Alignment& a) { return a.learnt.instants; }>("instants"),
-    field<&ReplayReport::Alignment::by_reference>(
-        "taught", {.meaning = "by the reference; else by the sensors' mean"}),
+    field<&ReplayReport::Alignment::by_reference>("taught", {.meaning = "by the reference; else by the sensors' mean"}),
     field<&ReplayReport::Alignment::applied>("applied"),
     field<&ReplayReport::Alignment::overlaps>("judged_where_learnt"),
-    field<&ReplayReport::Alignment::learnt, &fusion::Alignment::interpolation>(
-        "interpolation", {.words = kInterpolationWords}),
+    field<&ReplayReport::Alignment::learnt, &fusion::Alignment::interpolation>("interpolation",
+                                                                               {.words = kInterpolationWords}),
     list_of<&ReplayReport::Alignment::trials>("trials", kTrialFields),
     field<&ReplayReport::Alignment::learnt, &fusion::Alignment::notes>("notes"),
     list_of<&ReplayReport::Alignment::sensors>("sensors", kChannelFields),
@@ -382,9 +367,8 @@ const Fields<ReplayReport::Alignment> kAlignmentFields = always(Fields<ReplayRep
 
 // ---- the document ----
 
-const FieldText kSceneOfSimulation{
-    .written = Written::if_known,
-    .known = when<[](const ReplayReport::SceneOf& scene) { return scene.simulated; }>};
+const FieldText kSceneOfSimulation{.written = Written::if_known,
+                                   .known = when<[](const ReplayReport::SceneOf& scene) { return scene.simulated; }>};
 const Fields<ReplayReport::SceneOf> kSceneFields = always(Fields<ReplayReport::SceneOf>{
     field<&ReplayReport::SceneOf::name>("name"),
     field<&ReplayReport::SceneOf::file>("file"),
@@ -395,20 +379,17 @@ const Fields<ReplayReport::SceneOf> kSceneFields = always(Fields<ReplayReport::S
 
 const FieldText kReferenceOfEstimate{
     .written = Written::if_known,
-    .known =
-        when<[](const ReplayReport::Reference& reference) { return reference.offset_estimated; }>};
+    .known = when<[](const ReplayReport::Reference& reference) { return reference.offset_estimated; }>};
 const Fields<ReplayReport::Reference> kReferenceFields = always(Fields<ReplayReport::Reference>{
     field<&ReplayReport::Reference::use>("use", {.required = true}),
     field<&ReplayReport::Reference::channels>("channels"),
     field<&ReplayReport::Reference::mean>("mean"),
     field<&ReplayReport::Reference::lag_s>("lag_s", {.meaning = "the sensors are so late"}),
     field<&ReplayReport::Reference::lag_estimated>("lag_estimated"),
-    field<&ReplayReport::Reference::offset>(
-        "offset", {.meaning = "the reference reads so much more than the sensors"}),
+    field<&ReplayReport::Reference::offset>("offset", {.meaning = "the reference reads so much more than the sensors"}),
     field<&ReplayReport::Reference::offset_estimated>("offset_estimated"),
     field<&ReplayReport::Reference::offset_ci95>("offset_ci95", kReferenceOfEstimate),
-    part<&ReplayReport::Reference::offset_window>(
-        "offset_window", kWindowFields, kReferenceOfEstimate),
+    part<&ReplayReport::Reference::offset_window>("offset_window", kWindowFields, kReferenceOfEstimate),
     field<&ReplayReport::Reference::offset_drifts>("offset_drifts", kReferenceOfEstimate),
 });
 
@@ -416,10 +397,9 @@ const auto kPreparationFilters = when<[](const ScenePreparation& p) { return p.f
 const Fields<ScenePreparation> kPreparationFields = always(Fields<ScenePreparation>{
     field<&ScenePreparation::detrend>("detrend"),
     field<&ScenePreparation::from_hz>("high_pass_hz", {.known = kPreparationFilters}),
-    field<&ScenePreparation::to_hz>(
-        "low_pass_hz", {.known = when<[](const ScenePreparation& p) { return 0 < p.to_hz; }>}),
-    computed<[](const ScenePreparation&) { return std::uint64_t{2}; }>(
-        "order", {.known = kPreparationFilters}),
+    field<&ScenePreparation::to_hz>("low_pass_hz",
+                                    {.known = when<[](const ScenePreparation& p) { return 0 < p.to_hz; }>}),
+    computed<[](const ScenePreparation&) { return std::uint64_t{2}; }>("order", {.known = kPreparationFilters}),
     computed<settling_s>("settling_s"),
 });
 
@@ -444,9 +424,8 @@ const Fields<ReplayReport>& ReplayReport::fields() {
       field<&RunMark::from_s>("from_s"),
       field<&RunMark::to_s>("to_s"),
   });
-  static const auto kPrepared = when<[](const T& report) {
-    return report.preparation.filters() || report.preparation.detrend != "none";
-  }>;
+  static const auto kPrepared =
+      when<[](const T& report) { return report.preparation.filters() || report.preparation.detrend != "none"; }>;
   static const Fields<T> rows = always(Fields<T>{
       part<&T::scene>("scene", kSceneFields, {.required = true}),
       field<&T::verdict>("verdict"),
@@ -461,8 +440,7 @@ const Fields<ReplayReport>& ReplayReport::fields() {
       field<&T::window_s>("window_s"),
       maybe_part<&T::reference>("reference", kReferenceFields),
       computed<[](const T& r) { return r.reference ? "rmse" : "predictive_rms"; }>("score"),
-      computed<[](const T& r) { return r.inputs.empty() ? kNone : r.inputs[0].optimum_rmse; }>(
-          "optimum_rmse"),
+      computed<[](const T& r) { return r.inputs.empty() ? kNone : r.inputs[0].optimum_rmse; }>("optimum_rmse"),
       list_of<&T::inputs>("inputs", inputs, {.required = true}),
       list_of<&T::sensors>("sensors", reported_sensor_fields(), {.required = true}),
       part<&T::preparation>("preparation", kPreparationFields, {.known = kPrepared}),

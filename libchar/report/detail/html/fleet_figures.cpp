@@ -23,20 +23,14 @@ std::string many_rows(const Table& table, std::size_t of) {
 }
 
 /// To a tenth of a degree, without zeros behind it.
-std::string celsius(double t) {
-  return brief_text(std::round(10 * t) / 10, 6);
-}
+std::string celsius(double t) { return brief_text(std::round(10 * t) / 10, 6); }
 
 std::string brackets(const Interval& i, double factor = 1, int digits = 3) {
-  return fmt::format(
-      "[{}, {}]", number_text(factor * i.low, digits), number_text(factor * i.high, digits));
+  return fmt::format("[{}, {}]", number_text(factor * i.low, digits), number_text(factor * i.high, digits));
 }
 
 /// "12 % [10, 14]", or "≤ 3 %" where none is seen.
-std::string spread_text(double spread,
-                        const Interval& ci95,
-                        bool logarithm,
-                        const std::string& unit) {
+std::string spread_text(double spread, const Interval& ci95, bool logarithm, const std::string& unit) {
   const double factor = logarithm ? 100 : 1;
   const std::string behind = logarithm ? " %" : " " + unit;
   if (!(ci95.low > 0)) return "≤ " + number_text(factor * ci95.high, 3) + behind;
@@ -45,8 +39,7 @@ std::string spread_text(double spread,
 
 std::string not_counted(const LotCounts& c) {
   std::string out;
-  for (const auto& [count, what] : {std::pair(c.not_detected, "not detected"),
-                                    std::pair(c.doubtful, "doubtful"),
+  for (const auto& [count, what] : {std::pair(c.not_detected, "not detected"), std::pair(c.doubtful, "doubtful"),
                                     std::pair(c.no_result, "without it")})
     if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count_text(count), what);
   return out;
@@ -65,15 +58,11 @@ std::string off_text(const QuantityLot& q) {
   if (q.of_all) return fmt::format(", of {}", count_text(q.effects->count));
   if (!q.left_out) return "";
   const double most = 100 * (q.left_out->factor - 1);
-  return fmt::format(", too {} by up to {}",
-                     in_logarithm(q.quantity) ? "large" : "far from zero",
-                     most < 100 ? number_text(most, 2) + " %"
-                                : "a factor of " + number_text(q.left_out->factor, 2));
+  return fmt::format(", too {} by up to {}", in_logarithm(q.quantity) ? "large" : "far from zero",
+                     most < 100 ? number_text(most, 2) + " %" : "a factor of " + number_text(q.left_out->factor, 2));
 }
 
-std::string channel_unit_text(const std::string& unit) {
-  return unit.empty() ? "U" : unit;
-}
+std::string channel_unit_text(const std::string& unit) { return unit.empty() ? "U" : unit; }
 
 std::string batches_text(const QuantityLot& q) {
   return q.batch_difference ? probability_text(q.batch_difference->p) : "";
@@ -83,18 +72,14 @@ std::string ppk_text(const Capability& c) {
   if (!c.ppk) return "";
   if (!std::isfinite(*c.ppk)) return *c.ppk > 0 ? ", no spread seen" : ", all above";
   const auto end = [](double value) { return std::isfinite(value) ? number_text(value, 3) : "∞"; };
-  return fmt::format(
-      ", Ppk {} [{}, {}]", number_text(*c.ppk, 3), end(c.ppk_ci95.low), end(c.ppk_ci95.high));
+  return fmt::format(", Ppk {} [{}, {}]", number_text(*c.ppk, 3), end(c.ppk_ci95.low), end(c.ppk_ci95.high));
 }
 
 std::string limit_cell(const QuantityLot& q) {
   if (!q.capability) return "";
   const Capability& c = *q.capability;
-  return fmt::format("≤ {}: {} fail, {} not decided{}",
-                     limit_text(c.text, c.most, q.unit),
-                     count_text(c.fail),
-                     count_text(c.not_decided),
-                     ppk_text(c));
+  return fmt::format("≤ {}: {} fail, {} not decided{}", limit_text(c.text, c.most, q.unit), count_text(c.fail),
+                     count_text(c.not_decided), ppk_text(c));
 }
 
 void scale(LotFigures& f, double factor, bool logarithm) {
@@ -129,15 +114,12 @@ QuantityLot in_field_unit(QuantityLot q) {
     batch.median *= factor;
   }
   if (q.arithmetic) {
-    LotFigures all{
-        q.arithmetic->mean, q.arithmetic->mean_ci95, q.arithmetic->sd, q.arithmetic->sd_ci95};
+    LotFigures all{q.arithmetic->mean, q.arithmetic->mean_ci95, q.arithmetic->sd, q.arithmetic->sd_ci95};
     scale(all, factor, false);
     q.arithmetic = ArithmeticFigures{all.mean, all.mean_ci95, all.spread, all.spread_ci95};
   }
   for (double& quantile : q.quantiles) quantile *= factor;
-  if (q.left_out)
-    q.left_out->mean_ci95 = {q.left_out->mean_ci95.low * factor,
-                             q.left_out->mean_ci95.high * factor};
+  if (q.left_out) q.left_out->mean_ci95 = {q.left_out->mean_ci95.low * factor, q.left_out->mean_ci95.high * factor};
   if (q.capability) q.capability->most *= factor;
   scale_logarithms(q, std::log(factor));
   return q;
@@ -156,14 +138,12 @@ std::string chart_of(const FleetReport& report, const QuantityLot& q, const std:
   std::vector<std::string> beyond;
   for (const ChartValue& v : q.chart->beyond) {
     const double value = in_logarithm(q.quantity) ? std::exp(v.value) : v.value;
-    beyond.push_back(report.records[q.charted[v.index]].device + ": " + number_text(value) + " " +
-                     q.unit);
+    beyond.push_back(report.records[q.charted[v.index]].device + ": " + number_text(value) + " " + q.unit);
   }
   std::vector<ChartBound> bounds;
   for (std::size_t i = 1; i < q.charted.size(); ++i) {
     const std::size_t batch = report.lot->batch_of[q.charted[i]];
-    if (batch != report.lot->batch_of[q.charted[i - 1]])
-      bounds.push_back({i, batch_title(report.lot->batches[batch])});
+    if (batch != report.lot->batch_of[q.charted[i - 1]]) bounds.push_back({i, batch_title(report.lot->batches[batch])});
   }
   // Of very many batches the bounds would be all that is seen.
   if (bounds.size() > 60) bounds.clear();
@@ -178,11 +158,8 @@ std::string batch_table(const QuantityLot& q) {
     out.add({batch_title(one.batch),
              mean_text(one.figures, q.unit) +
                  (one.in_figures > one.counts.counted ? ", of " + count_text(one.in_figures) : ""),
-             one.figures
-                 ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit)
-                 : "–",
-             std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit,
-             counted_text(one.counts),
+             one.figures ? spread_text(one.figures->spread, one.figures->spread_ci95, logarithm, q.unit) : "–",
+             std::isnan(one.median) ? "–" : number_text(one.median) + " " + q.unit, counted_text(one.counts),
              not_counted(one.counts)});
   return folded(fmt::format("{} batches", q.batches.size()), many_rows(out, q.batches.size()));
 }
@@ -201,11 +178,8 @@ std::string coefficient_sentence(const QuantityLot& q) {
       "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias "
       "differs by each time a device is switched on, {} (sd, {} degrees of freedom), not the "
       "noise of one recording.",
-      plural(t.devices, "device"),
-      plural(t.recordings, "recording"),
-      range_text(t.range_c),
-      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)),
-      t.dof);
+      plural(t.devices, "device"), plural(t.recordings, "recording"), range_text(t.range_c),
+      spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)), t.dof);
   if (t.in_one_recording > 0)
     out += fmt::format(
         " Of {} it was found inside a recording as well: fewer than have a slope, and not mixed "
@@ -220,13 +194,11 @@ std::string reference_sentence(const QuantityLot& q) {
   std::string out = fmt::format(
       "{} recorded at {}: their bias is given at {} °C by a line over temperature of "
       "each, which is taken out of how it repeats.",
-      t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were",
-      range_text(t.range_c),
+      t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were", range_text(t.range_c),
       celsius(t.reference_c));
   if (t.elsewhere > 0)
-    out +=
-        fmt::format(" {} recorded at one temperature far from that only: theirs is the bias there.",
-                    t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
+    out += fmt::format(" {} recorded at one temperature far from that only: theirs is the bias there.",
+                       t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
   if (t.dof < 1)
     out +=
         " No device shows how its bias repeats (three recordings, or two at one temperature), "
@@ -239,38 +211,29 @@ std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> reco
   const std::vector<DeviceSlope>& slopes = q.temperatures->slopes;
   Table out("device|coefficient|recordings|at");
   for (const DeviceSlope& slope : first_of(slopes, kMostRows))
-    out.add({records[slope.recording].device,
-             number_text(slope.value) + " " + brackets(slope.ci95) + " " + q.unit,
-             count_text(slope.recordings),
-             range_text(slope.temperature_c)});
-  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")),
-                many_rows(out, slopes.size()));
+    out.add({records[slope.recording].device, number_text(slope.value) + " " + brackets(slope.ci95) + " " + q.unit,
+             count_text(slope.recordings), range_text(slope.temperature_c)});
+  return folded(fmt::format("Coefficients of {}", plural(slopes.size(), "device")), many_rows(out, slopes.size()));
 }
 
 /// What the mean is worth where devices are missing in it.
 std::string left_out_sentence(const QuantityLot& q) {
   const LeftOut& left = *q.left_out;
   const std::size_t missing = q.counts.not_detected + q.counts.doubtful;
-  const std::string what =
-      fmt::format("Mean and spread are of the {} devices that count; {} are not in it ({}). ",
-                  count_text(q.counts.counted),
-                  count_text(missing),
-                  not_counted(q.counts));
-  const std::string of_all = fmt::format(
-      "[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
+  const std::string what = fmt::format("Mean and spread are of the {} devices that count; {} are not in it ({}). ",
+                                       count_text(q.counts.counted), count_text(missing), not_counted(q.counts));
+  const std::string of_all =
+      fmt::format("[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
   if (!in_logarithm(q.quantity))
     return what + fmt::format(
                       "They are about zero: the mean of all may be up to {} % nearer to "
                       "zero, in {}.",
-                      number_text(100 * left.share, 2),
-                      of_all);
+                      number_text(100 * left.share, 2), of_all);
   return what + fmt::format(
                     "If those are the smallest, the mean is too large by up to {} %: that of "
                     "all is in {}, and their spread is at most {} %. Ppk is of those that "
                     "count.",
-                    number_text(100 * (left.factor - 1), 2),
-                    of_all,
-                    number_text(100 * left.spread_high, 3));
+                    number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
 }
 
 /// Whom the mean is of where not all have a value.
@@ -279,10 +242,7 @@ std::string of_all_sentence(const QuantityLot& q) {
       "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
       "what their records show of the square, as values of a lognormal distribution. Not counted: "
       "{}. Histogram, comparison of batches, chart and outliers are of the {} that count.",
-      count_text(q.effects->count),
-      count_text(q.counts.members),
-      not_counted(q.counts),
-      count_text(q.counts.counted));
+      count_text(q.effects->count), count_text(q.counts.members), not_counted(q.counts), count_text(q.counts.counted));
 }
 
 std::string sentences(const QuantityLot& q) {
@@ -292,9 +252,7 @@ std::string sentences(const QuantityLot& q) {
   if (q.of_all) out.push_back(of_all_sentence(q));
   if (q.arithmetic)
     out.push_back(fmt::format("Arithmetic mean {} {} {}, standard deviation of the devices {}.",
-                              number_text(q.arithmetic->mean),
-                              brackets(q.arithmetic->mean_ci95, 1, 4),
-                              q.unit,
+                              number_text(q.arithmetic->mean), brackets(q.arithmetic->mean_ci95, 1, 4), q.unit,
                               spread_text(q.arithmetic->sd, q.arithmetic->sd_ci95, false, q.unit)));
   if (q.quantity == DeviceQuantity::temperature_coefficient)
     out.push_back(coefficient_sentence(q));
@@ -302,24 +260,19 @@ std::string sentences(const QuantityLot& q) {
     out.push_back(reference_sentence(q));
   if (q.batch_difference) {
     const BatchDifference& d = *q.batch_difference;
-    out.push_back(fmt::format(
-        "From batch to batch: {}, {} that batches alike differ as much; within a batch: {}.",
-        spread_text(d.between, d.between_ci95, logarithm, q.unit),
-        probability_text(d.p),
-        number_text((logarithm ? 100 : 1) * d.within, 3) + (logarithm ? " %" : " " + q.unit)));
+    out.push_back(fmt::format("From batch to batch: {}, {} that batches alike differ as much; within a batch: {}.",
+                              spread_text(d.between, d.between_ci95, logarithm, q.unit), probability_text(d.p),
+                              number_text((logarithm ? 100 : 1) * d.within, 3) + (logarithm ? " %" : " " + q.unit)));
   }
   if (q.repeats)
-    out.push_back(
-        fmt::format("From recording to recording of one device: {} ({} devices, {} recordings).",
-                    spread_text(q.repeats->within, q.repeats->within_ci95, logarithm, q.unit),
-                    count_text(q.repeats->devices),
-                    count_text(q.repeats->recordings)));
+    out.push_back(fmt::format("From recording to recording of one device: {} ({} devices, {} recordings).",
+                              spread_text(q.repeats->within, q.repeats->within_ci95, logarithm, q.unit),
+                              count_text(q.repeats->devices), count_text(q.repeats->recordings)));
   if (q.capability) {
     const Capability& c = *q.capability;
     std::string line = "Limit " + limit_cell(q);
     if (c.cpk) line += fmt::format(", Cpk {}", number_text(*c.cpk, 3));
-    if (c.ppk)
-      line += fmt::format("; a normal distribution has {} % above", number_text(100 * c.above, 2));
+    if (c.ppk) line += fmt::format("; a normal distribution has {} % above", number_text(100 * c.above, 2));
     out.push_back(line + ".");
   }
   return bullet_list(out, "facts");
@@ -339,22 +292,15 @@ std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-AllanFigure& figure_of(const Channel& channel,
-                       const std::optional<Unit>& unit,
-                       std::vector<AllanFigure>& figures) {
+AllanFigure& figure_of(const Channel& channel, const std::optional<Unit>& unit, std::vector<AllanFigure>& figures) {
   const std::string measures = unit                   ? detail::quantity_title(channel.unit)
                                : channel.unit.empty() ? "no unit"
                                                       : "in " + channel.unit;
-  const auto at = std::find_if(
-      figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
+  const auto at =
+      std::find_if(figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
   if (at != figures.end()) return *at;
-  return figures.emplace_back(AllanFigure{measures,
-                                          unit ? unit->symbol : channel_unit_text(channel.unit),
-                                          "",
-                                          unit ? unit->to_si : 1,
-                                          {},
-                                          {},
-                                          {}});
+  return figures.emplace_back(AllanFigure{
+      measures, unit ? unit->symbol : channel_unit_text(channel.unit), "", unit ? unit->to_si : 1, {}, {}, {}});
 }
 
 bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel) {
@@ -364,9 +310,7 @@ bool stands_out(const FleetLot& lot, std::size_t recording, std::size_t channel)
   return false;
 }
 
-void add_curve(const FleetReport& report,
-               std::size_t recording,
-               std::size_t channel,
+void add_curve(const FleetReport& report, std::size_t recording, std::size_t channel,
                std::vector<AllanFigure>& figures) {
   const ChannelResult& result = report.recordings[recording].channels[channel];
   const auto unit = find_unit(result.channel.unit);
@@ -376,12 +320,9 @@ void add_curve(const FleetReport& report,
   const std::string device = report.records[recording].device + (strong ? " (stands out)" : "");
   const std::size_t known = figure.devices.size(), k = place_in(figure.devices, device);
   const bool alone = report.recordings.size() == 1;  // then a colour a channel
-  FigureSeries& curve =
-      figure.curves.emplace_back(allan_series(result.allan,
-                                              alone ? figure.curves.size() : k,
-                                              result.channel.name + " · " + device,
-                                              strong,
-                                              unit ? unit->to_si / figure.to_si : 1));
+  FigureSeries& curve = figure.curves.emplace_back(allan_series(result.allan, alone ? figure.curves.size() : k,
+                                                                result.channel.name + " · " + device, strong,
+                                                                unit ? unit->to_si / figure.to_si : 1));
   if (alone) return;
   curve.look.dash += place_in(figure.channels, result.channel.name);
   curve.name = k == known ? device : "";
@@ -389,9 +330,7 @@ void add_curve(const FleetReport& report,
 
 }  // namespace
 
-std::string celsius_text(double t) {
-  return celsius(t) + " °C";
-}
+std::string celsius_text(double t) { return celsius(t) + " °C"; }
 
 std::string group_title(const QuantityLot& q, const FleetLot& lot) {
   const std::string kind = q.of_kind ? detail::quantity_title(q.channel_unit) : "";
@@ -415,15 +354,9 @@ Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind) {
     const auto spread = [&](const LotFigures& f) {
       return spread_text(f.spread, f.spread_ci95, in_logarithm(q.quantity), q.unit);
     };
-    out.add({group_title(q, lot),
-             title_of(q.quantity),
-             mean_text(q.figures, q.unit) + off_text(q),
-             q.figures ? spread(*q.figures) : "–",
-             devices_text(q),
-             counted_text(q.counts),
-             not_counted(q.counts),
-             batches_text(q),
-             limit_cell(q)});
+    out.add({group_title(q, lot), title_of(q.quantity), mean_text(q.figures, q.unit) + off_text(q),
+             q.figures ? spread(*q.figures) : "–", devices_text(q), counted_text(q.counts), not_counted(q.counts),
+             batches_text(q), limit_cell(q)});
   }
   return out;
 }
@@ -431,12 +364,11 @@ Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind) {
 std::string allan_figures(const FleetReport& report) {
   std::vector<AllanFigure> figures;
   for (std::size_t r = 0; r < report.recordings.size(); ++r)
-    for (std::size_t c = 0; c < report.recordings[r].channels.size(); ++c)
-      add_curve(report, r, c, figures);
+    for (std::size_t c = 0; c < report.recordings[r].channels.size(); ++c) add_curve(report, r, c, figures);
   std::string out;
   for (const AllanFigure& f : figures) {
-    const std::string drawing = curves_figure(
-        f.curves, f.deviation + ", " + f.unit, "Allan curves of all channels, " + f.measures);
+    const std::string drawing =
+        curves_figure(f.curves, f.deviation + ", " + f.unit, "Allan curves of all channels, " + f.measures);
     if (drawing.empty()) continue;
     out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
     if (f.channels.size() > 1)

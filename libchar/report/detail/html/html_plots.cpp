@@ -35,9 +35,8 @@ std::string spectrum_title(const Spectrum& s) {
 
 std::string spectrum_axis(const Spectrum& s) {
   std::string scaling(name_of(s.scaling));
-  std::transform(scaling.begin(), scaling.end(), scaling.begin(), [](char c) {
-    return static_cast<char>(c - 'a' + 'A');
-  });
+  std::transform(scaling.begin(), scaling.end(), scaling.begin(),
+                 [](char c) { return static_cast<char>(c - 'a' + 'A'); });
   return (s.sides == Sides::one ? "one-sided " : "two-sided ") + scaling;
 }
 
@@ -65,18 +64,13 @@ std::string spectrum_caption(const Spectrum& s) {
       "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean "
       "was removed. "
       "Line: fitted model. Dashed: its terms. Grey: left out of the fit, described only.",
-      count_text(s.segments),
-      s.segments == 1 ? "" : "s",
-      count_text(s.segment),
-      duration_text(static_cast<double>(s.segment) / s.rate_hz),
-      window_title(s.window));
+      count_text(s.segments), s.segments == 1 ? "" : "s", count_text(s.segment),
+      duration_text(static_cast<double>(s.segment) / s.rate_hz), window_title(s.window));
 }
 
 }  // namespace
 
-std::string plot_figure(const char* kind,
-                        const std::vector<std::size_t>& indices,
-                        const PlotText& text,
+std::string plot_figure(const char* kind, const std::vector<std::size_t>& indices, const PlotText& text,
                         const std::string& of) {
   std::string all;
   for (const std::size_t index : indices) all += (all.empty() ? "" : ",") + std::to_string(index);
@@ -85,43 +79,29 @@ std::string plot_figure(const char* kind,
       "data-axis=\"{3}\" data-unit=\"{4}\">\n<h3>{5}</h3>\n"
       "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{6} of "
       "{7}\"></canvas></div>\n<figcaption>{8}</figcaption>\n</figure>\n",
-      kind,
-      indices.front(),
-      all,
-      html_attribute(text.axis),
-      html_attribute(text.unit),
-      html_text(text.title),
-      html_attribute(text.title),
-      html_attribute(of),
-      html_text(text.caption));
+      kind, indices.front(), all, html_attribute(text.axis), html_attribute(text.unit), html_text(text.title),
+      html_attribute(text.title), html_attribute(of), html_text(text.caption));
 }
 
-std::string plot_figure(const char* kind,
-                        std::size_t index,
-                        const PlotText& text,
-                        const std::string& channel) {
+std::string plot_figure(const char* kind, std::size_t index, const PlotText& text, const std::string& channel) {
   return plot_figure(kind, std::vector<std::size_t>{index}, text, channel);
 }
 
 std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo& log) {
   const ChannelResult& c = *view.result;
   if (c.trace.low.size() < 2) return "";
-  const std::string what = c.trace.block == 1
-                               ? "Every sample; the line is their running mean."
-                               : fmt::format(
-                                     "Least and largest value of every {} samples{}; the line is "
-                                     "the running mean of their middle.",
-                                     count_text(c.trace.block),
-                                     log.rate_hz_of(c.channel) > 0
-                                         ? " (" +
-                                               duration_text(static_cast<double>(c.trace.block) /
-                                                             log.rate_hz_of(c.channel)) +
-                                               ")"
-                                         : "");
-  const std::string marked =
-      view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
-  return plot_figure(
-      "trace", index, {c.channel.name, "", view.trace_unit, what + marked}, c.channel.name);
+  const std::string what =
+      c.trace.block == 1
+          ? "Every sample; the line is their running mean."
+          : fmt::format(
+                "Least and largest value of every {} samples{}; the line is "
+                "the running mean of their middle.",
+                count_text(c.trace.block),
+                log.rate_hz_of(c.channel) > 0
+                    ? " (" + duration_text(static_cast<double>(c.trace.block) / log.rate_hz_of(c.channel)) + ")"
+                    : "");
+  const std::string marked = view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
+  return plot_figure("trace", index, {c.channel.name, "", view.trace_unit, what + marked}, c.channel.name);
 }
 
 std::string group_plot(const CharacterizationView& view, const ChannelGroup& group) {
@@ -144,21 +124,17 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
                               "lines: fitted models."
                             : "Lines: measured. A click on a name hides its curve.";
   if (!taken_out.empty())
-    caption += fmt::format(
-        " Taken out before the fit, and so in what was measured but not in the models: {}.",
-        fmt::join(taken_out, "; "));
+    caption += fmt::format(" Taken out before the fit, and so in what was measured but not in the models: {}.",
+                           fmt::join(taken_out, "; "));
   if (shaped)
     caption +=
         " Grey on the left, a shade for each channel: averaging times at which a filter or what "
         "lies "
         "outside the band shapes its curve too.";
-  return plot_figure("group",
-                     drawn,
-                     {std::string(deviation_row(type).title),
-                      std::string(name_of(type)),
-                      shown_unit(group.unit),
-                      caption},
-                     group.title.empty() ? "these channels" : group.title);
+  return plot_figure(
+      "group", drawn,
+      {std::string(deviation_row(type).title), std::string(name_of(type)), shown_unit(group.unit), caption},
+      group.title.empty() ? "these channels" : group.title);
 }
 
 std::string curve_plots(const ChannelView& view, std::size_t index) {
@@ -166,23 +142,18 @@ std::string curve_plots(const ChannelView& view, std::size_t index) {
   const std::string& name = c.channel.name;
   std::string out = "<div class=\"plots\">\n";
   if (view.draws_allan)
-    out += plot_figure("allan",
-                       index,
-                       {std::string(deviation_row(c.allan.type).title),
-                        std::string(name_of(c.allan.type)),
-                        view.shown_unit,
-                        "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "
-                        "fewer than 5 degrees of freedom make them unreliable. Line: fitted model. "
-                        "Dashed: its terms; marked: where each coefficient is read off. "
-                        "Grey: outside the band in which the terms were fitted."},
-                       name);
+    out += plot_figure(
+        "allan", index,
+        {std::string(deviation_row(c.allan.type).title), std::string(name_of(c.allan.type)), view.shown_unit,
+         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "
+         "fewer than 5 degrees of freedom make them unreliable. Line: fitted model. "
+         "Dashed: its terms; marked: where each coefficient is read off. "
+         "Grey: outside the band in which the terms were fitted."},
+        name);
   if (view.draws_spectrum)
-    out += plot_figure("spectrum",
-                       index,
-                       {spectrum_title(c.spectrum),
-                        spectrum_axis(c.spectrum),
-                        spectrum_unit(c.spectrum.scaling, view.unit),
-                        spectrum_caption(c.spectrum)},
+    out += plot_figure("spectrum", index,
+                       {spectrum_title(c.spectrum), spectrum_axis(c.spectrum),
+                        spectrum_unit(c.spectrum.scaling, view.unit), spectrum_caption(c.spectrum)},
                        name);
   return out + "</div>\n";
 }

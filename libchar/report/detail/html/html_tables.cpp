@@ -15,9 +15,7 @@
 namespace libchar {
 namespace {
 
-bool is_small(char c) {
-  return c >= 'a' && c <= 'z';
-}
+bool is_small(char c) { return c >= 'a' && c <= 'z'; }
 
 /// "term" as "Term"; symbols ("p") stay as they are.
 std::string capital(std::string head) {
@@ -43,10 +41,8 @@ std::string number_html(const std::string& text) {
 std::string linked(const Cell& cell) {
   if (cell.code) return html_text(cell.text);
   const std::string text = number_html(cell.text);
-  if (!cell.anchor.empty())
-    return fmt::format("<a href=\"#{}\">{}</a>", html_attribute(cell.anchor), text);
-  if (!cell.address.empty())
-    return fmt::format("<a href=\"{}\">{}</a>", html_address(cell.address), text);
+  if (!cell.anchor.empty()) return fmt::format("<a href=\"#{}\">{}</a>", html_attribute(cell.anchor), text);
+  if (!cell.address.empty()) return fmt::format("<a href=\"{}\">{}</a>", html_address(cell.address), text);
   return text;
 }
 
@@ -54,19 +50,14 @@ std::string cell_content(const Cell& cell) {
   std::string out = cell.tint && !cell.is_number ? html_chip(cell.text, cell.tint) : linked(cell);
   if (!cell.unit.empty()) out += " <span class=\"dim\">" + html_text(cell.unit) + "</span>";
   for (const Cell::Mark& mark : cell.marks) out += " " + html_chip(mark.text, mark.tint);
-  const std::string interval =
-      cell.high.empty() ? cell.low : fmt::format("[{}, {}]", cell.low, cell.high);
+  const std::string interval = cell.high.empty() ? cell.low : fmt::format("[{}, {}]", cell.low, cell.high);
   if (!interval.empty()) out += "<span class=\"ci\">" + number_html(interval) + "</span>";
-  for (const std::string& note : cell.notes)
-    out += "<span class=\"ci dim\">" + html_text(note) + "</span>";
+  for (const std::string& note : cell.notes) out += "<span class=\"ci dim\">" + html_text(note) + "</span>";
   for (const Cell& line : cell.lines) out += "<div>" + cell_content(line) + "</div>";
   return out;
 }
 
-std::string html_cell(const Cell& cell,
-                      const Table::Column& column,
-                      std::size_t span,
-                      PageTable look) {
+std::string html_cell(const Cell& cell, const Table::Column& column, std::size_t span, PageTable look) {
   std::vector<const char*> css;
   if (cell.is_number) css.push_back("n");
   if (column.folded) css.push_back("more");
@@ -76,8 +67,7 @@ std::string html_cell(const Cell& cell,
   if (!css.empty()) out += fmt::format(" class=\"{}\"", fmt::join(css, " "));
   if (span > 1) out += fmt::format(" colspan=\"{}\"", span);
   if (look.sorted) out += fmt::format(" data-value=\"{}\"", csv_cell(cell.value));
-  if (look.cards && span == 1)
-    out += " data-label=\"" + html_attribute(capital(column.head)) + "\"";
+  if (look.cards && span == 1) out += " data-label=\"" + html_attribute(capital(column.head)) + "\"";
   return out + ">" + cell_content(cell) + "</td>";
 }
 
@@ -87,11 +77,9 @@ using Shown = std::vector<std::size_t>;
 std::string html_row(const Table& table, const Shown& shown, std::size_t r, PageTable look) {
   const Table::Row& row = table.rows[r];
   if (row.kind == Table::Kind::part)
-    return fmt::format("</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">{}</th></tr>\n",
-                       shown.size(),
+    return fmt::format("</tbody>\n<tbody class=\"bounds\">\n<tr><th colspan=\"{}\">{}</th></tr>\n", shown.size(),
                        html_text(row.cells[0].text));
-  constexpr const char* kKinds[] = {
-      "<tr>", "<tr class=\"best\">", "<tr class=\"bound\">", "<tr class=\"derived\">"};
+  constexpr const char* kKinds[] = {"<tr>", "<tr class=\"best\">", "<tr class=\"bound\">", "<tr class=\"derived\">"};
   std::string out = kKinds[static_cast<std::size_t>(row.kind)];
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const Cell& cell = table.cell(r, shown[i]);
@@ -112,11 +100,9 @@ std::string html_head(const Table& table, const Shown& shown) {
   for (const std::size_t c : shown) {
     const Table::Column& column = table.columns[c];
     any = any || !column.head.empty();
-    out +=
-        fmt::format("<th scope=\"col\"{}{}>{}</th>",
-                    column.folded ? " class=\"more\"" : "",
-                    column.about.empty() ? "" : " title=\"" + html_attribute(column.about) + "\"",
-                    html_text(capital(column.head)));
+    out += fmt::format("<th scope=\"col\"{}{}>{}</th>", column.folded ? " class=\"more\"" : "",
+                       column.about.empty() ? "" : " title=\"" + html_attribute(column.about) + "\"",
+                       html_text(capital(column.head)));
   }
   return any ? out + "</tr></thead>\n" : "";
 }
@@ -130,28 +116,23 @@ std::string html_table(const Table& table, const PageTable& look) {
   const std::size_t count = std::max(look.of, table.rows.size());
   const std::size_t rows = std::min(look.most > 0 ? look.most : count, table.rows.size());
   std::string out = table.title.empty() ? "" : "<h3>" + html_text(table.title) + "</h3>\n";
-  out += "<div class=\"wide\"><table" +
-         (*look.css == 0 ? "" : fmt::format(" class=\"{}\"", look.css)) + ">\n" +
+  out += "<div class=\"wide\"><table" + (*look.css == 0 ? "" : fmt::format(" class=\"{}\"", look.css)) + ">\n" +
          html_head(table, shown) + "<tbody>\n";
   for (std::size_t r = 0; r < rows; ++r) out += html_row(table, shown, r, look);
   out += "</tbody></table></div>\n";
   if (rows < count)
-    out += fmt::format("<p class=\"note\">The first {} of {}; all stand in {}.</p>\n",
-                       rows,
-                       count_text(count),
-                       look.rest);
+    out +=
+        fmt::format("<p class=\"note\">The first {} of {}; all stand in {}.</p>\n", rows, count_text(count), look.rest);
   return table.note.empty() ? out : out + "<p class=\"note\">" + html_text(table.note) + "</p>\n";
 }
 
 std::string folded(const std::string& summary, const std::string& body, bool open) {
-  return fmt::format(
-      "<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "", summary, body);
+  return fmt::format("<details{}><summary>{}</summary>\n{}</details>\n", open ? " open" : "", summary, body);
 }
 
 std::string html_chip(std::string_view word, std::optional<Tint> tint) {
   constexpr const char* kTints[] = {" detected", " unsure", " alarm", " absent"};
-  return fmt::format("<span class=\"chip{}\">{}</span>",
-                     tint ? kTints[static_cast<std::size_t>(*tint)] : "",
+  return fmt::format("<span class=\"chip{}\">{}</span>", tint ? kTints[static_cast<std::size_t>(*tint)] : "",
                      html_text(word));
 }
 
@@ -160,19 +141,16 @@ std::string_view rating_sign(Rating rating) {
 }
 
 std::string rating_badge(Rating rating) {
-  return fmt::format("<span class=\"badge {}\">{} {}</span>",
-                     name_of(rating),
-                     rating_sign(rating),
+  return fmt::format("<span class=\"badge {}\">{} {}</span>", name_of(rating), rating_sign(rating),
                      rating_word(rating));
 }
 
 namespace {
 
 std::string finding_item(const Finding& one) {
-  std::string out = fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) +
-                    html_text(one.sentence);
-  for (const Finding::Help& help : one.help)
-    out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
+  std::string out =
+      fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) + html_text(one.sentence);
+  for (const Finding::Help& help : one.help) out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
   return out + "</li>\n";
 }
 
@@ -181,14 +159,10 @@ std::string finding_item(const Finding& one) {
 std::string findings_list(const std::vector<Finding>& findings) {
   constexpr std::size_t kShown = 5;
   std::string shown, rest;
-  for (std::size_t i = 0; i < findings.size(); ++i)
-    (i < kShown ? shown : rest) += finding_item(findings[i]);
+  for (std::size_t i = 0; i < findings.size(); ++i) (i < kShown ? shown : rest) += finding_item(findings[i]);
   if (shown.empty()) return "";
-  const auto list = [](const std::string& items) {
-    return "<ul class=\"findings\">\n" + items + "</ul>\n";
-  };
-  return list(shown) +
-         (rest.empty() ? "" : folded(fmt::format("{} more", findings.size() - kShown), list(rest)));
+  const auto list = [](const std::string& items) { return "<ul class=\"findings\">\n" + items + "</ul>\n"; };
+  return list(shown) + (rest.empty() ? "" : folded(fmt::format("{} more", findings.size() - kShown), list(rest)));
 }
 
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
@@ -200,26 +174,21 @@ std::string bullet_list(const std::vector<std::string>& items, std::string_view 
 
 namespace {
 
-int hexadecimal(char c) {
-  return c <= '9' ? c - '0' : c - 'a' + 10;
-}
+int hexadecimal(char c) { return c <= '9' ? c - '0' : c - 'a' + 10; }
 
 // 'sha256-BASE64' of an inline script or style, as a content security policy wants it.
 std::string policy_hash(std::string_view content) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   Sha256 sha;
   sha.update(content);
   const std::string hex = sha.finish();
   std::string out = "'sha256-";
-  for (std::size_t i = 0; i < 64;
-       i += 6) {  // 6 hexadecimal digits are 24 bits; the last group has 16
+  for (std::size_t i = 0; i < 64; i += 6) {  // 6 hexadecimal digits are 24 bits; the last group has 16
     std::uint32_t bits = 0;
     const std::size_t digits = std::min<std::size_t>(6, 64 - i);
     for (std::size_t k = 0; k < digits; ++k)
       bits |= static_cast<std::uint32_t>(hexadecimal(hex[i + k])) << (20 - 4 * k);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += k * 6 < digits * 4 ? kDigits[(bits >> (18 - 6 * k)) & 63U] : '=';
+    for (std::size_t k = 0; k < 4; ++k) out += k * 6 < digits * 4 ? kDigits[(bits >> (18 - 6 * k)) & 63U] : '=';
   }
   return out + "'";
 }
@@ -228,9 +197,7 @@ std::string head(const PageParts& parts, const std::string& script) {
   const std::string policy = fmt::format(
       "default-src 'none'; script-src {} {}; style-src {}; img-src data:; base-uri 'none'; "
       "form-action 'none'",
-      policy_hash(chart_js()),
-      policy_hash(script),
-      policy_hash(parts.style));
+      policy_hash(chart_js()), policy_hash(script), policy_hash(parts.style));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
@@ -241,11 +208,7 @@ std::string head(const PageParts& parts, const std::string& script) {
       "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and "
       "@kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both "
       "follows.\n\n{}-->\n</head>\n",
-      policy,
-      version(),
-      html_text(parts.title),
-      html_text(parts.subject),
-      parts.style,
+      policy, version(), html_text(parts.title), html_text(parts.subject), parts.style,
       html_comment(chart_js_licence()));
 }
 
@@ -294,20 +257,16 @@ std::string warnings_part(const Findings& warnings) {
   Table out("kind|what|count|first places");
   out.title = "Repairs and warnings";
   for (const Finding& w : warnings.list())
-    out.add({w.code,
-             w.sentence,
-             count_text(w.count),
-             fmt::format("{}", fmt::join(w.where.rows, ", "))});
+    out.add({w.code, w.sentence, count_text(w.count), fmt::format("{}", fmt::join(w.where.rows, ", "))});
   return out.rows.empty() ? "<h3>" + out.title + "</h3>\n<p>None.</p>\n" : html_table(out);
 }
 
 std::string html_page(const PageParts& parts, const std::string& body, const std::string& data) {
   const std::string script = std::string(page_common_js()) + parts.script;
   std::string out = head(parts, script);
-  out += "<body>\n<header>\n<h1>" + html_text(parts.title) + " <span class=\"unit\">" +
-         html_text(parts.subject) + "</span></h1>\n";
-  if (parts.all_numbers)
-    out += "<button id=\"download\" type=\"button\" hidden>Download the numbers (JSON)</button>\n";
+  out += "<body>\n<header>\n<h1>" + html_text(parts.title) + " <span class=\"unit\">" + html_text(parts.subject) +
+         "</span></h1>\n";
+  if (parts.all_numbers) out += "<button id=\"download\" type=\"button\" hidden>Download the numbers (JSON)</button>\n";
   out +=
       "</header>\n"
       "<noscript><p class=\"noscript\">The plots need JavaScript. Every number stands in the "
@@ -316,8 +275,7 @@ std::string html_page(const PageParts& parts, const std::string& body, const std
   out += "</main>\n<footer>Written by sensorchar " + std::string(version()) +
          ". Plots: Chart.js, MIT licence (in the source of this page).</footer>\n";
   out += "<script id=\"report-data\" type=\"application/json\">" + data + "</script>\n";
-  out += "<script>" + std::string(chart_js()) + "</script>\n<script>" + script +
-         "</script>\n</body>\n</html>\n";
+  out += "<script>" + std::string(chart_js()) + "</script>\n<script>" + script + "</script>\n</body>\n</html>\n";
   return out;
 }
 

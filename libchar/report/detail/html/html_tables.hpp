@@ -111,14 +111,9 @@ struct PlotText {
 };
 
 /// An empty figure for page.js to draw `kind` into.
-std::string plot_figure(const char* kind,
-                        std::size_t index,
-                        const PlotText& text,
-                        const std::string& channel);
+std::string plot_figure(const char* kind, std::size_t index, const PlotText& text, const std::string& channel);
 /// The same of several channels, by their indices.
-std::string plot_figure(const char* kind,
-                        const std::vector<std::size_t>& indices,
-                        const PlotText& text,
+std::string plot_figure(const char* kind, const std::vector<std::size_t>& indices, const PlotText& text,
                         const std::string& of);
 
 /// The record in time, with what was found in it; "" where no samples are.
@@ -141,12 +136,10 @@ void add_channels(Table& table, const DeviceRecord& record, const std::string& n
 Cell report_cell(const std::string& name, const std::string& folder);
 
 /// Input files with their hashes, where they are in memory; the command.
-std::string many_provenance(std::span<const Characterization> recordings,
-                            const std::vector<std::string>& command);
+std::string many_provenance(std::span<const Characterization> recordings, const std::vector<std::string>& command);
 
 /// The head of a document about them, with their settings.
-Json many_head(const std::string& format,
-               std::span<const Characterization> recordings,
+Json many_head(const std::string& format, std::span<const Characterization> recordings,
                const std::vector<std::string>& command);
 
 // The judgement of limits as each output shows it.

@@ -33,24 +33,19 @@ void add_channels(Table& table, const DeviceRecord& record, const std::string& n
   }
 }
 
-std::string many_provenance(std::span<const Characterization> recordings,
-                            const std::vector<std::string>& command) {
+std::string many_provenance(std::span<const Characterization> recordings, const std::vector<std::string>& command) {
   std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n";
   Table files("file|samples|rate, Hz|SHA-256");
   for (const Characterization& one : recordings)
-    files.add({one.log.file,
-               count_text(one.log.samples),
-               one.log.time.rate_hz > 0 ? brief_text(one.log.time.rate_hz, 6) : "unknown",
-               digest_cell(one.log)});
+    files.add({one.log.file, count_text(one.log.samples),
+               one.log.time.rate_hz > 0 ? brief_text(one.log.time.rate_hz, 6) : "unknown", digest_cell(one.log)});
   if (!recordings.empty()) out += html_table(files);
-  if (!command.empty())
-    out += "<p>Command: <code>" + html_text(command_line(command)) + "</code></p>\n";
+  if (!command.empty()) out += "<p>Command: <code>" + html_text(command_line(command)) + "</code></p>\n";
   if (!recordings.empty()) out += settings_details(json_of(recordings[0].settings));
   return out + "</section>\n";
 }
 
-Json many_head(const std::string& format,
-               std::span<const Characterization> recordings,
+Json many_head(const std::string& format, std::span<const Characterization> recordings,
                const std::vector<std::string>& command) {
   std::vector<const LogInfo*> logs;
   for (const Characterization& one : recordings) logs.push_back(&one.log);
@@ -74,9 +69,7 @@ std::string_view limit_words(LimitStatus status) {
 }
 
 Tint limit_tint(LimitStatus status) {
-  return status == LimitStatus::pass   ? Tint::good
-         : status == LimitStatus::fail ? Tint::bad
-                                       : Tint::doubtful;
+  return status == LimitStatus::pass ? Tint::good : status == LimitStatus::fail ? Tint::bad : Tint::doubtful;
 }
 
 Table judgements(const LimitReport& report) {
@@ -90,9 +83,9 @@ Table judgements(const LimitReport& report) {
 
 std::string limits_section(const LimitReport& report) {
   return "<section id=\"limits\">\n<h2>Limits" +
-         (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) +
-         "</h2>\n<p>" + html_text(report.verdict) + "</p>\n" + html_table(judgements(report)) +
-         "<p class=\"note\">From " + html_text(report.file) +
+         (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
+         html_text(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
+         html_text(report.file) +
          ". A term passes or fails when its whole 95 % interval is within or above the "
          "limit; one that stands at the limit does either by chance in at most 2.5 % of "
          "recordings, "
@@ -100,8 +93,7 @@ std::string limits_section(const LimitReport& report) {
 }
 
 std::string limits_text(const LimitReport& report, const TextLook& look) {
-  return fmt::format("\nlimits{}: {}\n",
-                     report.sensor.empty() ? "" : " of " + printable(report.sensor),
+  return fmt::format("\nlimits{}: {}\n", report.sensor.empty() ? "" : " of " + printable(report.sensor),
                      printable(report.verdict)) +
          terminal_table(judgements(report), look);
 }
@@ -119,16 +111,15 @@ std::string alignment_text(const ReplayView& view, const TextLook& look) {
   const AlignmentWords words = alignment_words(r, *r.alignment);
   std::string out = "\n" + printable(fmt::format("{}", fmt::join(words.sentences, " "))) + "\n";
   if (r.sensors.size() > kMostTextRows) return out;
-  return out + "\n" + terminal_table(words.learnt, look, "") + "\n" +
-         terminal_table(words.budget, look, "");
+  return out + "\n" + terminal_table(words.learnt, look, "") + "\n" + terminal_table(words.budget, look, "");
 }
 
 std::string alignment_markdown(const ReplayView& view) {
   const ReplayResult& r = *view.result;
   if (!r.alignment) return "";
   const AlignmentWords words = alignment_words(r, *r.alignment);
-  return "\n## Alignment\n\n" + markdown_text(fmt::format("{}", fmt::join(words.sentences, " "))) +
-         "\n\n" + table_text(words.learnt) + "\n" + table_text(words.budget);
+  return "\n## Alignment\n\n" + markdown_text(fmt::format("{}", fmt::join(words.sentences, " "))) + "\n\n" +
+         table_text(words.learnt) + "\n" + table_text(words.budget);
 }
 
 std::string alignment_html(const ReplayView& view) {
@@ -137,8 +128,8 @@ std::string alignment_html(const ReplayView& view) {
   const AlignmentWords words = alignment_words(r, *r.alignment);
   std::string out = "<section class=\"part\" id=\"alignment\">\n<h2>Alignment</h2>\n";
   for (const std::string& sentence : words.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
-  return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" +
-         html_table(words.learnt) + html_table(words.budget) +
+  return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" + html_table(words.learnt) +
+         html_table(words.budget) +
          "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, "
          "with "
          "95 % intervals; last row: what the fused error would lose. Jitter: the part of what "

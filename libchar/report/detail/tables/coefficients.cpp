@@ -30,33 +30,20 @@ void add_term(Table& table, const Coefficient& c, Term term, const std::string& 
   const std::string_view key = kTermNames[static_cast<std::size_t>(term)].key;
   Cell name(letter_and_title(cells));
   name.data = key;
-  table.add({name,
-             Cell::of(cells.own, c),
-             Cell::shown("", c.upper95.value_or(kNone)),
-             term_unit(key, unit),
-             Cell::of(c.status),
-             cells.known_to,
-             cells.best_possible,
-             cells.length_for_10_percent,
+  table.add({name, Cell::of(cells.own, c), Cell::shown("", c.upper95.value_or(kNone)), term_unit(key, unit),
+             Cell::of(c.status), cells.known_to, cells.best_possible, cells.length_for_10_percent,
              field_cell(cells.field)});
 }
 
 void add_process(Table& table, const char* name, const Coefficient& c, const std::string& unit) {
   const bool judged = c.status != Status::not_fitted;
-  table.add({name,
-             Cell::of(shown_value(c, 1, unit), c),
-             "",
-             unit,
-             judged ? Cell::of(c.status) : Cell(),
-             known_to(c),
+  table.add({name, Cell::of(shown_value(c, 1, unit), c), "", unit, judged ? Cell::of(c.status) : Cell(), known_to(c),
              c.bound ? "±" + percent_text(*c.bound) : ""});
 }
 
 }  // namespace
 
-Table coefficients_table(const Coefficients& terms,
-                         const std::string& unit,
-                         const std::vector<Coefficient>& process,
+Table coefficients_table(const Coefficients& terms, const std::string& unit, const std::vector<Coefficient>& process,
                          bool clock) {
   Table out("term|value|||status|known to|best possible|record for 10 %|in other words",
             "term|value,low95,high95|upper95|term_unit|status");
@@ -75,8 +62,7 @@ Table coefficients_table(const Coefficients& terms,
 
 Table coefficients_table(const NoiseFit& fit, const std::string& unit) {
   std::vector<Coefficient> process;
-  if (fit.gauss_markov && fit.gauss_markov->in_model)
-    process = {fit.gauss_markov->sigma, fit.gauss_markov->tau_s};
+  if (fit.gauss_markov && fit.gauss_markov->in_model) process = {fit.gauss_markov->sigma, fit.gauss_markov->tau_s};
   return coefficients_table(fit.term, unit, process, fit.flicker_phase.has_value());
 }
 
@@ -84,11 +70,8 @@ Table power_laws_table(const NoiseFit& fit) {
   Table out("noise type|Stable32|α|h|status");
   out.title = "As a clock: one-sided S_y(f) = Σ h_α f^α";
   for (const PowerLaw& law : power_laws(fit))
-    out.add({law.name,
-             law.abbreviation,
-             Cell::shown(std::to_string(law.alpha), law.alpha),
-             Cell::of(shown_value(law.h, 1, ""), law.h),
-             Cell::of(law.h.status)});
+    out.add({law.name, law.abbreviation, Cell::shown(std::to_string(law.alpha), law.alpha),
+             Cell::of(shown_value(law.h, 1, ""), law.h), Cell::of(law.h.status)});
   return out;
 }
 

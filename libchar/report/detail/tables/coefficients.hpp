@@ -11,10 +11,8 @@ namespace libchar {
 
 /// A row for each term that has something to say; `process`: those of a Gauss–Markov process, its
 /// standard deviation and correlation time. A clock's terms have a clock's words.
-Table coefficients_table(const Coefficients& terms,
-                         const std::string& unit,
-                         const std::vector<Coefficient>& process = {},
-                         bool clock = false);
+Table coefficients_table(const Coefficients& terms, const std::string& unit,
+                         const std::vector<Coefficient>& process = {}, bool clock = false);
 Table coefficients_table(const NoiseFit& fit, const std::string& unit);
 
 /// A clock's noise in its own words; no rows for any other channel.

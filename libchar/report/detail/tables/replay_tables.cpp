@@ -18,8 +18,7 @@ std::vector<Cell::Mark> marks_of(const AlgorithmView& v) {
   std::vector<Cell::Mark> out;
   if (v.best) out.push_back({"best", Tint::good});
   if (a.bound) out.push_back({"bound", {}});
-  if (!a.bound && !v.best && a.as_good_as_best)
-    out.push_back({"not resolved from the best", Tint::doubtful});
+  if (!a.bound && !v.best && a.as_good_as_best) out.push_back({"not resolved from the best", Tint::doubtful});
   if (!a.bound && v.learns) out.push_back({"learns from a reference", {}});
   if (v.on_time_front && v.on_memory_front)
     out.push_back({"fronts: time, memory", {}});
@@ -59,30 +58,23 @@ Cell ratio_cell(const AlgorithmResult& a) {
   return Cell::shown(interval_text(*a.ratio_to_best), a.ratio_to_best->low);
 }
 
-Cell duration_cell(double seconds) {
-  return Cell::shown(duration_text(seconds), seconds);
-}
+Cell duration_cell(double seconds) { return Cell::shown(duration_text(seconds), seconds); }
 
-Cell share_cell(double share) {
-  return Cell::shown(percent_text(share, 4), share);
-}
+Cell share_cell(double share) { return Cell::shown(percent_text(share, 4), share); }
 
 // The scores, then what each costs; what seldom decides is folded at first.
 Table algorithm_columns(const ReplayView& view) {
   const bool reference = view.result->has_reference;
-  Table out(reference
-                ? "algorithm||regret|× best method|bias|maximum|converged|available|a sample|"
-                  "memory|learning"
-                : "algorithm||× best method|split-array RMS|available|a sample|memory|learning");
+  Table out(reference ? "algorithm||regret|× best method|bias|maximum|converged|available|a sample|"
+                        "memory|learning"
+                      : "algorithm||× best method|split-array RMS|available|a sample|memory|learning");
   out.columns[1] = score_column(reference, score_unit(*view.result));
   for (Table::Column& column : out.columns) {
     const auto is = [&](const auto&... heads) { return ((column.head == heads) || ...); };
     if (is("× best method", "converged", "learning")) column.doors = Table::kPage;
-    if (is("bias", "maximum", "split-array RMS", "available"))
-      column.doors = Table::kDocument | Table::kPage;
+    if (is("bias", "maximum", "split-array RMS", "available")) column.doors = Table::kDocument | Table::kPage;
     column.folded = is("bias", "maximum", "converged", "memory", "learning") ||
-                    (is("available") && !view.figures.availability) ||
-                    (is("a sample") && !view.figures.time_matters);
+                    (is("available") && !view.figures.availability) || (is("a sample") && !view.figures.time_matters);
   }
   return out;
 }
@@ -104,10 +96,7 @@ void add_algorithm(Table& table, const AlgorithmView& v, bool has_reference) {
   cells.push_back(time_cell(a.ns_per_sample));
   cells.push_back(memory_cell(a.peak_bytes ? static_cast<double>(*a.peak_bytes) : kNone));
   cells.push_back(duration_cell(a.learning_s));
-  table.add(std::move(cells),
-            v.best    ? Table::Kind::best
-            : a.bound ? Table::Kind::aside
-                      : Table::Kind::plain);
+  table.add(std::move(cells), v.best ? Table::Kind::best : a.bound ? Table::Kind::aside : Table::Kind::plain);
 }
 
 }  // namespace
@@ -122,11 +111,10 @@ Table algorithms_table(const ReplayView& view) {
     if (v->result->bound) add_algorithm(out, *v, reference);
   if (out.rows.size() == methods) return out;
   // Their own body, so that sorting keeps them apart from what one could use.
-  out.rows.insert(
-      out.rows.begin() + static_cast<std::ptrdiff_t>(methods),
-      Table::Row{{"Bounds: they look at the reference of the run itself, and nobody could "
-                  "use them"},
-                 Table::Kind::part});
+  out.rows.insert(out.rows.begin() + static_cast<std::ptrdiff_t>(methods),
+                  Table::Row{{"Bounds: they look at the reference of the run itself, and nobody could "
+                              "use them"},
+                             Table::Kind::part});
   return out;
 }
 
@@ -135,14 +123,10 @@ Table needs_table(const ReplayView& view) {
   for (const AlgorithmView& v : view.algorithms) {
     const AlgorithmResult& a = *v.result;
     if (a.description == nullptr) continue;
-    out.add(
-        {a.label,
-         a.description->title,
-         v.needs.empty() ? "nothing but the samples" : fmt::format("{}", fmt::join(v.needs, "; ")),
-         a.description->complexity,
-         a.description->learning_complexity,
-         a.description->source,
-         a.ran ? "ran" : "skipped: " + a.why});
+    out.add({a.label, a.description->title,
+             v.needs.empty() ? "nothing but the samples" : fmt::format("{}", fmt::join(v.needs, "; ")),
+             a.description->complexity, a.description->learning_complexity, a.description->source,
+             a.ran ? "ran" : "skipped: " + a.why});
   }
   return out;
 }
@@ -153,19 +137,13 @@ Table input_table(const ReplayView& view, std::size_t j) {
   const InputResult& input = *view.inputs[j].result;
   Table out("algorithm||regret|bias|maximum|converged|available");
   out.title = "Input " + input.name;
-  out.note = "Optimum of " + view.optimum + ": RMSE " +
-             with_unit(input.optimum_rmse, 4, usual_unit(input.unit));
+  out.note = "Optimum of " + view.optimum + ": RMSE " + with_unit(input.optimum_rmse, 4, usual_unit(input.unit));
   out.columns[1] = score_column(true, input.unit);
   for (const AlgorithmView* v : view.inputs[j].ranked) {
     const AlgorithmResult& a = *v->result;
     const ErrorScore& e = a.inputs[j].error;
-    out.add({a.label,
-             Cell::number(e.rmse, e.rmse_ci95),
-             regret_cell(a.inputs[j].optimum_ratio - 1),
-             bias_cell(e),
-             Cell::number(e.maximum, 3),
-             duration_cell(e.converged_s),
-             share_cell(e.availability)},
+    out.add({a.label, Cell::number(e.rmse, e.rmse_ci95), regret_cell(a.inputs[j].optimum_ratio - 1), bias_cell(e),
+             Cell::number(e.maximum, 3), duration_cell(e.converged_s), share_cell(e.availability)},
             v->best   ? Table::Kind::best
             : a.bound ? Table::Kind::aside
                       : Table::Kind::plain);
@@ -192,23 +170,17 @@ std::vector<Table> input_tables(const ReplayView& view) {
 
 Table sensors_table(const ReplayView& view) {
   const ReplayResult& r = *view.result;
-  Table out(
-      "sensor|RMSE|bias|maximum|unit|noise of a sample|from|offset taken off|missing|row of H|");
+  Table out("sensor|RMSE|bias|maximum|unit|noise of a sample|from|offset taken off|missing|row of H|");
   for (std::size_t i = 0; i < r.sensors.size(); ++i) {
     const SensorResult& s = r.sensors[i];
     std::string h;
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + brief_text(v, 4);
     const auto scored = [&](Cell cell) { return r.has_reference ? std::move(cell) : Cell(); };
-    out.add({s.name,
-             scored(Cell::number(s.error.rmse, s.error.rmse_ci95)),
-             scored(Cell::number(s.error.bias, 3)),
-             scored(Cell::number(s.error.maximum, 3)),
-             usual_unit(s.unit),
-             view.noise_sd[i] ? Cell::number(*view.noise_sd[i]) : Cell("not known"),
-             s.noise_source,
+    out.add({s.name, scored(Cell::number(s.error.rmse, s.error.rmse_ci95)), scored(Cell::number(s.error.bias, 3)),
+             scored(Cell::number(s.error.maximum, 3)), usual_unit(s.unit),
+             view.noise_sd[i] ? Cell::number(*view.noise_sd[i]) : Cell("not known"), s.noise_source,
              s.offset == 0 ? Cell() : Cell::number(s.offset),
-             Cell::shown(s.missing > 0 ? percent_text(s.missing) : "none", s.missing),
-             r.scene.tilt ? "" : h,
+             Cell::shown(s.missing > 0 ? percent_text(s.missing) : "none", s.missing), r.scene.tilt ? "" : h,
              s.constant           ? "never changed"
              : !s.copy_of.empty() ? "the same as " + s.copy_of
                                   : ""});
@@ -254,20 +226,16 @@ namespace {
 std::string answer_in_words(const FaultAnswer* answer) {
   if (answer == nullptr) return "–";
   if (!answer->found_s) return "missed";
-  return (*answer->found_s == 0 ? "found at once"
-                                : "found after " + duration_text(*answer->found_s)) +
-         (answer->returned_s
-              ? ", used again " + duration_text(*answer->returned_s) + " after its end"
-              : "");
+  return (*answer->found_s == 0 ? "found at once" : "found after " + duration_text(*answer->found_s)) +
+         (answer->returned_s ? ", used again " + duration_text(*answer->returned_s) + " after its end" : "");
 }
 
 void add_alarms(Table& table, const ReplayView& view) {
   std::vector<Cell> row = {"alarms where no fault is known", "", "", ""};
   for (const AlgorithmView* a : view.watching)
-    row.emplace_back(count_text(a->alarms_without_fault) +
-                     (a->result->faults_not_kept > 0
-                          ? " (" + count_text(a->result->faults_not_kept) + " events not kept)"
-                          : ""));
+    row.emplace_back(
+        count_text(a->alarms_without_fault) +
+        (a->result->faults_not_kept > 0 ? " (" + count_text(a->result->faults_not_kept) + " events not kept)" : ""));
   if (!view.watching.empty()) table.add(std::move(row));
 }
 
@@ -281,11 +249,10 @@ Table faults_table(const ReplayView& view) {
   for (std::size_t f = 0; f < r.faults.size(); ++f) {
     const SensorFault& fault = r.faults[f];
     const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;
-    std::vector<Cell> row = {
-        std::string(name_of(fault.kind)) + (valueless ? "" : " " + brief_text(fault.value, 4)),
-        fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
-        instant_text(fault.from_s),
-        std::isfinite(fault.to_s) ? instant_text(fault.to_s) : "the end"};
+    std::vector<Cell> row = {std::string(name_of(fault.kind)) + (valueless ? "" : " " + brief_text(fault.value, 4)),
+                             fault.sensor < r.sensors.size() ? r.sensors[fault.sensor].name : "–",
+                             instant_text(fault.from_s),
+                             std::isfinite(fault.to_s) ? instant_text(fault.to_s) : "the end"};
     for (const AlgorithmView* a : view.watching) row.emplace_back(answer_in_words(a->answers[f]));
     out.add(std::move(row));
   }
@@ -298,9 +265,7 @@ Table detection_table(const ReplayView& view) {
   if (!view.figures.detection) return out;
   for (const FaultAnswer& answer : r.detection[0].answers) {
     const SensorFault& fault = r.faults[detail::in_memory(answer.fault)];
-    out.columns.push_back({fmt::format("{} {} from {}: found after",
-                                       r.sensors[fault.sensor].name,
-                                       name_of(fault.kind),
+    out.columns.push_back({fmt::format("{} {} from {}: found after", r.sensors[fault.sensor].name, name_of(fault.kind),
                                        instant_text(fault.from_s))});
   }
   out.columns.push_back({"alarms where no fault is known"});
@@ -338,23 +303,16 @@ Table::Column score_column(bool has_reference, const std::string& unit) {
   return {usual.empty() ? name : name + ", " + usual, "rmse,low95,high95"};
 }
 
-Cell regret_cell(double regret) {
-  return Cell::shown(excess_text(regret), regret);
-}
+Cell regret_cell(double regret) { return Cell::shown(excess_text(regret), regret); }
 
-Cell time_cell(double nanoseconds) {
-  return Cell::shown(duration_text(1e-9 * nanoseconds), nanoseconds);
-}
+Cell time_cell(double nanoseconds) { return Cell::shown(duration_text(1e-9 * nanoseconds), nanoseconds); }
 
 Cell memory_cell(double bytes) {
-  const auto whole =
-      std::isfinite(bytes) ? std::optional(static_cast<std::uint64_t>(bytes)) : std::nullopt;
+  const auto whole = std::isfinite(bytes) ? std::optional(static_cast<std::uint64_t>(bytes)) : std::nullopt;
   return Cell::shown(bytes_text(whole), bytes);
 }
 
-std::string score_name(const ReplayResult& result) {
-  return result.has_reference ? "RMSE" : "Leave-one-out RMS";
-}
+std::string score_name(const ReplayResult& result) { return result.has_reference ? "RMSE" : "Leave-one-out RMS"; }
 
 std::string usual_unit(const std::string& unit) {
   const auto known = find_unit(unit);
@@ -370,9 +328,7 @@ std::string with_unit(double value, int digits, const std::string& unit) {
   return unit.empty() || !std::isfinite(value) ? number : number + " " + unit;
 }
 
-std::string instant_text(double seconds) {
-  return std::isfinite(seconds) ? brief_text(seconds, 8) + " s" : "–";
-}
+std::string instant_text(double seconds) { return std::isfinite(seconds) ? brief_text(seconds, 8) + " s" : "–"; }
 
 std::string stretch_text(double from_s, double to_s) {
   return instant_text(from_s) + " … " + (std::isfinite(to_s) ? instant_text(to_s) : "the end");
@@ -380,22 +336,17 @@ std::string stretch_text(double from_s, double to_s) {
 
 std::vector<std::string> run_facts(const ReplayView& view) {
   const ReplayResult& r = *view.result;
-  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {} Hz from {}, {}.",
-                                              r.sensors.size(),
-                                              r.instants,
-                                              brief_text(r.rate_hz, 6),
-                                              instant_text(r.start_s),
+  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {} Hz from {}, {}.", r.sensors.size(),
+                                              r.instants, brief_text(r.rate_hz, 6), instant_text(r.start_s),
                                               duration_text(view.duration_s))};
   out.push_back(r.has_reference ? "Reference: " + r.reference_use + "." : "No reference.");
   for (const InputResult& input : r.inputs)
     if (r.has_reference && std::isfinite(input.optimum_rmse))
-      out.push_back(fmt::format("Optimum of {}{}: RMSE {}.",
-                                view.optimum,
+      out.push_back(fmt::format("Optimum of {}{}: RMSE {}.", view.optimum,
                                 r.inputs.size() > 1 ? " for " + input.name : "",
                                 with_unit(input.optimum_rmse, 4, usual_unit(input.unit))));
   if (r.lag_estimated)
-    out.push_back(
-        fmt::format("The sensors lag the reference by {} (estimated).", duration_text(r.lag_s)));
+    out.push_back(fmt::format("The sensors lag the reference by {} (estimated).", duration_text(r.lag_s)));
   for (std::string& sentence : preparation_words(r)) out.push_back(std::move(sentence));
   return out;
 }
