@@ -212,6 +212,8 @@ std::vector<Kind> kinds() {
   out.push_back({"triangle 150 s", kLong, triangle(150, 0.5)});
   out.push_back({"zeros 2 %", kLong, zeros(0.02), white});
   out.push_back({"dead band 0.5 sd", kLong, dead_band(0.5), white});
+  out.push_back({"pole 0.003", kLong, one_pole(0.003), white});
+  out.push_back({"Gauss-Markov 0.2 s", kLong, gauss_markov({{1, 0.2}}), white});
   out.push_back({"Gauss-Markov 0.5 s and 20 s", kLong, gauss_markov({{1, 0.5}, {1, 20}}), white});
   return out;
 }

@@ -12,6 +12,7 @@
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
+#include "tests/support/noise.hpp"
 
 using namespace libchar;
 using test::white_and_process;
@@ -135,6 +136,27 @@ TEST_CASE("a Gauss-Markov process of 200 correlation times is found, not read as
   }
   CHECK(covered >= 31);  // of 40; 38 expected, and sigma and tau of a record miss together
   CHECK(passes >= 19);
+}
+
+TEST_CASE("a fast Gauss-Markov process is no filter, and white noise behind a low-pass no process") {
+  constexpr std::size_t n = 200000;
+  constexpr double rate = 100, white = 5e-3, sd = white * 10;
+  test::Gaussian gauss(3);
+  std::vector<double> process(n), filtered(n);
+  const double a = std::exp(-1 / (rate * 0.5)), b = std::exp(-1 / (rate * 20)), pole = std::exp(-2 * M_PI * 0.3 / rate);
+  double fast = 0, slow = 0, out = 0;
+  for (std::size_t t = 0; t < n; ++t) {
+    fast = a * fast + sd * std::sqrt(1 - a * a) * gauss();
+    slow = b * slow + sd * std::sqrt(1 - b * b) * gauss();
+    process[t] = sd * gauss() + fast + slow;
+    out = pole * out + (1 - pole) * sd * gauss();
+    filtered[t] = out;
+  }
+  const NoiseFit of_processes = fit_of(process, rate), behind = fit_of(filtered, rate);
+  CHECK(in_model(of_processes));
+  CHECK(of_processes[Term::white].value.value_or(0) == Approx(white).epsilon(0.01));
+  CHECK(!in_model(behind));
+  CHECK(behind[Term::white].value.value_or(0) == Approx(white).epsilon(0.06));
 }
 
 TEST_CASE("flicker and walk are not taken for a Gauss-Markov process") {

@@ -269,7 +269,24 @@ struct Search {
     if (family == NamedShape::Family::shelf && rise > std::log(kHighest)) return std::nullopt;
     band.named = *shape;
     band.orders = static_cast<int>(unknowns_of(family));
-    return at(band);
+    std::optional<Trial> trial = at(band);
+    if (trial && shape->zero_hz > 0 && !shows_white_below(*trial)) return std::nullopt;
+    return trial;
+  }
+
+  /// N is white noise below the zero and the pole: where slow noise is above it there, they are a departure of the
+  /// slow noise from its terms (another exponent, processes), and N would be read off an extrapolation.
+  bool shows_white_below(const Trial& trial) const {
+    const NamedShape& shape = trial.band.named;
+    const double corner_hz = std::min(shape.pole_hz, shape.zero_hz);
+    const auto at =
+        std::find_if(bins.begin(), bins.end(), [&](const PowerBin& bin) { return bin.high_hz > corner_hz; });
+    if (at == bins.end()) return true;
+    double slow = 0;
+    for (const std::size_t i :
+         {static_cast<std::size_t>(Term::flicker), static_cast<std::size_t>(Term::walk), kLentTerm})
+      slow += trial.theta[i] * at->unit[i];
+    return slow < trial.theta[0] * at->unit[0];
   }
 
   /// The widest band that passes with a filter or loop of low corner: found in the middle of the
@@ -578,12 +595,15 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
-  if (chance_of(*unshaped) >= options.probability_unshaped && !(shelf.largest > options.shelf))
-    return passing(*unshaped);
+  const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
+  if (describes && !(shelf.largest > options.shelf)) return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;
   const std::optional<Trial> quantized = search.at(with_quantization);
-  if (quantized && chance_of(*quantized) >= options.probability_unshaped) return passing(*quantized);
+  constexpr double kWorth = 4;  ///< of ln L, where the terms alone describe the record
+  if (quantized && chance_of(*quantized) >= options.probability_unshaped &&
+      (!describes || unshaped->half_deviance - quantized->half_deviance > kWorth))
+    return passing(*quantized);
   if (const auto named = named_filter(bins, rate_hz, terms, options);
       named && named->band.passes && explains_nulls(bins, rate_hz, *named))
     return named->band;

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -30,9 +31,14 @@ namespace {
 constexpr double kNeeded = 10;          ///< of 2 lnL
 constexpr double kRival = 2.71;         ///< of 2 lnL
 constexpr double kSlowNoise = 4;        ///< of 2 lnL that flicker and walk together must be worth
-constexpr double kFewestSamples = 100;  ///< of a correlation time: a faster process is a filter's affair
-constexpr double kLongest = 0.5;        ///< of the record
-constexpr double kWidth = 1.9;          ///< of the other band that is worth the process
+constexpr double kFewestSamples = 100;  ///< of a correlation time: a faster process may be a filter's affair
+constexpr double kFastest = 8;          ///< unless white noise is seen above it, of which a filter leaves nothing
+constexpr double kFloor = 1e-3;         ///< least of that over the plateau of the process: less may be rounding
+constexpr double kSteep = 4;            ///< of the plateau over that: less may be a filter's shelf
+constexpr double kBeside =
+    0.2;  ///< of the plateau over flicker and walk at its corner: less is their exponent's affair
+constexpr double kLongest = 0.5;  ///< of the record
+constexpr double kWidth = 1.9;    ///< of the other band that is worth the process
 constexpr double kBadlyKnown = 0.30;
 constexpr auto kLent = static_cast<std::size_t>(Term::ramp);
 constexpr auto kColumn = static_cast<Eigen::Index>(Term::ramp);
@@ -177,13 +183,43 @@ struct TauSearch {
 };
 
 TauSearch search_tau(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, double duration_s,
-                     const TermSet& terms) {
+                     const TermSet& terms, double fewest_samples = kFewestSamples) {
   AtTau likelihood(bins, band, rate_hz, terms);
   TauSearch out;
   out.without = likelihood.without().half_deviance;
-  out.peak = most_likely(likelihood, kFewestSamples / rate_hz, kLongest * duration_s);
+  out.peak = most_likely(likelihood, fewest_samples / rate_hz, kLongest * duration_s);
   out.ratio = std::max(0.0, 2 * (out.without - out.peak.half_deviance));
   return out;
+}
+
+double process_at(const Peak& peak, double frequency_hz) {
+  const double turns = 2 * std::numbers::pi * frequency_hz * peak.tau_s;
+  return 2 * peak.at.theta[kLent] * peak.tau_s / (1 + turns * turns);
+}
+
+/// A fall from a plateau, the highest of the slow noise at its corner, to white noise.
+bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
+  const double plateau = process_at(peak, 0), corner_hz = 1 / (2 * std::numbers::pi * peak.tau_s);
+  const double white = peak.at.theta[0];
+  const auto at = std::find_if(bins.begin(), bins.end(), [&](const PowerBin& bin) { return bin.high_hz > corner_hz; });
+  if (at == bins.end()) return false;
+  double slow = 0;
+  for (const Term term : {Term::flicker, Term::walk})
+    slow += peak.at.theta[static_cast<std::size_t>(term)] * at->unit[static_cast<std::size_t>(term)];
+  return white > kFloor * plateau && plateau > kSteep * white && plateau > kBeside * slow;
+}
+
+/// The whole band without a shape, where the terms with a process describe it: the fall to white noise that shapes and
+/// a cut band had in its place.
+std::optional<Band> unshaped_band(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
+                                  const TermSet& terms) {
+  const Peak peak = search_tau(bins, whole_band(bins, rate_hz), rate_hz, duration_s, terms, kFastest).peak;
+  if (!falls_to_white(bins, peak)) return std::nullopt;
+  BandOptions options;
+  options.tau_s = peak.tau_s;
+  Band band = find_band(bins, rate_hz, terms, options);
+  if (!band.passes || band.orders > 0 || band.top_hz < 0.99 * rate_hz / 2 || band.low_pass) return std::nullopt;
+  return band;
 }
 
 /// A band that the terms with the process describe: found with the process at its most likely correlation time under any shape.
@@ -211,12 +247,20 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
   const double with_slow = AtTau(bins, band, rate_hz, terms).without().half_deviance;
   if (!cut && 2 * (no_slow - with_slow) < kSlowNoise) return std::nullopt;
 
+  // A process that white noise does not take over before the band ends, or a faster one, is white noise behind a filter.
+  const auto filters = [&](const Band& in, const Peak& peak) {
+    return peak.tau_s < 1.01 * kFewestSamples / rate_hz ||
+           (in.top_hz < 0.99 * rate_hz / 2 && peak.at.theta[0] < kSteep * process_at(peak, in.top_hz));
+  };
   TauSearch here = search_tau(bins, band, rate_hz, duration_s, terms);
-  GaussMarkovChoice choice{band, here.peak.tau_s, here.ratio, here.ratio > kNeeded, 0};
-  if (cut) {
-    if (const auto other = other_band(bins, band, rate_hz, duration_s, terms)) {
-      here = search_tau(bins, *other, rate_hz, duration_s, terms);
-      if (here.ratio > kNeeded) choice = {*other, here.peak.tau_s, here.ratio, true, 0};
+  GaussMarkovChoice choice{band, here.peak.tau_s, here.ratio, here.ratio > kNeeded && !filters(band, here.peak), 0};
+  if (cut || (band.orders > 0 && band.named.family != NamedShape::Family::high_pass)) {
+    const auto unshaped = unshaped_band(bins, rate_hz, duration_s, terms);
+    const auto other = unshaped || !cut ? unshaped : other_band(bins, band, rate_hz, duration_s, terms);
+    if (other) {
+      here = search_tau(bins, *other, rate_hz, duration_s, terms, unshaped ? kFastest : kFewestSamples);
+      if (here.ratio > kNeeded && (unshaped || !filters(*other, here.peak)))
+        choice = {*other, here.peak.tau_s, here.ratio, true, 0};
     }
   }
   if (choice.needed) {
