@@ -106,8 +106,10 @@ WholeFile::WholeFile(std::string path, bool overwrite) : path_(std::move(path)),
   if (path_.empty()) throw output_error("E0502").says("an output file needs a name");
   if (open_through()) return;
   refuse_name(path_, overwrite_);
-  // A file without a name vanishes with the process, however that ends; not every file system offers it.
-  descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  // A file without a name vanishes with the process, however that ends; not every file system offers it, and it gets
+  // its name by /proc, which a bare root may lack.
+  if (::access("/proc/self/fd", X_OK) == 0)
+    descriptor_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   for (int attempt = 0; descriptor_ < 0 && attempt < 100; ++attempt) {
     if (!temporary_.empty()) forget_unfinished(temporary_);
     temporary_ = detail::temporary_name(path_, attempt);

@@ -20,6 +20,7 @@ namespace {
 constexpr auto kWhiteColumn = static_cast<Eigen::Index>(Term::white);
 constexpr auto kFlickerColumn = static_cast<Eigen::Index>(Term::flicker);
 constexpr auto kWalkColumn = static_cast<Eigen::Index>(Term::walk);
+constexpr auto kQuantizationColumn = static_cast<Eigen::Index>(Term::quantization);
 constexpr auto kLawColumn = static_cast<Eigen::Index>(Term::ramp);
 constexpr double kLawNeeded = 8;                             ///< of 2 lnL
 constexpr double kLeastExponent = 0.5, kMostExponent = 1.9;  ///< of the exponent
@@ -64,11 +65,13 @@ class AtExponent {
 std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms) {
   constexpr int kSteps = 8;
-  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] || band.quantized ||
-      !band.passes)
+  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] || !band.passes)
     return std::nullopt;
+  // Quantization noise bends the terms towards another exponent, so that it is among what the law must beat.
+  TermSet offered = terms;
+  offered[kQuantizationColumn] = offered[kQuantizationColumn] || band.quantized;
   const BinProblem problem = band_problem(bins, band, rate_hz);
-  const double terms_alone = score(problem, terms).half_deviance;
+  const double terms_alone = score(problem, offered).half_deviance;
   AtExponent law(problem);
   std::array<double, kSteps + 1> value{};
   std::size_t least = 0;
@@ -103,7 +106,7 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
     const double spread = std::exp(kNormal95 * white.relative_sd);
     white.ci95 = {law.white / spread, law.white * spread};
   }
-  for (const auto slow : {kFlickerColumn, kWalkColumn})
+  for (const auto slow : {kFlickerColumn, kWalkColumn, kQuantizationColumn})
     if (fit.term[static_cast<std::size_t>(slow)].value)
       fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;
   fit.findings.push_back(
