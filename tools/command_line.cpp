@@ -443,8 +443,7 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
             if (!colour) throw libchar::usage_error("E0202").says("expected one of auto, always, never").got(text);
             use_colour(*colour);
           },
-          "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
-          "auto)")
+          "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: auto)")
       .known_words(libchar::words_of<Colour>());
   sub->final_callback([this, sub, run = entry.add_options(options, session)] {
     if (only_parses_) return;

@@ -179,11 +179,10 @@ void answer_low_frequencies(Attempt& now) {
   now.fit.remedies = before;
   now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  now.fit.findings.push_back(
-      finding("lowest_left_out",
-              "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
-              "was left out of the fit.",
-              "the slowest part does not look like noise and was left out"));
+  now.fit.findings.push_back(finding("lowest_left_out",
+                                     "The slowest part of the record (warm-up, temperature or drift) does not look "
+                                     "like noise and was left out of the fit.",
+                                     "the slowest part does not look like noise and was left out"));
 }
 
 /// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
@@ -272,9 +271,9 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       });
   fit.findings.push_back(
       finding("misfit",
-              fmt::format("The model does not describe the record within its statistical accuracy "
-                          "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
-                          "the intervals are widened by its scatter, and no coefficient is borne out.",
+              fmt::format("The model does not describe the record within its statistical accuracy (chi-square {:.0f} "
+                          "for {:.0f} degrees of freedom, worst near {} Hz), in no band: the intervals are widened by "
+                          "its scatter, and no coefficient is borne out.",
                           fit.goodness.chi2, fit.goodness.dof, brief_text(worst->frequency_hz)),
               "the noise terms do not describe the recording"));
 }

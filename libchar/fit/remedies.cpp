@@ -74,8 +74,8 @@ Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
   const std::size_t further = cycles.size() - 1;
   Finding found =
       finding("cycle",
-              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the "
-                          "noise was fitted, and stays in the Allan curve.",
+              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the noise was "
+                          "fitted, and stays in the Allan curve.",
                           duration_text(1 / strongest.frequency_hz), brief_text(strongest.amplitude, 3),
                           further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
               "a cycle was taken out");

@@ -451,27 +451,19 @@ class Learner {
     if (options_.delay && still > 0)
       note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero", still, used_.size()));
     if (!delays_.bounds.empty())
-      note(
-          fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most "
-                      "{} samples (95 %)",
-                      delays_.bounds.size(), used_.size(),
-                      brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
+      note(fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most {} samples (95 %)",
+                       delays_.bounds.size(), used_.size(),
+                       brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)
-      note(
-          fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are "
-                      "searched: left at zero",
-                      delays_.ends, used_.size(), kMostDelay));
+      note(fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are searched: left at zero",
+                       delays_.ends, used_.size(), kMostDelay));
     if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
-      note(
-          fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with "
-                      "them is told",
-                      static_cast<std::size_t>(further_) - axes_.size(), further_));
+      note(fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with them is told",
+                       static_cast<std::size_t>(further_) - axes_.size(), further_));
     if (used_.size() < static_cast<std::size_t>(n_))
-      note(
-          fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as "
-                      "they are",
-                      static_cast<std::size_t>(n_) - used_.size(), n_));
+      note(fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",
+                       static_cast<std::size_t>(n_) - used_.size(), n_));
   }
 
   Equations equations(std::size_t k) {

@@ -51,9 +51,9 @@ class RunnerOf final : public Runner {
   static constexpr bool kMayLearn = A::description.needs.reference_helps;
   static constexpr bool kLearns =
       A::description.needs.reference || A::description.needs.reference_throughout || kMayLearn;
-  static_assert(kLearns == Learns<A>,
-                "description.needs.reference (or reference_throughout, reference_helps) and "
-                "learn(y, truth) go together");
+  static_assert(
+      kLearns == Learns<A>,
+      "description.needs.reference (or reference_throughout, reference_helps) and learn(y, truth) go together");
   static_assert(HasOptions<A> || !std::constructible_from<A, const Array&, const Settings&>,
                 "a constructor with Settings goes with a table `options`");
 

@@ -436,8 +436,7 @@ class CounterWatch {
       return fmt::format("never {}: a clock, a counter or a drift, not noise", rises ? "falls" : "rises");
     const bool saw = back.least > 2 * there.largest && static_cast<double>(back.count) <= 0.125 * steps();
     return saw ? fmt::format(
-                     "{} step by step and falls back {} times: a sawtooth, such as a counter "
-                     "that runs over, not noise",
+                     "{} step by step and falls back {} times: a sawtooth, such as a counter that runs over, not noise",
                      rises ? "rises" : "sinks", back.count)
                : "";
   }
@@ -817,15 +816,16 @@ void judge_values(const ChannelQuality& q, std::vector<Finding>& out) {
                           fmt::format("{} distinct values: quantization-limited, record with more gain or resolution",
                                       q.distinct_values)));
   else if (q.resolution && q.standard_deviation < 0.5 * *q.resolution)
-    out.push_back(finding("coarse_resolution",
-                          fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
-                                      "record with more gain",
-                                      brief_text(q.standard_deviation / *q.resolution, 2))));
+    out.push_back(finding(
+        "coarse_resolution",
+        fmt::format("standard deviation is {} of the resolution: quantization hides the noise, record with more gain",
+                    brief_text(q.standard_deviation / *q.resolution, 2))));
   if (q.float32 && q.distinct_values > 16 && q.standard_deviation > 0 && q.float32_step > 0.5 * q.standard_deviation)
     out.push_back(finding(
-        "float_step", fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
-                                  "subtract the offset before storing",
-                                  brief_text(q.float32_step), brief_text(q.float32_step / q.standard_deviation, 2))));
+        "float_step",
+        fmt::format(
+            "32-bit floats step by {} here, which is {} of the standard deviation: subtract the offset before storing",
+            brief_text(q.float32_step), brief_text(q.float32_step / q.standard_deviation, 2))));
 }
 
 /// A noise of which a hundredth does not fit into the range is not the one that was recorded.
@@ -863,9 +863,8 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   const bool band = share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
   Finding found =
       finding(band ? "dead_band" : "missing_mark",
-              band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than "
-                                 "{}: a dead band, and "
-                                 "noise at rest cannot be measured from this",
+              band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than {}: a dead "
+                                 "band, and noise at rest cannot be measured from this",
                                  percent_text(share), brief_text(q.signs.nearest_to_zero, 3))
                    : fmt::format("0 occurs {} times among values that hardly repeat: a mark for missing values?",
                                  q.signs.zeros));
@@ -888,12 +887,12 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   const bool rare = q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
   if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
   Finding stuck = finding(
-      "stuck", q.signs.frozen_runs < 2 || !rare
-                   ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
-                   : fmt::format("one value {} to {} times in a row in {} stretches, {} of the samples: the "
-                                 "sensor or the "
-                                 "link hung",
-                                 kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
+      "stuck",
+      q.signs.frozen_runs < 2 || !rare
+          ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
+          : fmt::format(
+                "one value {} to {} times in a row in {} stretches, {} of the samples: the sensor or the link hung",
+                kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
   if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
   // Where values repeat anyway, as between coarse steps, runs of them are no sign.
   const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
@@ -948,11 +947,10 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   }
   if (q.saturated > 0 && q.distinct_values > 3) {
     const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
-    Finding cut =
-        finding(share > kMostSaturated ? "much_saturated" : "saturated",
-                fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
-                            "saturated, use a larger full scale",
-                            q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
+    Finding cut = finding(
+        share > kMostSaturated ? "much_saturated" : "saturated",
+        fmt::format("{} samples ({}) stand at the end of the range ({} or {}): saturated, use a larger full scale",
+                    q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
     cut.count = q.saturated;
     if (q.minimum == 0 || q.maximum == 0)
       cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
@@ -963,10 +961,10 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   const double rests = static_cast<double>(again) / static_cast<double>(q.samples);
   if (rests > kDeadBand && q.distinct_values > 16 && q.minimum < q.signs.resting_value &&
       q.signs.resting_value < q.maximum) {
-    Finding dead =
-        finding("dead_band", fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be "
-                                         "measured from this",
-                                         percent_text(rests), brief_text(q.signs.resting_value, 6)));
+    Finding dead = finding(
+        "dead_band",
+        fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be measured from this",
+                    percent_text(rests), brief_text(q.signs.resting_value, 6)));
     dead.count = q.signs.at_rest;
     out.push_back(std::move(dead));
     return;
@@ -991,9 +989,9 @@ std::vector<Finding> findings_of(const ChannelQuality& q, double rate_hz) {
   judge_values(q, out);
   judge_ends(q, rate_hz, out);
   if (q.samples >= 1000 && q.difference_kurtosis > 10 && !(q.signs.held_times > 1))
-    out.push_back(finding("spiky", fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
-                                               "look for outliers",
-                                               brief_text(q.difference_kurtosis))));
+    out.push_back(finding(
+        "spiky", fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, look for outliers",
+                             brief_text(q.difference_kurtosis))));
   return out;
 }
 

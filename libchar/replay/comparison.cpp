@@ -138,8 +138,8 @@ void compare_own_errors(const ReplayReport& a, const ReplayReport& b, Difference
     }
   if (names.empty()) return;
   found.say(
-      fmt::format("the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
-                  "an RMSE of {} in A, {} in B{}",
+      fmt::format("the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has an RMSE "
+                  "of {} in A, {} in B{}",
                   names[0], brief_text(a.sensors[first].error.rmse, 7), brief_text(b.sensors[first].error.rmse, 7),
                   names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
 }

@@ -547,8 +547,8 @@ void Replay::refuse_sizes() const {
   if (beyond_ && largest_ > 0) return;
   throw input_error("E0909", scene_.file)
       .says(
-          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of "
-          "that size cannot be squared")
+          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that size cannot be "
+          "squared")
       .got(beyond_ ? "beyond 1e100" : brief_text(largest_, 3))
       .hint("give the sensors a `scale` and a `unit`");
 }
@@ -564,10 +564,10 @@ void doubt_offset(ReplayResult& out) {
                width = 0.5 * (score.error.bias_ci95.high - score.error.bias_ci95.low);
   if (!(bias * bias > kShare * rmse * rmse) || !(bias > kTimes * width)) return;
   Finding& found = best.remarks.add(
-      "constant_error", fmt::format("{} of the mean square error is a constant, {}{}: "
-                                    "an offset of the reference or of the sensors",
-                                    percent_text(bias * bias / (rmse * rmse)), number_text(score.error.bias, 3),
-                                    out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
+      "constant_error",
+      fmt::format("{} of the mean square error is a constant, {}{}: an offset of the reference or of the sensors",
+                  percent_text(bias * bias / (rmse * rmse)), number_text(score.error.bias, 3),
+                  out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
   found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
 }
 

@@ -103,8 +103,8 @@ void check(const ArraySimulation& s) {
       throw input_error("E0554")
           .says("two channels would be called {}", sensor.name)
           .hint(
-              "rename the sensor (channel: in a model, name: in a scene); a truth signal is called "
-              "truth unless it has a name");
+              "rename the sensor (channel: in a model, name: in a scene); a truth signal is called truth unless it has "
+              "a name");
     check_sensor(s, sensor);
   }
   for (const SensorFault& fault : s.faults)

@@ -60,10 +60,8 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   const std::size_t segments = detail::in_memory(layout.count(record.size())), bins = layout.segment / 2 + 1;
   if (static_cast<double>(segments) * static_cast<double>(bins) * sizeof(double) > kMostPowerBytes)
     throw usage_error("E0872", "`average`")
-        .says(
-            "a median takes the powers of all {} segments of {} bins at once, which are more than "
-            "2 GiB",
-            segments, bins)
+        .says("a median takes the powers of all {} segments of {} bins at once, which are more than 2 GiB", segments,
+              bins)
         .hint("give less `overlap`, or read less with `from_s`, `to_s`");
   const std::vector<double> window = window_values(options.window, layout.segment);
   std::vector<std::vector<double>> powers(segments);

@@ -346,9 +346,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
     }
 }
 
-TEST_CASE(
-    "intervals of a curve: nested, finite, reliable from five degrees of freedom on, a ramp "
-    "narrows them") {
+TEST_CASE("intervals of a curve: nested, finite, reliable from five degrees of freedom on, a ramp narrows them") {
   AllanCurve curve = octaves(1000);
   add_intervals(curve, {1, 0.1, 0.01, 0, 0});
   for (const auto& p : curve.points) {

@@ -141,8 +141,8 @@ void speed(std::size_t n) {
 void errors() {
   const std::size_t n = 10000000;
   fmt::print(
-      "\nlargest relative error of the deviation at m = 1, 32, 1024, 65536, 1048576; N = {}, "
-      "128-bit fixed-point reference\n",
+      "\nlargest relative error of the deviation at m = 1, 32, 1024, 65536, 1048576; N = {}, 128-bit fixed-point "
+      "reference\n",
       n);
   fmt::print("{:34} {:>10} {:>12}\n", "record (sigma 1)", "pyramid", "full overlap");
   const auto row = [&](const char* name, double offset, double drift) {
@@ -179,8 +179,8 @@ void covariance_cost() {
     const double again = best_of(3, [&] { trace += prepared.at(theta).trace(); });
     const double intervals = best_of(3, [&] { add_intervals(curve, theta); });
     fmt::print(
-        "N = {:5.0e}  {} octaves: covariance {:6.2f} ms, again for another mixture {:.4f} ms; edf "
-        "and intervals {:.2f} ms\n",
+        "N = {:5.0e}  {} octaves: covariance {:6.2f} ms, again for another mixture {:.4f} ms; edf and intervals {:.2f} "
+        "ms\n",
         n, curve.points.size(), first * 1e3, again * 1e3, intervals * 1e3);
   }
 }

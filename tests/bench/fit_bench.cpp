@@ -157,9 +157,8 @@ int main(int argc, char** argv) {
   const bool in_blocks = argc > 3 && std::string(argv[3]) == "blocks";
   fmt::print("records {}; {}\n", records, in_blocks ? "blocks" : "whole record");
   fmt::print(
-      "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
-      "cover all  "
-      "optimum  worst    ms/fit  ms/bins  p<.05\n");
+      "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  cover all  optimum  "
+      "worst    ms/fit  ms/bins  p<.05\n");
   for (const Scene& scene : kScenes) {
     if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos)
       print(scene, run(scene, records, in_blocks));

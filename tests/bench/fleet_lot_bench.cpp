@@ -244,8 +244,8 @@ void squares(Term term) {
     }
     const double sd = std::sqrt(square / count), r = std::sqrt(by_information / near) / truth;
     fmt::print(
-        "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), "
-        "skewness {:.2f} ({:.2f} by information), bias {:+.3f} sd ± .009\n",
+        "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), skewness {:.2f} ({:.2f} by "
+        "information), bias {:+.3f} sd ± .009\n",
         title_of(quantity_of(term)), c, r, sd * sd / (r * r * truth * truth), 1 + 0.55 * r / (1 + 1.5 * r),
         third / count / (sd * sd * sd), skewness / near, bias / sd);
   }
@@ -278,8 +278,7 @@ void left_out_lots(Term term, int lots) {
           }
         if (with_mean == 0) continue;
         fmt::print(
-            "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, "
-            "spread {:.3f}\n",
+            "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, spread {:.3f}\n",
             devices, with_mean, lots, of_all, 100 * sum_mean / with_mean, sum_spread / with_mean);
         print_rate("true mean in its interval", in_mean, with_mean, "95 %");
         print_rate("true spread in its interval", in_spread, with_mean, "95 %");

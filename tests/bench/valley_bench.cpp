@@ -272,8 +272,8 @@ void run(const Kind& kind, int records) {
     width += white.relative_sd / *bound[0] / records;
   }
   fmt::print(
-      "{:30} N {:4.2f} B {:4.2f} K {:4.2f} | det {:3} {:3} {:3} | off {:7.2f} rms {:7.2f} stated "
-      "{:6.2f} | good {:3} silent {:3} |",
+      "{:30} N {:4.2f} B {:4.2f} K {:4.2f} | det {:3} {:3} {:3} | off {:7.2f} rms {:7.2f} stated {:6.2f} | good {:3} "
+      "silent {:3} |",
       kind.name, static_cast<double>(held[0]) / records, static_cast<double>(held[1]) / records,
       static_cast<double>(held[2]) / records, valued[0], valued[1], valued[2], error, std::sqrt(square), width, good,
       silent);

@@ -21,9 +21,7 @@ NoiseFit white_behind_low_pass(double bandwidth_hz) {
 
 }  // namespace
 
-TEST_CASE(
-    "Allan curve of white noise behind a low-pass: the ratios of half the Haar variance of the "
-    "sampled AR(1)") {
+TEST_CASE("Allan curve of white noise behind a low-pass: the ratios of half the Haar variance of the sampled AR(1)") {
   struct Row {
     double bandwidth_over_rate;
     double ratio[6];

@@ -207,12 +207,10 @@ TEST_CASE("every bad input of fixtures/bad gets its verdict, exit code, code and
       fs::create_directories(at / "folder");
       write(at / "good.csv", log.str());
       write(at / "model.sensor.yaml",
-            "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, "
-            "unit: V·√s}\n");
+            "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, unit: V·√s}\n");
       write(at / "scene.scene.yaml",
-            "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 1, truth: [{name: r, "
-            "kind: zero}]}\nsensors:\n  - {name: a, model: {unit: V}}\n  - {name: b, model: {unit: "
-            "V}}\n");
+            "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 1, truth: [{name: r, kind: "
+            "zero}]}\nsensors:\n  - {name: a, model: {unit: V}}\n  - {name: b, model: {unit: V}}\n");
       test::RunOptions where;
       where.folder = at.string();
       const auto ran = test::run(arranged(kind, row, at), where);

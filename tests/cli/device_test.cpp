@@ -72,8 +72,8 @@ class Device {
     std::ofstream(path("log.yaml")) << replaced(replaced(kScene, "SEED", "2"), "FAULTS", kFaults);
     std::ofstream(path("main.c")) << kMain;
     run({"replay", path("scene.yaml"), "-o", path("run"), "--no-allan", "--algorithms",
-         "mean,inverse-variance,minque,virtual-sensor,least-squares,shrunk-least-squares,"
-         "non-negative-least-squares,perceptron,median,neural-simplex",
+         "mean,inverse-variance,minque,virtual-sensor,least-squares,shrunk-least-squares,non-negative-least-squares,"
+         "perceptron,median,neural-simplex",
          "--set", "minque.fault_detection=2"});
     run({"simulate", path("log.yaml"), "-o", path("log.csv")});
   }

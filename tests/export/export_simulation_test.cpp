@@ -276,9 +276,7 @@ TEST_CASE("KF-GINS: one correlation time for all, the driving density of each") 
   CHECK(test::has(exported("kf-gins", with_process()).text, "driving density kept"));
 }
 
-TEST_CASE(
-    "who only knows a random walk gets the driving density of a Gauss-Markov process, with a "
-    "sentence") {
+TEST_CASE("who only knows a random walk gets the driving density of a Gauss-Markov process, with a sentence") {
   const double driving = kGyroSigma * std::sqrt(2 / kGyroTau);
   const std::string kalibr = exported("kalibr", with_process()).text;
   CHECK(number_after(kalibr, "gyroscope_random_walk") == Approx(driving));

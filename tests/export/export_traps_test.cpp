@@ -121,8 +121,8 @@ TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {
   CHECK(airsim["AccelBiasStability"].get<double>() == Approx(0.01 * 1000 * std::sqrt(800)));
   // deg/sqrt(h) and (deg/h)/sqrt(h) of a data sheet: pi/180/60 and pi/180/3600/60.
   const SensorModel sheet = parse_sensor_model(
-      "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\nrate_hz: 100\nwhite_noise: "
-      "{value: 1, unit: deg/√h}\n"
+      "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\nrate_hz: 100\nwhite_noise: {value: 1, unit: "
+      "deg/√h}\n"
       "random_walk: {value: 1, unit: deg/h/√h}\n",
       "sheet.yaml");
   const std::string matlab = exported("matlab", {sheet}).text;

@@ -255,9 +255,7 @@ TEST_CASE("what lies above white noise at the slow end is no high-pass") {
   }
 }
 
-TEST_CASE(
-    "white noise beside a fast process, or behind a shelf: N is undetermined, its interval holds "
-    "both levels") {
+TEST_CASE("white noise beside a fast process, or behind a shelf: N is undetermined, its interval holds both levels") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     test::NoiseSource source(60000, kRate, 720 + seed);
     std::vector<double> y = source.record(0.1, 0, 0);

@@ -129,9 +129,7 @@ TEST_CASE("a curve of any scale that a double holds has the digits of scale one"
     }
 }
 
-TEST_CASE(
-    "without the length of the record, what the intervals rest on is said, and the option that "
-    "states it") {
+TEST_CASE("without the length of the record, what the intervals rest on is said, and the option that states it") {
   const NoiseFit fit = fit_curve(allan_of({25e-6, 1e-6, 1e-8, 0, 0}, 100.0));
   REQUIRE(fit.findings.size() == 1);
   CHECK(fit.findings[0].sentence.find("`duration_s`") != std::string::npos);

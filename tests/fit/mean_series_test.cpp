@@ -82,9 +82,7 @@ std::vector<PowerBin> series_bins(const std::vector<double>& means) {
 
 }  // namespace
 
-TEST_CASE(
-    "mean series: every coefficient of a long one is there once, slow ones with the whole "
-    "resolution") {
+TEST_CASE("mean series: every coefficient of a long one is there once, slow ones with the whole resolution") {
   const std::size_t n = kMostMeans + 5 * kMeansBlock + 20000;
   const std::vector<PowerBin> bins = series_bins(white_walk_means(n, 0, 2));
   double count = 0, slowest = 1e9;
@@ -124,9 +122,7 @@ TEST_CASE("mean series: parts of a long record, each less its own first sample, 
   }
 }
 
-TEST_CASE(
-    "mean series: a part with missing samples is cut into pieces that have the noise's "
-    "expectations") {
+TEST_CASE("mean series: a part with missing samples is cut into pieces that have the noise's expectations") {
   std::vector<double> means = white_walk_means(40 * kMeansBlock, 2e-5, 7);
   PowerSums all;
   for (std::size_t part = 0; part < 40; ++part) {

@@ -40,8 +40,8 @@ void report(const std::vector<DeviceRecord>& records) {
   FleetLotOptions options;
   if (records.size() % 2 == 1)
     options.limits[""] = parse_limits(
-        "format: noise-limits\nversion: 1\nlimits:\n  - {kind: angular_rate, white_noise: "
-        "{value: 2, unit: deg/√h}, bias_instability: {value: 5, unit: deg/h}}\n",
+        "format: noise-limits\nversion: 1\nlimits:\n  - {kind: angular_rate, white_noise: {value: 2, unit: deg/√h}, "
+        "bias_instability: {value: 5, unit: deg/h}}\n",
         "l.yaml");
   try {
     const FleetLot lot = fleet_lot(records, options);

@@ -40,12 +40,10 @@ struct Written {
   std::vector<std::vector<double>> values;
 
   std::string title() const {
-    return fmt::format(
-        "delimiter '{}' {} stamps {} words {} header {} quotes {} front {} columns {} rows {} "
-        "digits {}",
-        delimiter == '\t' ? "tab" : std::string(1, delimiter), comma ? "comma" : "point", static_cast<int>(stamps),
-        static_cast<int>(words), static_cast<int>(header), static_cast<int>(quotes), static_cast<int>(front), columns,
-        rows, digits);
+    return fmt::format("delimiter '{}' {} stamps {} words {} header {} quotes {} front {} columns {} rows {} digits {}",
+                       delimiter == '\t' ? "tab" : std::string(1, delimiter), comma ? "comma" : "point",
+                       static_cast<int>(stamps), static_cast<int>(words), static_cast<int>(header),
+                       static_cast<int>(quotes), static_cast<int>(front), columns, rows, digits);
   }
 };
 

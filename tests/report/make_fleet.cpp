@@ -74,9 +74,8 @@ int main(int argc, char** argv) {
     FleetLotOptions options;
     if (kind != "hostile")
       options.limits["mems"] = parse_limits(
-          "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    "
-          "bias_instability: {value: 3.5e-3, unit: deg/s}\n    white_noise: {value: 20.5, unit: "
-          "deg/√h}\n",
+          "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    bias_instability: {value: 3.5e-3, "
+          "unit: deg/s}\n    white_noise: {value: 20.5, unit: deg/√h}\n",
           "limits.yaml");
     const FleetLot lot = fleet_lot(records, options);
     write_fleet_report({records, &lot, "made of numbers", {"make_fleet", kind}, {}}, folder, true);

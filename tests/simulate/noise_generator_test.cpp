@@ -350,9 +350,7 @@ TEST_CASE("the samples of a seed stay what they are") {
   CHECK(x[999] == Approx(250.77387683495408).epsilon(1e-12));
 }
 
-TEST_CASE(
-    "a Gauss-Markov process is simulated with its variance and covariance, from the first sample "
-    "on") {
+TEST_CASE("a Gauss-Markov process is simulated with its variance and covariance, from the first sample on") {
   NoiseDesign design;
   design.rate_hz = 4;
   design.gauss_markov_sigma = 0.3;

@@ -256,9 +256,7 @@ void refuse_interrupted(const std::filesystem::path& folder_or_file) {
   if (folder.empty()) folder = ".";
   if (whole ? !has_journal(folder) : !journal_names(folder, folder_or_file.filename())) return;
   throw output_error("E0516", folder.string())
-      .says(
-          "a run was interrupted while it gave its results their names: some files here may be "
-          "older than others")
+      .says("a run was interrupted while it gave its results their names: some files here may be older than others")
       .hint("run it again into this folder");
 }
 

@@ -28,8 +28,8 @@ enum class WorkKind : std::size_t {
 template <>
 inline constexpr auto enum_table<WorkKind> =
     enum_words<WorkKind,
-               "passes rows segments cosine_transforms floor_medians allan_terms descents "
-               "simulated_samples learnt_instants training_steps fused_instants blind_instants">;
+               "passes rows segments cosine_transforms floor_medians allan_terms descents simulated_samples "
+               "learnt_instants training_steps fused_instants blind_instants">;
 
 using WorkDone = std::array<std::uint64_t, enum_table<WorkKind>.size()>;
 

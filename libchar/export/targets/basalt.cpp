@@ -60,8 +60,8 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
       value[std::string(row.key)] = writer.numbers(row, *triad);
     }
   Json head = head_json(group, options,
-                        "noise_std = white_noise, bias_std = random_walk (roots of two-sided, "
-                        "continuous densities, SI units; the code makes them discrete itself)");
+                        "noise_std = white_noise, bias_std = random_walk (roots of two-sided, continuous densities, SI "
+                        "units; the code makes them discrete itself)");
   if (!comments.empty()) head["comments"] = comments;
   Json document;
   document["value0"] = value;

@@ -16,15 +16,14 @@ namespace {
 Export write_fast_lio(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "FAST-LIO", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "acc_cov, gyr_cov = white_noise^2 f; b_acc_cov, b_gyr_cov = "
-                                  "random_walk^2 f (f: IMU rate)"),
-                       "# ");
-  out.text += commented({"Variances, not standard deviations, and right at this IMU rate only: the filter "
-                         "multiplies them by",
-                         "dt^2 a step. The values of its examples (0.1, 0.0001) are far above "
-                         "those of a sensor at rest."},
-                        "# ");
+  out.text =
+      commented(head_lines(group, options,
+                           "acc_cov, gyr_cov = white_noise^2 f; b_acc_cov, b_gyr_cov = random_walk^2 f (f: IMU rate)"),
+                "# ");
+  out.text +=
+      commented({"Variances, not standard deviations, and right at this IMU rate only: the filter multiplies them by",
+                 "dt^2 a step. The values of its examples (0.1, 0.0001) are far above those of a sensor at rest."},
+                "# ");
   out.text += "common:\n  imu_topic: " + topic_scalar(group, options) + "\nmapping:\n";
   out.text += row_lines("fast-lio", f, "  ");
   return out;

@@ -13,8 +13,8 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
   out.text = commented(head_lines(group, options,
-                                  "density = white_noise, walk = random_walk (roots of two-sided, "
-                                  "continuous densities; Kalibr makes them discrete itself)"),
+                                  "density = white_noise, walk = random_walk (roots of two-sided, continuous "
+                                  "densities; Kalibr makes them discrete itself)"),
                        "# ");
   out.text += "rostopic: " + topic_scalar(group, options) + "\n";
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
@@ -27,8 +27,7 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget kalibr_target() {
   return {"kalibr",
           "Kalibr",
-          "continuous densities: N in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
-          "m/s^3/sqrt(Hz); all > 0",
+          "continuous densities: N in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz); all > 0",
           "imu.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
           "NK",

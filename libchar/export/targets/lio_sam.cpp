@@ -13,10 +13,10 @@ namespace {
 Export write_lio_sam(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "LIO-SAM", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "imuAccNoise, imuGyrNoise = white_noise; imuAccBiasN, "
-                                  "imuGyrBiasN = random_walk (densities)"),
-                       "# ");
+  out.text = commented(
+      head_lines(group, options,
+                 "imuAccNoise, imuGyrNoise = white_noise; imuAccBiasN, imuGyrBiasN = random_walk (densities)"),
+      "# ");
   // Parameters of ROS 2 stand below a node's name, those of ROS 1 below the program's.
   out.text += options.older ? "lio_sam:\n" : "/**:\n  ros__parameters:\n";
   const std::string indent = options.older ? "  " : "    ";

@@ -25,10 +25,10 @@ Export write_okvis(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OKVIS", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group, options,
-                                   "sigma_g_c, sigma_a_c = white_noise; sigma_gw_c, sigma_aw_c = "
-                                   "random_walk (continuous densities)"),
-                        "# ");
+  out.text += commented(
+      head_lines(group, options,
+                 "sigma_g_c, sigma_a_c = white_noise; sigma_gw_c, sigma_aw_c = random_walk (continuous densities)"),
+      "# ");
   out.text += "imu_parameters:\n" + row_lines("okvis", f, "    ");
   add_range("a_max", *group.accelerometer, options, out);
   add_range("g_max", *group.gyroscope, options, out);

@@ -34,10 +34,9 @@ Export write_rovio(const SensorGroup& group, const ExportOptions& options) {
 Export write_maplab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "maplab", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "noise_density = white_noise, bias_random_walk = random_walk "
-                                  "(continuous densities)"),
-                       "# ");
+  out.text = commented(
+      head_lines(group, options, "noise_density = white_noise, bias_random_walk = random_walk (continuous densities)"),
+      "# ");
   out.text += "topic: " + topic_scalar(group, options) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
   return out;
 }

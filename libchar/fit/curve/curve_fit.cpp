@@ -188,17 +188,15 @@ void say_what_intervals_mean(const Judge& judge, const std::string& basis, Noise
           "curve_uncertainty", "The intervals rest on the stated uncertainty of the points, taken as independent."));
       return;
     case Scatter::from_duration:
-      fit.findings.push_back(
-          finding("curve_uncertainty",
-                  "The intervals rest on the stated record length: the exact covariance of overlapping "
-                  "Allan variances."));
+      fit.findings.push_back(finding(
+          "curve_uncertainty",
+          "The intervals rest on the stated record length: the exact covariance of overlapping Allan variances."));
       return;
     case Scatter::estimated:
-      fit.findings.push_back(finding("curve_uncertainty",
-                                     "The curve states no uncertainty: the intervals rest on the "
-                                     "scatter of its points about the "
-                                     "fit, " +
-                                         basis + "."));
+      fit.findings.push_back(
+          finding("curve_uncertainty",
+                  "The curve states no uncertainty: the intervals rest on the scatter of its points about the fit, " +
+                      basis + "."));
       return;
   }
 }
@@ -514,11 +512,10 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
   NoiseFit misfit = fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
   for (Coefficient& term : misfit.term)
     if (term.value) term.status = Status::misfit;
-  misfit.findings.push_back(
-      finding("misfit",
-              "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
-              "no coefficient is borne out.",
-              "the noise terms do not describe the curve"));
+  misfit.findings.push_back(finding("misfit",
+                                    "The noise terms do not describe this curve, nor half of its points, within its "
+                                    "uncertainty: no coefficient is borne out.",
+                                    "the noise terms do not describe the curve"));
   return misfit;
 }
 

@@ -51,8 +51,8 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
   if (wider > 1.05)
     fit.findings.push_back(finding(
-        "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
-                                   "{} instead of 3): the interval of N is {} times as wide for it.",
+        "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences {} "
+                                   "instead of 3): the interval of N is {} times as wide for it.",
                                    brief_text(difference_kurtosis), brief_text(wider, 2))));
 }
 
@@ -75,11 +75,12 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers, double ra
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
   const bool noticeable = 1 / share - 1 > kNoticeable * white.relative_sd;
   if (noticeable)
-    fit.findings.push_back(finding("outliers_in_n",
-                                   fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
-                                               "the Gaussian core of the samples.",
-                                               percent_text(1 / share - 1)),
-                                   "small outliers were taken out of N"));
+    fit.findings.push_back(finding(
+        "outliers_in_n",
+        fmt::format(
+            "Outliers too small to be left out one by one add {} to N: N is that of the Gaussian core of the samples.",
+            percent_text(1 / share - 1)),
+        "small outliers were taken out of N"));
   white.value = core;
 }
 

@@ -61,8 +61,7 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
   for (const Rail& rail : faults.rails)
     faults.findings.push_back(finding(
         "rail",
-        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
-                    "comes out too small.",
+        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise comes out too small.",
                     percent_text(rail.share), rail.high ? "largest" : "smallest", with_unit(rail.value, unit))));
   if (faults.staircase)
     faults.findings.push_back(finding(
@@ -146,11 +145,11 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
     if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
     if (white.upper95) white.upper95 = std::max(*white.upper95, most);
   }
-  fit.findings.push_back(
-      finding("digital_misfit",
-              fmt::format("No coefficient can be trusted, however well the curves agree: they are those of the "
-                          "{}, not of the noise.",
-                          rounding ? "converter's rounding" : "clipped samples")));
+  fit.findings.push_back(finding(
+      "digital_misfit",
+      fmt::format(
+          "No coefficient can be trusted, however well the curves agree: they are those of the {}, not of the noise.",
+          rounding ? "converter's rounding" : "clipped samples")));
 }
 
 }  // namespace libchar

@@ -216,13 +216,12 @@ std::string spike_sentence(const SpikeCount& count) {
   switch (judge_spikes(count)) {
     case SpikeVerdict::too_many:
       return fmt::format(
-          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 "
-          "%), and all were kept.",
+          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 %), and all were kept.",
           percent_text(static_cast<double>(count.left_out) / static_cast<double>(count.samples)));
     case SpikeVerdict::heavy_tails:
       return fmt::format(
-          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a "
-          "signal that jumps: not taken for spikes, and kept.",
+          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a signal that jumps: "
+          "not taken for spikes, and kept.",
           count.left_out, count.left_out == 1 ? "" : "s");
     default:
       return "";

@@ -254,11 +254,9 @@ std::string sentence_of(const Stationarity& found, double limit) {
     last = s.tau_s;
   }
   return fmt::format(
-      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of "
-      "stretches of {} differs by {} % (1 sd) beyond "
-      "chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. "
-      "Another recording may differ as "
-      "much.",
+      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of stretches of {} differs "
+      "by {} % (1 sd) beyond chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. Another "
+      "recording may differ as much.",
       duration_text(found.clearest_tau_s), duration_text(found.stretch_s), number_text(100 * there, 2),
       number_text(found.smallest, 3), place_text(found.smallest_s.low), place_text(found.smallest_s.high),
       number_text(found.largest, 3), place_text(found.largest_s.low), place_text(found.largest_s.high),

@@ -186,13 +186,10 @@ struct RegularizedLeastSquares : ReferenceWeightedMean {
                                  .learning_complexity = "O(n^2)"};
   static constexpr Option kCalibrate{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first",
                                      true};
-  static constexpr Option kShrinkage{"shrinkage",
-                                     "",
-                                     0.1,
-                                     -1,
-                                     1,
-                                     "share of the covariance's diagonal; 0: none, below zero: "
-                                     "estimated as for independent instants"};
+  static constexpr Option kShrinkage{
+      "shrinkage", "",
+      0.1,         -1,
+      1,           "share of the covariance's diagonal; 0: none, below zero: estimated as for independent instants"};
   static constexpr auto options = [] {
     if constexpr (kNonNegative)
       return std::array{kCalibrate};

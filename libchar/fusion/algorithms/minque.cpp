@@ -127,9 +127,8 @@ void Minque::remarks(Findings& warnings) const {
   if (detector_) detector_->remarks(description.name, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",
-                 "minque looks for no faults: the memory of the variances (gamma) is not five "
-                 "times that of the "
-                 "fault rule (fault_gamma)");
+                 "minque looks for no faults: the memory of the variances (gamma) is not five times that of the fault "
+                 "rule (fault_gamma)");
   if (general_ || !scalar_.started()) return;
   std::vector<double> direction;
   if (scalar_.blindness(direction) <= kPoorlyKnownVariance) return;
@@ -137,9 +136,8 @@ void Minque::remarks(Findings& warnings) const {
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
   warnings.add("variances_not_identifiable",
-               "minque cannot tell the variances of these channels apart (their sum is known, the "
-               "other channels are too noisy to "
-               "divide it): " +
+               "minque cannot tell the variances of these channels apart (their sum is known, the other channels are "
+               "too noisy to divide it): " +
                    names);
 }
 

@@ -46,9 +46,8 @@ struct VirtualSensor {
              "of the input about zero, for a model of it; 0: nothing is assumed of the input"},
       Option{"input_corner_hz", "Hz", 1, 1e-9, 1e9, "of that model: double pole of the input's spectrum"},
       Option{"smoothed", "", 0, 0, 1,
-             "1: each estimate from the whole run, what comes after it as well (a smoother, for "
-             "logs); "
-             "0: from what came before (a filter)",
+             "1: each estimate from the whole run, what comes after it as well (a smoother, for logs); 0: from what "
+             "came before (a filter)",
              true},
       Option{"most_mb", "MB", 1000, 1, 1e9, "of the run that the smoother keeps; more is refused"}};
   VirtualSensor(const Array& array, const Settings& settings);

@@ -153,8 +153,8 @@ CForm Maker::minque() {
   const bool watches = s["fault_detection"] != 0 && shorter;
   if (s["fault_detection"] == 1)
     out.notes.emplace_back(
-        "faults are found by the second moment (minque.fault_detection = 2), not by cumulative "
-        "sums, which have no form in C");
+        "faults are found by the second moment (minque.fault_detection = 2), not by cumulative sums, which have no "
+        "form in C");
   const double armed =
       std::max(static_cast<double>(choice_.array->fault_free_samples), std::ceil(1 / (1 - s["gamma"])));
   const double start = s["start_variance"];
@@ -241,8 +241,8 @@ CForm Maker::virtual_sensor() {
   const auto n = static_cast<double>(n_), m = static_cast<double>(poles.size());
   out.cost.sums = 4 * n + 2 * m * n + 3 * m;
   out.notes.emplace_back(
-      "the gains are those of the steady state, also at the start; where a sensor has no sample, "
-      "the weights of the others are scaled up");
+      "the gains are those of the steady state, also at the start; where a sensor has no sample, the weights of the "
+      "others are scaled up");
   return out;
 }
 

@@ -118,8 +118,8 @@ class DataflashReader final : public TopicReader {
     if (!walk_ || log_.contents[topic_].kind) return;
     const DataflashTopic& content = log_.contents[topic_];
     warnings.add("bursts",
-                 fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
-                             "spectrum, no good for Allan deviations beyond {}",
+                 fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a spectrum, no "
+                             "good for Allan deviations beyond {}",
                              content.burst_samples, brief_text(content.burst_rate_hz, 6),
                              duration_text(content.burst_samples / content.burst_rate_hz)),
                  "", content.bursts);

@@ -124,8 +124,7 @@ class UlogReader final : public TopicReader {
     warnings.merge(log_.losses);
     if (log_.dropouts == 0) return;
     const std::string message = fmt::format(
-        "the logger lost messages, {} ms in all: gaps of every topic, which spoil Allan deviations "
-        "near their length",
+        "the logger lost messages, {} ms in all: gaps of every topic, which spoil Allan deviations near their length",
         log_.dropped_ms);
     for (const std::string& place : log_.dropout_places) warnings.add("dropout", message, place);
     if (log_.dropouts > log_.dropout_places.size())

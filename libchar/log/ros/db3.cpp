@@ -205,9 +205,10 @@ class Db3Reader final : public MessageTopics {
     const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
     const std::uint64_t said = page * number(28, 4);
     if (bytes_ < said)
-      found_early().add("cut_end", fmt::format("the database ends at byte {} of {} (a copy that was cut): "
-                                               "messages in front of that are read",
-                                               bytes_, said));
+      found_early().add(
+          "cut_end",
+          fmt::format("the database ends at byte {} of {} (a copy that was cut): messages in front of that are read",
+                      bytes_, said));
   }
 
   void read_definitions() {

@@ -432,8 +432,7 @@ class McapScan final : public ChunkScan {
     const auto said = ByteReader(content).number<std::uint32_t>();
     if (!crc_covers_ || said == 0 || said == crc_) return;
     warnings.add("checksum",
-                 "the data are not what their checksum says: something has changed since they were "
-                 "written");
+                 "the data are not what their checksum says: something has changed since they were written");
   }
 
   McapCatalog& catalog_;

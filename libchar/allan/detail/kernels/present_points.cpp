@@ -194,8 +194,8 @@ void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve) 
   const double share = static_cast<double>(curve.missing) / static_cast<double>(curve.samples);
   if (share > kWorthSaying && of_window_means(deviation_row(curve.type)))
     curve.notes.push_back(percent_text(share) +
-                          " of the samples are missing: means are over those that are there, and "
-                          "what the others add to the variance is taken off");
+                          " of the samples are missing: means are over those that are there, and what the others add "
+                          "to the variance is taken off");
   if (without.empty()) return;
   curve.notes.push_back("gaps leave no term at " + std::to_string(without.size()) + " averaging times from " +
                         duration_text(static_cast<double>(without.front()) * curve.dt_s) + " on");

@@ -262,10 +262,9 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
   }
   report_in_all(problem, all, fit.term);
   if (decision.flicker_or_walk) {
-    fit.findings.push_back(
-        finding("flicker_or_walk",
-                "The record shows slow noise but cannot tell bias instability from random walk: each could "
-                "explain it alone. A longer record can tell."));
+    fit.findings.push_back(finding("flicker_or_walk",
+                                   "The record shows slow noise but cannot tell bias instability from random walk: "
+                                   "each could explain it alone. A longer record can tell."));
   }
   return best.at;
 }

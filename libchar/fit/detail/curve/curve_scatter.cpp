@@ -113,9 +113,8 @@ std::string weigh_evenly(const DigitisedCurve& curve, const TermSet& offered, Cu
   if (!curve.group.empty()) problem.weight = weights_of_groups(curve);
   const double sum = solve_curve_thoroughly(problem, offered).sum_of_squares;
   return fmt::format(
-      "taken as {} of the ordinate at every point: they say how well the drawn curve fixes the "
-      "coefficients, not how well the record behind it did; `duration_s` states the length of the "
-      "record where it is known",
+      "taken as {} of the ordinate at every point: they say how well the drawn curve fixes the coefficients, not how "
+      "well the record behind it did; `duration_s` states the length of the record where it is known",
       percent_text(std::sqrt(sum / static_cast<double>(problem.size())) / 2));
 }
 
@@ -145,9 +144,7 @@ std::string weigh_by_frequency(const DigitisedCurve& curve, const TermSet& offer
     power = slope;
   }
   return fmt::format(
-      "which is that of about {} degrees of freedom a point{}; a column edf states them where "
-      "they are "
-      "known",
+      "which is that of about {} degrees of freedom a point{}; a column edf states them where they are known",
       brief_text(highest_dof, 2),
       power > 0 ? fmt::format(" at the highest frequency, with its power of {} below", brief_text(power, 2)) : "");
 }

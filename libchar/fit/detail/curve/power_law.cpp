@@ -106,14 +106,14 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
   for (const auto slow : {kFlickerColumn, kWalkColumn})
     if (fit.term[static_cast<std::size_t>(slow)].value)
       fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;
-  fit.findings.push_back(
-      finding("power_law",
-              fmt::format("The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is "
-                          "neither flicker nor a random walk (2 ln L {:.0f}): B and K stand in for it within "
-                          "this recording and mean nothing beyond it.",
-                          law.exponent, law.exponent - kNormal95 * law.exponent_sd,
-                          law.exponent + kNormal95 * law.exponent_sd, law.likelihood_ratio),
-              fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
+  fit.findings.push_back(finding(
+      "power_law",
+      fmt::format(
+          "The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is neither flicker nor a random "
+          "walk (2 ln L {:.0f}): B and K stand in for it within this recording and mean nothing beyond it.",
+          law.exponent, law.exponent - kNormal95 * law.exponent_sd, law.exponent + kNormal95 * law.exponent_sd,
+          law.likelihood_ratio),
+      fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
 }
 
 }  // namespace libchar

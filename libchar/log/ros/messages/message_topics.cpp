@@ -154,8 +154,8 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
   }
   if (result == Decoded::other_length)
     warnings.add("array_length",
-                 "messages with a longer or shorter array than in the first one: elements beyond "
-                 "it are left out, those they lack are missing",
+                 "messages with a longer or shorter array than in the first one: elements beyond it are left out, "
+                 "those they lack are missing",
                  place(message));
   if (rounded > 0)
     warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded", place(message),

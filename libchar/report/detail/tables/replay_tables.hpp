@@ -13,8 +13,8 @@ namespace libchar {
 Table algorithms_table(const ReplayView& view);
 /// What stands behind names in a text.
 inline constexpr const char* kStarNote =
-    "* the best method, and those whose difference from it is not resolved; bounds look at the "
-    "reference of the run itself.";
+    "* the best method, and those whose difference from it is not resolved; bounds look at the reference of the run "
+    "itself.";
 /// Facts of every algorithm, with the sentence of those that did not run.
 Table needs_table(const ReplayView& view);
 /// Scores for each input; none for one input.
