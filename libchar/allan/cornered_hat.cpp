@@ -1,8 +1,7 @@
-// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual
-// oscillator", 28th Ann. Symp. Frequency Control (1974); for n devices: C. R. Ekstrom, P. A.
-// Koppang, "Error bars for three-cornered hats", IEEE Trans. UFFC 53 (2006) 876. The variances of
-// pairwise differences of independent devices are sums, s_ij = v_i + v_j; least squares over all
-// pairs gives
+// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual oscillator", 28th Ann.
+// Symp. Frequency Control (1974); for n devices: C. R. Ekstrom, P. A. Koppang, "Error bars for three-cornered hats",
+// IEEE Trans. UFFC 53 (2006) 876. The variances of pairwise differences of independent devices are sums,
+// s_ij = v_i + v_j; least squares over all pairs gives
 //
 //   v_i = ( S_i - T/(n-1) ) / (n-2),     S_i = sum_{j != i} s_ij,   T = sum_{i<j} s_ij
 //

@@ -179,10 +179,8 @@ double phase_covariance(Term term, double n, double dt_s) {
   return 0;
 }
 
-// T: minus the walk's s (white), [(4n^2-1)(4n^2-9) H_n/48 - 25 n^4/72 + 95 n^2/144]/(4 pi)
-// (flicker),
-// (|n|^5 - 5|n|^3 + 4|n|)/240 (walk), |n|/2 (quantization); found by undetermined coefficients from
-// T'' = s.
+// T: minus the walk's s (white), [(4n^2-1)(4n^2-9) H_n/48 - 25 n^4/72 + 95 n^2/144]/(4 pi) (flicker),
+// (|n|^5 - 5|n|^3 + 4|n|)/240 (walk), |n|/2 (quantization); found by undetermined coefficients from T'' = s.
 double summed_phase_covariance(Term term, double n, double dt_s) {
   n = std::fabs(n);
   const double z = n * n;

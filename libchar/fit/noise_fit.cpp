@@ -43,8 +43,7 @@ constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
 
-/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last
-/// three.
+/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last three.
 struct Attempt {
   const std::vector<PowerBin>* bins = nullptr;
   Band band;
@@ -111,8 +110,7 @@ Band without_lowest(const Attempt& now) {
   return band;
 }
 
-/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are
-/// consistent.
+/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are consistent.
 double rejection(const Attempt& other, const NoiseFit& fit) {
   const BinProblem problem = problem_of(*other.bins, other.band, fit.rate_hz);
   const ModelPoint at{fit.theta, {}};
@@ -120,10 +118,9 @@ double rejection(const Attempt& other, const NoiseFit& fit) {
   return 2 * (value - other.half_deviance);
 }
 
-/// What `rejection` stays below in clean records. Its expectation is the information that the
-/// dropped bins carried, tr(1 - I_dropped I^-1), nearly all in one direction, so that it scatters
-/// like that times a chi-square of one degree of freedom. Below 1 the fit has moved by less than
-/// one standard deviation: not worth a remedy.
+/// What `rejection` stays below in clean records. Its expectation is the information that the dropped bins carried,
+/// tr(1 - I_dropped I^-1), nearly all in one direction, so that it scatters like that times a chi-square of one degree
+/// of freedom. Below 1 the fit has moved by less than one standard deviation: not worth a remedy.
 double rejection_limit(const Attempt& now, const Attempt& dropped) {
   const TermSet terms = only_positive(now.fit.theta);
   const auto information = [&](const Band& band) {
@@ -185,8 +182,7 @@ void answer_low_frequencies(Attempt& now) {
                                      "the slowest part does not look like noise and was left out"));
 }
 
-/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
-/// was measured.
+/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what was measured.
 double largest_possible(Term term, const AllanCurve& allan) {
   double largest = std::numeric_limits<double>::infinity();
   for (const AllanPoint& point : allan.points) {
@@ -278,16 +274,14 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
               "the noise terms do not describe the recording"));
 }
 
-/// After the decisions: the process that was needed gets its intervals, one that is as likely a
-/// sentence.
+/// After the decisions: the process that was needed gets its intervals, one that is as likely a sentence.
 void answer_process(const std::vector<PowerBin>& bins, const Band& band, GaussMarkovChoice& process, NoiseFit& fit) {
   if (!process.needed) return report_not_needed(process, fit);
   process.band = band;
   settle_gauss_markov(bins, process, fit);
 }
 
-/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's
-/// covariance says.
+/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's covariance says.
 void settle_flicker_phase(NoiseFit& fit) {
   for (Coefficient& term : fit.term)
     if (term.value) term.bound = term.relative_sd;

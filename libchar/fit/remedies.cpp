@@ -13,8 +13,7 @@
 namespace libchar {
 
 double spike_alarm(std::uint64_t samples) {
-  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation
-  // of -1/2.
+  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation of -1/2.
   return std::max(3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
 }
 

@@ -74,10 +74,9 @@ class DistinctValues {
   std::vector<double> values_;
 };
 
-// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It
-// is an end of the range when three and more stand in a row, and it has more than twice as many as
-// its neighbour, which the tail of a coarsely rounded signal has not: then all of them are
-// saturated.
+// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It is an end of the
+// range when three and more stand in a row, and it has more than twice as many as its neighbour, which the tail of a
+// coarsely rounded signal has not: then all of them are saturated.
 struct Extreme {
   double sign = 1, value = -__builtin_inf(), next = -__builtin_inf(), third = -__builtin_inf();
   std::uint64_t run = 0, count = 0, at_next = 0;
@@ -168,8 +167,7 @@ struct BlockSums {
   double nearest = 0;  // least |x| other than zero
 };
 
-/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
-/// vector width.
+/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width.
 LIBCHAR_LANES BlockSums sums_of_lanes(const double* x, const double* before, std::size_t n, double shift) {
   Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
@@ -240,9 +238,8 @@ LIBCHAR_LANES bool any_missing_lanes(const double* x, std::size_t n) {
 }
 constexpr InLanes<any_missing_lanes> any_missing;
 
-// Mean and variance only: sums about the block's first value, blocks merged by Chan's formula
-// (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
-// sample need not pay).
+// Mean and variance only: sums about the block's first value, blocks merged by Chan's formula (core/moments.hpp has all
+// four moments at three times the cost, which a meter that runs on every sample need not pay).
 struct MeanAndSpread {
   double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
@@ -264,8 +261,7 @@ struct MeanAndSpread {
   }
 };
 
-// Raw moments of differences: their mean is next to nothing beside their spread, except for
-// counters.
+// Raw moments of differences: their mean is next to nothing beside their spread, except for counters.
 struct DifferenceMoments {
   double n = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
 
@@ -294,8 +290,7 @@ struct DifferenceMoments {
     if (n < 4 || !(s2 > 0)) return 3;
     const double m = s1 / n, v = s2 / n - m * m;
     const double fourth = s4 / n - 4 * m * s3 / n + 6 * m * m * s2 / n - 3 * m * m * m * m;
-    // A ramp leaves only rounding here, and squares of huge or tiny values leave the range of a
-    // double.
+    // A ramp leaves only rounding here, and squares of huge or tiny values leave the range of a double.
     if (!(v > 1e-9 * (s2 / n)) || !std::isfinite(fourth) || !std::isnormal(v * v)) return 3;
     return fourth / (v * v);
   }
@@ -486,8 +481,7 @@ class CounterWatch {
   Direction up_, down_;
 };
 
-// The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing
-// when there is none.
+// The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing when there is none.
 std::optional<double> grid_step(std::vector<double> values) {
   if (values.size() < 2) return std::nullopt;
   std::sort(values.begin(), values.end());
@@ -510,8 +504,7 @@ std::optional<double> grid_step(std::vector<double> values) {
     step = a;
     if (step < 0.2 * least || step < 4 * tolerance) return std::nullopt;
   }
-  // Refine by least squares through the origin of the grid, widening the stretch so that no step is
-  // miscounted.
+  // Refine by least squares through the origin of the grid, widening the stretch so that no step is miscounted.
   for (std::size_t used = 2; used <= values.size();
        used = used == values.size() ? used + 1 : std::min(used * 2, values.size())) {
     double kk = 0, kv = 0;
@@ -529,8 +522,7 @@ std::optional<double> grid_step(std::vector<double> values) {
   return step;
 }
 
-// 0.05000000000000027 → 0.05: the least number of digits that stands within the grid's own
-// uncertainty.
+// 0.05000000000000027 → 0.05: the least number of digits that stands within the grid's own uncertainty.
 double tidy(double step) {
   for (int digits = 1; digits < 16; ++digits) {
     const double shorter = rounded(step, digits);
@@ -598,9 +590,8 @@ struct QualityMeter::State {
   Beginning beginning;
   std::uint64_t pushed = 0;
   bool float32 = true;
-  // The sample before the block, then samples until the block is full; with it whether a sample
-  // does not follow the one before directly (missing samples between). Room for as many as came so
-  // far.
+  // The sample before the block, then samples until the block is full; with it whether a sample does not follow the one
+  // before directly (missing samples between). Room for as many as came so far.
   std::vector<double> held;
   std::vector<unsigned char> starts;
   std::size_t used = 0;

@@ -157,9 +157,8 @@ double conversion(const std::string& stated, const Channel& channel) {
       .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 
-// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
-// in the unit, and values in another unit of the log are converted. Returns the factors, and says in
-// `notes` what was done.
+// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number in the unit, and
+// values in another unit of the log are converted. Returns the factors, and says in `notes` what was done.
 std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOptions& options, ScaleNotes* notes) {
   std::vector<double> factors(channels.size(), 1);
   const std::vector<Channel> stated = channels;

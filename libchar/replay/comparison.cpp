@@ -1,7 +1,6 @@
-// Intervals that do not overlap: for two independent estimates with 95 % intervals of like width, a
-// difference that large comes by chance in about 0.6 % of cases (Schenker & Gentleman, Am. Stat. 55
-// (2001) 182). Two replays of one recording share its noise, so it is rarer still: "not resolved"
-// is said too often rather than too seldom.
+// Intervals that do not overlap: for two independent estimates with 95 % intervals of like width, a difference that
+// large comes by chance in about 0.6 % of cases (Schenker & Gentleman, Am. Stat. 55 (2001) 182). Two replays of one
+// recording share its noise, so it is rarer still: "not resolved" is said too often rather than too seldom.
 
 #include "libchar/replay/comparison.hpp"
 

@@ -1,7 +1,6 @@
-// The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
-// learns in the learning window, one in which the bounds learn on the evaluation and smoothers look
-// at it, one that runs everything on it block by block, algorithm after algorithm, so that all see
-// the same machine.
+// The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that learns in the learning
+// window, one in which the bounds learn on the evaluation and smoothers look at it, one that runs everything on it
+// block by block, algorithm after algorithm, so that all see the same machine.
 
 #include "libchar/replay/replay.hpp"
 

@@ -1,7 +1,6 @@
-// y_i[k] = model_i(sum_j h_ij x_j(t_k)), block by block: truth signals first, then every sensor on
-// its own streams of random numbers, then faults. With oversampling p everything up to the
-// quantization runs p times as fast and every p-th sample is kept, so that aliases are in the
-// samples.
+// y_i[k] = model_i(sum_j h_ij x_j(t_k)), block by block: truth signals first, then every sensor on its own streams of
+// random numbers, then faults. With oversampling p everything up to the quantization runs p times as fast and every
+// p-th sample is kept, so that aliases are in the samples.
 #include "libchar/simulate/sensor_array.hpp"
 
 #include <algorithm>

@@ -4,10 +4,9 @@
 //
 //   E = sum_{i=K-k+1}^{K} 1/i,   Var = sum_{i=K-k+1}^{K} 1/i^2,
 //
-// so that the median of K = 2p + 1 is biased by 1 - 1/2 + 1/3 - … + 1/K, and that of K = 2p, the
-// mean of the middle two, by the sum to K - 1. f = 0 and Nyquist, with one degree of freedom, are
-// divided by the same. Independence is assumed for bias and variance; overlap counts as it does in
-// the mean.
+// so that the median of K = 2p + 1 is biased by 1 - 1/2 + 1/3 - … + 1/K, and that of K = 2p, the mean of the middle
+// two, by the sum to K - 1. f = 0 and Nyquist, with one degree of freedom, are divided by the same. Independence is
+// assumed for bias and variance; overlap counts as it does in the mean.
 
 #include <algorithm>
 

@@ -1,5 +1,4 @@
-// Properties of the Allan family (reliability notes, 4): scaling, offsets, drift, gaps, threads,
-// bad input.
+// Properties of the Allan family (reliability notes, 4): scaling, offsets, drift, gaps, threads, bad input.
 
 #include "libchar/allan/allan_deviation.hpp"
 

@@ -1,6 +1,5 @@
-// Cost and error of the Allan curves: `allan_bench [log10 of the number of samples, default 8]`.
-// Times are in units of memcpy of the same array in the same run; errors against 128-bit fixed
-// point.
+// Cost and error of the Allan curves: `allan_bench [log10 of the number of samples, default 8]`. Times are in units of
+// memcpy of the same array in the same run; errors against 128-bit fixed point.
 
 #include <fmt/core.h>
 
@@ -36,8 +35,7 @@ double best_of(int runs, const auto& work) {
   return best;
 }
 
-/// White noise of sigma 1 by sums of uniform integers (exactly representable at any offset used
-/// here).
+/// White noise of sigma 1 by sums of uniform integers (exactly representable at any offset used here).
 std::vector<double> white(std::size_t n, double offset, double drift) {
   std::vector<double> y(n);
   std::uint64_t state = 88172645463325252ULL;
@@ -54,8 +52,7 @@ std::vector<double> white(std::size_t n, double offset, double drift) {
   return y;
 }
 
-/// Cumulated record in fixed point with steps of 2^-60 (relative to sigma = 1), exact in 128 bits
-/// up to 1e11 samples.
+/// Cumulated record in fixed point with steps of 2^-60 (relative to sigma = 1), exact in 128 bits up to 1e11 samples.
 std::vector<Wide> exact_phase(const std::vector<double>& y) {
   std::vector<Wide> x(y.size() + 1);
   for (std::size_t i = 0; i < y.size(); ++i)

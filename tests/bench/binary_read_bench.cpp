@@ -1,5 +1,4 @@
-// How fast binary logs stream, beside a plain pread of the same bytes. Usage: binary_read_bench
-// [MILLIONS OF DOUBLES]
+// How fast binary logs stream, beside a plain pread of the same bytes. Usage: binary_read_bench [MILLIONS OF DOUBLES]
 
 #include <fcntl.h>
 #include <fmt/format.h>

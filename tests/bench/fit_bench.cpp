@@ -1,6 +1,5 @@
-// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao
-// bound, bias, coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene
-// letters = all] [blocks]
+// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao bound, bias,
+// coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene letters = all] [blocks]
 #include <fmt/format.h>
 
 #include <chrono>

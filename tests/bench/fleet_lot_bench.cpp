@@ -1,9 +1,8 @@
-// How often a lot's intervals cover, how often devices, batches and lots that are alike are called
-// unlike, and what a hundred thousand devices take. Usage: fleet_lot_bench [lots = 2000] [devices =
-// 100000] [parts = cbdtznks: coverage, batches, differences of two lots, temperatures, zone rules
-// of charts, what is not detected, terms beside a random walk that is not, squares against their
-// information] [FOLDER] With a folder: a fleet of that many devices with all of its results is
-// written there, for `sensorchar fleet merge` to be measured.
+// How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a
+// hundred thousand devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznks: coverage,
+// batches, differences of two lots, temperatures, zone rules of charts, what is not detected, terms beside a random
+// walk that is not, squares against their information] [FOLDER] With a folder: a fleet of that many devices with all of
+// its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -118,8 +117,7 @@ void batches(int lots) {
   print_rate("batches alike, p below .05", alarms, tests, "5 %");
 }
 
-/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias
-/// repeats beside them.
+/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias repeats beside them.
 void temperatures(const std::string& title, std::size_t devices, const test::MadeTemperatures& how, int lots) {
   test::MadeLot made;
   made.devices = devices;

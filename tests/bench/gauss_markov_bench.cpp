@@ -1,6 +1,5 @@
-// A first-order Gauss-Markov process against flicker and walk: found, its coefficients and their
-// intervals; and how often flicker and walk are taken for one. Usage: gauss_markov_bench [records =
-// 200]
+// A first-order Gauss-Markov process against flicker and walk: found, its coefficients and their intervals; and how
+// often flicker and walk are taken for one. Usage: gauss_markov_bench [records = 200]
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,7 +1,6 @@
-// Our fit against the estimators of imu_utils and allan_variance_ros, and a relative least squares
-// as in nmayorov's script, on the same simulated records; and against the published fits of
-// imu_utils on its own curves of six real IMUs. Usage: peers_bench [records a scene = 12] [scene
-// numbers = all]
+// Our fit against the estimators of imu_utils and allan_variance_ros, and a relative least squares as in nmayorov's
+// script, on the same simulated records; and against the published fits of imu_utils on its own curves of six real
+// IMUs. Usage: peers_bench [records a scene = 12] [scene numbers = all]
 // The estimators are those of `sensorchar bench` (libchar/benchmark/detail/peer_estimators.cpp).
 
 #include <fmt/format.h>

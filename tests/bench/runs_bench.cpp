@@ -1,6 +1,5 @@
-// Runs of one sensor in one likelihood: how often intervals cover, how often equal runs are called
-// unlike, unlike ones found and named, and what the spread of the turn-on bias says. Usage:
-// runs_bench [sets = 100]
+// Runs of one sensor in one likelihood: how often intervals cover, how often equal runs are called unlike, unlike ones
+// found and named, and what the spread of the turn-on bias says. Usage: runs_bench [sets = 100]
 #include <fmt/format.h>
 
 #include <chrono>

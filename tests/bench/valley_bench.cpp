@@ -1,7 +1,6 @@
-// Departures from the noise model that are too weak for the alarm of the fit, or just strong
-// enough: how often the 95 % interval holds N, how far N is off, how often the channel is called
-// good, and how often it is called good while an interval of N, B or K excludes the truth (silent).
-// Usage: valley_bench [records = 24] [kind = ""]
+// Departures from the noise model that are too weak for the alarm of the fit, or just strong enough: how often the 95 %
+// interval holds N, how far N is off, how often the channel is called good, and how often it is called good while an
+// interval of N, B or K excludes the truth (silent). Usage: valley_bench [records = 24] [kind = ""]
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -40,8 +40,7 @@ TEST_CASE("Allan curve of white noise behind a low-pass: the ratios of half the 
 }
 
 TEST_CASE("the low-pass in the spectrum and in the Allan curve are the same filter") {
-  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled
-  // density
+  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled density
   const double dt_s = 0.01, bandwidth_hz = 13;
   double sum = 0;
   const int steps = 20000;

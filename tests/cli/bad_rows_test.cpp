@@ -1,6 +1,5 @@
-// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must
-// be said of it: verdict, exit code, code and place. The rows were written by what is right, not by
-// what the program says.
+// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must be said of it:
+// verdict, exit code, code and place. The rows were written by what is right, not by what the program says.
 
 #include <catch2/catch.hpp>
 #include <cstring>

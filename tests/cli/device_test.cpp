@@ -146,9 +146,8 @@ double apart(const std::vector<double>& a, const std::vector<double>& b, std::si
   return out;
 }
 
-/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the
-/// first 49 s none does; later the sensors walk away from what was learnt, and one fails. `from`:
-/// instant of the first value.
+/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the first 49 s none
+/// does; later the sensors walk away from what was learnt, and one fails. `from`: instant of the first value.
 void check_deviations(const std::vector<double>& fused, const std::vector<double>& c, double tolerance,
                       std::size_t from = 0) {
   constexpr std::size_t kAsLearnt = 4900;

@@ -182,8 +182,7 @@ TEST_CASE("trap: Basalt takes the first value of the document for value0") {
 }
 
 TEST_CASE("trap: hostile channel names stay inside comments") {
-  // XML comments end at "--", C++ lines go on behind a backslash, YAML and MATLAB comments end at a
-  // line's end.
+  // XML comments end at "--", C++ lines go on behind a backslash, YAML and MATLAB comments end at a line's end.
   const std::string name = "a--><evil/>\n%YAML:1.0\nx: 1 -- \xE2\x80\xAE\xFF π\\";
   auto models = test::euroc_imu();
   models[0].channel = name;

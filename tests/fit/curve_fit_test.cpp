@@ -436,9 +436,8 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
 }
 
 TEST_CASE("curve fit: the last point, of one degree of freedom, does not cost the white noise") {
-  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the
-  // longest averaging time has one term, here a sixth of its expectation. Its logarithm is that of
-  // a chi-square, far from normal.
+  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the longest averaging
+  // time has one term, here a sixth of its expectation. Its logarithm is that of a chi-square, far from normal.
   DigitisedCurve curve;
   curve.is_allan = true;
   curve.rate_hz = 50;

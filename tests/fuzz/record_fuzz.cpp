@@ -1,6 +1,5 @@
-// Any bytes as device records, one a line: the fast way to read one and the way by a document
-// agree, what is read is written and read back, and the lot of such devices is computed and
-// reported, whatever their numbers are.
+// Any bytes as device records, one a line: the fast way to read one and the way by a document agree, what is read is
+// written and read back, and the lot of such devices is computed and reported, whatever their numbers are.
 
 #include <nlohmann/json.hpp>
 

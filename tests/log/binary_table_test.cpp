@@ -1,7 +1,6 @@
-// Binary logs of the field, read as a new user would: the file and, where it holds several streams,
-// a topic. Names, units, rate, first stamp and samples by value. The files are written by
-// independent writers or laid out byte by byte (fixtures/README.md); the formulas of their makers
-// stand here again.
+// Binary logs of the field, read as a new user would: the file and, where it holds several streams, a topic. Names,
+// units, rate, first stamp and samples by value. The files are written by independent writers or laid out byte by byte
+// (fixtures/README.md); the formulas of their makers stand here again.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
-// The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on
-// made-up clocks.
+// The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on made-up clocks.
 #include "libchar/log/time/grid.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
-// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our
-// writer.
+// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our writer.
 
 #include <catch2/catch.hpp>
 #include <cmath>

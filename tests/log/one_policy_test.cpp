@@ -1,6 +1,5 @@
-// The same dirty data in every format: the same samples, counts, warnings and codes. And of every
-// log that is accepted the account of its rows: rows in = rows used + rows dropped with a reason +
-// rows outside the window.
+// The same dirty data in every format: the same samples, counts, warnings and codes. And of every log that is accepted
+// the account of its rows: rows in = rows used + rows dropped with a reason + rows outside the window.
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -1,7 +1,6 @@
-// Tables written in every dialect that comes of delimiter × decimal mark × quotes × header × units ×
-// dates × text columns × comments, with one to eight columns and 5 to 5,000 rows. Each is read with
-// its values, names, units and rate, or refused; none is read wrong in silence, and at least 98 of
-// 100 are read.
+// Tables written in every dialect that comes of delimiter × decimal mark × quotes × header × units × dates × text
+// columns × comments, with one to eight columns and 5 to 5,000 rows. Each is read with its values, names, units and
+// rate, or refused; none is read wrong in silence, and at least 98 of 100 are read.
 
 #include <fmt/format.h>
 

@@ -117,8 +117,7 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
   const test::TemporaryFolder folder;
   for (const auto& [name, result] :
        {std::pair{"plain.html", test::synthetic_imu()}, std::pair{"hostile.html", test::hostile()}}) {
-    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its
-    // own.
+    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its own.
     const std::string path = (folder / name).string(), log = path + ".log";
     write_whole_file(path, without_assets(html_report(result)));
     const int code = std::system(("xmllint --html --noout '" + path + "' 2>'" + log + "'").c_str());

@@ -1,6 +1,5 @@
-// make_fleet KIND FOLDER: writes the report of a synthetic fleet for the browser test
-// (browser_test.py). KIND is a number of devices, or "hostile": names that want to be something
-// else.
+// make_fleet KIND FOLDER: writes the report of a synthetic fleet for the browser test (browser_test.py). KIND is a
+// number of devices, or "hostile": names that want to be something else.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

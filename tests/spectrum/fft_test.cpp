@@ -23,8 +23,7 @@ std::vector<double> gaussian(std::size_t n, unsigned seed, double offset = 0) {
   return y;
 }
 
-// cos(pi p / q) and sin with the argument reduced in integers first, so that the reference is good
-// to the last digit.
+// cos(pi p / q) and sin with the argument reduced in integers first, so that the reference is good to the last digit.
 long double cosine(std::size_t p, std::size_t q) {
   return std::cos(std::numbers::pi_v<long double> * static_cast<long double>(p % (2 * q)) /
                   static_cast<long double>(q));

@@ -1,5 +1,4 @@
-// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a
-// colleague.
+// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a colleague.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
-// sensorchar simulate MODEL…|SCENE -o LOG: a recording with known truth, streaming, and the scene
-// that replays it.
+// sensorchar simulate MODEL…|SCENE -o LOG: a recording with known truth, streaming, and the scene that replays it.
 
 #include <fmt/format.h>
 

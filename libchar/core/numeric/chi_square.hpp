@@ -5,8 +5,7 @@
 
 namespace libchar {
 
-/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability <
-/// 1; 1e-12 relative.
+/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability < 1; 1e-12 relative.
 double chi_square_quantile(double probability, double dof);
 /// The value exceeded with probability `tail`: the same quantile with no digits lost in 1 - tail.
 double chi_square_upper_quantile(double tail, double dof);
@@ -24,9 +23,8 @@ struct LogMoments {
 };
 LogMoments chi_square_log_moments(double dof);
 
-/// Interval of a deviation from its edf: deviation * sqrt(edf / chi2_{(1±confidence)/2}(edf)). A
-/// mean of squares has at least one degree of freedom: a smaller edf counts as 1, so that the
-/// interval is always finite.
+/// Interval of a deviation from its edf: deviation * sqrt(edf / chi2_{(1±confidence)/2}(edf)). A mean of squares has at
+/// least one degree of freedom: a smaller edf counts as 1, so that the interval is always finite.
 Interval chi_square_interval(double deviation, double edf, double confidence);
 
 }  // namespace libchar

@@ -49,8 +49,7 @@ class WorkMeter {
   WorkDone before_;
 };
 
-// How much heap a piece of work holds. The library cannot know; a program that counts
-// (tools/heap_meter.cpp) can say.
+// How much heap a piece of work holds. The library cannot know; a program that counts (tools/heap_meter.cpp) can say.
 
 struct HeapUse {
   std::int64_t held = 0;  ///< bytes allocated minus bytes freed since `begin`, on this thread

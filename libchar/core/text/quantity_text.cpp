@@ -22,8 +22,7 @@ using Units = std::initializer_list<std::pair<std::string_view, double>>;
 
 bool may_follow(char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; }
 
-// A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor
-// "nan", "inf", "0x10".
+// A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor "nan", "inf", "0x10".
 std::pair<double, std::string_view> leading_number(std::string_view text, const std::string& expected) {
   std::string_view digits = text;
   if (digits.starts_with('+')) digits.remove_prefix(1);

@@ -18,8 +18,7 @@ std::string latin1_to_utf8(std::string_view text);
 /// characters.
 std::optional<std::string> windows1252_to_utf8(std::string_view text);
 
-/// Length of the valid UTF-8 sequence that starts at text[i], 0 when there is none; `code` receives
-/// the code point.
+/// Length of the valid UTF-8 sequence that starts at text[i], 0 when there is none; `code` receives the code point.
 std::size_t decode_utf8(std::string_view text, std::size_t i, std::uint32_t& code);
 
 /// Adds the character `code`, below 0x10000.

@@ -1,5 +1,4 @@
-// Numbers for consumers. The Gauss-Markov bias of correlation time Tc and driving density q has the
-// Allan variance
+// Numbers for consumers. The Gauss-Markov bias of correlation time Tc and driving density q has the Allan variance
 //   q^2 Tc^2 / tau (1 - Tc/(2 tau) (3 - 4 exp(-tau/Tc) + exp(-2 tau/Tc))),
 // whose maximum lies at tau = 1.8926 Tc with a deviation of 0.43654 q sqrt(Tc) = 0.61736 s, s = q
 // sqrt(Tc/2) its steady state. Put on the flicker floor 0.66428 B at the middle of its flat part:

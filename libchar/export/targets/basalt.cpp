@@ -1,7 +1,6 @@
-// The IMU part of a Basalt calibration. The keys say "std" and mean continuous densities: the code
-// multiplies the noise by sqrt(imu_update_rate) and divides the bias by it. Read by cereal, which
-// finds named values by name but takes the first value of the document for value0: nothing may
-// stand in front of it.
+// The IMU part of a Basalt calibration. The keys say "std" and mean continuous densities: the code multiplies the noise
+// by sqrt(imu_update_rate) and divides the bias by it. Read by cereal, which finds named values by name but takes the
+// first value of the document for value0: nothing may stand in front of it.
 
 #include <nlohmann/json.hpp>
 

@@ -1,9 +1,8 @@
 // FAST-LIO and FAST-LIO2. The filter adds (dt f_w) Q (dt f_w)^T a step, so a step of dt adds dt^2 q to the
 // variance of the angle and of the velocity, and a second adds dt q; white noise of density N adds N^2:
 //   acc_cov, gyr_cov = N^2 / dt = N^2 f,   b_acc_cov, b_gyr_cov = K^2 / dt = K^2 f.
-// They are variances, of a sample and at one rate. Accelerations are scaled to 9.81 m/s^2 by its own
-// initialization, and are in m/s^2 (hku-mars/FAST_LIO 1087a72, src/IMU_Processing.hpp,
-// include/IKFoM_toolkit/esekfom/esekfom.hpp).
+// They are variances, of a sample and at one rate. Accelerations are scaled to 9.81 m/s^2 by its own initialization,
+// and are in m/s^2 (hku-mars/FAST_LIO 1087a72, src/IMU_Processing.hpp, include/IKFoM_toolkit/esekfom/esekfom.hpp).
 
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"

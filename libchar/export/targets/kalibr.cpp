@@ -1,6 +1,5 @@
-// Kalibr imu.yaml. Read with PyYAML: a %YAML line is a parse error, and a number without a decimal
-// point before its exponent is text. Kalibr refuses a value that is not > 0, and divides the
-// densities by sqrt(1/update_rate) itself.
+// Kalibr imu.yaml. Read with PyYAML: a %YAML line is a parse error, and a number without a decimal point before its
+// exponent is text. Kalibr refuses a value that is not > 0, and divides the densities by sqrt(1/update_rate) itself.
 
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"

@@ -1,8 +1,7 @@
-// The imunoise block of KF-GINS (i2Nav-WHU): arw deg/sqrt(h), vrw m/s/sqrt(h); biases are
-// first-order Gauss-Markov processes of steady standard deviation gbstd (deg/h), abstd (mGal) and
-// one correlation time for all of them, corrtime (h): its filter has F = -1/T and the driving
-// density 2 std^2/T (src/kf_gins.cpp, src/kf-gins/gi_engine.cpp). With one T for all, a process of
-// another keeps its driving density: std = q sqrt(T/2).
+// The imunoise block of KF-GINS (i2Nav-WHU): arw deg/sqrt(h), vrw m/s/sqrt(h); biases are first-order Gauss-Markov
+// processes of steady standard deviation gbstd (deg/h), abstd (mGal) and one correlation time for all of them, corrtime
+// (h): its filter has F = -1/T and the driving density 2 std^2/T (src/kf_gins.cpp, src/kf-gins/gi_engine.cpp). With one
+// T for all, a process of another keeps its driving density: std = q sqrt(T/2).
 
 #include <fmt/format.h>
 

@@ -1,9 +1,8 @@
-// The error profile of NaveGo in makers' units, for imu_si_errors(): arw deg/sqrt(h), vrw
-// m/s/sqrt(h), a first-order Gauss-Markov bias by its standard deviation gb_dyn (deg/s), ab_dyn
-// (mg) and correlation time gb_corr, ab_corr (s): simulation/noise_b_dyn.m takes the exact step
-// sigma sqrt(1 - exp(-2 dt/T)). An infinite time would turn it into white noise. arrw, vrrw stay 0:
-// noise_rrw.m steps by arrw dt, not K sqrt(dt), so that a density there would hold at one rate
-// only; a walk goes into gb_dyn with a long correlation time.
+// The error profile of NaveGo in makers' units, for imu_si_errors(): arw deg/sqrt(h), vrw m/s/sqrt(h), a first-order
+// Gauss-Markov bias by its standard deviation gb_dyn (deg/s), ab_dyn (mg) and correlation time gb_corr, ab_corr (s):
+// simulation/noise_b_dyn.m takes the exact step sigma sqrt(1 - exp(-2 dt/T)). An infinite time would turn it into white
+// noise. arrw, vrrw stay 0: noise_rrw.m steps by arrw dt, not K sqrt(dt), so that a density there would hold at one
+// rate only; a walk goes into gb_dyn with a long correlation time.
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // OKVIS and OKVIS2: imu_parameters of its configuration, in OpenCV's dialect of YAML. The covariance grows by dt
-// sigma^2 a step: continuous densities N and K (smartroboticslab/okvis2 0f18f34, okvis_ceres/src/ImuError.cpp).
-// a_max and g_max are where it takes a reading for saturated and trusts it a hundred times less: those of the
-// sensor.
+// sigma^2 a step: continuous densities N and K (smartroboticslab/okvis2 0f18f34, okvis_ceres/src/ImuError.cpp). a_max
+// and g_max are where it takes a reading for saturated and trusts it a hundred times less: those of the sensor.
 
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"

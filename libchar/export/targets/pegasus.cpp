@@ -1,8 +1,7 @@
-// The dictionary of Pegasus' IMU(config) for Isaac Sim: white noise by its continuous density (the
-// code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step of driving density random_walk
-// (extensions/…/logic/sensors/imu.py of PegasusSimulator). At its commit 2c99164 the gyroscope's
-// step takes the accelerometer's correlation time, the accelerometer's draws uniform numbers, and
-// neither bias is added to what comes out.
+// The dictionary of Pegasus' IMU(config) for Isaac Sim: white noise by its continuous density (the code divides by
+// sqrt(dt)), and an exact Ornstein-Uhlenbeck step of driving density random_walk (extensions/…/logic/sensors/imu.py of
+// PegasusSimulator). At its commit 2c99164 the gyroscope's step takes the accelerometer's correlation time, the
+// accelerometer's draws uniform numbers, and neither bias is added to what comes out.
 
 #include <fmt/format.h>
 

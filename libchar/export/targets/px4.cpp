@@ -1,6 +1,5 @@
-// PX4 EKF2 and ArduPilot EK3: noise of the prediction step. A step dt adds (dt noise)^2 to the
-// variance of an angle or a velocity and (dt bias_noise)^2 to that of a bias; white noise adds N^2
-// dt and a random walk K^2 dt:
+// PX4 EKF2 and ArduPilot EK3: noise of the prediction step. A step dt adds (dt noise)^2 to the variance of an angle or
+// a velocity and (dt bias_noise)^2 to that of a bias; white noise adds N^2 dt and a random walk K^2 dt:
 //   noise = N / sqrt(dt),  bias_noise = K / sqrt(dt).
 
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
-// Parameters of the Gazebo IMU plugins of RotorS, PX4 Gazebo classic and UUV: white noise by its
-// continuous density (the code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step for the
-// bias. The code reads gyroscopeBiasRandomWalk while its own models write gyroscopeRandomWalk
-// (which is ignored, so that the default stays): both are written here. Correlation times have to
-// be > 0.
+// Parameters of the Gazebo IMU plugins of RotorS, PX4 Gazebo classic and UUV: white noise by its continuous density
+// (the code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step for the bias. The code reads
+// gyroscopeBiasRandomWalk while its own models write gyroscopeRandomWalk (which is ignored, so that the default stays):
+// both are written here. Correlation times have to be > 0.
 
 #include <fmt/format.h>
 

@@ -96,8 +96,7 @@ CurveProblem problem_of(const DigitisedCurve& curve) {
   return problem;
 }
 
-/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the
-/// rate is known.
+/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the rate is known.
 TermSet offered_to(const DigitisedCurve& curve, const FitOptions& options) {
   TermSet terms = options.terms;
   terms[static_cast<std::size_t>(Term::quantization)] = curve.is_allan || curve.rate_hz.has_value();
@@ -255,8 +254,7 @@ void report_positive_term(const CurveJudgement& found, std::size_t i, double thr
   const Mixture& theta = found.decision.best.theta;
   Coefficient& term = fit.term[i];
   const auto c = static_cast<Eigen::Index>(i);
-  // Points that go together are fewer than they look: a term that needs all of them is not
-  // established.
+  // Points that go together are fewer than they look: a term that needs all of them is not established.
   const bool established = found.decision.ratio[i] * judge.independent / judge.points > threshold;
   term.status = established ? Status::detected : Status::undetermined;
   term.value = std::sqrt(theta[i]);

@@ -26,9 +26,8 @@
 namespace libchar {
 namespace {
 
-// The interval of white noise whose samples are not Gaussian. Whittle's likelihood takes
-// periodogram ordinates for independent. Of white noise of excess kurtosis g they share 2 + g
-// instead of 2: with theta = N^2 and n samples
+// The interval of white noise whose samples are not Gaussian. Whittle's likelihood takes periodogram ordinates for
+// independent. Of white noise of excess kurtosis g they share 2 + g instead of 2: with theta = N^2 and n samples
 //   var(ln theta) = var of the likelihood + g / n
 // (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1: covariance of
 // spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half
@@ -102,8 +101,7 @@ double event_variance(std::span<const Event> events, double rate_hz, double samp
   return sum;
 }
 
-/// The octaves of a record without its events: the long ones from its means, of the short ones what
-/// is hardly theirs.
+/// The octaves of a record without its events: the long ones from its means, of the short ones what is hardly theirs.
 AllanCurve curve_without(const FittedSums& sums, std::span<const Event> events, double rate_hz) {
   AllanCurve curve = octave_curve(sums.allan, 1 / rate_hz);
   const std::uint64_t per_mean = sums.means.per_mean(), from = kMeansOfPoint * per_mean;
@@ -256,8 +254,7 @@ NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, cons
   }
   const std::vector<PooledPower> powers = powers_without_ends(std::move(used.bins), events, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
-  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
-  // known.
+  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);
   take_out_outliers(answer.outliers, rate_hz, fit);

@@ -1,10 +1,8 @@
-// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it.
-// A rail has eight samples and twice as many as the neighbourhood (a thousandth of the range, or
-// one and a half times the distance to the next value). Staircase: with s = sqrt(2) sigma / step,
-// neighbours are equal with probability
+// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it. A rail has eight
+// samples and twice as many as the neighbourhood (a thousandth of the range, or one and a half times the distance to
+// the next value). Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
 //   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
-// averaged over where between two steps the value stands, which holds while the noise moves it
-// there (sigma > .3 step).
+// averaged over where between two steps the value stands, which holds while the noise moves it there (sigma > .3 step).
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
@@ -128,8 +126,7 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
 }
 
 void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
-  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the
-  // standard deviation.
+  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the standard deviation.
   constexpr double kHarmless = 0.01;
   double clipped = 0;
   for (const Rail& rail : faults.rails) clipped += rail.share;

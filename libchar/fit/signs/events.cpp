@@ -2,10 +2,9 @@
 // beside them. In each round the best place of each kind joins the model by itself, the noise is
 // fitted again without it, and its likelihood ratio
 //   LR = 2 ln L(with it, noise refitted) - 2 ln L(without, noise refitted)
-// is held against the square of the threshold that the look-elsewhere effect of its kind sets
-// (scans.hpp): the kind with the largest LR - threshold^2 is taken, if that is positive. Kinds
-// within kNotTold of it are named: steps, warm-ups and ramps imitate one another. Then the round is
-// repeated on what is left.
+// is held against the square of the threshold that the look-elsewhere effect of its kind sets (scans.hpp): the kind
+// with the largest LR - threshold^2 is taken, if that is positive. Kinds within kNotTold of it are named: steps,
+// warm-ups and ramps imitate one another. Then the round is repeated on what is left.
 #include "libchar/fit/signs/events.hpp"
 
 #include <fmt/format.h>

@@ -180,8 +180,7 @@ void add_dof(std::vector<AllanCurve>& curves, const NoiseFit& fit) {
   }
 }
 
-/// Curves of the stretches from a record's means of r samples, at the averaging factors of the
-/// record.
+/// Curves of the stretches from a record's means of r samples, at the averaging factors of the record.
 Curves coarse_curves(std::span<const double> means, std::size_t stretches, std::uint64_t r, double dt_s,
                      const NoiseFit& fit) {
   Curves curves = curves_of(means, stretches, dt_s * static_cast<double>(r));
@@ -195,8 +194,7 @@ Curves coarse_curves(std::span<const double> means, std::size_t stretches, std::
   return curves;
 }
 
-/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy
-/// tails.
+/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy tails.
 double excess_scatter(const Tested& record, double within, std::uint64_t m, const NoiseFit& fit) {
   AllanCurve curve = record.curve_of_piece();
   add_fit_intervals(curve, fit);

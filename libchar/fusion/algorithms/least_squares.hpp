@@ -19,9 +19,8 @@
 
 namespace libchar::fusion {
 
-// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder
-// QR, so that a learning set of any length takes no more room than a few squares of its width, and
-// no normal matrix is formed.
+// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder QR, so that a
+// learning set of any length takes no more room than a few squares of its width, and no normal matrix is formed.
 
 class Triangle {
  public:
@@ -57,8 +56,7 @@ struct LeastSquaresForm {
   bool calibrate = false;
   bool sum_to_one = true;
   bool constant = false;
-  /// of the covariance of the errors towards its diagonal, sum w = 1 (error_weights.hpp); below zero:
-  /// estimated
+  /// of the covariance of the errors towards its diagonal, sum w = 1 (error_weights.hpp); below zero: estimated
   double shrinkage = 0;
   bool non_negative = false;  ///< weights of at least zero that sum to one
 };

@@ -51,8 +51,7 @@ Estimate Minque::step(const Sample& y) { return general_ ? step_with(*general_, 
 template <class Variances>
 Estimate Minque::step_with(Variances& variances, const Sample& y) {
   if (detector_) detect(variances, y);
-  // Where the last instant was complete, this one is taken to be, and looked at when it shows that
-  // it is not.
+  // Where the last instant was complete, this one is taken to be, and looked at when it shows that it is not.
   if (!all_in_use() || !variances.started() || (detector_ && detector_->set_changed())) use_present(y);
   const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan(""); };
   // Written so that NaN fails.

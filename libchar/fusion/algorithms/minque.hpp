@@ -1,8 +1,7 @@
 #pragma once
-// Adaptive weights from variances that the channels tell about each other: recursive re-weighted
-// MINQUE (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by a bank of
-// cumulative sums (fault_detector.hpp) or by the mended rule of [RV] (fault_watch.hpp), then the
-// weighted mean or generalized least squares.
+// Adaptive weights from variances that the channels tell about each other: recursive re-weighted MINQUE
+// (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by a bank of cumulative sums (fault_detector.hpp) or
+// by the mended rule of [RV] (fault_watch.hpp), then the weighted mean or generalized least squares.
 
 #include <array>
 #include <optional>

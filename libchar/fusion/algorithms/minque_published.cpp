@@ -194,8 +194,7 @@ void MinquePublished::judge(const Sample& y) {
   if (changed) choose(y, false);
 }
 
-/// Weights of the channels in use from their variances; returns the variance of the result, NaN for
-/// a simple mean.
+/// Weights of the channels in use from their variances; returns the variance of the result, NaN for a simple mean.
 double MinquePublished::weigh() {
   bool positive = m_ >= 3;
   for (int k = 0; k < m_; ++k) positive = positive && variances_[in_use_[static_cast<std::size_t>(k)]] > 0;

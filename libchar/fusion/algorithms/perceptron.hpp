@@ -37,8 +37,7 @@ struct Perceptron {
 
   Perceptron(const Array& array, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);
-  /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave
-  /// numbers.
+  /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave numbers.
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);

@@ -1,6 +1,5 @@
-// Databases of rosbag2 (SQLite 3): messages in CDR, by definitions in the file (since Iron) or,
-// without, by those of common types. Source: ros2/rosbag2, rosbag2_storage_sqlite3 (tables topics,
-// messages, message_definitions).
+// Databases of rosbag2 (SQLite 3): messages in CDR, by definitions in the file (since Iron) or, without, by those of
+// common types. Source: ros2/rosbag2, rosbag2_storage_sqlite3 (tables topics, messages, message_definitions).
 
 #include <fmt/format.h>
 

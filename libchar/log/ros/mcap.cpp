@@ -1,6 +1,5 @@
-// MCAP, the container of ROS 2 since Iron and of Foxglove: any message that the file itself
-// describes in ROS's terms, or JSON. Source: mcap.dev/spec and its registry of profiles and
-// encodings.
+// MCAP, the container of ROS 2 since Iron and of Foxglove: any message that the file itself describes in ROS's terms,
+// or JSON. Source: mcap.dev/spec and its registry of profiles and encodings.
 
 #include <fmt/format.h>
 

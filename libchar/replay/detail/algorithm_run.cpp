@@ -27,8 +27,7 @@ bool still(const std::vector<double>& values) {
                      [&](double v) { return v == values[0] || (std::isnan(v) && std::isnan(values[0])); });
 }
 
-/// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever
-/// changes.
+/// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever changes.
 Timeline thinned(std::span<const double> time_s, const std::vector<std::vector<double>>& series, std::size_t bins) {
   Timeline out;
   if (time_s.empty() || std::all_of(series.begin(), series.end(), still)) return out;
@@ -60,8 +59,7 @@ Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, dou
   const double cell_s = static_cast<double>(meter.cell_samples()) / rate_hz;
   const auto half = static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
   std::vector<double> times, rms;
-  // Sums over each window of their own: a difference of running sums would keep the traces of a
-  // large error for ever.
+  // Sums over each window of their own: a difference of running sums would keep the traces of a large error for ever.
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::size_t from = c > half ? c - half : 0, to = std::min(cells.size(), c + half + 1);
     double sum = 0, n = 0;

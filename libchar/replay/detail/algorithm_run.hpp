@@ -51,8 +51,7 @@ class AlgorithmRun {
   /// What it learnt, for the file that applies it.
   LearntAlgorithm hand_out() const;
   void run(const Eigen::MatrixXd& samples);
-  /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block
-  /// are warm-up.
+  /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block are warm-up.
   void score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip);
   /// Once more on a block, for the clock alone: its state is not looked at afterwards.
   void repeat(const Eigen::MatrixXd& samples);

@@ -151,8 +151,7 @@ namespace {
 /// Of a place on the axis of a lot.
 double value_at(const LotAxis& axis, double place) { return axis.logarithm ? std::exp(place) : place; }
 
-/// Ends with a margin; a limit near the values belongs into the picture, one far away would squeeze
-/// them.
+/// Ends with a margin; a limit near the values belongs into the picture, one far away would squeeze them.
 FigureAxis lot_axis(const LotAxis& axis, double low, double high) {
   if (axis.limit && *axis.limit < high + (high - low) && *axis.limit > low - (high - low)) {
     low = std::min(low, *axis.limit);

@@ -1,5 +1,4 @@
-// report.html: one page that carries its data, scripts and styles, and asks for nothing from
-// anywhere.
+// report.html: one page that carries its data, scripts and styles, and asks for nothing from anywhere.
 //
 // The page holds no time: the same characterization gives the same bytes.
 

@@ -16,8 +16,7 @@
 namespace libchar {
 namespace {
 
-// The figures of a replay's page, in their sections; replay_page.js draws into them. "": nothing to
-// draw.
+// The figures of a replay's page, in their sections; replay_page.js draws into them. "": nothing to draw.
 
 std::string of_input(const ReplayResult& r, std::size_t j) {
   return r.inputs.size() > 1 && j < r.inputs.size() ? " of " + r.inputs[j].name : "";

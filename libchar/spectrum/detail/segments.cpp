@@ -90,8 +90,7 @@ LIBCHAR_LANES void add_lanes(const double* from, std::size_t n, double* to) {
 }
 constexpr InLanes<add_lanes> add;
 
-// r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap
-// near one).
+// r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap near one).
 std::vector<double> window_correlation(const std::vector<double>& w, std::size_t hop, std::size_t lags) {
   std::vector<double> r(lags + 1, 0.0);
   const std::size_t n = w.size();

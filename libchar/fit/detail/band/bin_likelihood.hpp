@@ -52,8 +52,7 @@ double half_deviance(const BinProblem& problem, const ModelPoint& at);
 /// unknown shape takes of it is taken off.
 TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, const TermSet& terms);
 
-/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are
-/// scaled first.
+/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are scaled first.
 TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms);
 
 inline TermSet only_positive(const Mixture& theta) {

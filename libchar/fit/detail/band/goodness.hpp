@@ -12,8 +12,7 @@
 
 namespace libchar {
 
-/// The residual of a gamma bin as a standard normal deviate, Phi^-1(P(chi2_nu <= nu u)): exact for
-/// every nu.
+/// The residual of a gamma bin as a standard normal deviate, Phi^-1(P(chi2_nu <= nu u)): exact for every nu.
 double normal_deviate(double energy_ratio, double dof);
 
 std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins, const Mixture& theta, double rate_hz);

@@ -15,11 +15,10 @@
 
 namespace libchar {
 
-// A term whose true value is zero improves 2 ln L by half a chi-square with one degree of freedom
-// and half a zero (boundary of theta >= 0): threshold 5.41 is passed by 1 % of such terms.
-// Elimination runs backward from the full set, least needed first. Flicker and walk may each be
-// dispensable while the other is there and yet not both (docs/theory/fit.md): then both are kept and
-// reported as undetermined.
+// A term whose true value is zero improves 2 ln L by half a chi-square with one degree of freedom and half a zero
+// (boundary of theta >= 0): threshold 5.41 is passed by 1 % of such terms. Elimination runs backward from the full set,
+// least needed first. Flicker and walk may each be dispensable while the other is there and yet not both
+// (docs/theory/fit.md): then both are kept and reported as undetermined.
 
 namespace {
 

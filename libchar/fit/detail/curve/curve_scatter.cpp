@@ -28,9 +28,8 @@ double likely_rate(const DigitisedCurve& curve) {
   return rate_hz;
 }
 
-/// What a record of some length makes of ln(variance): bias, and inverse Cholesky factor of the
-/// covariance. A variance with few degrees of freedom, as at the slow end, is that of a chi-square,
-/// whose logarithm is skew.
+/// What a record of some length makes of ln(variance): bias, and inverse Cholesky factor of the covariance. A variance
+/// with few degrees of freedom, as at the slow end, is that of a chi-square, whose logarithm is skew.
 class RecordScatter {
  public:
   RecordScatter(const DigitisedCurve& curve, double duration_s)

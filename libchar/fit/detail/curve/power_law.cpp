@@ -1,8 +1,7 @@
 // Expected squares of the law between two terms: those of white noise, flicker and walk go as f^0,
 // f^-1, f^-2, ends of the record included, and their geometric means as the powers between,
 //   A_alpha = A_white^(1 - alpha) A_flicker^alpha (alpha < 1),  A_flicker^(2 - alpha) A_walk^(alpha - 1) (alpha > 1).
-// A scan of alpha, then a parabola through the least deviance; its curvature is the information on
-// alpha.
+// A scan of alpha, then a parabola through the least deviance; its curvature is the information on alpha.
 #include "libchar/fit/detail/curve/power_law.hpp"
 
 #include <fmt/format.h>

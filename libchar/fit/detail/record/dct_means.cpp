@@ -180,8 +180,7 @@ using std::numbers::pi;
 
 constexpr std::uint64_t kSiTable = 64;
 
-// Integral of sin(t)/t over [pi (j-1), pi j] by ten-point Gauss-Legendre (1e-15 on these smooth
-// half waves).
+// Integral of sin(t)/t over [pi (j-1), pi j] by ten-point Gauss-Legendre (1e-15 on these smooth half waves).
 double sine_integral_half_wave(std::uint64_t j) {
   static constexpr std::array<double, 5> node = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
                                                  0.8650633666889845, 0.9739065285171717};
@@ -231,9 +230,8 @@ long double flicker_phase_covariance(std::uint64_t n) {
   return ((4 * x * x - 1) * long_odd_harmonic(n) - 3 * x * x) / (4 * std::numbers::pi_v<long double>);
 }
 
-// Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m,
-// over m. Far lags by its Taylor series, where the difference of huge numbers would lose the
-// digits.
+// Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m, over m. Far lags by
+// its Taylor series, where the difference of huge numbers would lose the digits.
 double flicker_block_covariance(std::uint64_t j, std::uint64_t m) {
   const auto width = static_cast<double>(m);
   if (j <= 32) {

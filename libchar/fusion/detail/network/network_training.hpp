@@ -13,11 +13,10 @@
 
 namespace libchar::fusion {
 
-// What a Gauss-Newton step on a tanh network needs of the training rows: with J the slopes of its
-// output by every parameter and e = out - target, all sums of [J e]' [J e]. J itself is never there
-// as a whole: panels of rows are filled on all cores, then each core adds a panel to its own rows of
-// the matrix. Every sum goes over the rows in their order, whoever adds it up, so any number of
-// cores gives the same bits.
+// What a Gauss-Newton step on a tanh network needs of the training rows: with J the slopes of its output by every
+// parameter and e = out - target, all sums of [J e]' [J e]. J itself is never there as a whole: panels of rows are
+// filled on all cores, then each core adds a panel to its own rows of the matrix. Every sum goes over the rows in their
+// order, whoever adds it up, so any number of cores gives the same bits.
 
 /// Consecutive instants: `count` rows of inputs + 1 values, the target last.
 struct TrainingRows {

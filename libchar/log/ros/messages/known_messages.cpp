@@ -78,9 +78,8 @@ constexpr std::array kNoNumbers = {NoNumbers{"sensor_msgs/Image", "images"},
                                    NoNumbers{"foxglove_msgs/RawImage", "images"},
                                    NoNumbers{"foxglove_msgs/PointCloud", "point clouds"}};
 
-// The types as REPs and distributions have them, one a paragraph: its name, then its fields.
-// Bounds, constants and comments, which no byte of a message depends on, are left out. Where a type
-// has changed, the newest stands first.
+// The types as REPs and distributions have them, one a paragraph: its name, then its fields. Bounds, constants and
+// comments, which no byte of a message depends on, are left out. Where a type has changed, the newest stands first.
 constexpr std::string_view kDefinitions = R"(std_msgs/Header
 builtin_interfaces/Time stamp
 string frame_id

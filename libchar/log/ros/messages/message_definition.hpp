@@ -54,9 +54,8 @@ using MessageTypes = std::map<std::string, MessageType, std::less<>>;
 /// "sensor_msgs/Imu" for "sensor_msgs/msg/Imu" and for itself.
 std::string plain_type_name(std::string_view type);
 
-/// Adds `type` and the types behind it in `text` to `types`; those that are there already stay.
-/// Returns what is wrong with the text, "" when nothing is. `ros1`: time and duration are those of
-/// ROS 1.
+/// Adds `type` and the types behind it in `text` to `types`; those that are there already stay. Returns what is wrong
+/// with the text, "" when nothing is. `ros1`: time and duration are those of ROS 1.
 std::string add_message_types(std::string_view type, std::string_view text, bool ros1, MessageTypes& types);
 
 }  // namespace libchar

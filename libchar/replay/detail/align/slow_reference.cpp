@@ -1,5 +1,4 @@
-// With r_j the reference at stamps t_j, T their distance, and s(t) what the sensors say together
-// (noise variance v):
+// With r_j the reference at stamps t_j, T their distance, and s(t) what the sensors say together (noise variance v):
 //   instant        r_j = a s(t_j + lag) + b + e
 //   mean_before    r_j = a mean of s over [t_j - T, t_j) + lag, and so on
 // Each reading is fitted by least squares; its log-likelihood is -n/2 ln(variance of e, less what v

@@ -17,9 +17,8 @@ struct CommonMeters {
 };
 CommonMeters in_common(const Meters& a, const Meters& b);
 
-/// The predictive RMS of each method that ran on stretches, for the whole evaluation: its ratio to
-/// the first method that ran on all of it, from the instants in common, times that method's RMS.
-/// Both uncertainties are in its interval.
+/// The predictive RMS of each method that ran on stretches, for the whole evaluation: its ratio to the first method
+/// that ran on all of it, from the instants in common, times that method's RMS. Both uncertainties are in its interval.
 void extend_partial_scores(ReplayResult& result, const std::vector<Meters>& meters, const ScoreOptions& scoring);
 
 }  // namespace libchar

@@ -31,10 +31,9 @@ inline constexpr double kSettlingPeriods = 1.65;
 /// Both corners below half the rate.
 BandFilter band_filter(double from_hz, double to_hz, double rate_hz);
 
-/// The filter's run over one channel. It begins in the steady state of the first sample, so that a
-/// constant leaves no trace. Missing samples (NaN) stay missing, and the last value stands for them
-/// inside; after more than `bridged` it begins anew, and what comes is missing until it has
-/// settled.
+/// The filter's run over one channel. It begins in the steady state of the first sample, so that a constant leaves no
+/// trace. Missing samples (NaN) stay missing, and the last value stands for them inside; after more than `bridged` it
+/// begins anew, and what comes is missing until it has settled.
 class FilteredChannel {
  public:
   explicit FilteredChannel(const BandFilter& filter) : filter_(&filter) {}

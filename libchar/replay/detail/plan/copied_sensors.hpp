@@ -1,6 +1,5 @@
 #pragma once
-// Sensors that repeat another one, sample by sample, as far as a float tells: one channel recorded
-// twice is one sensor.
+// Sensors that repeat another one, sample by sample, as far as a float tells: one channel recorded twice is one sensor.
 
 #include <Eigen/Core>
 #include <cstdint>

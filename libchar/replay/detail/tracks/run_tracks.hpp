@@ -54,9 +54,8 @@ struct CloseUpPlace {
   std::optional<std::size_t> fault;
 };
 
-/// Around the start of the first faults, and where scoring begins; without faults in the middle too.
-/// They do not overlap. `starts`: instants of the run at which the faults begin; `series`: that are
-/// kept of each.
+/// Around the start of the first faults, and where scoring begins; without faults in the middle too. They do not
+/// overlap. `starts`: instants of the run at which the faults begin; `series`: that are kept of each.
 std::vector<CloseUpPlace> close_up_places(std::int64_t instants, std::int64_t scored_from,
                                           const std::vector<std::int64_t>& starts, std::size_t series);
 

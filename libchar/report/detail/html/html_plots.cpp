@@ -1,5 +1,4 @@
-// The figures of one channel's section: titles, axes, captions that say what is drawn. page.js
-// draws into them.
+// The figures of one channel's section: titles, axes, captions that say what is drawn. page.js draws into them.
 
 #include <fmt/format.h>
 

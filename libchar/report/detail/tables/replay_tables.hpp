@@ -25,8 +25,7 @@ Table sensors_table(const ReplayView& view);
 Table blind_table(const ReplayView& view);
 /// Final weights and variances; without rows when no algorithm has any.
 Table weights_table(const ReplayView& view);
-/// Faults that the scene knows against what each algorithm found; without rows where there is
-/// neither.
+/// Faults that the scene knows against what each algorithm found; without rows where there is neither.
 Table faults_table(const ReplayView& view);
 /// What one false alarm more often buys.
 Table detection_table(const ReplayView& view);
