@@ -2,7 +2,6 @@
 // The one door through which logs come in, whatever their format and however large they are.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>

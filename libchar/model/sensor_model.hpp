@@ -5,7 +5,6 @@
 //
 // Blocks in order; each is skipped when it is the identity. dT = temperature - reference temperature.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>

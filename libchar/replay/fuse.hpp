@@ -3,9 +3,7 @@
 // and memory does not grow with the log.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

@@ -2,7 +2,6 @@
 // A YAML or JSON document as a tree that remembers the place of every key and value, so that a
 // refusal can name line and column.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

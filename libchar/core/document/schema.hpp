@@ -2,7 +2,6 @@
 // Reading a document against what its format allows: every refusal names file, line, key and the nearest valid key.
 
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>

@@ -4,7 +4,6 @@
 // which tests the code that every other processor runs.
 
 #include <atomic>
-#include <string_view>
 
 #if defined(__x86_64__) && !defined(LIBCHAR_PORTABLE)
 #define LIBCHAR_X86_64

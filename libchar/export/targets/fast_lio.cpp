@@ -4,7 +4,6 @@
 // They are variances, of a sample and at one rate. Accelerations are scaled to 9.81 m/s^2 by its own initialization,
 // and are in m/s^2 (hku-mars/FAST_LIO 1087a72, src/IMU_Processing.hpp, include/IKFoM_toolkit/esekfom/esekfom.hpp).
 
-#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
 #include "libchar/export/detail/target_list.hpp"

@@ -2,7 +2,6 @@
 // the bias between two scans the standard deviation w sqrt(t), t the time between them: all four are continuous
 // densities, N and K (TixiaoShan/LIO-SAM 041f4e6, src/imuPreintegration.cpp).
 
-#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
 #include "libchar/export/detail/target_list.hpp"

@@ -3,7 +3,6 @@
 
 #include <functional>
 
-#include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {

@@ -1,7 +1,6 @@
 #pragma once
 // A record as means of many samples, for searches that look at all of it.
 
-#include <cstdint>
 #include <span>
 #include <vector>
 

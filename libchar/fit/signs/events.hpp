@@ -3,7 +3,6 @@
 // and taken out as means with a sign before the noise is fitted again. Theory and figures: docs/theory/events.md.
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

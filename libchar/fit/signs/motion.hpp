@@ -3,7 +3,6 @@
 // noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "libchar/core/finding.hpp"

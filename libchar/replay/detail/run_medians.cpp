@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/median.hpp"
 
 namespace libchar {

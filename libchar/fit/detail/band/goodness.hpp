@@ -6,7 +6,6 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 

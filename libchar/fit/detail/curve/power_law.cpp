@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "libchar/core/numeric/dense.hpp"
-#include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/scoring.hpp"
 
 namespace libchar {

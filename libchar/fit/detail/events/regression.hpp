@@ -2,7 +2,6 @@
 // Generalised least squares in the cosine domain, where noise is uncorrelated: weights are 1 / E c_k^2.
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -19,7 +19,6 @@
 // nearly singular. The ridge leaves the fixed point where it is (E u = 0 at the true v) and makes the poorly seen
 // directions slow instead of noisy: their relative standard deviation stays below sqrt(a / lambda).
 
-#include <cmath>
 #include <limits>
 #include <vector>
 

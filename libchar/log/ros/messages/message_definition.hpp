@@ -3,7 +3,6 @@
 // type that it is made of. Source: ROS wiki "msg" (ROS 1), docs.ros.org "Interfaces" (ROS 2),
 // MCAP's registry "ros1msg" and "ros2msg" (several types in one text, parted by lines of 80 "=").
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>

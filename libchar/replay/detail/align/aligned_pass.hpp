@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "libchar/core/process/progress.hpp"
-#include "libchar/fusion/aligner.hpp"
 
 namespace libchar {
 

@@ -1,8 +1,6 @@
 #pragma once
 // The alignment of a scene: learnt where the scene says, measured on what is judged.
 
-#include <cstdint>
-
 #include "libchar/replay/detail/align/aligned_pass.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/replay_result.hpp"

@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -13,7 +13,6 @@
 #include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
-#include "libchar/replay/fault_answers.hpp"
 #include "libchar/replay/replay_result.hpp"
 
 namespace libchar {
