@@ -1,8 +1,7 @@
 // ArduPilot's DataFlash log: every message that holds numbers is a topic, of several sensors one each ("GYR 0", "GYR
 // 1"). The batch sampler's messages (ISBH, a header, and ISBD, blocks of 32 samples) are bursts: sample k was taken at
-// the header's SampleUS + k / smp_rate, and is count / mul in m/s² (type 0) or rad/s (type 1).
-// Source: ArduPilot's libraries/AP_Logger/LogStructure.h,
-// libraries/AP_InertialSensor/{LogStructure.h,BatchSampler.cpp}.
+// the header's SampleUS + k / smp_rate, and is count / mul in m/s² (type 0) or rad/s (type 1). Source: ArduPilot's
+// libraries/AP_Logger/LogStructure.h, libraries/AP_InertialSensor/{LogStructure.h,BatchSampler.cpp}.
 
 #include <fmt/format.h>
 

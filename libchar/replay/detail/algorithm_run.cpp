@@ -51,9 +51,8 @@ Timeline thinned(std::span<const double> time_s, const std::vector<std::vector<d
   return out;
 }
 
-/// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV]
-/// takes the same window and loses the ends. Computed on the meter's cells: the
-/// window is rounded to a whole number of them.
+/// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV] takes the same window
+/// and loses the ends. Computed on the meter's cells: the window is rounded to a whole number of them.
 Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, double window_s) {
   const std::vector<ErrorCell> cells = meter.cells();
   const double cell_s = static_cast<double>(meter.cell_samples()) / rate_hz;

@@ -17,9 +17,8 @@
 
 namespace libchar {
 
-/// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one
-/// input, or rows of H that differ: from the sensors' own errors without known
-/// faults (`healthy_rms`), (H' R^-1 H)^-1.
+/// Optimum of each input, and from it the regrets. `optimum`: the bounds that ran. More than one input, or rows of H
+/// that differ: from the sensors' own errors without known faults (`healthy_rms`), (H' R^-1 H)^-1.
 void judge_optimum(ReplayResult& result, const std::vector<AlgorithmRun>& optimum,
                    const std::vector<double>& healthy_rms, const fusion::Array& array);
 

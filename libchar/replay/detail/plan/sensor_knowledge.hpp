@@ -16,9 +16,8 @@ struct SensorKnowledge {
   std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
 };
 
-/// What the numbers of a sensor's model are multiplied by to be in the unit that its channel is recorded in.
-/// Throws Error(usage) where it is
-/// of another quantity.
+/// What the numbers of a sensor's model are multiplied by to be in the unit that its channel is recorded in. Throws
+/// Error(usage) where it is of another quantity.
 double model_factor(const Scene& scene, const Instants& instants, std::size_t sensor);
 
 /// Measures the rest when the scene has one, and asks scene and models for noise levels.
