@@ -10,7 +10,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {

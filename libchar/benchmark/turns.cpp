@@ -12,7 +12,6 @@
 #include <thread>
 #include <utility>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {

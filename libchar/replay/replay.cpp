@@ -17,7 +17,6 @@
 #include "libchar/replay/detail/align/lag.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/judge/judgement.hpp"
-#include "libchar/replay/detail/judge/partial_scores.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/copied_sensors.hpp"

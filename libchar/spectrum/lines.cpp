@@ -21,7 +21,6 @@
 #include <numbers>
 #include <span>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"

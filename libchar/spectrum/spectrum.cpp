@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 namespace {

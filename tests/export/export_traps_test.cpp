@@ -10,7 +10,7 @@
 
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/model/model_file.hpp"
 #include "tests/export/imu_models.hpp"
 

@@ -11,7 +11,7 @@
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"

@@ -1,12 +1,11 @@
 // Which method is recommended, and of what "does fusion pay?" is answered.
-#include "libchar/replay/detail/judge/choice.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/replay/detail/judge/judgement.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/view/ranking.hpp"
 #include "tests/replay/replay_numbers.hpp"

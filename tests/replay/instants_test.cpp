@@ -8,7 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/replay/detail/align/resampled.hpp"
-#include "libchar/replay/detail/plan/rest.hpp"
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;

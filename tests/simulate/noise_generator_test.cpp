@@ -14,7 +14,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/spectrum/fft.hpp"

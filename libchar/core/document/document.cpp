@@ -17,7 +17,7 @@
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

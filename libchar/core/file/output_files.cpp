@@ -10,7 +10,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 

@@ -25,7 +25,6 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"

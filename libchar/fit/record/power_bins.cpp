@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"

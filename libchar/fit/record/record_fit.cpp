@@ -14,7 +14,6 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"

@@ -22,7 +22,6 @@
 #include <limits>
 #include <numbers>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"

@@ -23,7 +23,6 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/random_effects.hpp"

@@ -17,7 +17,6 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"

@@ -5,7 +5,7 @@
 // tell beside any input - the differences between sensors - is filtered (Bayard & Ploen 2003; Xue et al.
 // 2012). With P the prediction covariance of b and S = C P C' + R:
 //   W = (H' S^-1 H)^-1 H' S^-1,  x = W (y - C b),  var x = (H' S^-1 H)^-1
-//   b <- A (b + P C' S^-1 (I - H W)(y - C b)),   P by the Riccati equation (riccati.hpp)
+//   b <- A (b + P C' S^-1 (I - H W)(y - C b)),   P by the Riccati equation (bias_filter.hpp)
 // P does not depend on the samples. It is computed beforehand at instants 0 to 16 and four times an
 // octave after, by doubling (as accurate as a square root form: nothing is subtracted), and stands in
 // between; a step is a product with the gain that holds. Short gaps take P as if they were none.

@@ -16,7 +16,6 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
-#include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/chunked_topics.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/file_window.hpp"

@@ -20,8 +20,8 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 
 namespace libchar {

@@ -66,4 +66,15 @@ inline std::size_t count_of(const TermSet& set) {
   return n;
 }
 
+/// The maximum of the likelihood by non-negative Fisher scoring.
+/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`, and over the coefficients of the shape.
+struct ScoringResult {
+  ModelPoint at;
+  double half_deviance = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start = nullptr,
+                    double tolerance = 1e-10);
+
 }  // namespace libchar

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"

@@ -5,7 +5,7 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 

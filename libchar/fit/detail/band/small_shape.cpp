@@ -19,7 +19,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/fit/detail/band/band.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/bounds.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 
 namespace libchar {

@@ -18,7 +18,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"

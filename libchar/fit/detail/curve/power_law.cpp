@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/dense.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 namespace {

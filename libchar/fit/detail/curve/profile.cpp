@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 

@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 

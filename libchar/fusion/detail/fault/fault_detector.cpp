@@ -6,7 +6,7 @@
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/variances/reweighting_limits.hpp"
+#include "libchar/fusion/detail/variances/reweighted_variances.hpp"
 
 namespace libchar::fusion {
 namespace {

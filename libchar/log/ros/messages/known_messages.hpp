@@ -29,9 +29,9 @@ std::string_view no_numbers_of(std::string_view type);
 /// versions as there have been, the newest first. Empty when it is not known.
 std::vector<MessageTypes> known_definitions(std::string_view type);
 
-/// known_messages.msg, embedded at build time: the types as REPs and distributions have them, one a paragraph: its name,
-/// then its fields. Bounds, constants and comments, which no byte of a message depends on, are left out. Where a type
-/// has changed, the newest stands first.
+/// known_messages.msg, embedded at build time: the types as REPs and distributions have them, one a paragraph: its
+/// name, then its fields. Bounds, constants and comments, which no byte of a message depends on, are left out. Where a
+/// type has changed, the newest stands first.
 std::string_view known_message_text();
 
 /// Adds what is known of types that `types` uses and has not.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
 

@@ -104,4 +104,12 @@ class RunTracker {
   bool referenced_ = false;
 };
 
+// Timelines made small enough for a page; no extreme is lost.
+
+/// Every `divisor` neighbouring bins become one: the smallest low, the largest high.
+Timeline merged_bins(const Timeline& timeline, std::size_t divisor);
+
+/// The smallest divisor that keeps the tracks of all algorithms together within what a page of 3 MB can hold.
+std::size_t track_divisor(const ReplayResult& result);
+
 }  // namespace libchar
