@@ -11,7 +11,7 @@
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/record/record_sums.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 #include "libchar/fit/signs/temperature.hpp"
 
 namespace libchar {

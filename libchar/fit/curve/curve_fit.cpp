@@ -5,7 +5,7 @@
 //                           mixture, refined three times), with the mean and the variance that the
 //                           logarithm of a chi-square of as many degrees of freedom has;
 //   neither                 the scatter about the fit says it: equal relative errors, of a spectrum a power of
-//                           the frequency (detail/curve/curve_scatter.hpp); neighbouring residuals that go
+//                           the frequency (detail/curve/curve_likelihood.hpp); neighbouring residuals that go
 //                           the same way count as fewer points, n (1-r)/(1+r).
 // Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
 // the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
@@ -31,7 +31,6 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
-#include "libchar/fit/detail/curve/curve_scatter.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"

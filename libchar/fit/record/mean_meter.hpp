@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/halving.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 

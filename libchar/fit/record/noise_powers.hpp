@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 

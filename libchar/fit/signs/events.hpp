@@ -9,7 +9,6 @@
 #include "libchar/core/finding.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
 #include "libchar/fit/signs/event.hpp"
-#include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
 

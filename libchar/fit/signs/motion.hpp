@@ -8,7 +8,6 @@
 #include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/fit/signs/event.hpp"
-#include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
 

@@ -24,7 +24,7 @@
 #include "libchar/fit/detail/events/regression.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

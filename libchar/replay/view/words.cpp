@@ -8,7 +8,7 @@
 
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/replay/detail/plan/band_filter.hpp"
+#include "libchar/replay/detail/plan/preparation.hpp"
 
 namespace libchar {
 

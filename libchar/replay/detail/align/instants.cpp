@@ -18,7 +18,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/replay/detail/align/slow_reference.hpp"
+#include "libchar/replay/detail/align/reference_track.hpp"
 #include "libchar/replay/detail/plan/common_unit.hpp"
 
 namespace libchar {
