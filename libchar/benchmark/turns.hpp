@@ -2,6 +2,7 @@
 // Times of several pieces of work, taken in turns, so that whatever else the machine does falls on all of them alike.
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>

@@ -2,6 +2,7 @@
 // The one door through which logs come in, whatever their format and however large they are.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>

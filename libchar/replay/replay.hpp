@@ -1,6 +1,7 @@
 #pragma once
 // Every fusion algorithm that a scene can run, on one recording.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>

@@ -1,6 +1,8 @@
 #pragma once
 // The running sum of a record, kept so that its differences lose no digits to offset or drift.
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -10,6 +10,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/anchored_phase.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 
 namespace libchar {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "libchar/fit/noise_fit.hpp"
+
 namespace libchar {
 
 struct RunRecord {

@@ -10,6 +10,7 @@
 // Sizes stand half an octave to an octave apart: between two of them at most a tenth of the rate at which
 // evidence gathers is lost. A ramp is a bias that grows.
 
+#include <array>
 #include <cstddef>
 #include <vector>
 

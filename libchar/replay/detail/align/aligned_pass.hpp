@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "libchar/core/process/progress.hpp"
+#include "libchar/fusion/aligner.hpp"
 
 namespace libchar {
 

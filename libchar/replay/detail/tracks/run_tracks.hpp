@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "libchar/core/not_known.hpp"
 #include "libchar/replay/detail/algorithm_run.hpp"
 #include "libchar/replay/replay_result.hpp"
 

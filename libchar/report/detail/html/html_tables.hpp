@@ -14,6 +14,7 @@
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/table/table.hpp"
+#include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/lot/device_record.hpp"
