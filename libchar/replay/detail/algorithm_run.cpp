@@ -262,6 +262,8 @@ LearntAlgorithm AlgorithmRun::hand_out() const {
 
 // In parts between the instants at which weights and variances are noted.
 void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
+  x_.resize(frame_->array->inputs(), samples.cols());
+  variance_.resize(x_.rows(), x_.cols());
   Eigen::MatrixXd given;
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
@@ -295,17 +297,12 @@ void AlgorithmRun::thin_notes() {
 
 void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
-  x_.resize(frame_->array->inputs(), samples.cols());
-  variance_.resize(x_.rows(), x_.cols());
   timed_run(samples, true);
   steps_ += static_cast<std::uint64_t>(samples.cols());
 }
 
 void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
-  if (!alive()) return;
-  x_.resize(frame_->array->inputs(), samples.cols());
-  variance_.resize(x_.rows(), x_.cols());
-  timed_run(samples, false);
+  if (alive()) timed_run(samples, false);
 }
 
 double AlgorithmRun::median_ns() const {

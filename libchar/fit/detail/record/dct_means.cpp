@@ -91,7 +91,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::uint64_t kExactUpTo = 4096;
-constexpr std::uint64_t kOneByOne = 6;
 
 /// E[c_k²] dt² at [k-1] of the series sqrt(m) times means of m samples.
 std::vector<double> exact_means(std::size_t n, std::uint64_t m) {
@@ -117,18 +116,7 @@ double mean_of(const PowerBin& bin, const std::vector<double>& exact) {
 }
 
 double mean_of(const PowerBin& bin, double dt_s) {
-  const auto first = static_cast<double>(bin.first), end = static_cast<double>(bin.end);
-  if (bin.end - bin.first <= kOneByOne) {
-    double sum = 0;
-    for (double k = first; k < end; ++k) sum += flicker_phase_dct_mean(k, bin.length, dt_s);
-    return sum / (end - first);
-  }
-  const double middle = 0.5 * (first + end - 1), half = 0.5 * (end - first);
-  const double node = 0.7745966692414834 * half;
-  return (5 * flicker_phase_dct_mean(middle - node + 1e-7, bin.length, dt_s) +
-          8 * flicker_phase_dct_mean(middle + 1e-7, bin.length, dt_s) +
-          5 * flicker_phase_dct_mean(middle + node + 1e-7, bin.length, dt_s)) /
-         18;
+  return mean_over(bin, [&](double k) { return flicker_phase_dct_mean(k, bin.length, dt_s); });
 }
 
 }  // namespace
