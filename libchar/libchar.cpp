@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 namespace {
 
@@ -40,7 +42,7 @@ std::vector<SensorModel> sensor_models(const Characterization& result) {
 Recording simulate(const SensorModel& model, const SimulateOptions& options) {
   ArraySimulation array;
   array.rate_hz = options.rate_hz > 0 ? options.rate_hz : model.rate_hz;
-  array.samples = static_cast<std::uint64_t>(std::llround(options.duration_s * array.rate_hz));
+  array.samples = clamped_whole<std::uint64_t>(std::round(options.duration_s * array.rate_hz));
   array.seed = options.seed;
   array.truth = {options.truth};
   array.faults = options.faults;

@@ -27,13 +27,21 @@ assert 0.0038 < n.value < 0.0042 and accelerometer.random_walk.value is None
 # ## The curves behind it
 
 # %%
-curve = libchar.allan(log["gyro_z"], log.rate_hz, taus=[0.1, 1, 10, 100])[0]
+curve = libchar.allan(log["gyro_z"], log.rate_hz, taus=[0.1, 1, 10, 100])
 for tau, deviation, (low, high) in zip(curve.tau_s, curve.deviation, curve.ci95):
     print(f"{tau:6.1f} s   {deviation:.5f}   [{low:.5f}, {high:.5f}]")
-spectrum = libchar.psd(log["gyro_z"], log.rate_hz, segment_s=20, scaling="lsd")[0]
+spectrum = libchar.psd(log["gyro_z"], log.rate_hz, segment_s=20, scaling="lsd")
 band = (spectrum.frequency_hz > 5) & (spectrum.frequency_hz < 20)
 plateau = np.sqrt(np.mean(spectrum.value[band] ** 2))  # one-sided: √2 N
 assert abs(plateau / (np.sqrt(2) * n.value) - 1) < 0.05
+
+# %% [markdown]
+# A notebook shows a curve as a picture. `plot` draws what `sensorchar plot` draws; `save` writes it as SVG, PDF or PNG.
+
+# %%
+figure = curve.plot(title="gyro_z")
+assert "<svg" in figure.svg and "gyro_z" in figure.svg
+figure
 
 # %% [markdown]
 # ## Everything at once, and a model to go on with
@@ -41,7 +49,11 @@ assert abs(plateau / (np.sqrt(2) * n.value) - 1) < 0.05
 # %%
 result = libchar.characterize(log)
 print(result.verdict)
-model = result.models()[result.document["summary"]["channels"][0]["name"] != "gyro_z"]
+model = next(model for model in result.models() if model.channel == "gyro_z")
+picture = result.plot(channel="gyro_z", width="two-columns")  # the curve with its band, the model and its terms
+assert "<svg" in picture.svg
+kalibr = result.export(to="kalibr", axis=["gyro_z=g", "accel_z=a"])
+print(kalibr[:200])
 
 # %% [markdown]
 # ## Three such gyroscopes on a turntable, one of which fails: which algorithm would have coped?

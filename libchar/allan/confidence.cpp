@@ -11,6 +11,7 @@
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -89,7 +90,7 @@ double parabolic_dof(Mixture theta, double m, double terms, double dt_s) {
   }
   const auto points = static_cast<std::size_t>(m);
   const std::vector<double> a = autocorrelation(weights_of_slopes(points));
-  const std::size_t lags = std::min(static_cast<std::size_t>(std::ceil(terms)), kFarLags * points);
+  const std::size_t lags = std::min(clamped_whole<std::size_t>(std::ceil(terms)), kFarLags * points);
   std::vector<double> s(lags + 2 * points);
   for (std::size_t n = 0; n < s.size(); ++n) s[n] = phase_covariance_of(theta, static_cast<double>(n), dt_s);
   const auto covariance = [&](std::size_t lag) {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -104,7 +105,7 @@ std::optional<NoiseType> lag1_noise_type(std::span<const double> phase, std::uin
     const double delta = *r / (1 + *r);
     if (delta < kStationary || d >= kMostDifferences) {
       NoiseType type{m, static_cast<double>(m) * dt_s, 0, 2 - 2 * (delta + d)};
-      type.alpha = 2 - 2 * d - static_cast<int>(std::lround(2 * delta));
+      type.alpha = 2 - 2 * d - clamped_whole<int>(std::round(2 * delta));
       return type;
     }
     for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] = z[i + 1] - z[i];

@@ -196,6 +196,16 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   return worst_first(std::move(found.out));
 }
 
+std::vector<Finding> detail::findings_of_curve(ChannelResult channel) {
+  std::vector<Finding> of_fit;
+  if (channel.fit) of_fit = std::move(channel.fit->findings);
+  channel.fit.reset();
+  std::vector<Finding> out = findings_of(channel);
+  for (const Finding& one : of_fit)
+    if (one.code == "not_stationary") out.push_back(one);
+  return worst_first(std::move(out));
+}
+
 Judgement judge(const ChannelResult& channel) {
   std::vector<Finding> found = findings_of(channel);
   if (!channel.fit && worst_of(found) != Severity::bad)

@@ -51,6 +51,10 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
 
 namespace detail {
+/// What is known of the samples behind a curve, and that the noise is not the same throughout: the fit that makes the
+/// intervals takes steps and terms apart, which the curve does not.
+std::vector<Finding> findings_of_curve(ChannelResult channel);
+
 /// A channel in one sentence: what its noise is, how far that can be used, and what spoils it. The terms, then what
 /// speaks against them; without a fit, why there is none.
 std::string summary_sentence(const ChannelResult& channel, const Judgement& judgement, const std::string& unit);

@@ -95,7 +95,7 @@ if(TARGET libchar_python)
   # The module is for the interpreter that it was built with.
   math(EXPR next_minor "${LIBCHAR_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "python3 (>= 3.${LIBCHAR_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+      "sensorchar, python3 (>= 3.${LIBCHAR_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
       "characterization and fusion of sensors (Python module)
 The library behind sensorchar for NumPy arrays: Allan deviations, spectra,

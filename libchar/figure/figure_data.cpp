@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
@@ -31,7 +32,7 @@ std::string gnuplot_text(const std::string& text) {
 
 std::string gnuplot_colour(Ink ink, bool grey) {
   const Colour c = colour_of(ink, grey);
-  const auto part = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  const auto part = [](double v) { return clamped_whole<int>(std::round(255 * v)); };
   return fmt::format("rgb '#{:02x}{:02x}{:02x}'", part(c.red), part(c.green), part(c.blue));
 }
 

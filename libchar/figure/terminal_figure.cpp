@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/figure/detail/scale.hpp"
@@ -41,7 +42,7 @@ class BrailleCanvas {
   double height() const { return 4 * static_cast<double>(rows_) - 1; }
 
   void dot(double x, double y, int series) {
-    const auto column = std::llround(x), row = std::llround(y);
+    const auto column = clamped_whole<std::int64_t>(std::round(x)), row = clamped_whole<std::int64_t>(std::round(y));
     if (column < 0 || row < 0 || std::cmp_greater_equal(column, 2 * columns_) || std::cmp_greater_equal(row, 4 * rows_))
       return;
     Cell& c = cell(static_cast<std::size_t>(column) / 2, static_cast<std::size_t>(row) / 4);
@@ -58,7 +59,8 @@ class BrailleCanvas {
   }
 
   void letter(double x, double y, char c, int series) {
-    const auto column = std::llround(x) / 2, row = std::llround(y) / 4;
+    const auto column = clamped_whole<std::int64_t>(std::round(x)) / 2,
+               row = clamped_whole<std::int64_t>(std::round(y)) / 4;
     if (column < 0 || row < 0 || column >= static_cast<long long>(columns_) || row >= static_cast<long long>(rows_))
       return;
     Cell& at = cell(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
@@ -190,8 +192,8 @@ void mark_decades(BrailleCanvas& canvas, const TerminalAxes& axes, const Termina
   for (const Tick& x : axes.x)
     for (const Tick& y : axes.y) {
       if (!x.strong || !y.strong) continue;
-      const auto column = static_cast<std::size_t>(std::llround(scales.x.at(x.value))) / 2,
-                 row = static_cast<std::size_t>(std::llround(scales.y.at(y.value))) / 4;
+      const auto column = clamped_whole<std::size_t>(std::round(scales.x.at(x.value))) / 2,
+                 row = clamped_whole<std::size_t>(std::round(scales.y.at(y.value))) / 4;
       if (column < canvas.columns() && row < canvas.rows()) canvas.cell(column, row).grid = true;
     }
 }
@@ -214,7 +216,7 @@ std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& op
   for (std::size_t row = 0; row < rows; ++row) {
     std::string label;
     for (const Tick& t : axes.y)
-      if (!t.label.empty() && static_cast<std::size_t>(std::llround(scales.y.at(t.value))) / 4 == row) label = t.label;
+      if (!t.label.empty() && clamped_whole<std::size_t>(std::round(scales.y.at(t.value))) / 4 == row) label = t.label;
     const std::size_t width = width_of(label);
     out += std::string(axes.left - 1 - std::min(width, axes.left - 1), ' ') + label + (label.empty() ? " │" : " ┤") +
            canvas_row(canvas, row, options.colour) + "\n";
@@ -222,7 +224,7 @@ std::string terminal_figure(const Chart& figure, const TerminalFigureOptions& op
   out += std::string(axes.left, ' ') + "└";
   for (std::size_t c = 0; c < canvas.columns(); ++c) {
     const bool tick = std::any_of(axes.x.begin(), axes.x.end(), [&](const Tick& t) {
-      return !t.label.empty() && static_cast<std::size_t>(std::llround(scales.x.at(t.value))) / 2 == c;
+      return !t.label.empty() && clamped_whole<std::size_t>(std::round(scales.x.at(t.value))) / 2 == c;
     });
     out += tick ? "┬" : "─";
   }

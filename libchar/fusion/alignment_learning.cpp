@@ -22,6 +22,7 @@
 #include <limits>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/aligner.hpp"
@@ -574,7 +575,7 @@ class Learner {
   }
 
   NoiseGain noise_gain(double delay) const {
-    const std::ptrdiff_t origin = static_cast<std::ptrdiff_t>(std::floor(delay)) - 16;
+    const std::ptrdiff_t origin = clamped_whole<std::ptrdiff_t>(std::floor(delay)) - 16;
     const auto spread = [&](double at) {
       const DelayTaps taps(at, options_.interpolation);
       Eigen::VectorXd out = Eigen::VectorXd::Zero(32);

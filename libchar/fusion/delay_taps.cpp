@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar::fusion {
 namespace {
 
@@ -45,7 +47,7 @@ std::vector<double> cubic_taps(double f) {
 }  // namespace
 
 DelayTaps::DelayTaps(double delay, Interpolation interpolation)
-    : floor(static_cast<std::ptrdiff_t>(std::floor(delay))), fraction(delay - std::floor(delay)) {
+    : floor(clamped_whole<std::ptrdiff_t>(std::floor(delay))), fraction(delay - std::floor(delay)) {
   if (fraction == 0) {
     weights = {1};
   } else if (interpolation == Interpolation::cubic) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -308,7 +309,7 @@ void Fusing::make_runner() {
   fusion::Array array = array_of(learnt_);
   const InstantsInfo& info = instants_->info();
   array.rate_hz = info.rate_hz;
-  array.fault_free_samples = std::clamp<std::int64_t>(std::llround(fault_free_s() * info.rate_hz), 0, info.count);
+  array.fault_free_samples = clamped_whole<std::int64_t>(std::round(fault_free_s() * info.rate_hz), 0, info.count);
   if (entry_->description->needs.fault_free_start && array.fault_free_samples == 0)
     throw usage_error("E0934", "`fault_free_s`")
         .says("{} learns its thresholds at the start of a log, where no sensor fails", algorithm_.label)

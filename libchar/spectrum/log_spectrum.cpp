@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -55,7 +56,7 @@ double averaged_dof(const Spectrum& s, std::size_t begin, std::size_t end) {
 struct LogAxis {
   double low = 1, per_e = 1;
   double log_low = std::log(low);
-  long bin(double log_f) const { return static_cast<long>(std::floor((log_f - log_low) * per_e + 1e-9)); }
+  long bin(double log_f) const { return clamped_whole<long>(std::floor((log_f - log_low) * per_e + 1e-9)); }
 };
 
 LogAxis axis_of(double low, double high, std::size_t bins) {

@@ -14,6 +14,7 @@ from gates import cpp  # noqa: E402
 from gates.owners import QUESTIONS  # noqa: E402
 
 SPELLINGS = {
+    "whole number of a real one": "auto n = static_cast<std::size_t>(std::floor(x));",
     "threads": "tbb::parallel_for(0, n, work);",
     "SHA-256": "EVP_DigestFinal_ex(context, digest, &size);",
     "word of a shell": r"""out += "'\\''";""",

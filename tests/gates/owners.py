@@ -33,6 +33,9 @@ QUESTIONS = [
     Question("digits of a number", "libchar/core/text/readable.cpp: number_text", r"\{\w*:[#+]?(?:\.\d+)?g\}"),
     Question("value in the field's units", "libchar/core/text/term_cells.cpp: term_cells",
              r"\bhabitual_units\((?!std::)"),
+    Question("whole number of a real one", "libchar/core/numeric/whole.hpp: clamped_whole",
+             r"\bl?l(?:round|rint)\(|"
+             r"static_cast<(?!double|float)[\w: ]+>\(std::(?:ceil|floor|round|rint|trunc|pow|exp|log\w*|sqrt)\("),
     Question("one or many", "libchar/core/text/text.cpp: plural", r'== 1 \? "" : "s"|\? "s" : ""'),
     Question("nearest word that exists", "libchar/core/text/spelling.cpp: did_you_mean", r'"did you mean'),
     Question("rating of a channel", "libchar/characterize/judgement.cpp: judge",

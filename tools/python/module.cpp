@@ -21,6 +21,7 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/libchar.hpp"
 #include "libchar/log/recording_json.hpp"
+#include "libchar/replay/fusion_file.hpp"
 #include "libchar/report/html/html_report.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "libchar/scene/scene_file.hpp"
@@ -74,7 +75,13 @@ class Given {
   bool has(const char* name) const { return options_.contains(name) && !options_[name].is_none(); }
   template <typename T>
   T get(const char* name) const {
-    return options_[name].cast<T>();
+    try {
+      return options_[name].cast<T>();
+    } catch (const py::cast_error&) {
+      throw usage_error("E0208", name)
+          .says("a value of another kind is expected here")
+          .got(py::repr(options_[name]).cast<std::string>());
+    }
   }
   template <typename T>
   void read(const char* name, T& value) const {
@@ -134,7 +141,7 @@ void read_taus(const Given& given, CharacterizeOptions& options) {
     options.allan.taus_s = given.get<std::vector<double>>("taus");
     options.allan.grid = TauGrid::list;
     return;
-  } catch (const py::cast_error&) {
+  } catch (const Error&) {
   }
   const auto word = given.get<std::string>("taus");
   options.ten_a_decade = word == "ten";
@@ -253,6 +260,12 @@ py::dict read(const std::string& path, const py::dict& reading) {
   return recording_dict(std::move(recording));
 }
 
+py::object of_findings(const std::vector<Finding>& findings) {
+  Json list = Json::array();
+  for (const Finding& one : findings) list.push_back(document_of(finding_fields(), one));
+  return to_python(with_valid_text(list));
+}
+
 /// A characterization that Python keeps, to ask for parts of it.
 class Characterized {
  public:
@@ -261,12 +274,14 @@ class Characterized {
   py::object allan() const {
     std::vector<Channel> channels;
     std::vector<AllanCurve> curves;
+    std::vector<std::vector<Finding>> known;
     for (const ChannelResult& c : result_.channels) {
       if (c.allan.points.empty()) continue;
       channels.push_back(c.channel);
       curves.push_back(c.allan);
+      known.push_back(detail::findings_of_curve(c));
     }
-    return to_python(with_valid_text(allan_json(channels, curves)));
+    return to_python(with_valid_text(allan_json(channels, curves, known)));
   }
   py::object fits() const {
     Json channels = Json::array();
@@ -276,11 +291,7 @@ class Characterized {
   }
   std::vector<std::pair<std::string, py::object>> findings() const {
     std::vector<std::pair<std::string, py::object>> out;
-    for (const ChannelResult& c : result_.channels) {
-      Json list = Json::array();
-      for (const Finding& one : judge(c).findings) list.push_back(document_of(finding_fields(), one));
-      out.emplace_back(c.channel.name, to_python(with_valid_text(list)));
-    }
+    for (const ChannelResult& c : result_.channels) out.emplace_back(c.channel.name, of_findings(judge(c).findings));
     return out;
   }
   std::vector<std::string> models() const {
@@ -362,6 +373,7 @@ py::list psd(const py::object& source, const py::dict& reading, const py::dict& 
     one["dof"] = to_array(std::move(c.spectrum.dof));
     one["ci95"] = to_array(std::move(ends)).attr("reshape")(-1, 2);
     one["notes"] = spectra.notes;
+    one["findings"] = of_findings(findings_of(c));
     out.append(one);
   }
   return out;
@@ -425,6 +437,7 @@ class Replayed {
   py::object document() const { return to_python(with_valid_text(replay_json(replay_view(result_)))); }
   std::string html() const { return replay_html(replay_view(result_)); }
   std::string markdown() const { return replay_markdown(replay_view(result_)); }
+  std::string fusion() const { return fusion_yaml(result_.learnt); }
 
  private:
   ReplayResult result_;
@@ -490,7 +503,8 @@ PYBIND11_MODULE(_libchar, module) {
   py::class_<Replayed>(module, "Replayed")
       .def("document", &Replayed::document)
       .def("html", &Replayed::html)
-      .def("markdown", &Replayed::markdown);
+      .def("markdown", &Replayed::markdown)
+      .def("fusion", &Replayed::fusion);
   module.def("set_errors", &set_errors);
   module.def("version", [] { return std::string(version()); });
   module.def("build", &build);

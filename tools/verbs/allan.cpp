@@ -67,18 +67,6 @@ void run_dynamic(Session& session, const AllanVerb& verb) {
                  {verb.output, verb.json, verb.force});
 }
 
-/// What is known of the samples, and that the noise is not the same throughout: the fit that makes the intervals
-/// takes steps and terms apart, which the curve does not.
-std::vector<Finding> known_of_curve(ChannelResult channel) {
-  std::vector<Finding> of_fit;
-  if (channel.fit) of_fit = std::move(channel.fit->findings);
-  channel.fit.reset();
-  std::vector<Finding> out = findings_of(channel);
-  for (const Finding& one : of_fit)
-    if (one.code == "not_stationary") out.push_back(one);
-  return worst_first(std::move(out));
-}
-
 void run_allan(Session& session, const AllanVerb& verb) {
   foresee_output(verb.output, {verb.log}, verb.force);
   if (verb.hat || verb.hat_of_differences) return run_hat(session, verb);
@@ -106,7 +94,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
       const std::string which = c.more_allan.empty() ? "" : std::string(name_of(curve.type)) + ": ";
       for (const std::string& text : curve.notes) note(which + text);
     };
-    known.push_back(known_of_curve(c));
+    known.push_back(detail::findings_of_curve(c));
     report_findings(session, c.channel.name, known.back());
     take(c.allan);
     for (const AllanCurve& curve : c.more_allan) take(curve);

@@ -2,9 +2,11 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
+
 namespace libchar {
 
-std::uint64_t theo_factor(double tau) { return 2 * static_cast<std::uint64_t>(std::llround(tau / 1.5)); }
+std::uint64_t theo_factor(double tau) { return 2 * clamped_whole<std::uint64_t>(std::round(tau / 1.5)); }
 
 std::uint64_t last_allan_factor(std::uint64_t samples) { return samples / 5; }
 
@@ -61,7 +63,7 @@ AllanPoint family_point(const FamilyInput& input, std::uint64_t m, double tau_s,
 std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64_t starts, std::uint64_t work) {
   const double all = static_cast<double>(starts) * static_cast<double>(work);
   if (input.work_a_point == 0 || all <= static_cast<double>(input.work_a_point)) return 1;
-  const auto wanted = static_cast<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
+  const auto wanted = clamped_whole<std::uint64_t>(std::ceil(all / static_cast<double>(input.work_a_point)));
   return detail::in_memory(std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "libchar/benchmark/detail/estimators.hpp"
+#include "libchar/core/numeric/whole.hpp"
 
 namespace libchar {
 namespace {
@@ -47,7 +48,7 @@ Variances logarithmic_points(std::span<const double> y, double rate_hz, double l
   Variances curve;
   std::size_t last = 0;
   for (int i = 0; i < 100; ++i) {
-    const auto m = static_cast<std::size_t>(std::pow(largest, i / 99.0));
+    const auto m = clamped_whole<std::size_t>(std::pow(largest, i / 99.0));
     if (m == last || 2 * m + 1 >= sums.size()) continue;
     last = m;
     const double variance = allan_variance_of(sums, m, 1);
@@ -62,7 +63,7 @@ Variances linear_periods(std::span<const double> y, double rate_hz) {
   const std::vector<double> sums = centred_sums(y);
   Variances curve;
   for (int period = 1; period < 10000; ++period) {
-    const auto m = static_cast<std::size_t>(std::lround(0.1 * period * rate_hz));
+    const auto m = clamped_whole<std::size_t>(std::round(0.1 * period * rate_hz));
     if (m == 0) continue;
     if (sums.size() < 4 * m) break;
     const double variance = allan_variance_of(sums, m, m);

@@ -6,6 +6,7 @@
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 
 namespace libchar {
@@ -194,7 +195,7 @@ std::vector<double> even_on_log(double low, double high) {
   constexpr int kPointsADecade = 20;
   std::vector<double> out;
   const double decades = std::log10(high / low);
-  const int steps = std::max(2, static_cast<int>(std::ceil(decades * kPointsADecade)));
+  const int steps = std::max(2, clamped_whole<int>(std::ceil(decades * kPointsADecade)));
   for (int i = 0; i <= steps; ++i) out.push_back(low * std::pow(10.0, decades * i / steps));
   return out;
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "libchar/characterize/compare/characterization_comparison.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar::detail {
@@ -144,8 +145,8 @@ std::vector<double> compared_times(const ComparedGroup& group) {
   std::sort(begins.begin(), begins.end());
   std::sort(ends.begin(), ends.end(), std::greater<>());
   const std::size_t second = begins.size() > 1 ? 1 : 0;
-  const int first = static_cast<int>(std::ceil(kADecade * std::log10(begins[second]) - 1e-4)),
-            last = static_cast<int>(std::floor(kADecade * std::log10(ends[second]) + 1e-4));
+  const int first = clamped_whole<int>(std::ceil(kADecade * std::log10(begins[second]) - 1e-4)),
+            last = clamped_whole<int>(std::floor(kADecade * std::log10(ends[second]) + 1e-4));
   for (int k = first; k <= last; ++k) out.push_back(std::pow(10.0, static_cast<double>(k) / kADecade));
   return out;
 }

@@ -9,10 +9,13 @@
 
 namespace libchar {
 
-/// The whole part of `value`, the nearer end of the range where it lies beyond, the lower end if it is not a number.
+/// The whole part of `value`, the nearer end of the range where it lies beyond, the end nearest to 0 if it is not a
+/// number. Round, floor or ceil it before, if that is meant.
 template <std::integral Whole>
-Whole clamped_whole(double value, Whole lowest, Whole highest) {
-  if (!(value > static_cast<double>(lowest))) return lowest;
+Whole clamped_whole(double value, Whole lowest = std::numeric_limits<Whole>::min(),
+                    Whole highest = std::numeric_limits<Whole>::max()) {
+  if (value != value) return std::clamp<Whole>(0, lowest, highest);
+  if (value <= static_cast<double>(lowest)) return lowest;
   if (value >= static_cast<double>(highest)) return highest;
   return static_cast<Whole>(value);
 }

@@ -17,6 +17,7 @@
 #include <memory>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
@@ -254,7 +255,7 @@ void put_big_endian(std::string& out, std::uint32_t value) {
 /// 11.3.5.3): a chunk behind the first one, which ends at byte 33.
 void add_resolution(std::string& png, double dpi) {
   constexpr std::size_t kBehindHeader = 33;
-  const auto a_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+  const auto a_metre = clamped_whole<std::uint32_t>(std::round(dpi / 0.0254));
   std::string body = "pHYs";
   put_big_endian(body, a_metre);
   put_big_endian(body, a_metre);

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/figure/detail/scale.hpp"
 
 namespace libchar {
@@ -20,7 +21,7 @@ bool is_place(const Place& p) { return std::isfinite(p.x) && std::isfinite(p.y);
 Place place_of(const Sheet& sheet, double x, double y) { return {sheet.x.at(x), sheet.y.at(y)}; }
 
 /// A place inside the frame by the finest step that is seen.
-long cell_of(double coordinate) { return std::lround(coordinate / kColumn); }
+long cell_of(double coordinate) { return clamped_whole<long>(std::round(coordinate / kColumn)); }
 
 /// Runs of points without gaps; of a column that many points share the first, lowest, highest and last.
 std::vector<std::vector<Place>> runs_of(const Sheet& sheet, const FigureSeries& s) {

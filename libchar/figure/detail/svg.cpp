@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/detail/drawing.hpp"
@@ -19,7 +20,7 @@ std::string number(double value) {
 }
 
 std::string hex(const Colour& c) {
-  const auto part = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  const auto part = [](double v) { return clamped_whole<int>(std::round(255 * v)); };
   return fmt::format("#{:02x}{:02x}{:02x}", part(c.red), part(c.green), part(c.blue));
 }
 

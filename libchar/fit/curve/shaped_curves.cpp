@@ -10,6 +10,7 @@
 
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
 
 namespace libchar {
@@ -63,7 +64,7 @@ double shape_from_hz(const NoiseFit& fit, double dt_s) {
 double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_hz, double high_hz) {
   const double width = high_hz - low_hz, periods = width * m * dt_s;
   const bool many = periods > kManyPeriods;
-  const int nodes = many ? 2 : 4 + static_cast<int>(std::ceil(8 * periods));
+  const int nodes = many ? 2 : 4 + clamped_whole<int>(std::ceil(8 * periods));
   double sum = 0;
   for (int i = 0; i < nodes; ++i) {
     const double f = low_hz + width * (i + 0.5) / nodes;

@@ -69,7 +69,7 @@ class LocalFloor {
   /// Lines between two medians; the first and the last go on to the ends.
   std::size_t pieces() const { return std::max<std::size_t>(1, log_k_.size() - 1); }
   /// First coefficient of the piece after this one.
-  std::size_t end_of(std::size_t piece) const { return static_cast<std::size_t>(std::exp(log_k_[piece + 1])) + 1; }
+  std::size_t end_of(std::size_t piece) const { return clamped_whole<std::size_t>(std::exp(log_k_[piece + 1])) + 1; }
   double at(std::size_t piece, std::uint64_t k) {
     const std::size_t next = std::min(piece + 1, log_k_.size() - 1);
     const double low = log_floor(piece), high = log_floor(next);
@@ -188,7 +188,7 @@ void clip_cycles(const PooledPower& power, LineClip& clip) {
   clip.clipped.resize(power.mean.size(), 0);
   const std::size_t first = detail::in_memory(power.first);
   for (const PooledPower::Cycle& cycle : power.cycles) {
-    const auto place = static_cast<std::size_t>(std::llround(cycle.place));
+    const auto place = clamped_whole<std::size_t>(std::round(cycle.place));
     for (std::size_t k = std::max(first, place - 1); k <= place + 1; ++k)
       if (k < first + power.mean.size()) clip.clipped[k - first] = 1;
   }

@@ -19,6 +19,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/events/regression.hpp"
@@ -81,7 +82,7 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
 /// `find_temperature_effect` says.
 TemperatureSeries temperature_series(const TemperatureRecord& temperature, const EventSeries& series, double rate_hz) {
   TemperatureSeries out;
-  const auto first = static_cast<std::size_t>(std::llround(series.start_s * rate_hz));
+  const auto first = clamped_whole<std::size_t>(std::round(series.start_s * rate_hz));
   std::uint64_t present = 0;
   out.range = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < series.value.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fleet/engines/engine_files.hpp"
@@ -22,8 +23,8 @@ const std::vector<Engine>& engines() {
 JobLimits limits_of(const FleetJob& job, const JobOptions& options) {
   constexpr double kStart_s = 60;      // a node that loads the program over a network
   constexpr double kMoreMemory = 1.5;  // a plan is no measurement
-  return {static_cast<std::uint64_t>(std::ceil(kMoreMemory * static_cast<double>(job.cost.memory_bytes) / 1e6)),
-          static_cast<std::uint64_t>(std::ceil((kStart_s + options.slower * job.cost.seconds) / 60))};
+  return {clamped_whole<std::uint64_t>(std::ceil(kMoreMemory * static_cast<double>(job.cost.memory_bytes) / 1e6)),
+          clamped_whole<std::uint64_t>(std::ceil((kStart_s + options.slower * job.cost.seconds) / 60))};
 }
 
 JobLimits limits_of(const std::vector<FleetJob>& jobs, const JobOptions& options) {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <string>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -35,7 +36,7 @@ Minque::Minque(const Array& array, const Settings& settings)
       detection_(asked_ && shorter(settings["fault_gamma"], settings["gamma"])),
       // The variances must have settled before they can accuse a channel.
       armed_from_(std::max<std::int64_t>(array.fault_free_samples,
-                                         static_cast<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
+                                         clamped_whole<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
       inputs_(array.inputs()),
       present_(static_cast<std::size_t>(array.channels)),
       m_(static_cast<int>(array.channels)) {

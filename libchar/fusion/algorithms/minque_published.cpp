@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/detail/variances/weighted_mean.hpp"
 
 namespace libchar::fusion {
@@ -126,7 +127,7 @@ MinquePublished::MinquePublished(const Array& array, const Settings& settings)
       variances_(Eigen::VectorXd::Zero(array.channels)),
       weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))),
       threshold_(Eigen::VectorXd::Zero(array.channels)) {
-  if (settling_ < 0) settling_ = static_cast<std::int64_t>(std::ceil(3 / (1 - settings["gamma"])));
+  if (settling_ < 0) settling_ = clamped_whole<std::int64_t>(std::ceil(3 / (1 - settings["gamma"])));
 }
 
 Estimate MinquePublished::step(const Sample& y) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
@@ -57,7 +58,7 @@ void read_real_stamps(const std::byte* first, std::size_t stride, const StampFor
     const double stamp = stamps[i] * format.scale + format.offset;
     const double ns = stamp * static_cast<double>(format.unit_ns);
     if (!(std::abs(ns) < 9.2e18)) refuse_stamp(where(i), stamp);
-    out[i] = std::llround(ns);
+    out[i] = clamped_whole<std::int64_t>(std::round(ns));
   }
 }
 

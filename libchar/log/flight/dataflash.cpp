@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -200,7 +201,7 @@ class DataflashReader final : public TopicReader {
     }
     const double ns = value * static_cast<double>(unit_ns_);
     if (!(std::abs(ns) < 9.2e18)) throw refusal("E0314").says("a time stamp does not fit 64-bit nanoseconds");
-    return std::llround(ns);
+    return clamped_whole<std::int64_t>(std::round(ns));
   }
 
   // False where the stamp is none, which is counted.
@@ -236,7 +237,8 @@ class DataflashReader final : public TopicReader {
   void add_samples(RowBlock& block, std::size_t most) {
     for (; sample_ < samples_ && block.rows < most; ++sample_, ++block.rows) {
       const double after_ns = (first_sample_ + sample_) * 1e9 / burst_.rate_hz;
-      block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 + std::llround(after_ns));
+      block.time_ns.push_back(static_cast<std::int64_t>(burst_.start_us) * 1000 +
+                              clamped_whole<std::int64_t>(std::round(after_ns)));
       for (std::size_t c = 0; c < chosen_.size(); ++c)
         block.columns[c].push_back(counts_[chosen_[c]][sample_] / burst_.multiplier);
     }

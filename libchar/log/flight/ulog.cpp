@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -222,7 +223,7 @@ class UlogReader final : public TopicReader {
     }
     for (; fifo_sample_ < fifo_samples_ && block.rows < most; ++fifo_sample_, ++block.rows) {
       const double back = (fifo_samples_ - 1 - fifo_sample_) * dt_ns;
-      block.time_ns.push_back(static_cast<std::int64_t>(stamp) * 1000 - std::llround(back));
+      block.time_ns.push_back(static_cast<std::int64_t>(stamp) * 1000 - clamped_whole<std::int64_t>(std::round(back)));
       for (std::size_t c = 0; c < chosen_.size(); ++c) {
         const std::byte* count = data + fifo.axes[chosen_[c]] + 2 * fifo_sample_;
         block.columns[c].push_back(static_cast<std::int16_t>(little_endian<2>(count)) * scale);
@@ -244,7 +245,7 @@ class UlogReader final : public TopicReader {
       if (std::isnan(value)) throw refusal("E0313", value).says("missing time stamp");
       const double ns = value * static_cast<double>(unit_ns_);
       if (!(std::abs(ns) < 9.2e18)) throw refusal("E0314", value).says("a time stamp does not fit 64-bit nanoseconds");
-      return std::llround(ns);
+      return clamped_whole<std::int64_t>(std::round(ns));
     }
     if (read_integers(data.data() + field.byte, 0, {field.type, false}, {&stamp, 1}) ||
         __builtin_mul_overflow(stamp, unit_ns_, &stamp))

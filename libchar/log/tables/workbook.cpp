@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -75,7 +76,7 @@ std::string date_text(double serial, Style style, double first_day) {
   using namespace std::chrono;
   constexpr double kMostDays = 2958466;  // the year 10000
   if (!(serial >= 0 && serial < kMostDays)) return "";
-  const auto us = static_cast<std::int64_t>(std::llround((serial + (style == Style::date ? first_day : 0)) * 86400e6));
+  const auto us = clamped_whole<std::int64_t>(std::round((serial + (style == Style::date ? first_day : 0)) * 86400e6));
   const auto day = us / 86400000000, in_day = us % 86400000000;
   const std::string clock = fmt::format("{:02}:{:02}:{:02}.{:06}", in_day / 3600000000, in_day / 60000000 % 60,
                                         in_day / 1000000 % 60, in_day % 1000000);

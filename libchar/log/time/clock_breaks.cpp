@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 
 namespace libchar {
@@ -64,7 +65,7 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns, std::int64_t stamp_ns
     const double step = back + range.ns;
     if (!(step > 0 && step < 0.5 * range.ns && step < range.most_steps * interval_ns) || step >= shortest) continue;
     shortest = step;
-    found = ClockWrap{std::llround(range.ns),
+    found = ClockWrap{clamped_whole<std::int64_t>(std::round(range.ns)),
                       range.bits > 0 ? fmt::format("the {}-bit clock ran over", range.bits)
                                      : fmt::format("the {} begin again", range.what),
                       false};

@@ -43,7 +43,7 @@ TimeGrid::TimeGrid(const RowSource& source, const ReadOptions& options, BlockSin
     if (!s) return otherwise;
     if (!std::isfinite(*s) || std::fabs(*s) > 9e9)
       throw usage_error("E0201", name).says("is not a time in seconds").got(shortest(*s));
-    return static_cast<std::int64_t>(std::llround(*s * 1e9));
+    return clamped_whole<std::int64_t>(std::round(*s * 1e9));
   };
   window_.from_ns = instant(options.from_s, 0, "`from_s`");
   window_.to_ns = instant(options.to_s, INT64_MAX, "`to_s`");

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/time/clock_breaks.hpp"
@@ -155,7 +156,7 @@ class TimeGrid {
         : model(found),
           ns(found.ns),
           longest(static_cast<std::int64_t>(std::min(found.longest_step, 9e18))),
-          shortest(std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
+          shortest(std::max<std::int64_t>(1, clamped_whole<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
           coarse(found.pattern != StampPattern::steps) {}
     StampModel model;
     double ns = 0;

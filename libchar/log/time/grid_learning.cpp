@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/log/time/grid.hpp"
@@ -83,7 +84,7 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
 void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
   const auto change = find_rate_change(stamps);
   if (!change || 2 * change->row > static_cast<double>(stamps.size())) return;
-  const auto row = static_cast<std::size_t>(std::ceil(change->row));
+  const auto row = clamped_whole<std::size_t>(std::ceil(change->row));
   const std::int64_t from = stamps[row] - stamps.front();
   if (from <= window_.from_ns) return;
   window_.from_ns = from;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -26,7 +27,7 @@ constexpr std::int64_t kWildEnd = 1000;  // steps to the last rows, if that is l
 
 /// Of an interval far below a nanosecond there may be more steps than 64 bits count.
 std::int64_t whole_steps(double steps) {
-  return static_cast<std::int64_t>(std::llround(std::clamp(steps, -9e18, 9e18)));
+  return clamped_whole<std::int64_t>(std::round(std::clamp(steps, -9e18, 9e18)));
 }
 
 }  // namespace
@@ -159,7 +160,7 @@ TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row
   if (late <= 2 * step_.ns) return Verdict::keep;
   warnings_.add("late_stamp", "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
-  stamp = last_.stamp + static_cast<std::int64_t>(std::llround(step_.ns));
+  stamp = last_.stamp + clamped_whole<std::int64_t>(std::round(step_.ns));
   return Verdict::keep;
 }
 
@@ -181,11 +182,11 @@ TimeGrid::Verdict TimeGrid::pass_gap(const Pending& front, std::size_t row, std:
   if (inside.count() > 0)
     warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
   if (inside.count() > 0 && !start_ns_)
-    start_ns_ = last_.stamp + static_cast<std::int64_t>(std::llround(static_cast<double>(inside.first) * step_.ns));
+    start_ns_ = last_.stamp + clamped_whole<std::int64_t>(std::round(static_cast<double>(inside.first) * step_.ns));
   leave_missing(inside.count(), gap);
   // The step that is left is a usual one; of packets and the like only the lag says what that is.
   const double left_out = step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;
-  if (static_cast<double>(gap) > kLongGap) sketch_.skip(gap, static_cast<std::int64_t>(std::llround(left_out)));
+  if (static_cast<double>(gap) > kLongGap) sketch_.skip(gap, clamped_whole<std::int64_t>(std::round(left_out)));
   recent_.rows.clear();
   return Verdict::keep;
 }
@@ -239,7 +240,7 @@ void TimeGrid::unwrap(const Pending& front, std::size_t row, const ClockWrap& wr
   warnings_.add(wrap.local ? "clock_change" : "clock_rollover", wrap.what + ": unwrapped", place(front, row));
   if (stamp - last_.stamp <= step_.longest) return;
   const std::int64_t late =
-      static_cast<std::int64_t>(std::llround(static_cast<double>(stamp - last_.stamp) / step_.ns)) - 1;
+      clamped_whole<std::int64_t>(std::round(static_cast<double>(stamp - last_.stamp) / step_.ns)) - 1;
   if (late > 0) leave_missing(static_cast<std::uint64_t>(late), late);
 }
 
@@ -280,8 +281,8 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, 
 // Missing grid points before this row.
 std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   // Of an interval far below a nanosecond there may be more steps than 64 bits count.
-  return static_cast<std::int64_t>(
-      std::llround(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead)), -9e18, 9e18)));
+  return static_cast<std::int64_t>(clamped_whole<std::int64_t>(
+      std::round(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead)), -9e18, 9e18))));
 }
 
 // Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -22,7 +23,7 @@ constexpr std::int64_t kDayNs = 86400000000000;
 std::int64_t unit_in_ns(std::string_view unit) {
   const auto known = find_unit(unit);
   if (!known || known->quantity != Quantity::time) return 0;
-  return std::llround(known->to_si * 1e9);
+  return clamped_whole<std::int64_t>(std::round(known->to_si * 1e9));
 }
 
 std::string unit_name(std::int64_t ns) {
@@ -205,7 +206,7 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
   const std::string stem = name_and_unit(table.columns[column].name).first;
   StampUnit unit{options.time_unit != "auto" ? unit_from_options(options.time_unit) : unit_said(table.columns[column])};
   if (unit.ns == 0 && table.stated_tick_s) {
-    unit.ns = std::max<std::int64_t>(1, std::llround(*table.stated_tick_s * 1e9));
+    unit.ns = std::max<std::int64_t>(1, clamped_whole<std::int64_t>(std::round(*table.stated_tick_s * 1e9)));
     info.dialect.push_back(fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
   }
   const FirstValues first = table.first_values(column);

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
@@ -215,7 +216,9 @@ class JoinedTopics final : public RowSource {
           fmt::format("{} topics as one table, in rows of {}: {}", names.size(), names[base_], first_names(names)));
   }
 
-  std::int64_t aligned(std::size_t topic) const { return topics_[topic].time() - std::llround(behind_ns_[topic]); }
+  std::int64_t aligned(std::size_t topic) const {
+    return topics_[topic].time() - clamped_whole<std::int64_t>(std::round(behind_ns_[topic]));
+  }
 
   std::optional<std::size_t> earliest() {
     std::optional<std::size_t> first;
@@ -245,7 +248,7 @@ class JoinedTopics final : public RowSource {
     topic.pop();
   }
 
-  std::int64_t half() const { return std::llround(step_ns_ / 2); }
+  std::int64_t half() const { return clamped_whole<std::int64_t>(std::round(step_ns_ / 2)); }
   std::size_t first_channel(std::size_t topic) const {
     std::size_t first = 0;
     for (std::size_t t = 0; t < topic; ++t) first += topics_[t].source().info().channels.size();

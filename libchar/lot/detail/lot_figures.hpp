@@ -12,6 +12,7 @@
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
@@ -44,7 +45,9 @@ struct LognormalEffects {
 LognormalEffects lognormal_effects(const SquareEstimates& in);
 
 /// Records of one class have about the same length, within a factor of sqrt 2: their fits err alike.
-inline long length_class(double samples) { return std::lround(2 * std::log2(std::max(1.0, samples))); }
+inline long length_class(double samples) {
+  return clamped_whole<long>(std::round(2 * std::log2(std::max(1.0, samples))));
+}
 
 /// At least two, and two thirds of all: what was not detected is smaller than what was.
 inline bool enough_count(std::size_t counted, std::size_t members) {

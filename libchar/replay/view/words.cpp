@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/replay/detail/plan/preparation.hpp"
@@ -53,7 +54,7 @@ constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "
 Cell with_error(double value, double error, double scale = 1) {
   if (!std::isfinite(error)) return Cell::shown(value == 0 ? "–" : brief_text(scale * value, 3), value);
   const double size = scale * error;
-  const int decimals = size > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
+  const int decimals = size > 0 ? 1 - clamped_whole(std::floor(std::log10(size)), -8, 1) : 3;
   return Cell::shown(fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals), value);
 }
 

@@ -35,7 +35,7 @@ int digits_of(const Timeline& track) {
       }
   const double largest = std::fmax(std::fabs(low), std::fabs(high));
   return high > low && std::isfinite(largest / (high - low))
-             ? std::clamp(4 + static_cast<int>(std::ceil(std::log10(largest / (high - low)))), 4, 15)
+             ? 4 + clamped_whole(std::ceil(std::log10(largest / (high - low))), 0, 11)
              : kDigitsOfTrack;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/characterize/compare/verification.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
@@ -78,7 +79,7 @@ namespace {
 // Enough digits to see a thousandth of the noise beside a large offset.
 std::string beside_noise(double value, double noise) {
   const double ratio = noise > 0 ? std::abs(value) / noise : 1;
-  return brief_text(value, std::clamp(static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))) + 4, 5, 16));
+  return brief_text(value, 4 + clamped_whole(std::ceil(std::log10(ratio)), 1, 12));
 }
 
 std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {

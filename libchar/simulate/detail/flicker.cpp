@@ -27,6 +27,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/core/numeric/whole.hpp"
 
 namespace libchar {
 namespace {
@@ -173,7 +174,7 @@ double gap(double qi, double qj) { return qi + qj - qi * qj; }
 
 FlickerFilter design_flicker(std::uint64_t length) {
   const double n = std::max(kShortestRecord, static_cast<double>(length == 0 ? kLongestFlicker : length));
-  const int first = static_cast<int>(std::floor(-std::log(2 * n) / kStep));
+  const int first = clamped_whole<int>(std::floor(-std::log(2 * n) / kStep));
   const Rule fast = gauss_rule(tail(1, 1, [](double s) { return 1 / (1 + s); }), kFastNodes);
   const Rule slow = gauss_rule(tail(first - 1, -1, [](double s) { return s; }), kSlowNodes);
   FlickerFilter filter;

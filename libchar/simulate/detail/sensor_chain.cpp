@@ -14,6 +14,7 @@
 #include <numbers>
 #include <optional>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "libchar/spectrum/fft.hpp"
 
@@ -49,7 +50,7 @@ class HeldNoise {
   void add(std::span<double> out) {
     for (double& sample : out) {
       const auto due =
-          1 + static_cast<std::uint64_t>(std::ceil(static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
+          1 + clamped_whole<std::uint64_t>(std::ceil(static_cast<double>(k_++) / samples_per_renewal_ * (1 - 1e-12)));
       for (; renewals_ < due; ++renewals_) {
         value_ = 0;
         noise_.add({&value_, 1}, {});

@@ -19,6 +19,7 @@
 
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
 
@@ -139,7 +140,7 @@ std::vector<double> neighbour_correlation(Window window, const Layout& layout, s
     const double shift =
         static_cast<double>(lag * layout.hop) * static_cast<double>(n) / static_cast<double>(layout.segment);
     for (std::size_t m = 0; m <= reach; ++m)
-      covariance[m] += weight * shifted_energy(w, static_cast<std::size_t>(std::lround(shift)), m, turns);
+      covariance[m] += weight * shifted_energy(w, clamped_whole<std::size_t>(std::round(shift)), m, turns);
   }
   std::vector<double> correlation;
   for (std::size_t m = 1; m <= reach; ++m) correlation.push_back(covariance[m] / covariance[0]);

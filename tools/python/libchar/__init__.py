@@ -11,15 +11,17 @@ sheet's one-sided density is √2·N. Contiguous arrays of float64 are used as t
 copied once, with a CopyWarning. Work runs without the interpreter's lock, on all cores unless `threads` says
 otherwise.
 """
+from . import program
 from ._libchar import build, version as _version
 from .errors import CopyWarning, Error, InputError, NumericError, UsageError
-from .functions import allan, characterize, fit, psd, read, replay, simulate, write
-from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording,
-                      ReplayResult, Spectrum)
+from .functions import (allan, bench, characterize, compare, cornered_hat, cross_spectrum, fit, fuse, inspect, lot, psd,
+                        read, replay, simulate, write)
+from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, Document, Figure, Model, NoiseFit,
+                      NoiseTerm, Recording, ReplayResult, Spectrum, export, plot)
 
 __version__ = _version()
-__all__ = ["read", "write", "allan", "psd", "fit", "characterize", "simulate", "replay", "Recording", "AllanCurve",
-           "Spectrum", "NoiseTerm",
-           "NoiseFit", "ChannelReport", "Characterization", "Algorithm", "ReplayResult", "Error", "UsageError",
-           "InputError",
-           "NumericError", "CopyWarning", "build"]
+__all__ = ["read", "write", "inspect", "allan", "psd", "fit", "characterize", "compare", "lot", "cross_spectrum",
+           "cornered_hat", "simulate", "replay", "fuse", "bench", "export", "plot", "Recording", "AllanCurve",
+           "Spectrum", "NoiseTerm", "NoiseFit", "Model", "ChannelReport", "Characterization", "Algorithm",
+           "ReplayResult", "Document", "Figure", "Error", "UsageError", "InputError", "NumericError", "CopyWarning",
+           "build", "program"]

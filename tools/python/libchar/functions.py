@@ -1,21 +1,23 @@
 """The functions of the package; their defaults are those of the program."""
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import pathlib
-import tempfile
 import warnings
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _libchar
+from . import _libchar, program
 from .errors import CopyWarning, NumericError, UsageError
-from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, NoiseFit, NoiseTerm, Recording,
+from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, Document, NoiseFit, NoiseTerm, Recording,
                       ReplayResult, Spectrum)
 
-#: A path of a log, a recording that was read, an array (one channel, or one column per channel), or arrays by name.
+#: A path of a log, a recording that was read, an array (one channel, or a table whose longer axis is the time), arrays
+#: by name, or a pandas.DataFrame.
 Source = Union[str, "os.PathLike[str]", Recording, npt.ArrayLike, Mapping[str, npt.ArrayLike]]
 Names = Optional[Sequence[str]]
 
@@ -39,8 +41,32 @@ def _column(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
     return out
 
 
+def _is_frame(source: Any) -> bool:
+    return hasattr(source, "columns") and hasattr(source, "index") and hasattr(source, "to_numpy")
+
+
+def _of_frame(frame: Any) -> Source:
+    """A DataFrame as a recording, by its own stamps if its index has instants, else its columns by name. What the
+    stamps mean (their rate, jitter, gaps) is decided as for a file."""
+    columns = {str(name): np.asarray(frame[name], dtype=np.float64) for name in frame.columns}
+    kind = np.asarray(frame.index).dtype.kind
+    if kind not in "mM":
+        return columns
+    stamps = np.asarray(frame.index).astype(f"{kind}8[ns]").astype(np.int64)
+    table = np.empty(len(stamps), dtype=[("t[ns]", np.int64), *((name, np.float64) for name in columns)])
+    table["t[ns]"] = stamps
+    for name, values in columns.items():
+        table[name] = values
+    with program.folder() as place:
+        np.save(place / "frame.npy", table)
+        return read(place / "frame.npy")
+
+
 def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Names, channels: Names) -> dict[str, Any]:
     """Names, units and contiguous columns of what is in memory."""
+    if _is_frame(source):
+        source = _of_frame(source)
+    units, names = ([one] if isinstance(one, str) else one for one in (units, names))
     if isinstance(source, Recording):
         found = dict(zip(source.names, source.samples))
         unit_of = dict(zip(source.names, source.units))
@@ -50,7 +76,8 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
             found = {str(name): np.asarray(values) for name, values in source.items()}
         else:
             array = np.asarray(source)
-            table = [array] if array.ndim < 2 else list(np.moveaxis(array, -1, 0)) if array.ndim == 2 else []
+            across = array.ndim == 2 and array.shape[0] < array.shape[1]  # three channels of many samples
+            table = [array] if array.ndim < 2 else list(array if across else array.T) if array.ndim == 2 else []
             if not table:
                 raise UsageError(f"an array of one or two dimensions was expected, this has {array.ndim}", "E0208",
                                  "samples")
@@ -68,19 +95,49 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
     shown = list(names) if names is not None else list(found)
     own = [unit_of[name] for name in found]
     said = own if units is None else list(units) * (len(found) if len(units) == 1 else 1)
+    if not found:
+        raise UsageError("there is no channel", "E0208", "samples")
     if not rate_hz:
         raise UsageError("samples in memory need their sampling rate", "E0208", "rate_hz", "rate_hz=200")
+    if isinstance(rate_hz, str) or not 0 < rate_hz < np.inf:
+        raise UsageError(f"a sampling rate in Hz was expected, this is {rate_hz!r}", "E0208", "rate_hz", "rate_hz=200")
     return {"names": shown, "units": said,
             "samples": [_column(values, name) for name, values in zip(shown, found.values())],
             "rate_hz": float(rate_hz), "file": source.file if isinstance(source, Recording) else "memory"}
 
 
 def _path(source: Source) -> Optional[str]:
-    return os.fspath(source) if isinstance(source, (str, os.PathLike)) else None
+    return os.fsdecode(source) if isinstance(source, (str, bytes, os.PathLike)) else None
+
+
+def _one_or_all(source: Source, results: list[Any]) -> Any:
+    """One array in, one result out."""
+    one = not isinstance(source, (str, bytes, os.PathLike, Recording, Mapping)) and not _is_frame(source)
+    return results[0] if one and np.ndim(source) == 1 else results
+
+
+@contextlib.contextmanager
+def _on_disk(source: Any, rate_hz: Optional[float] = None, names: Names = None, units: Names = None,
+             name: str = "recording") -> Iterator[str]:
+    """A path for the program: what is in memory is written to a file of this call."""
+    path = _path(source)
+    if path is not None:
+        yield path
+        return
+    with program.folder() as place:
+        if isinstance(source, Characterization):
+            log = place / f"{name}.json"
+            log.write_text(json.dumps(source.to_dict()))
+        else:
+            log = place / f"{name}.f64"
+            _libchar.write_recording(str(log), _columns(source, rate_hz, names, units, None), False)
+        yield str(log)
 
 
 def _reading(arguments: Mapping[str, Any], in_memory: bool) -> dict[str, Any]:
     given = {key: value for key, value in arguments.items() if value is not None}
+    if isinstance(given.get("threads"), int) and given["threads"] < 0:
+        raise UsageError(f"threads: a number of threads was expected, this is {given['threads']}", "E0208", "threads")
     if in_memory:
         wrong = [key for key in _OF_FILES if key in given]
         if wrong:
@@ -107,7 +164,8 @@ def _curve(channel: dict[str, Any], kind: str) -> AllanCurve:
     ci95 = np.array([(np.nan, np.nan) if pair is None else pair for pair in channel["ci95"]],
                     dtype=np.float64).reshape(-1, 2)
     return AllanCurve(channel["name"], channel["unit"], kind, array("tau_s"), array("deviation"), ci95, array("edf"),
-                      np.array(channel["terms"], dtype=np.int64), {"type": kind, **channel})
+                      np.array(channel["terms"], dtype=np.int64), channel.get("findings") or [],
+                      {"type": kind, **channel})
 
 
 def _term(term: dict[str, Any]) -> NoiseTerm:
@@ -172,18 +230,21 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
           tau_min_s: Optional[float] = None, tau_max_s: Optional[float] = None, full_overlap: bool = False,
           data: str = "rate",
           nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
-          threads: Optional[int] = None) -> list[AllanCurve]:
-    """Deviations of the Allan family, one curve per channel, with chi-square intervals (`sensorchar allan`).
+          rate: Optional[float] = None, threads: Optional[int] = None) -> Any:
+    """Deviations of the Allan family, one AllanCurve per channel, with chi-square intervals (`sensorchar allan`): a
+    list, or one curve where `source` is one array. `taus, devs, errs, ns = allan(x, rate=100)` unpacks it as allantools
+    does.
 
     source       path of a log, Recording, array (one column per channel), or mapping of names to arrays
-    rate_hz      sampling rate in Hz; not needed for a Recording or a log that has it
+    rate_hz      sampling rate in Hz (rate is the same); not needed for a Recording or a log that has it
     type         adev, oadev, mdev, tdev, hdev, ohdev, totdev, …
     taus         octave, decade, dense, ten, or averaging times in s
     data         what the samples are: rate, phase (its integral), frequency (in Hz, around nominal_frequency)
 
     Deviations are in the unit of the channel. Raises NumericError when no channel has enough samples.
     """
-    reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
+    reading = {"rate_hz": rate if rate_hz is None else rate_hz, "channels": channels, "names": names, "units": units,
+               "threads": threads}
     options = {"only": "allan", "type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus],
                "tau_min_s": tau_min_s,
                "tau_max_s": tau_max_s, "full_overlap": full_overlap, "data": data,
@@ -191,15 +252,17 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
     kept = _characterized(source, reading, options)
     document = kept.allan()
     _refuse_nothing(kept, "an Allan deviation", document["channels"])
-    return [_curve(channel, channel.get("type", document.get("type", type))) for channel in document["channels"]]
+    return _one_or_all(source, [_curve(channel, channel.get("type", document.get("type", type))) for channel in
+                                document["channels"]])
 
 
 def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[int] = None,
         segment_s: Optional[float] = None,
         overlap: float = 0.5, window: str = "hann", detrend: str = "constant", sides: str = "one", scaling: str = "psd",
         bins: int = 0, channels: Names = None, names: Names = None, units: Names = None,
-        threads: Optional[int] = None) -> list[Spectrum]:
-    """Power spectra by Welch's method, one per channel (`sensorchar psd`).
+        threads: Optional[int] = None) -> Any:
+    """Power spectra by Welch's method, one Spectrum per channel (`sensorchar psd`): a list, or one where `source` is
+    one array.
 
     segment, segment_s  samples of a segment, or its length in s; None: a quarter of the record, 65536 samples
                         of one of more than 1048576
@@ -214,15 +277,17 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
                "scaling": scaling, "bins": bins}
     path = _path(source)
     what: Union[str, dict[str, Any]] = path if path is not None else _columns(source, rate_hz, names, units, channels)
-    return [Spectrum(**one) for one in _libchar.psd(what, _reading(reading, path is None), options)]
+    made = _libchar.psd(what, _reading(reading, path is None), options)
+    return _one_or_all(source, [Spectrum(**one) for one in made])
 
 
 def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None, threshold: Optional[float] = None,
         remedies: bool = True,
         second_opinion: bool = True, still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
         nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
-        threads: Optional[int] = None) -> list[NoiseFit]:
-    """Noise coefficients with 95 % intervals, one result per channel (`sensorchar fit`).
+        threads: Optional[int] = None) -> Any:
+    """Noise coefficients with 95 % intervals, one NoiseFit per channel (`sensorchar fit`): a list, or one where
+    `source` is one array.
 
     terms           offered to the fit from the start: white_noise, bias_instability, random_walk, rate_ramp,
                     quantization
@@ -242,7 +307,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
     kept = _characterized(source, reading, options)
     fits = kept.fits()["channels"]
     _refuse_nothing(kept, "a fit", fits)
-    return [_fit(channel) for channel in fits]
+    return _one_or_all(source, [_fit(channel) for channel in fits])
 
 
 def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev",
@@ -312,18 +377,88 @@ def replay(source: Source, *, sensors: Names = None, reference: Union[None, str,
                "reference": None if listed is None else list(listed),
                "learning": learning, "evaluation": evaluation, "rest": rest, "warm_up_s": warm_up_s,
                "algorithms": None if algorithms is None else list(algorithms), "models_folder": models_folder,
-               "allan": allan,
-               "budget_s": budget_s, "timing": timing, "allow_outside": allow_outside}
-    path = _path(source)
-    if path is not None:
-        made = _libchar.replay(path, _reading({"rate_hz": rate_hz, "names": names, "units": units}, False), options)
-    else:
-        columns = _columns(source, rate_hz, names, units, None)
-        with tempfile.TemporaryDirectory() as folder:
-            log = str(pathlib.Path(folder) / "recording.f64")
-            _libchar.write_recording(log, columns, False)
-            made = _libchar.replay(log, {}, options)
+               "allan": allan, "budget_s": budget_s, "timing": timing, "allow_outside": allow_outside}
+    with _on_disk(source, rate_hz, names, units) as log:
+        reading = {"rate_hz": rate_hz, "names": names, "units": units} if _path(source) is not None else {}
+        made = _libchar.replay(log, _reading(reading, False), options)
     document = made.document()
     ran = [Algorithm(a["name"], a["status"], a.get("why"), a.get("rmse"), a.get("regret"), a.get("ns_per_sample"), a)
            for a in document["algorithms"]]
     return ReplayResult(document["verdict"], ran, document, made)
+
+
+def inspect(source: Source, rate_hz: Optional[float] = None, **options: Any) -> Document:
+    """What is in a log, what was guessed and what was repaired (`sensorchar inspect --json`): the keys of its
+    recording, and its findings. rate_hz in Hz, of samples in memory; times in s; options are those of the program:
+    topic="imu"."""
+    with _on_disk(source, rate_hz) as log:
+        made = program.document("inspect", [log, *program.words_of(options)])
+    return Document({**made["recordings"][0], "findings": made["findings"]})
+
+
+def compare(*sources: Any, rate_hz: Optional[float] = None, labels: Names = None, channels: Names = None,
+            **options: Any) -> Document:
+    """Which sensor has the lowest noise, and at which averaging times (`sensorchar compare`): `verdict`, `groups`, and
+    the page as `html`.
+
+    sources   paths (logs, reports, models), Characterizations, Recordings or arrays, in any mixture
+    rate_hz   sampling rate in Hz, of arrays
+    labels    a name for each; channels: those to compare, by name or pattern
+    Times are in s; further options are those of the program, such as limits="sheet.yaml".
+    """
+    with contextlib.ExitStack() as kept:
+        paths = [kept.enter_context(_on_disk(one, rate_hz, name=f"input {k + 1}")) for k, one in enumerate(sources)]
+        page = kept.enter_context(program.folder()) / "compared.html"
+        words = program.words_of({"label": labels, "channel": channels, **options})
+        made = Document(program.document("compare", [*paths, *words, f"--output={page}"]))
+        made.html = page.read_text()
+    return made
+
+
+def lot(*sources: Any, rate_hz: Optional[float] = None, **options: Any) -> Document:
+    """Devices of one kind, one log each: mean, spread and outliers of each term (`sensorchar characterize --lot`), and
+    the page as `html`. rate_hz in Hz, of arrays; times in s."""
+    with contextlib.ExitStack() as kept:
+        paths = [kept.enter_context(_on_disk(one, rate_hz, name=f"device {k + 1}")) for k, one in enumerate(sources)]
+        place = kept.enter_context(program.folder()) / "lot"
+        program.run("characterize", [*paths, "--lot", f"--output={place}", *program.words_of(options)])
+        made = Document(json.loads((place / "lot.json").read_text()))
+        made.html = (place / "index.html").read_text()
+    return made
+
+
+def cross_spectrum(source: Source, a: str, b: str, rate_hz: Optional[float] = None, **options: Any) -> Document:
+    """Cross spectrum and coherence of two channels (`sensorchar psd --cross A,B`): arrays frequency_hz in Hz, real,
+    imaginary, phase_rad, coherence… Options are those of the program, such as segment="20s"."""
+    with _on_disk(source, rate_hz) as log:
+        return Document(program.document("psd", [log, f"--cross={a},{b}", *program.words_of(options)]))
+
+
+def cornered_hat(source: Source, rate_hz: Optional[float] = None, *, pairs: bool = False, **options: Any) -> Document:
+    """The deviation of each of three or more devices from their differences (`sensorchar allan --hat`): `channels` with
+    arrays tau_s in s, deviation, variance, variance_sd. pairs: the channels are the differences a - b, b - c, c - a."""
+    with _on_disk(source, rate_hz) as log:
+        words = [log, "--hat-pairs" if pairs else "--hat", *program.words_of(options)]
+        return Document(program.document("allan", words))
+
+
+def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options: Any) -> Recording:
+    """A log fused by what a replay learnt (`sensorchar fuse`): the estimate, its deviation, a flag per sensor.
+
+    learnt   ReplayResult, or the folder of a replay, or its fusion.yaml
+    rate_hz  sampling rate in Hz, of arrays; times are in s
+    Further options are those of the program, such as algorithm="minque", map=["gyro1=wx"].
+    """
+    with _on_disk(source, rate_hz) as log, program.folder() as place:
+        if isinstance(learnt, ReplayResult):
+            (place / "fusion.yaml").write_text(learnt.fusion_yaml())
+            learnt = place / "fusion.yaml"
+        words = [log, f"--with={os.fspath(learnt)}", *program.words_of(options), f"--output={place / 'fused.f64'}"]
+        program.run("fuse", words)
+        return read(place / "fused.f64")
+
+
+def bench(**options: Any) -> Document:
+    """Run time against error of the algorithms on this machine (`sensorchar bench`), times in s; options are those of
+    the program: quick=True, parts="characterization"."""
+    return Document(program.document("bench", program.words_of(options)))

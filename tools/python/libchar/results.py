@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import Any, Iterator, Optional
+import html
+import json
+import os
+import pathlib
+from typing import Any, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _libchar
+from . import _libchar, program
 
 Array = npt.NDArray[np.float64]
 
@@ -29,14 +33,127 @@ def plain(value: Any) -> Any:
     return value
 
 
+def frame(columns: Mapping[str, Any], index: Any = None) -> Any:
+    """A pandas.DataFrame."""
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    return pandas.DataFrame(columns, index=index)
+
+
+def _cell(value: Any) -> str:
+    return html.escape("" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value))
+
+
+def table(rows: Sequence[Mapping[str, Any]], above: str = "") -> str:
+    """Rows of equal keys as HTML."""
+    head = "".join(f"<th>{_cell(key)}</th>" for key in (rows[0] if rows else {}))
+    body = "".join("<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row.values()) + "</tr>" for row in rows)
+    return (f"<p>{html.escape(above)}</p>" if above else "") + f"<table><tr>{head}</tr>{body}</table>"
+
+
+class Figure:
+    """A figure as `sensorchar plot` draws it (docs/plots.md): a notebook shows it, `save` writes it."""
+
+    def __init__(self, documents: Sequence[tuple[str, str]], options: Mapping[str, Any]) -> None:
+        self._documents = list(documents)  # name and text each, of what is drawn
+        self._options = dict(options)
+        self.svg: str = self._drawn(["-o", "-"]).decode()
+
+    def _drawn(self, words: Sequence[str]) -> bytes:
+        with program.folder() as place:
+            files = []
+            for k, (name, text) in enumerate(self._documents):
+                files.append(place / str(k) / name)
+                files[-1].parent.mkdir()
+                files[-1].write_text(text)
+            return program.run("plot", [*map(str, files), *program.words_of(self._options), *words])
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def save(self, path: Union[str, "os.PathLike[str]"], overwrite: bool = False) -> None:
+        """Writes it; the suffix says the format: .svg, .pdf, .png."""
+        self._drawn(["-o", os.fspath(path)] + ["--force"] * overwrite)
+
+
 class _Result:
     def to_dict(self) -> dict[str, Any]:
         """The result in plain Python types."""
         return {name: plain(value) for name, value in vars(self).items() if not name.startswith("_")}
 
 
+class _Drawn(_Result):
+    """A result that can be drawn."""
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        raise NotImplementedError
+
+    def plot(self, **options: Any) -> Figure:
+        """A figure; options are those of `sensorchar plot`: kind="psd", width="two-columns", channel="gyro_z"…"""
+        return plot(self, **options)
+
+
+def plot(*results: _Drawn, **options: Any) -> Figure:
+    """One figure of several results, overlaid; options are those of `sensorchar plot`, such as label=["a", "b"]."""
+    documents = []
+    for result in results:
+        format_, document = result._drawn()
+        head = {"format": format_, "version": 1, "tool": {"name": "libchar", "version": _libchar.version()}}
+        documents.append((f"{format_}.json", json.dumps({**head, **plain(document)})))
+    return Figure(documents, options)
+
+
+class Model(str):
+    """A sensor model: its YAML text (docs/models.md), for `simulate`, for a file NAME.sensor.yaml, for `export`."""
+
+    @property
+    def channel(self) -> str:
+        """The channel that it models."""
+        return str(self._document()["channel"])
+
+    def _document(self) -> dict[str, Any]:
+        with program.folder() as place:
+            (place / "model.sensor.yaml").write_text(self)
+            document: dict[str, Any] = program.document("model", [str(place / "model.sensor.yaml")])["models"][0]
+        return document
+
+    def to_dict(self) -> dict[str, Any]:
+        """The keys of a .sensor.json."""
+        return {key: plain(value) for key, value in self._document().items()}
+
+    def export(self, to: str, **options: Any) -> str:
+        """The text that another program takes: kalibr, gazebo, … (`sensorchar model --list`)."""
+        return export([self], to, **options)
+
+
+def export(models: Sequence[str], to: str, **options: Any) -> str:
+    """The models of one device as the text that another program takes: kalibr, vins, gazebo, matlab, …
+    (docs/exports.md); options are those of `sensorchar model`, such as axes="rms", anyway=True.
+
+    Raises InputError for a coefficient with a finding that makes it unfit."""
+    with program.folder() as place:
+        for k, model in enumerate(models):
+            (place / f"{k:04}.sensor.yaml").write_text(model)
+        return str(program.document("model", [str(place), f"--to={to}", *program.words_of(options)])["text"])
+
+
 def _plain_document(document: dict[str, Any]) -> dict[str, Any]:
     return {key: plain(value) for key, value in document.items()}
+
+
+class Document(dict):  # type: ignore[type-arg]
+    """What a verb prints with --json (docs/json.md), long lists of numbers as arrays. `html`: its page, where it has
+    one."""
+
+    html: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """In a sentence, "" where the document has none."""
+        return str(self.get("verdict", ""))
+
+    def to_dict(self) -> dict[str, Any]:
+        """In plain Python types."""
+        return _plain_document(self)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,10 +191,23 @@ class Recording(_Result):
         """All channels as one array, one row per sample (a copy)."""
         return np.column_stack(self.samples)
 
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one column per channel, by seconds after the first sample."""
+        out = frame(dict(zip(self.names, self.samples)), self.time_s)
+        out.index.name = "t[s]"
+        return out
+
+    def _repr_html_(self) -> str:
+        rows = [{"channel": name, "unit": unit, "samples": int(np.isfinite(x).sum()), "missing": int(np.isnan(x).sum()),
+                 "mean": float(np.nanmean(x)) if np.isfinite(x).any() else None} for name, unit, x in
+                zip(self.names, self.units, self.samples)]
+        return table(rows, f"{self.file}: {len(self)} samples at {self.rate_hz:.10g} Hz")
+
 
 @dataclasses.dataclass(frozen=True)
-class AllanCurve(_Result):
-    """A deviation of the Allan family."""
+class AllanCurve(_Drawn):
+    """A deviation of the Allan family. `taus, devs, errs, ns = curve` is what allantools returns: errs is one standard
+    deviation, from the degrees of freedom."""
 
     name: str
     unit: str
@@ -87,14 +217,29 @@ class AllanCurve(_Result):
     ci95: Array  #: (n, 2): chi-square interval, 95 %
     edf: Array  #: equivalent degrees of freedom
     terms: npt.NDArray[np.int64]  #: differences that were averaged
+    findings: list[dict[str, Any]] = dataclasses.field(default_factory=list)  #: about the samples of the channel
     document: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.tau_s, self.deviation, self.deviation / np.sqrt(2 * self.edf), self.terms))
 
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
 
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one row per averaging time."""
+        return frame({"tau_s": self.tau_s, "deviation": self.deviation, "low95": self.ci95[:, 0],
+                      "high95": self.ci95[:, 1], "edf": self.edf, "terms": self.terms})
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        return "allan", {"type": self.type, "channels": [self.document]}
+
+    def _repr_html_(self) -> str:
+        return self.plot().svg
+
 
 @dataclasses.dataclass(frozen=True)
-class Spectrum(_Result):
+class Spectrum(_Drawn):
     """A power spectrum by Welch's method."""
 
     name: str
@@ -110,6 +255,19 @@ class Spectrum(_Result):
     dof: Array  #: degrees of freedom of each bin
     ci95: Array  #: rows low, high; NaN where they are not known
     notes: list[str] = dataclasses.field(default_factory=list)
+    findings: list[dict[str, Any]] = dataclasses.field(default_factory=list)  #: about the samples of the channel
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one row per frequency."""
+        return frame({"frequency_hz": self.frequency_hz, "value": self.value, "low95": self.ci95[:, 0],
+                      "high95": self.ci95[:, 1], "dof": self.dof})
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        channel = {key: getattr(self, key) for key in ("name", "unit", "frequency_hz", "value", "dof", "ci95")}
+        return "spectrum", {"sides": self.sides, "scaling": self.scaling, "channels": [channel]}
+
+    def _repr_html_(self) -> str:
+        return self.plot().svg
 
 
 @dataclasses.dataclass(frozen=True)
@@ -158,6 +316,16 @@ class NoiseFit(_Result):
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
 
+    def terms(self) -> dict[str, NoiseTerm]:
+        """The coefficients by their names."""
+        return {name: value for name, value in vars(self).items() if isinstance(value, NoiseTerm)}
+
+    def _repr_html_(self) -> str:
+        return table([{"coefficient": name, "value": term.value, "low95": term.ci95[0] if term.ci95 else None,
+                       "high95": term.ci95[1] if term.ci95 else None, "upper95": term.upper95, "unit": term.unit,
+                       "status": term.status} for name, term in self.terms().items() if term.status != "not_fitted"],
+                     self.name)
+
 
 @dataclasses.dataclass(frozen=True)
 class ChannelReport(_Result):
@@ -171,7 +339,7 @@ class ChannelReport(_Result):
 
 
 @dataclasses.dataclass(frozen=True)
-class Characterization(_Result):
+class Characterization(_Drawn):
     """Everything about a recording: what `sensorchar characterize` writes."""
 
     verdict: str
@@ -187,9 +355,37 @@ class Characterization(_Result):
                 return channel
         raise KeyError(f"no channel {name!r}; there are {', '.join(c.name for c in self.channels)}")
 
-    def models(self) -> list[str]:
-        """A sensor model, as YAML, of each channel that was fitted: for `simulate`, or a file CHANNEL.sensor.yaml."""
-        return self._kept.models()
+    def models(self) -> list[Model]:
+        """A sensor model of each channel that was fitted: for `simulate`, `export`, or a file CHANNEL.sensor.yaml."""
+        return [Model(text) for text in self._kept.models()]
+
+    def export(self, to: str, **options: Any) -> str:
+        """The text that another program takes: kalibr, vins, gazebo, … (`libchar.export`)."""
+        return export(self.models(), to, **options)
+
+    def _rows(self) -> list[dict[str, Any]]:
+        ratings = {c["name"]: c["rating"] for c in self.document["summary"]["channels"]}
+        rows = []
+        for channel in self.channels:
+            row: dict[str, Any] = {"channel": channel.name, "unit": channel.unit, "rating": ratings.get(channel.name)}
+            for name, term in (channel.fit.terms() if channel.fit else {}).items():
+                row.update({name: term.value, f"{name}_low95": term.ci95[0] if term.ci95 else None,
+                            f"{name}_high95": term.ci95[1] if term.ci95 else None, f"{name}_status": term.status})
+            rows.append(row)
+        return rows
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one row per channel: coefficients with intervals and status, and the rating."""
+        rows = self._rows()
+        keys = list(dict.fromkeys(key for row in rows for key in row))
+        return frame({key: [row.get(key) for row in rows] for key in keys})
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        return "characterization", self.document
+
+    def _repr_html_(self) -> str:
+        shown = ("channel", "unit", "rating", "white_noise", "bias_instability", "random_walk")
+        return table([{key: row.get(key) for key in shown} for row in self._rows()], self.verdict)
 
     def html(self) -> str:
         """The report as one self-contained page."""
@@ -220,7 +416,7 @@ class Algorithm(_Result):
 
 
 @dataclasses.dataclass(frozen=True)
-class ReplayResult(_Result):
+class ReplayResult(_Drawn):
     """Every fusion algorithm that had what it needs, on one recording."""
 
     verdict: str
@@ -247,3 +443,22 @@ class ReplayResult(_Result):
 
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
+
+    def fusion_yaml(self) -> str:
+        """What was learnt, as the file fusion.yaml: for `fuse`."""
+        return self._kept.fusion()
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [{key: getattr(a, key) for key in ("name", "status", "rmse", "regret", "ns_per_sample", "why")} for a in
+                self.algorithms]
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one row per algorithm."""
+        rows = self._rows()
+        return frame({key: [row[key] for row in rows] for key in (rows[0] if rows else ())})
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        return "replay-report", self.document
+
+    def _repr_html_(self) -> str:
+        return table([row for row in self._rows() if row["status"] == "ran"], self.verdict)

@@ -15,6 +15,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/curve/nonnegative.hpp"
 
@@ -197,10 +198,10 @@ class RecordScatter {
     const double rate_hz = curve.rate_hz.value_or(likely_rate(curve));
     AllanCurve record;
     record.dt_s = 1 / rate_hz;
-    record.samples = static_cast<std::uint64_t>(std::llround(duration_s * rate_hz));
+    record.samples = clamped_whole<std::uint64_t>(std::round(duration_s * rate_hz));
     for (const double tau_s : curve.x) {
       AllanPoint point;
-      point.m = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(tau_s * rate_hz)));
+      point.m = std::max<std::uint64_t>(1, clamped_whole<std::uint64_t>(std::round(tau_s * rate_hz)));
       point.m = std::min(point.m, record.samples / 2);
       point.tau_s = static_cast<double>(point.m) / rate_hz;
       point.terms = record.samples - 2 * point.m + 1;

@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
@@ -134,7 +135,7 @@ Peak most_likely(AtTau& likelihood, double low_s, double high_s) {
     return result.half_deviance;
   };
   const double first = std::log(low_s), last = std::log(high_s);
-  const int steps = std::max(2, static_cast<int>(std::ceil((last - first) / std::log(2.0))));
+  const int steps = std::max(2, clamped_whole<int>(std::ceil((last - first) / std::log(2.0))));
   for (int i = 0; i <= steps; ++i) {
     x.push_back(first + (last - first) * i / steps);
     value.push_back(look(x.back()));

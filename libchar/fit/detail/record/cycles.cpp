@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 
 namespace libchar::detail {
 namespace {
@@ -164,7 +165,7 @@ void take_out_harmonics(std::vector<Sine>& found, const Head& head) {
     const bool known =
         std::any_of(found.begin(), found.end(), [&](const Sine& other) { return std::abs(other.place - place) < 1.5; });
     if (known) continue;
-    const Window window(head, static_cast<std::size_t>(std::lround(place)));
+    const Window window(head, clamped_whole<std::size_t>(std::round(place)));
     Sine sine{off_grid(place)};
     const double left = window.squares_beside(sine);
     if (energy_over_floor(sine, window, left) < kWorthIt) {
@@ -200,7 +201,7 @@ std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, 
     for (Sine& sine : found) {
       add(sine, 1, head);
       double left = 0;
-      sine = fitted_sine(Window(head, static_cast<std::size_t>(std::lround(sine.place))), sine.place, left);
+      sine = fitted_sine(Window(head, clamped_whole<std::size_t>(std::round(sine.place))), sine.place, left);
       add(sine, -1, head);
     }
   if (!found.empty()) take_out_harmonics(found, head);

@@ -31,7 +31,7 @@ std::uint64_t next_edge(std::uint64_t k) {
   if (k < kSingleBins) return k + 1;
   const double position = std::log2(static_cast<double>(k) / kSingleBins) * kBinsPerOctave;
   const double edge = kSingleBins * std::exp2((std::floor(position + 1e-9) + 1) / kBinsPerOctave);
-  return std::max(k + 1, static_cast<std::uint64_t>(std::llround(edge)));
+  return std::max(k + 1, clamped_whole<std::uint64_t>(std::round(edge)));
 }
 
 using Unit = std::array<double, kTerms>;
@@ -145,7 +145,8 @@ double split(std::uint64_t block) { return (static_cast<double>(kLeftToMeans) - 
 }  // namespace
 
 std::uint64_t first_kept(std::uint64_t length, std::uint64_t block) {
-  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(split(block) * static_cast<double>(length))));
+  return std::max<std::uint64_t>(1,
+                                 clamped_whole<std::uint64_t>(std::ceil(split(block) * static_cast<double>(length))));
 }
 
 std::uint64_t end_of_left(std::uint64_t points, std::uint64_t per_mean, std::uint64_t block) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/fusion/detail/bias/bias_filter.hpp"
 
@@ -45,9 +46,9 @@ void BiasSmoother::look(const Sample& y) {
   if (count_ % kKeptTogether == 0) {
     if (static_cast<double>(count_ + kKeptTogether) * bytes > most_bytes_)
       throw numeric_error("E0868")
-          .says("virtual-sensor with smoothed=1 keeps " + std::to_string(std::lround(bytes)) +
+          .says("virtual-sensor with smoothed=1 keeps " + std::to_string(clamped_whole<long>(std::round(bytes))) +
                 " bytes an instant, and this run has more than fit into most_mb")
-          .got(std::to_string(std::llround(most_bytes_ / 1e6)) + " MB")
+          .got(std::to_string(clamped_whole<std::int64_t>(std::round(most_bytes_ / 1e6))) + " MB")
           .hint("set most_mb higher, or evaluate a shorter part");
     kept_.emplace_back(channels_ + inputs_, kKeptTogether);
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/variances/reweighted_variances.hpp"
 
@@ -37,7 +38,7 @@ FaultDetectorOptions with_recovery(FaultDetectorOptions options, double rate_hz)
     return options;
   }
   options.recovery = kUsual;
-  if (rate_hz > 0) options.recovery = std::clamp<std::int64_t>(std::llround(kLongest_s * rate_hz), kLeast, kUsual);
+  if (rate_hz > 0) options.recovery = clamped_whole<std::int64_t>(std::round(kLongest_s * rate_hz), kLeast, kUsual);
   return options;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/log/ros/messages/message_definition.hpp"
@@ -143,8 +144,8 @@ class JsonDecoder final : public MessageDecoder {
     if (seconds_.empty()) return Decoded::well;
     if (!(std::abs(seconds) < 9e9) || !(std::abs(nanoseconds) < 9e18)) return Decoded::misfit;
     const double whole = std::trunc(seconds);
-    stamp = static_cast<std::int64_t>(whole) * 1000000000 + std::llround((seconds - whole) * 1e9) +
-            static_cast<std::int64_t>(nanoseconds);
+    stamp = static_cast<std::int64_t>(whole) * 1000000000 +
+            clamped_whole<std::int64_t>(std::round((seconds - whole) * 1e9)) + static_cast<std::int64_t>(nanoseconds);
     return Decoded::well;
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/ros/messages/message_definition.hpp"
@@ -166,7 +167,7 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
     warnings.add("unreadable_message", "messages without a stamp were left out", place(message));
     return false;
   }
-  stamp_ = std::llround(ns);
+  stamp_ = clamped_whole<std::int64_t>(std::round(ns));
   return true;
 }
 

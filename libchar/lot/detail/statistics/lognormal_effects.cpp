@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/lot/detail/lot_figures.hpp"
 
 namespace libchar {
@@ -173,7 +174,7 @@ class Likelihood {
     }
     const double low = std::log(bottom) / 2, high = std::log(top) / 2;
     const double step = std::max(narrowest / kCellsASd, (high - low) / kMostCells);
-    const auto cells = static_cast<Eigen::Index>(std::ceil((high - low) / step));
+    const auto cells = clamped_whole<Eigen::Index>(std::ceil((high - low) / step));
     edges_ = Eigen::ArrayXd::LinSpaced(cells + 1, low, low + step * static_cast<double>(cells));
     count_.resize(static_cast<Eigen::Index>(points.size()));
     table_.resize(count_.size(), cells);

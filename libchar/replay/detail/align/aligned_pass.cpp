@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/alignment_learning.hpp"
 #include "libchar/replay/detail/align/instants.hpp"
 
@@ -21,8 +22,8 @@ class HeldBack {
     last_whole_ = count - 1;
     for (const fusion::ChannelAlignment& channel : alignment.alignment.channels) {
       if (!channel.used) continue;
-      first_whole_ = std::max<std::int64_t>(first_whole_, std::llround(std::ceil(-channel.delay)));
-      last_whole_ = std::min<std::int64_t>(last_whole_, count - 1 - std::llround(std::ceil(channel.delay)));
+      first_whole_ = std::max(first_whole_, clamped_whole<std::int64_t>(std::ceil(-channel.delay)));
+      last_whole_ = std::min(last_whole_, count - 1 - clamped_whole<std::int64_t>(std::ceil(channel.delay)));
     }
   }
 

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -105,7 +106,7 @@ class Instants::Columns {
   void average(std::int64_t sample, std::span<const std::span<const double>> columns, std::size_t k) {
     const double t = static_cast<double>(sample) / instants_.source_.info().rate_hz;
     const auto instant =
-        static_cast<std::int64_t>(std::floor((t - instants_.info_.start_s) * instants_.info_.rate_hz + kOnGrid));
+        clamped_whole<std::int64_t>(std::floor((t - instants_.info_.start_s) * instants_.info_.rate_hz + kOnGrid));
     if (instant != interval_) {
       close_interval();
       interval_ = instant;
@@ -332,7 +333,7 @@ void Instants::take_means_over_intervals(double start_s) {
   track_->start_s = start_s;
   const double interval_s = 1 / track_->rate_hz;
   const double length_s = static_cast<double>(info_.count) / info_.rate_hz;
-  info_.averaged = static_cast<std::size_t>(std::llround(info_.rate_hz * interval_s));
+  info_.averaged = clamped_whole<std::size_t>(std::round(info_.rate_hz * interval_s));
   const double first = std::ceil(-(track_->start_s + lag_s_) * track_->rate_hz - kOnGrid);
   info_.start_s = track_->start_s + lag_s_ + std::max(0.0, first) * interval_s;
   const double last = std::min(static_cast<double>(track_->values[0].size()) - std::max(0.0, first),
@@ -396,7 +397,7 @@ void Instants::set_lag(double lag_s, Progress& progress) {
 std::int64_t Instants::instant_at(double time_s) const {
   const double place = (time_s - info_.start_s) * info_.rate_hz;
   if (!(place < static_cast<double>(info_.count))) return info_.count;
-  return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(place - kOnGrid)));
+  return std::max<std::int64_t>(0, clamped_whole<std::int64_t>(std::ceil(place - kOnGrid)));
 }
 
 void Instants::pass(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress,
@@ -413,7 +414,7 @@ void Instants::pass_recorded(std::int64_t from, std::int64_t to, std::size_t siz
   Columns columns(*this, from, to, std::max<std::size_t>(size, 1), block);
   const double end_s = info_.start_s + static_cast<double>(to) / info_.rate_hz;
   const auto until = std::min<std::uint64_t>(
-      source_.info().samples, static_cast<std::uint64_t>(std::ceil(end_s * source_.info().rate_hz - kOnGrid)));
+      source_.info().samples, clamped_whole<std::uint64_t>(std::ceil(end_s * source_.info().rate_hz - kOnGrid)));
   source_.stream(
       until,
       [&](std::uint64_t first, std::span<const std::span<const double>> samples) { columns.take(first, samples); },

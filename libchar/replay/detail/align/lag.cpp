@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "libchar/core/not_known.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 #include "libchar/replay/detail/judge/mean_uncertainty.hpp"
@@ -195,7 +196,7 @@ LagEstimate estimate_lag(std::span<const double> sensor, std::span<const double>
 
   std::int64_t from = -most, to = most;
   const double work = static_cast<double>(count) * static_cast<double>(2 * most + 1);
-  const auto block = static_cast<std::int64_t>(std::ceil(std::sqrt(work / kMostWork)));
+  const auto block = clamped_whole<std::int64_t>(std::ceil(std::sqrt(work / kMostWork)));
   if (block > 1) {
     const Curve coarse = correlate(block_means(s, block), block_means(x, block), -most / block - 1, most / block + 1,
                                    fewest / static_cast<double>(block));

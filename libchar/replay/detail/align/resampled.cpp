@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/replay/detail/align/reference_track.hpp"
 
@@ -134,7 +135,7 @@ ResampledLog read_resampled(const std::string& path, const ReadOptions& reading,
   std::vector<double> t;
   t.reserve(used.size());
   for (const std::size_t k : used) t.push_back(stamps[k] - stamps[used[0]]);
-  const auto instants = static_cast<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
+  const auto instants = clamped_whole<std::size_t>(std::floor(t.back() * rate_hz)) + 1;
   for (const Column& column : columns_of(rows, wanted, first_angle))
     out.samples.push_back(at_rate(column, used, t, instants, rate_hz));
   out.log.time.rate_hz = rate_hz;

@@ -21,6 +21,7 @@
 #include <numbers>
 #include <vector>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
@@ -102,10 +103,10 @@ class Held {
 
  private:
   std::int64_t end(std::int64_t m) const {
-    return static_cast<std::int64_t>(std::floor(static_cast<double>(m) * length_ * (1 + 1e-12)));
+    return clamped_whole<std::int64_t>(std::floor(static_cast<double>(m) * length_ * (1 + 1e-12)));
   }
   std::int64_t latest(std::int64_t t) const {
-    auto m = static_cast<std::int64_t>(std::ceil(static_cast<double>(t) / length_ * (1 - 1e-12)));
+    auto m = clamped_whole<std::int64_t>(std::ceil(static_cast<double>(t) / length_ * (1 - 1e-12)));
     while (end(m) < t) ++m;
     while (end(m - 1) >= t) --m;
     return m;
@@ -151,13 +152,14 @@ class Held {
   // Long after the start. Too many phases to take all: spread evenly over one hold.
   std::int64_t at(int phase) const {
     const auto settled =
-        chain_.step * static_cast<std::int64_t>(std::ceil((chain_.pole > 0 ? kForgotten / -std::log(chain_.pole) : 1) /
-                                                          static_cast<double>(chain_.step)));
-    const auto start = end(static_cast<std::int64_t>(std::ceil(static_cast<double>(settled) / length_)));
+        chain_.step *
+        clamped_whole<std::int64_t>(
+            std::ceil((chain_.pole > 0 ? kForgotten / -std::log(chain_.pole) : 1) / static_cast<double>(chain_.step)));
+    const auto start = end(clamped_whole<std::int64_t>(std::ceil(static_cast<double>(settled) / length_)));
     const auto begin = (start / chain_.step + 1) * chain_.step;
     const double samples_per_hold = length_ / static_cast<double>(chain_.step);
     const double stride = std::max(1.0, samples_per_hold / most_phases());
-    return begin + chain_.step * static_cast<std::int64_t>(std::floor(phase * stride));
+    return begin + chain_.step * clamped_whole<std::int64_t>(std::floor(phase * stride));
   }
 
   Chain chain_;

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -155,8 +156,9 @@ void place_warm_up(const Scene& scene, const Instants& instants, ReplayPlan& pla
     plan.warnings.add(
         "learning_before_settled", "the learning window ends before the filter has settled: nothing is learnt there",
         fmt::format("settled after {}", duration_text(static_cast<double>(settled) / instants.info().rate_hz)));
-  plan.warm_up = std::max<std::int64_t>(std::llround(scene.warm_up_s.value_or(0) * instants.info().rate_hz),
-                                        settled - plan.run_from);
+  plan.warm_up = std::max<std::int64_t>(
+      clamped_whole<std::int64_t>(std::round(scene.warm_up_s.value_or(0) * instants.info().rate_hz)),
+      settled - plan.run_from);
   if (plan.warm_up > plan.run_to - plan.run_from - 2)
     throw input_error("E0903", scene.file)
         .says(settled > plan.run_from ? "the evaluation ends before the filter has settled"

@@ -8,6 +8,7 @@
 
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
@@ -173,7 +174,7 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
   const double chance = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
   if (!(chance > 0)) return 2;
   const double row = std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(chance);
-  return std::max<std::int64_t>(2, std::llround(std::ceil(row)));
+  return std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(row)));
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) const {

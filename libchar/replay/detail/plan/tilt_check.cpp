@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 
@@ -24,7 +25,7 @@ constexpr double kScale = 1.3;              ///< ratio of the sizes
 TiltCheck::TiltCheck(const fusion::TiltChannels& channels, double rate_hz)
     : channels_(channels),
       step_s_(1 / rate_hz),
-      length_(std::max(kShortest, static_cast<std::int64_t>(std::lround(kWindow_s * rate_hz)))) {}
+      length_(std::max(kShortest, clamped_whole<std::int64_t>(std::round(kWindow_s * rate_hz)))) {}
 
 void TiltCheck::push(const Eigen::MatrixXd& samples) {
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {

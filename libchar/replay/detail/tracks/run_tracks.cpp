@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/tilt_angle.hpp"
 
 namespace libchar {
@@ -75,7 +76,7 @@ RunTracker::RunTracker(const RunFrame& frame, std::int64_t instants, std::size_t
   kept_.push_back(kept({0, instants, {}},
                        std::clamp(kMostTrackNumbers / (2 * std::max<std::size_t>(series, 1)), kLeastRunBins, kRunBins),
                        algorithms, alike));
-  const auto scored = static_cast<std::int64_t>(std::llround((frame.scored_from_s - frame.start_s) * frame.rate_hz));
+  const auto scored = clamped_whole<std::int64_t>(std::round((frame.scored_from_s - frame.start_s) * frame.rate_hz));
   for (const CloseUpPlace& place : close_up_places(instants, scored, fault_starts, series))
     kept_.push_back(kept(place, static_cast<std::size_t>(place.count), algorithms, alike));
   if (alike) h_ = frame.array->h().col(0);
