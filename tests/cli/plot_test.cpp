@@ -134,3 +134,16 @@ TEST_CASE("report prints a report's table") {
   // A recording is characterized on the way.
   CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string()}).code == 0);
 }
+
+TEST_CASE("report --form is a test report to sign") {
+  const test::Ran form = test::run({"report", plotted_report(), "--form", "-c", "gyro_z"});
+  INFO(form.err);
+  REQUIRE(form.code == 0);
+  for (const char* part : {"1. Object", "2. Conditions", "SHA-256", "3. Method", "4. Results", "<svg", "5. Limits",
+                           "6. To be known", "7. Signatures", "Tested by", "gyro_z [deg/s]"})
+    CHECK_THAT(form.out, Contains(part));
+  CHECK_THAT(form.out, !Contains("accel_z [g]"));
+  CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string(), "--form"}).code == 0);
+  CHECK(test::run({"report", plotted_report(), plotted_report(), "--form"}).code == 2);
+  CHECK(test::run({"report", plotted_report(), "--form", "--csv"}).code == 2);
+}

@@ -166,16 +166,22 @@ void write_scene(const Session& session, const ReplayVerb& verb, const Scene& sc
   print(dump_json(document));
 }
 
-// The replay of mended samples; else the log fused by what is recommended, "" where nothing is or there is no log.
-std::string next_after(const Session& session, const ReplayVerb& verb, const Scene& scene, const ReplayResult& result) {
+// The replay of mended samples; the log fused by what is recommended, and that for a device; the run as a figure.
+std::vector<std::string> next_after(const Session& session, const ReplayVerb& verb, const Scene& scene,
+                                    const ReplayResult& result) {
   std::vector<Finding> found = result.warnings.list();
   for (const LogInfo& log : result.logs)
     for (const Finding& one : log.warnings.list()) found.push_back(one);
-  if (const std::string mended = mended_command(session, found, verb.folder); !mended.empty()) return mended;
-  if (result.learnt.recommended.empty() || scene.recording.empty() || result.logs.empty()) return "";
-  return fmt::format("sensorchar fuse {}{} --with {} -o {}", shell_word(scene.recording),
-                     reading_flags(scene.reading, result.logs[0]), shell_word(verb.folder),
-                     shell_word(default_folder(scene.recording, "fused") + ".csv"));
+  std::vector<std::string> out;
+  const std::string run = shell_word(verb.folder);
+  if (std::string mended = mended_command(session, found, verb.folder); !mended.empty()) out.push_back(mended);
+  if (!result.learnt.recommended.empty() && !scene.recording.empty() && !result.logs.empty())
+    out.push_back(fmt::format("sensorchar fuse {}{} --with {} -o {}", shell_word(scene.recording),
+                              reading_flags(scene.reading, result.logs[0]), run,
+                              shell_word(default_folder(scene.recording, "fused") + ".csv")));
+  if (std::any_of(result.algorithms.begin(), result.algorithms.end(), [](const auto& a) { return a.ran; }))
+    out.push_back(fmt::format("sensorchar plot {} --kind timeline -o {}", run, shell_word(verb.folder + ".svg")));
+  return out;
 }
 
 // Runs everything and writes the reports; says which files.
@@ -197,12 +203,13 @@ void run_and_report(Session& session, const ReplayVerb& verb, const Scene& scene
   session.terminal.clear();
   result.command = session.command;
   result.settings = settings_of(verb, result);
+  const std::vector<std::string> next = next_after(session, verb, scene, result);
   session.terminal.warn(result.warnings, verb.source.path);
   for (const LogInfo& log : result.logs) report_warnings(session, log);
   refuse_strict(session);
   const ReplayView view = replay_view(result);
   Json document = replay_json(view);
-  std::vector<OutputFile> outputs = {{files[0], replay_html(view)},
+  std::vector<OutputFile> outputs = {{files[0], replay_html(view, next)},
                                      {files[1], ""},
                                      {files[2], replay_markdown(view)},
                                      {files[3], fusion_yaml(result.learnt)}};
@@ -220,7 +227,7 @@ void run_and_report(Session& session, const ReplayVerb& verb, const Scene& scene
   for (const std::string& file : files) written += fmt::format(" {}", printable(file));
   if (!removed.empty()) written += fmt::format("\nremoved, of an earlier run: {}", fmt::join(removed, " "));
   if (!session.terminal.quiet()) print(written + "\n");
-  say_next(session, next_after(session, verb, scene, result));
+  say_next(session, next.empty() ? "" : next.front());
 }
 
 void print_algorithms(const Session& session, bool json) {

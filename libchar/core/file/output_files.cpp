@@ -28,8 +28,12 @@ constexpr std::size_t kMostReportBytes = std::size_t{1} << 30U;
 
 bool is_document(const std::filesystem::path& path) { return path.extension() == ".json"; }
 
-/// Names that a document gives as files written with it: plain ones.
-std::vector<std::string> files_named_in(const Json& document) {
+/// Names that a document gives as files written with it: plain ones. The rest of it is passed over.
+std::vector<std::string> files_named_in(const std::string& text) {
+  const auto wanted = [](int depth, Json::parse_event_t event, const Json& value) {
+    return depth != 1 || event != Json::parse_event_t::key || value == "files";
+  };
+  const Json document = Json::parse(text, wanted, false);
   std::vector<std::string> names;
   if (!document.is_object() || !document.contains("files") || !document["files"].is_array()) return names;
   for (const Json& value : document["files"])
@@ -41,7 +45,7 @@ std::vector<std::string> files_named_in(const Json& document) {
 }  // namespace
 
 std::vector<std::string> detail::named_files(const std::string& document_file) {
-  return files_named_in(Json::parse(file_text(document_file, kMostReportBytes), nullptr, false));
+  return files_named_in(file_text(document_file, kMostReportBytes));
 }
 
 namespace {
@@ -55,8 +59,11 @@ std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
     if (!is_document(output.path)) continue;
     if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
       for (std::string& name : detail::named_files(output.path)) before.insert(std::move(name));
-    for (std::string& name : files_named_in(Json::parse(output.text, nullptr, false))) now.insert(std::move(name));
   }
+  if (before.empty()) return {};
+  for (const OutputFile& output : outputs)
+    if (is_document(output.path))
+      for (std::string& name : files_named_in(output.text)) now.insert(std::move(name));
   std::vector<std::string> stale;
   for (const std::string& name : before) {
     std::error_code ignored;

@@ -238,7 +238,10 @@ std::string facts(const CharacterizationView& view) {
                        log.time.gaps == 1 ? "gap" : "gaps", count_text(log.time.missing_samples),
                        log.time.missing_samples == 1 ? "sample" : "samples");
   } else {
+    std::uint64_t blank = 0;
+    for (const ChannelResult& c : result.channels) blank = std::max<std::uint64_t>(blank, c.quality.missing);
     out += " · no gaps";
+    if (blank > 0) out += fmt::format(" in time, up to <b>{}</b> samples of a channel missing", count_text(blank));
   }
   return out + "</p>\n";
 }
@@ -352,13 +355,6 @@ Json of_details(const CharacterizationView& view, Json document) {
 }
 
 constexpr std::size_t kUnfoldedRows = 12;
-
-/// Commands to go on with.
-std::string next_part(const std::vector<std::string>& commands) {
-  std::string out;
-  for (const std::string& command : commands) out += html_text(command) + "\n";
-  return out.empty() ? "" : "<h3>What next</h3>\n<pre class=\"next\">" + out + "</pre>\n";
-}
 
 // First the answer: a headline, the numbers of every channel, their curves. The same in words is folded.
 std::string overview(const CharacterizationView& view) {

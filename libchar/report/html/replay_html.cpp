@@ -261,11 +261,11 @@ std::string scores_note(const ReplayView& view) {
 }
 
 // Costs are worth a word only where they could decide.
-std::string overview(const ReplayView& view) {
+std::string overview(const ReplayView& view, const std::vector<std::string>& next) {
   std::string out = "<section id=\"overview\">\n<div class=\"verdict\">\n";
   for (const std::string& sentence : view.shown_verdict) out += "<p>" + html_text(sentence) + "</p>\n";
   return out + "</div>\n<p class=\"facts\">" + html_text(fmt::format("{}", fmt::join(run_facts(view), " "))) +
-         "</p>\n</section>\n";
+         "</p>\n" + next_part(next) + "</section>\n";
 }
 
 std::string headed_list(const char* head, const std::vector<std::string>& items, const char* css) {
@@ -353,14 +353,14 @@ std::string provenance(const ReplayView& view) {
 
 }  // namespace
 
-std::string replay_html(const ReplayView& view) {
+std::string replay_html(const ReplayView& view, const std::vector<std::string>& next) {
   Json document = replay_json(view);
   document.erase("measured");
   return html_page({"Sensor fusion", view.title, std::string(replay_page_js()),
                     std::string(page_css()) + std::string(replay_page_css())},
-                   overview(view) + run_section(view) + ranking_section(view) + faults(view) + time_section(view) +
-                       weights(view) + alignment_html(view) + sensors(view) + cost_section(view) + needs(view) +
-                       provenance(view),
+                   overview(view, next) + run_section(view) + ranking_section(view) + faults(view) +
+                       time_section(view) + weights(view) + alignment_html(view) + sensors(view) + cost_section(view) +
+                       needs(view) + provenance(view),
                    json_in_script(document));
 }
 

@@ -36,8 +36,8 @@ Json fuse_json(const FuseResult& result, const std::vector<std::string>& command
 // report.html of a replay.
 
 /// One self-contained page: no network, opens from disk, prints. It carries the document of
-/// replay_json but for the time that the whole replay took.
-std::string replay_html(const ReplayView& view);
+/// replay_json but for the time that the whole replay took. `next`: commands to go on with.
+std::string replay_html(const ReplayView& view, const std::vector<std::string>& next = {});
 /// The same with a view made for it alone.
 std::string replay_html(const ReplayResult& result);
 

@@ -12,8 +12,20 @@
 namespace libchar {
 namespace {
 
-std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterization& report,
-                                                    const std::vector<std::string>& patterns) {
+std::vector<const ReplayReport::Algorithm*> best_first(const ReplayReport& report) {
+  std::vector<const ReplayReport::Algorithm*> out;
+  for (const ReplayReport::Algorithm& a : report.algorithms)
+    if (a.ran) out.push_back(&a);
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
+    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<const ReportedChannel*> detail::chosen_channels(const ReportedCharacterization& report,
+                                                            const std::vector<std::string>& patterns) {
   std::vector<const ReportedChannel*> out;
   std::vector<std::string> names;
   for (const ReportedChannel& channel : report.channels) {
@@ -35,20 +47,7 @@ std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterizati
   return out;
 }
 
-std::vector<const ReplayReport::Algorithm*> best_first(const ReplayReport& report) {
-  std::vector<const ReplayReport::Algorithm*> out;
-  for (const ReplayReport::Algorithm& a : report.algorithms)
-    if (a.ran) out.push_back(&a);
-  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) {
-    return std::isfinite(a->rmse) && (!std::isfinite(b->rmse) || a->rmse < b->rmse);
-  });
-  return out;
-}
-
-}  // namespace
-
-std::string coefficient_table(const ReportedCharacterization& report, const std::vector<std::string>& channels,
-                              TableFormat format) {
+Table detail::coefficient_rows(const ReportedCharacterization& report, const std::vector<std::string>& channels) {
   Table out("channel|", "channel|unit");
   for (const ReportedChannel* channel : chosen_channels(report, channels)) {
     Table one = coefficients_table(channel->term, channel->unit);
@@ -64,7 +63,12 @@ std::string coefficient_table(const ReportedCharacterization& report, const std:
       out.rows.push_back(std::move(row));
     }
   }
-  return table_text(out, format);
+  return out;
+}
+
+std::string coefficient_table(const ReportedCharacterization& report, const std::vector<std::string>& channels,
+                              TableFormat format) {
+  return table_text(detail::coefficient_rows(report, channels), format);
 }
 
 std::string ranking_table(const ReplayReport& report, TableFormat format) {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "libchar/characterize/compare/reported_characterization.hpp"
+#include "libchar/core/document/json.hpp"
 #include "libchar/core/table/table.hpp"
+#include "libchar/figure/figure_source.hpp"
 #include "libchar/replay/report/replay_report.hpp"
 
 namespace libchar {
@@ -18,5 +20,17 @@ std::string coefficient_table(const ReportedCharacterization& report, const std:
 
 /// The methods of a replay, best first; bounds are said to be some.
 std::string ranking_table(const ReplayReport& report, TableFormat format);
+
+namespace detail {
+/// The table of `coefficient_table`, and the fitted channels that match; both throw as that.
+Table coefficient_rows(const ReportedCharacterization& report, const std::vector<std::string>& channels);
+std::vector<const ReportedChannel*> chosen_channels(const ReportedCharacterization& report,
+                                                    const std::vector<std::string>& patterns);
+
+/// A test report to print and sign: object, conditions, method, results with curves, limits, findings. `report` is of
+/// a characterization, `document` is its own, its figures are drawn from `source`.
+std::string test_form_html(const ReportedCharacterization& report, const Json& document, const FigureSource& source,
+                           const std::vector<std::string>& channels);
+}  // namespace detail
 
 }  // namespace libchar

@@ -218,6 +218,12 @@ std::string command_line(const std::vector<std::string>& command) {
 }
 
 // The line breaks of the document are ours; its strings are not.
+std::string next_part(const std::vector<std::string>& commands) {
+  std::string out;
+  for (const std::string& command : commands) out += html_text(command) + "\n";
+  return out.empty() ? "" : "<h3>What next</h3>\n<pre class=\"next\">" + out + "</pre>\n";
+}
+
 std::string settings_details(const Json& document) {
   if (document.is_null() || document.empty()) return "";
   std::string out = "<details><summary>Effective settings</summary>\n<pre>";

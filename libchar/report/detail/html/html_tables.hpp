@@ -93,6 +93,8 @@ std::string html_page(const PageParts& parts, const std::string& body, const std
 std::string command_line(const std::vector<std::string>& command);
 /// <details> with a document, "" when there is none.
 std::string settings_details(const Json& document);
+/// Commands to go on with.
+std::string next_part(const std::vector<std::string>& commands);
 /// Rows of a table of facts: file, format, size and digest of an input; program and command.
 void add_input_file(Table& facts, const LogInfo& log);
 void add_program(Table& facts, const std::vector<std::string>& command);

@@ -1,0 +1,131 @@
+// A test report on paper, with the parts that IEEE Std 952 and 1554 ask of one: what was tested, under which
+// conditions, how, with which results against which limits, what is to be known, and who answers for it. What no
+// recording says (type, serial number, mounting, names) is a line to be filled in.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/figure/draw_figure.hpp"
+#include "libchar/figure/make_figure.hpp"
+#include "libchar/report/detail/assets.hpp"
+#include "libchar/report/detail/html/html_tables.hpp"
+#include "libchar/report/text/report_table.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr const char* kToFill = "______________________________";
+
+std::string part(int number, const char* head, const std::string& body) {
+  return fmt::format("<section class=\"form\">\n<h2>{}. {}</h2>\n{}</section>\n", number, head, body);
+}
+
+std::string facts(const Table& table) { return html_table(table, {.css = "facts"}); }
+
+Table conditions(const Json& recording, const ReportedCharacterization& report) {
+  Table out("|");
+  out.add({"Recording", recording.value("file", "")});
+  out.add({"SHA-256", recording.value("sha256", "")});
+  const double rate_hz = recording.value("rate_hz", 0.0);
+  const auto samples = recording.value("samples", std::uint64_t{0});
+  if (rate_hz > 0)
+    out.add({"Duration", fmt::format("{}: {} samples at {} Hz, {} missing",
+                                     duration_text(static_cast<double>(samples) / rate_hz), count_text(samples),
+                                     brief_text(rate_hz, 9), count_text(recording.value("missing_samples", 0ULL)))});
+  for (const ReportedChannel& c : report.channels)
+    if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});
+  for (const char* asked : {"Temperature", "Supply, warm-up time", "Mounting, orientation", "Equipment"})
+    out.add({asked, kToFill});
+  return out;
+}
+
+Table method(const Json& document) {
+  std::vector<std::string> fits, terms;
+  for (const Json& channel : document.at("fit").at("channels"))
+    fits.push_back(channel.value("name", "") + ": " + channel.value("method", ""));
+  const Json& config = document.at("config");
+  for (const Json& term : config.at("fit").at("terms")) terms.push_back(term.get<std::string>());
+  Table out("|");
+  out.add({"Coefficients", fmt::format("{}", fmt::join(fits, "; "))});
+  out.add({"Offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
+  out.add({"Allan curve", config.at("allan").value("type", "") + ", 95 % intervals"});
+  std::vector<std::string> words;
+  for (const Json& word : document.value("command", Json::array())) words.push_back(word.get<std::string>());
+  add_program(out, words);
+  return out;
+}
+
+std::string limits(const Json& document) {
+  if (!document.contains("limits")) return "<p>None were given.</p>\n";
+  const Json& found = document["limits"];
+  Table out("channel|term|limit|judgement|");
+  for (const Json& term : found.at("terms")) {
+    const auto word = term.value("judgement", "");
+    auto name = term.value("term", "");
+    std::replace(name.begin(), name.end(), '_', ' ');
+    out.add({term.value("channel", ""), name, term.value("limit_as_given", ""),
+             Cell::word(word, word == "pass"   ? Tint::good
+                              : word == "fail" ? Tint::bad
+                                               : Tint::doubtful),
+             term.value("sentence", "")});
+  }
+  return "<p>" + html_text(found.value("verdict", "")) + "</p>\n" + html_table(out);
+}
+
+std::string signatures() {
+  Table out("|name|date|signature");
+  for (const char* who : {"Tested by", "Checked by", "Released by"}) out.add({who, kToFill, "______________", kToFill});
+  return html_table(out, {.css = "facts"});
+}
+
+/// One figure for each unit: an axis has one.
+std::string figures(const ReportedCharacterization& report, const FigureSource& source,
+                    const std::vector<std::string>& channels) {
+  std::vector<std::string> units;
+  std::string out;
+  for (const ReportedChannel* first : detail::chosen_channels(report, channels)) {
+    if (std::find(units.begin(), units.end(), first->unit) != units.end()) continue;
+    units.push_back(first->unit);
+    FigureOptions options;
+    options.kind = "allan";
+    for (const ReportedChannel* c : detail::chosen_channels(report, channels))
+      if (c->unit == first->unit && options.channels.size() < detail::kMostCurves) options.channels.push_back(c->name);
+    const Chart chart = make_figure({&source, 1}, options);
+    out += "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 120, .shape = 0.5}) + "</figure>\n";
+  }
+  return out;
+}
+
+constexpr const char* kStyle =
+    "\n.form h2 { font-size: 1.05rem; margin: 14px 0 2px; }\n.form figure { max-width: 620px; }\n"
+    "@media print { @page { size: A4; margin: 14mm; } .form figure { max-width: 11cm; } }\n";
+
+}  // namespace
+
+std::string detail::test_form_html(const ReportedCharacterization& report, const Json& document,
+                                   const FigureSource& source, const std::vector<std::string>& channels) {
+  const Json& recording = document.at("recording");
+  const std::string sensor = document.contains("limits") ? document["limits"].value("sensor", "") : "";
+  std::vector<std::string> names;
+  for (const ReportedChannel* c : detail::chosen_channels(report, channels))
+    names.push_back(c->unit.empty() ? c->name : c->name + " [" + c->unit + "]");
+  Table object("|");
+  object.add({"Sensor", sensor.empty() ? kToFill : sensor});
+  object.add({"Type, serial number", kToFill});
+  object.add({"Channels", fmt::format("{}", fmt::join(names, ", "))});
+  std::string known = "<p>" + html_text(document.value("verdict", "")) + "</p>\n" + findings_list(report.findings);
+  const std::string body =
+      part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(recording, report))) +
+      part(3, "Method", facts(method(document))) +
+      part(4, "Results", html_table(detail::coefficient_rows(report, channels)) + figures(report, source, channels)) +
+      part(5, "Limits", limits(document)) + part(6, "To be known", known) + part(7, "Signatures", signatures());
+  return html_page({"Test report: sensor noise", recording.value("file", ""), "reportPage.start({}, () => 320);\n",
+                    std::string(page_css()) + kStyle, false},
+                   body, "{}");
+}
+
+}  // namespace libchar
