@@ -19,6 +19,7 @@
 #include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"

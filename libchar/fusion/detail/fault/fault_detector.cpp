@@ -7,7 +7,7 @@
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/variances/reweighted_variances.hpp"
+#include "libchar/fusion/detail/variances/reweighting_limits.hpp"
 
 namespace libchar::fusion {
 namespace {

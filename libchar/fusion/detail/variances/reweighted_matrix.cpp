@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libchar/fusion/detail/variances/reweighted_variances.hpp"
+#include "libchar/fusion/detail/variances/reweighting_limits.hpp"
 
 namespace libchar::fusion {
 

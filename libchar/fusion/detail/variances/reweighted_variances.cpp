@@ -6,6 +6,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/fusion/detail/variances/reweighting_limits.hpp"
 
 namespace libchar::fusion {
 namespace {
