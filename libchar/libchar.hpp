@@ -83,8 +83,7 @@ Recording simulate(const ArraySimulation& array);
 /// Writes a recording; the format goes by the suffix (.csv, .npy, or raw with a sidecar).
 void write_recording(const std::string& path, const Recording& recording, const WriteOptions& options = {});
 
-/// As the other `export_models`, by the target's name ("kalibr"). Throws Error(usage) for an unknown
-/// one.
+/// As the other `export_models`, by the target's name ("kalibr"). Throws Error(usage) for an unknown one.
 Export export_models(std::string_view target, const std::vector<SensorModel>& models,
                      const ExportOptions& options = {});
 

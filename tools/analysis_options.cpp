@@ -87,33 +87,29 @@ bool read_segment(const std::string& text, WelchOptions& spectrum, double& segme
 void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
       "--still", "auto|FROM..TO", [&a](const std::string& text) { read_still(text, a.options.still); },
-      "analyse only the longest stretch in which no channel moves, or the one from FROM to TO "
-      "after the first sample (s, min, h)");
+      "analyse only the longest stretch in which no channel moves, or the one from FROM to TO after the first sample "
+      "(s, min, h)");
 }
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_enum("--data", a.options.data,
-                "what the samples are: the quantity itself, its integral, or a frequency in Hz "
-                "(default: rate)");
-  verb.add_number("--nominal-frequency", a.nominal_frequency,
-                  "with --data frequency: the frequency that counts as zero deviation, Hz "
-                  "(default: values are fractional)",
-                  0);
-  verb.add_number("--unwrap", a.options.unwrap,
-                  "the values start again after this much, in their unit, as a phase or an angle does "
-                  "(default: they do not)",
-                  0);
+                "what the samples are: the quantity itself, its integral, or a frequency in Hz (default: rate)");
+  verb.add_number(
+      "--nominal-frequency", a.nominal_frequency,
+      "with --data frequency: the frequency that counts as zero deviation, Hz (default: values are fractional)", 0);
+  verb.add_number(
+      "--unwrap", a.options.unwrap,
+      "the values start again after this much, in their unit, as a phase or an angle does (default: they do not)", 0);
   verb.add_parsed(
       "--frozen", "N", [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
       "treat runs of N or more equal values as missing (default: they count)");
   verb.add_parsed(
       "--interpolated", "N", [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
-      "treat samples on straight lines of N or more samples as missing, as in gaps that were "
-      "filled; lines of fewer than 8 must be straight to 0.1 % (default: they count)");
+      "treat samples on straight lines of N or more samples as missing, as in gaps that were filled; lines of fewer "
+      "than 8 must be straight to 0.1 % (default: they count)");
   verb.add_bytes("--memory", a.options.memory_bytes,
-                 "samples kept in memory at most: with less, a log of many channels is read several times, "
-                 "and an option that needs all samples of a long log is refused; no result changes "
-                 "(default: 1GiB)");
+                 "samples kept in memory at most: with less, a log of many channels is read several times, and an "
+                 "option that needs all samples of a long log is refused; no result changes (default: 1GiB)");
 }
 
 bool has_bias(const AnalysisOptions& analysis) {
@@ -125,31 +121,30 @@ bool has_bias(const AnalysisOptions& analysis) {
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_choices("--type", a.types, deviation_words(),
-                   a.several_types ? "statistic, or several of one reading: oadev,mdev (default: oadev, "
-                                     "overlapping Allan)"
-                                   : "deviation (default: oadev, overlapping Allan)");
+                   a.several_types
+                       ? "statistic, or several of one reading: oadev,mdev (default: oadev, overlapping Allan)"
+                       : "deviation (default: oadev, overlapping Allan)");
   verb.add_parsed(
       "--taus", "TEXT",
       [&a](const std::string& text) {
         a.options.ten_a_decade = a.ten_asked = text == "ten";
         read_taus(text == "ten" ? "octave" : text, a.options.allan);
       },
-      "averaging times: octave, decade, dense, all (every multiple of the interval), ten (a decade "
-      "and the octaves; octaves alone where a log streams), or a list such as 0.1s,1s,1min "
-      "(default: " +
+      "averaging times: octave, decade, dense, all (every multiple of the interval), ten (a decade and the octaves; "
+      "octaves alone where a log streams), or a list such as 0.1s,1s,1min (default: " +
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
-  verb.add_duration("--tau-max", a.tau_max_s,
-                    "longest averaging time (default: half the record; Theo three quarters, mtie and "
-                    "tierms all of it)");
+  verb.add_duration(
+      "--tau-max", a.tau_max_s,
+      "longest averaging time (default: half the record; Theo three quarters, mtie and tierms all of it)");
   verb.add_enum("--bias", a.options.allan.bias,
-                "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as "
-                "allantools leaves it (default: sp1065)")
+                "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as allantools leaves "
+                "it (default: sp1065)")
       .only("with --type mtotdev, ttotdev or htotdev", [&a] { return has_bias(a); });
   verb.add_flag("--full-overlap", a.options.full_overlap,
-                "use every term however long the record is (default: octaves and dense times take every "
-                "(m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total "
-                "deviations of windows every (m/16)th or less where they would take seconds a time)");
+                "use every term however long the record is (default: octaves and dense times take every (m/4)th term "
+                "beyond 1048576 samples, all times beyond 131072; Theo1 and the total deviations of windows every "
+                "(m/16)th or less where they would take seconds a time)");
 }
 
 void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s, bool& quarter) {
@@ -158,8 +153,8 @@ void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& seg
   verb.add_parsed(
       "--segment", "N|TIME",
       [&spectrum, &segment_s, &quarter](const std::string& text) { quarter = read_segment(text, spectrum, segment_s); },
-      "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: N/4 up "
-      "to 1048576 samples, 65536 samples of a longer record)");
+      "samples per segment, a time such as 20s, or N/4, a quarter of the record (default: N/4 up to 1048576 samples, "
+      "65536 samples of a longer record)");
   verb.add_number("--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
   verb.add_enum("--window", spectrum.window, "window (default: hann)");
   verb.add_enum("--detrend", spectrum.detrend, "what is removed from each segment (default: constant)");
@@ -168,13 +163,10 @@ void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& seg
 void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
       "--terms", "TEXT", [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
-      "terms offered to the fit from the start, of N,B,K,R,quantization (default: N,B,K; the "
-      "others "
-      "join when an alarm asks)");
+      "terms offered to the fit from the start, of N,B,K,R,quantization (default: N,B,K; the others join when an alarm "
+      "asks)");
   verb.add_number("--threshold", a.options.fit.threshold,
-                  "likelihood ratio above which a term counts as present (default: 5.41, 1 % "
-                  "false)",
-                  0);
+                  "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)", 0);
   verb.add_flag("--no-remedies", a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
   verb.add_parsed(
@@ -183,11 +175,11 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
         if (text != "white-top") throw usage_error("E0201", "--assume").says("white-top was expected").got(text);
         a.options.fit.white_top = true;
       },
-      "nothing shapes the top of the spectrum: no filter, no quantization noise too weak to be "
-      "seen. N is known better by a third then");
+      "nothing shapes the top of the spectrum: no filter, no quantization noise too weak to be seen. N is known better "
+      "by a third then");
   verb.add_text("--temperature", a.options.temperature,
-                "channel that is the temperature: a polynomial of it, with a lag, is taken out of "
-                "the others before their noise is fitted");
+                "channel that is the temperature: a polynomial of it, with a lag, is taken out of the others before "
+                "their noise is fitted");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
 }
 

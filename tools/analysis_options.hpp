@@ -1,6 +1,5 @@
 #pragma once
-// The flags of the analysis verbs: the same words mean the same thing in allan, psd, fit and
-// characterize.
+// The flags of the analysis verbs: the same words mean the same thing in allan, psd, fit and characterize.
 
 #include "command_line.hpp"
 #include "libchar/characterize/characterization.hpp"
@@ -30,8 +29,7 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& analysis);
 /// segment when a time was given for it, 0 otherwise.
 /// `quarter`: to distinguish N/4 of a log of any length from the default.
 void add_spectrum_options(VerbOptions& verb, libchar::WelchOptions& spectrum, double& segment_s, bool& quarter);
-/// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or
-/// "N/4" (true).
+/// Samples ("4096"), a time ("20s": `segment_s`, which becomes samples when the rate is known), or "N/4" (true).
 bool read_segment(const std::string& text, libchar::WelchOptions& spectrum, double& segment_s);
 /// --terms, --threshold, --no-remedies, --assume, --temperature, --no-second-opinion
 void add_fit_options(VerbOptions& verb, AnalysisOptions& analysis);

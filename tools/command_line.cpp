@@ -185,9 +185,8 @@ void refuse_without_effect(const CLI::App& verb, const OptionNotes& notes) {
   }
 }
 
-// A variable of the shell that is not set is no value: where a name, a folder or a limit belongs it would
-// switch off what was asked for, and
-// the parser would give "--limits=" the next word.
+// A variable of the shell that is not set is no value: where a name, a folder or a limit belongs it would switch off
+// what was asked for, and the parser would give "--limits=" the next word.
 void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& command) {
   for (std::size_t i = 1; i < command.size(); ++i) {
     const std::string& word = command[i];
@@ -443,8 +442,7 @@ void CommandLine::add(const VerbEntry& entry, Session& session) {
             if (!colour) throw libchar::usage_error("E0202").says("expected one of auto, always, never").got(text);
             use_colour(*colour);
           },
-          "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: "
-          "auto)")
+          "colour statuses and messages; auto: on a terminal, unless NO_COLOR is set (default: auto)")
       .known_words(libchar::words_of<Colour>());
   sub->final_callback([this, sub, run = entry.add_options(options, session)] {
     if (only_parses_) return;

@@ -68,11 +68,10 @@ class Option {
   OptionNotes* notes_;
 };
 
-/// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output".
-/// Variables must live until the verb has run, and keep their value where an option is not given;
-/// defaults must be stated in `help`. What an option refuses is Error(usage) that names the option. A
-/// value that is called LOG, FILE, MODEL, SCENE, CURVE, RUN, DIR or FOLDER is completed as a file
-/// or folder.
+/// The options of one verb. Names are "FILE" (an argument by its place), "--force", or "-o,--output". Variables must
+/// live until the verb has run, and keep their value where an option is not given; defaults must be stated in `help`.
+/// What an option refuses is Error(usage) that names the option. A value that is called LOG, FILE, MODEL, SCENE, CURVE,
+/// RUN, DIR or FOLDER is completed as a file or folder.
 class VerbOptions {
  public:
   VerbOptions(CLI::App& app, OptionNotes& notes) : app_(&app), notes_(&notes) {}
@@ -155,9 +154,8 @@ class CommandLine {
   void add(const VerbEntry& verb, Session& session);
   /// Everything that was added, for help, man pages and completions.
   ProgramUsage usage() const;
-  /// Parses argv and runs the verb that was chosen. Returns what is to be printed instead
-  /// (--version), or nothing. Throws Error(usage) for what cannot be understood, and whatever the
-  /// verb throws.
+  /// Parses argv and runs the verb that was chosen. Returns what is to be printed instead (--version), or nothing.
+  /// Throws Error(usage) for what cannot be understood, and whatever the verb throws.
   std::optional<std::string> run(const std::vector<std::string>& argv);
   /// The same words as the verb's own options take them, and nothing is run. Throws as `run`.
   std::vector<ParsedWord> parsed(const std::vector<std::string>& argv);

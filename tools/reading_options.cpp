@@ -15,14 +15,13 @@ namespace {
 
 void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_text("--topic", options.topic,
-                "of a log that holds several streams (bags, flight logs, arrays), the one to read, or "
-                "several as one, by a pattern or the name of instances "
-                "(default: the only one)")
+                "of a log that holds several streams (bags, flight logs, arrays), the one to read, or several as one, "
+                "by a pattern or the name of instances (default: the only one)")
       .value_name("NAME")
       .group("Reading");
   verb.add_choice("--time-source", options.time_source, {"auto", "header", "log", "publish"},
-                  "whose stamps, where messages have several: header (the sensor's), log (when "
-                  "recorded), publish (default: auto)")
+                  "whose stamps, where messages have several: header (the sensor's), log (when recorded), publish "
+                  "(default: auto)")
       .group("Reading");
   verb.add_instant("--from", options.from_s,
                    "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
@@ -49,17 +48,17 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
 
 void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_texts("--scale", options.channel_scale,
-                 "factor of channels by name or pattern, such as 'gyro*=1/16.4'; repeat it or "
-                 "separate by commas (default: 1, or the number in the unit)")
+                 "factor of channels by name or pattern, such as 'gyro*=1/16.4'; repeat it or separate by commas "
+                 "(default: 1, or the number in the unit)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=FACTOR")
       .once_each()
       .group("Reading");
-  verb.add_texts("--unit", options.channel_unit,
-                 "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is "
-                 "their scale (0.05 deg/s); values in another unit of the log are converted; repeat it "
-                 "or separate by commas (default: as in the log)")
+  verb.add_texts(
+          "--unit", options.channel_unit,
+          "unit of channels by name or pattern, such as 'gyro*=deg/s'; a number in it is their scale (0.05 deg/s); "
+          "values in another unit of the log are converted; repeat it or separate by commas (default: as in the log)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME=UNIT")
@@ -69,9 +68,9 @@ void add_channel_values(VerbOptions& verb, libchar::ReadOptions& options) {
 
 void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
   const std::string csv = "Reading CSV";
-  verb.add_texts("--where", options.kinds.where,
-                 "only the rows with this value, such as sensor=Gyroscope; repeat it for several "
-                 "columns (default: all rows)")
+  verb.add_texts(
+          "--where", options.kinds.where,
+          "only the rows with this value, such as sensor=Gyroscope; repeat it for several columns (default: all rows)")
       .one_value_each()
       .value_name("COLUMN=VALUE")
       .group(csv);
@@ -90,8 +89,7 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool 
     verb.add_choice("--format", options.format, libchar::format_words(), "format of the log (default: auto)")
         .group("Reading");
   verb.add_text("--preset", options.preset,
-                "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, "
-                "NAVCHIP_FLT")
+                "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, NAVCHIP_FLT")
       .value_name("NAME")
       .group("Reading");
   verb.add_parsed(
@@ -134,8 +132,8 @@ void add_accepting_flag(VerbOptions& verb, const std::string& name, const std::s
 
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
   verb.add_texts("-c,--channel", options.channels,
-                 "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not "
-                 "to read ('!temp'); repeat it or separate by commas (default: all)")
+                 "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not to read "
+                 "('!temp'); repeat it or separate by commas (default: all)")
       .separated_by_commas()
       .once_each()
       .one_value_each()
@@ -147,8 +145,7 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
 void add_reading_options_without_channel(VerbOptions& verb, Session& session, libchar::ReadOptions& options,
                                          bool with_format) {
   verb.add_texts("--names", options.names,
-                 "names for the channels that are read, in order, where the log has none "
-                 "(default: c0, c1…)")
+                 "names for the channels that are read, in order, where the log has none (default: c0, c1…)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME,…")
@@ -174,8 +171,7 @@ void add_reading_options_without_channel(VerbOptions& verb, Session& session, li
   add_accepting_flag(verb, "--overflow", "nan", options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
   add_accepting_flag(verb, "--bad-rows", "drop", options.missing.bad_rows,
-                     "drop: rows that cannot be read are left out and counted, of ten one at most "
-                     "(default: error)");
+                     "drop: rows that cannot be read are left out and counted, of ten one at most (default: error)");
   add_accepting_flag(verb, "--repeated-header", "skip", options.skip_repeated_header,
                      "skip: header lines inside the data are skipped (default: error)");
   verb.add_parsed(

@@ -13,8 +13,7 @@ void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptio
 void add_reading_options_without_channel(VerbOptions& verb, Session& session, libchar::ReadOptions& options,
                                          bool with_format = true);
 
-/// The flags that read this log the same way again, what was guessed of it pinned (" --time-column
-/// t --time-unit us").
+/// The flags that read this log the same way again, what was guessed of it pinned (" --time-column t --time-unit us").
 std::string reading_flags(const libchar::ReadOptions& options, const libchar::LogInfo& info);
 
 }  // namespace sensorchar

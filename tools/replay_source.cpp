@@ -179,8 +179,8 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
   const std::string group = "A recording instead of a scene";
   options
       .add_texts("--sensors", source.sensors,
-                 "channels that measure one quantity: names, positions c0, c1…, or patterns "
-                 "('gyro*'); separate by commas or repeat")
+                 "channels that measure one quantity: names, positions c0, c1…, or patterns ('gyro*'); separate by "
+                 "commas or repeat")
       .separated_by_commas()
       .once_each()
       .one_value_each()
@@ -214,11 +214,10 @@ void add_window(VerbOptions& options, const std::string& name, std::string& valu
 
 void add_preparation_options(VerbOptions& options, ReplaySource& source) {
   options.add_rate("--resample", source.prepare.resample_hz,
-                   "interpolate each channel by its own stamps to an even grid of this rate, for "
-                   "uneven stamps and channels of unlike rates (default: the scene's)");
+                   "interpolate each channel by its own stamps to an even grid of this rate, for uneven stamps and "
+                   "channels of unlike rates (default: the scene's)");
   options.add_choice("--detrend", source.prepare.detrend, {"none", "mean", "line"},
-                     "subtract this from each sensor and the reference, of the whole recording "
-                     "(default: the scene's)");
+                     "subtract this from each sensor and the reference, of the whole recording (default: the scene's)");
   const Option high_pass = options.add_rate("--high-pass", source.prepare.high_pass_hz,
                                             "one high-pass for all sensors and the reference (default: the scene's)");
   options
@@ -227,13 +226,11 @@ void add_preparation_options(VerbOptions& options, ReplaySource& source) {
       .excludes(high_pass);
   options
       .add_text("--reference-lag", source.reference_lag,
-                "the sensors lag the reference by so many seconds, or estimate (default: the "
-                "scene's)")
+                "the sensors lag the reference by so many seconds, or estimate (default: the scene's)")
       .value_name("S|estimate");
   options
       .add_text("--reference-offset", source.reference_offset,
-                "the reference reads so much more than the sensors, or estimate (default: the "
-                "scene's)")
+                "the reference reads so much more than the sensors, or estimate (default: the scene's)")
       .value_name("NUMBER|estimate");
 }
 
@@ -242,28 +239,24 @@ void add_preparation_options(VerbOptions& options, ReplaySource& source) {
 void add_replay_source(VerbOptions& options, Session& session, ReplaySource& source) {
   options
       .add_text("SCENE", source.path,
-                "scene file (docs/scenes.md) of a recording or a simulation, or a recording, with "
-                "--sensors")
+                "scene file (docs/scenes.md) of a recording or a simulation, or a recording, with --sensors")
       .value_name("SCENE|LOG");
   add_data_options(options, session, source);
   add_window(options, "--learning", source.learning,
-             "learning window in seconds, or none (default: the scene's, else with a reference the "
-             "first half of a recording)");
+             "learning window in seconds, or none (default: the scene's, else with a reference the first half of a "
+             "recording)");
   add_window(options, "--evaluation", source.evaluation,
-             "what is scored, in seconds (default: the scene's, else all behind the learning "
-             "window)");
+             "what is scored, in seconds (default: the scene's, else all behind the learning window)");
   add_window(options, "--rest", source.rest,
              "the true input is zero there: offsets and noise are measured (default: the scene's)");
   options
       .add_text("--align", source.align,
                 "take these out of the sensors first: auto (those that pay), all, or some of "
-                "delay,bias,gain,misalignment; "
-                "learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
+                "delay,bias,gain,misalignment; learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
   add_preparation_options(options, source);
   options.add_instant("--warm-up", source.warm_up_s,
-                      "so long at its start the evaluation is run and not scored (default: the "
-                      "scene's)");
+                      "so long at its start the evaluation is run and not scored (default: the scene's)");
   options.add_texts("--fault", source.faults, std::string(kFaultHelp) + "; injected on top of the scene's")
       .value_name("FAULT");
   options.add_flag("--no-faults", source.no_faults, "leave out the faults that the scene injects");

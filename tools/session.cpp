@@ -195,8 +195,8 @@ libchar::Problem with_curve_hint(const Session& session, libchar::Problem proble
 void say_unlocked(Session& session) {
   for (const std::string& folder : libchar::detail::folders_without_locks())
     session.terminal.note(
-        fmt::format("note: {}: this file system has no locks. Let no other run write there at the "
-                    "same time. Temporary files that killed runs left there stay.",
+        fmt::format("note: {}: this file system has no locks. Let no other run write there at the same time. Temporary "
+                    "files that killed runs left there stay.",
                     libchar::printable(folder)));
 }
 
@@ -241,8 +241,8 @@ int said_exit_code(Session& session, const std::function<void()>& work) {
                 3);
   } catch (const std::exception& error) {
     if (is_of_threads(error))
-      return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: "
-                              "raise the limit of processes (ulimit -u), or end others",
+      return fail(fmt::format("sensorchar: error {}: the system gives no further thread; hint: raise the limit of "
+                              "processes (ulimit -u), or end others",
                               kNoThread),
                   g_refused_exit);
     return fail(fmt::format("sensorchar: internal error: {}; please report this with the command line",

@@ -1,6 +1,5 @@
 #pragma once
-// What the program says: results to stdout, progress and messages to stderr, and how it
-// is interrupted.
+// What the program says: results to stdout, progress and messages to stderr, and how it is interrupted.
 
 #include <chrono>
 #include <optional>
@@ -14,19 +13,16 @@
 
 namespace sensorchar {
 
-/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, nothing is left to
-/// talk to.
+/// Thrown when the reader of stdout went away (`| head`): nothing is wrong, nothing is left to talk to.
 struct StdoutClosed {};
 
-/// Descriptors 0 to 2 that whoever started the program has closed (cron and daemons do) are taken,
-/// so that no output file gets one of them and messages into it. What is printed to such a stdout
-/// is an error as before: it goes nowhere.
+/// Descriptors 0 to 2 that whoever started the program has closed (cron and daemons do) are taken, so that no output
+/// file gets one of them and messages into it. What is printed to such a stdout is an error as before: it goes nowhere.
 void take_closed_streams();
 
-/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled. Where
-/// none comes within 0.15 s (a fit, a transform, a training), and with a second signal at once, the
-/// handler removes unfinished outputs and ends the program itself. SIGPIPE and SIGXFSZ become
-/// ordinary write errors.
+/// SIGINT, SIGTERM and SIGHUP set a flag that the next Progress::update turns into Cancelled. Where none comes within
+/// 0.15 s (a fit, a transform, a training), and with a second signal at once, the handler removes unfinished outputs
+/// and ends the program itself. SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers();
 
 /// The work is done: a signal that came during its last moments stops nothing any more.
@@ -50,8 +46,7 @@ void print(std::string_view text);
 /// wrapped between words to the width of the terminal.
 void print_text(const std::string& text);
 
-/// One message on stderr, a newline added. Lines coming from files must have gone through
-/// libchar::printable already.
+/// One message on stderr, a newline added. Lines coming from files must have gone through libchar::printable already.
 void say(std::string_view line);
 
 /// Progress on stderr: only on a terminal, after one second of work, at most ten times per second.

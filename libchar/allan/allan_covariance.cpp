@@ -1,5 +1,4 @@
-// Terms d_i of two points (m1, n1 terms every q1 samples) and (m2, n2, q2), Gaussian with
-// cross-covariance R12(lag):
+// Terms d_i of two points (m1, n1 terms every q1 samples) and (m2, n2, q2), Gaussian with cross-covariance R12(lag):
 //   Cov(A1, A2) = 1/(2 n1 n2) sum_{i,k} [R12^2 + 2 mu1 mu2 R12],   A = mean of d^2/2,   mu = R tau
 //   (ramp)
 // The double sum is one over lags, weighted with the number of pairs at each. Being quadratic in
@@ -24,9 +23,8 @@ struct Side {
   double m, terms, stride;
 };
 
-/// Pairs of terms at lag number k (in units of the finer stride), k q1 = (position of term 2) -
-/// (position of term 1), q2 = ratio q1. Exact for ratio 1; else the staircase smoothed, exact in
-/// its sums over a period.
+/// Pairs of terms at lag number k (in units of the finer stride), k q1 = (position of term 2) - (position of term 1),
+/// q2 = ratio q1. Exact for ratio 1; else the staircase smoothed, exact in its sums over a period.
 struct PairCount {
   double n1, n2, ratio;
   double operator()(double k) const {
@@ -63,8 +61,7 @@ Products products(const PerTerm& r, double weight) {
   return p;
 }
 
-/// Sum over all pairs of terms; b.stride is a multiple of a.stride, the first terms' centres are
-/// `start` samples apart.
+/// Sum over all pairs of terms; b.stride is a multiple of a.stride, the first terms' centres are `start` samples apart.
 Products aligned_pair_sum(const Side& a, const Side& b, double start, double dt) {
   const PairCount count = {a.terms, b.terms, b.stride / a.stride};
   double low = -(a.terms - 1), high = count.ratio * (b.terms - 1);
@@ -83,8 +80,7 @@ Products aligned_pair_sum(const Side& a, const Side& b, double start, double dt)
   return sum;
 }
 
-/// Strides that do not divide each other: every P-th term of b is in step with a, so b is taken as
-/// P interleaved sets.
+/// Strides that do not divide each other: every P-th term of b is in step with a, so b is taken as P interleaved sets.
 Products pair_sum(const Side& a, const Side& b, double dt) {
   const auto fine = static_cast<std::uint64_t>(a.stride), coarse = static_cast<std::uint64_t>(b.stride);
   const std::uint64_t apart = fine / std::gcd(fine, coarse);

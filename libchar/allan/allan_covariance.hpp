@@ -14,8 +14,7 @@
 
 namespace libchar {
 
-/// Samples between the terms of a point: m without overlap, m/4 for a curve of AllanPyramid,
-/// else 1.
+/// Samples between the terms of a point: m without overlap, m/4 for a curve of AllanPyramid, else 1.
 std::uint64_t stride_of(const AllanCurve& curve, const AllanPoint& point);
 
 /// The costly part (tens of milliseconds, whatever the record's length) depends on m, terms and
@@ -27,8 +26,7 @@ class AllanCovariance {
   /// Covariance of the Allan variances (not deviations) at the points of the curve.
   Eigen::MatrixXd at(const Mixture& theta) const;
 
-  /// Ten products of two unit covariances and, for the ramp, the four covariances, summed over
-  /// pairs.
+  /// Ten products of two unit covariances and, for the ramp, the four covariances, summed over pairs.
   struct Products : std::array<double, 14> {
     Products() : std::array<double, 14>{} {}
     void operator+=(const Products& o) {

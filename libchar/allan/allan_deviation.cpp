@@ -1,5 +1,4 @@
-// The Allan family by differences of the phase x (cumulated rate), step m, tau = m dt, n terms
-// (NIST SP 1065, 5):
+// The Allan family by differences of the phase x (cumulated rate), step m, tau = m dt, n terms (NIST SP 1065, 5):
 //
 //   ADEV, OADEV   sum (x_{i+2m} - 2 x_{i+m} + x_i)^2 / (2 tau^2 n)
 //                 i = 0, m, 2m, … / every i
@@ -16,9 +15,8 @@
 // detail/theo.cpp (Theo1, TheoBR, TheoH) and detail/time_interval.cpp (MTIE, TIE rms).
 //
 // Where samples of a rate are missing all of these but TOTDEV take means over what is present
-// (detail/kernels/present_points.cpp); of phase each term that touches a missing sample is dropped. Sums
-// run over fixed pieces of 65536 starts, added in order, so that the result does not depend on the
-// number of threads.
+// (detail/kernels/present_points.cpp); of phase each term that touches a missing sample is dropped. Sums run over fixed
+// pieces of 65536 starts, added in order, so that the result does not depend on the number of threads.
 
 #include "libchar/allan/allan_deviation.hpp"
 
@@ -103,10 +101,9 @@ std::vector<std::uint64_t> listed(const std::vector<double>& taus, double dt_s, 
   return factors;
 }
 
-/// How the numbers of a grid, in samples, become averaging factors of a statistic of the Theo
-/// family: Theo1 has even factors from 10 on, and averaging times of three quarters of them. A
-/// regular grid of Theo1 is of its factors; a list, and TheoH's grids, which begin with Allan's
-/// factors, are of averaging times.
+/// How the numbers of a grid, in samples, become averaging factors of a statistic of the Theo family: Theo1 has even
+/// factors from 10 on, and averaging times of three quarters of them. A regular grid of Theo1 is of its factors; a
+/// list, and TheoH's grids, which begin with Allan's factors, are of averaging times.
 class TheoGrid {
  public:
   TheoGrid(const DeviationRow& row, TauGrid grid, std::uint64_t samples)
@@ -178,16 +175,14 @@ struct Starts {
   std::uint64_t count() const { return end > begin ? (end - begin + stride - 1) / stride : 0; }
 };
 
-/// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points
-/// it sums.
+/// Term starts inside a gap-free stretch of phase points; W reaches one position beyond the points it sums.
 Starts starts_in(const IndexRange& stretch, const DeviationRow& f, std::uint64_t m, std::uint64_t stride) {
   const std::uint64_t reach = static_cast<std::uint64_t>(f.order) * m + (f.of_sum ? 0 : 1);
   const std::uint64_t end = stretch.end >= reach ? stretch.end - reach + 1 : 0;
   return {(stretch.begin + stride - 1) / stride * stride, end, stride};
 }
 
-/// The record continued by mirrored copies of `reach` samples at both ends (phase: reflected about
-/// its end points).
+/// The record continued by mirrored copies of `reach` samples at both ends (phase: reflected about its end points).
 std::vector<double> continued(std::span<const double> x, std::size_t reach, DataKind kind) {
   std::vector<double> all;
   all.reserve(x.size() + 2 * reach);

@@ -66,9 +66,8 @@ struct AllanOptions {
   double tau_max_s = 0;
   /// 0: every term; d: every (m/d)-th from m = 2 d on, where none of a rate's samples is missing
   std::uint64_t stride_divisor = 0;
-  /// Operations that an averaging time of the Theo family and of the extended total deviations (O(N
-  /// m)) may cost; beyond them terms start every m/16 samples or less, and a note says so. 0: no
-  /// limit
+  /// Operations that an averaging time of the Theo family and of the extended total deviations (O(N m)) may cost;
+  /// beyond them terms start every m/16 samples or less, and a note says so. 0: no limit
   std::uint64_t work_a_point = std::uint64_t{1} << 28U;
   int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };
@@ -76,9 +75,8 @@ struct AllanOptions {
 /// Deviations of a record, with full overlap unless the options say otherwise. NaN = missing: means
 /// are over what is present of a window, more than half (detail/kernels/present_points.cpp); phase drops
 /// every term that touches a missing one.
-/// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two
-/// scale exactly. Throws Error(numeric) when no point is possible, naming the number of samples
-/// needed; Error(usage) for a bad tau.
+/// Equations and sources in allan_deviation.cpp (SP 1065). Offsets cost no digits, powers of two scale exactly. Throws
+/// Error(numeric) when no point is possible, naming the number of samples needed; Error(usage) for a bad tau.
 AllanCurve allan_deviation(std::span<const double> record, double dt_s, const AllanOptions& options = {});
 
 /// What is left of a curve at octaves between `tau_min_s` and `tau_max_s`, as allan_deviation would
@@ -105,11 +103,10 @@ namespace detail {
 std::vector<std::uint64_t> exact_factors(const AllanOptions& options, double dt_s, std::uint64_t samples);
 }  // namespace detail
 
-/// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and
-/// `tau_max_s`. From m = 16 on terms start every m/16 to m/8 samples, which costs a hundredth of
-/// the degrees of freedom; m is rounded to that. Records longer than `exact_samples` get none below
-/// m = 64; records with missing samples exact ones, or none. `exact`: points at
-/// `exact_factors`, where they are there already.
+/// Adds m = round(10^(i/10)) to a curve of octaves (oadev) of this record, between `tau_min_s` and `tau_max_s`. From
+/// m = 16 on terms start every m/16 to m/8 samples, which costs a hundredth of the degrees of freedom; m is rounded to
+/// that. Records longer than `exact_samples` get none below m = 64; records with missing samples exact ones, or none.
+/// `exact`: points at `exact_factors`, where they are there already.
 void add_ten_a_decade(std::span<const double> record, const AllanOptions& options, std::uint64_t exact_samples,
                       AllanCurve& octaves, std::span<const AllanPoint> exact = {});
 
@@ -147,9 +144,8 @@ struct CorneredHat {
 /// than three records, or lengths that differ; as allan_deviation.
 CorneredHat cornered_hat(std::span<const std::vector<double>> records, double dt_s, const AllanOptions& options = {});
 
-/// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances
-/// of the two that a device is in, in which the noise of the measurements drops out (Groslambert).
-/// Overlapping Allan variance only.
+/// From three records of differences, a - b, b - c, c - a, each measured by itself: the covariances of the two that a
+/// device is in, in which the noise of the measurements drops out (Groslambert). Overlapping Allan variance only.
 CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> differences, double dt_s,
                                         const AllanOptions& options = {});
 

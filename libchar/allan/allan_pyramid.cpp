@@ -2,9 +2,8 @@
 // level l the sums z of 2^l neighbours (less the first sample of the record). m = 1, 2, 4 come from
 // level 0 at every start; m = 2^(l+2) from level l,
 //   d_i = (z_{i+4} + … + z_{i+7}) - (z_i + … + z_{i+3}),   sigma^2(m) = sum d_i^2 / (2 m^2 n),
-// that is at every (m/4)-th start (docs/theory/allan.md). Each level works in blocks of
-// 4096 that stay in the processor's cache; a block costs half as many of the level above, so that
-// all of them cost twice the first.
+// that is at every (m/4)-th start (docs/theory/allan.md). Each level works in blocks of 4096 that stay in the
+// processor's cache; a block costs half as many of the level above, so that all of them cost twice the first.
 //
 // In a record with missing samples a level also holds how many of the 2^l each sum lacks
 // (present_points.cpp); blocks that lack none go the same way as ever.

@@ -13,9 +13,8 @@ namespace libchar {
 /// `AllanCurve::stride_divisor` of its curves.
 inline constexpr std::uint64_t kPyramidStride = 4;
 
-/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m
-/// >= 8 at stride m/4 (docs/theory/allan.md). One pass, no cumulative sum over the record. Result
-/// independent of block boundaries.
+/// Streaming overlapping Allan deviation at octaves in constant memory: m = 1, 2, 4 at stride 1, m >= 8 at stride m/4
+/// (docs/theory/allan.md). One pass, no cumulative sum over the record. Result independent of block boundaries.
 class AllanPyramid {
  public:
   AllanPyramid();

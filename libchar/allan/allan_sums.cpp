@@ -4,10 +4,9 @@
 //
 //   terms(A) + terms(B) + terms of [last seven of A | first seven of B],   z_B := z_B + n_B (x_0B - x_0A),
 //
-// n_B samples present in z_B: a term of sums of w values spans 2 w <= 8 of them, so that one across
-// the boundary has at most seven on either side. Where B ends with one value at its highest level
-// and A with an odd number there, the two make a value of the level above, which goes the same way
-// as a part of one value.
+// n_B samples present in z_B: a term of sums of w values spans 2 w <= 8 of them, so that one across the boundary has at
+// most seven on either side. Where B ends with one value at its highest level and A with an odd number there, the two
+// make a value of the level above, which goes the same way as a part of one value.
 
 #include "libchar/allan/allan_sums.hpp"
 
@@ -100,8 +99,7 @@ void join_level(AllanSums& sums, std::size_t index, const AllanLevel& later) {
   level.count += later.count;
 }
 
-/// The last value of a level has just made their number even: with the one before it is a value of
-/// the level above.
+/// The last value of a level has just made their number even: with the one before it is a value of the level above.
 void hand_up_pair(AllanSums& sums, std::size_t index) {
   while (sums.levels[index].count % 2 == 0) {
     const LevelEnd& tail = sums.levels[index].tail;

@@ -1,6 +1,5 @@
 #pragma once
-// What the pyramid of octaves has found of a part of a record, and how the parts of neighbours
-// become that of both.
+// What the pyramid of octaves has found of a part of a record, and how the parts of neighbours become that of both.
 
 #include <array>
 #include <cstdint>
@@ -33,8 +32,7 @@ struct LevelEnd {
   void push_last(double z, double lacks);  ///< the last ones stay
 };
 
-/// Level l of a part: sums of 2^l samples less the part's origin, and the samples themselves at
-/// level 0 (NaN: missing).
+/// Level l of a part: sums of 2^l samples less the part's origin, and the samples themselves at level 0 (NaN: missing).
 struct AllanLevel {
   std::uint64_t count = 0;  ///< values
   LevelEnd head, tail;

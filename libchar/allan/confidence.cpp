@@ -10,7 +10,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/detail/family.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
@@ -161,8 +161,7 @@ double family_dof(const DeviationRow& row, const Mixture& theta, const AllanPoin
 constexpr double kOneSigma = 0.6827, kTwoSided = 0.95;
 constexpr double kReliableDof = 5;
 
-/// Expected total variance / Allan variance = 1 - a tau/T (SP 1065, 5.11): a = 0.481 flicker, 0.75
-/// walk.
+/// Expected total variance / Allan variance = 1 - a tau/T (SP 1065, 5.11): a = 0.481 flicker, 0.75 walk.
 void note_total_bias(AllanCurve& curve, const Mixture& theta) {
   if (curve.points.empty()) return;
   const bool flicker = theta[static_cast<std::size_t>(Term::flicker)] > 0;

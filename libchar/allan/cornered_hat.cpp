@@ -1,8 +1,7 @@
-// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual
-// oscillator", 28th Ann. Symp. Frequency Control (1974); for n devices: C. R. Ekstrom, P. A.
-// Koppang, "Error bars for three-cornered hats", IEEE Trans. UFFC 53 (2006) 876. The variances of
-// pairwise differences of independent devices are sums, s_ij = v_i + v_j; least squares over all
-// pairs gives
+// J. E. Gray, D. W. Allan, "A method for estimating the frequency stability of an individual oscillator", 28th Ann.
+// Symp. Frequency Control (1974); for n devices: C. R. Ekstrom, P. A. Koppang, "Error bars for three-cornered hats",
+// IEEE Trans. UFFC 53 (2006) 876. The variances of pairwise differences of independent devices are sums,
+// s_ij = v_i + v_j; least squares over all pairs gives
 //
 //   v_i = ( S_i - T/(n-1) ) / (n-2),     S_i = sum_{j != i} s_ij,   T = sum_{i<j} s_ij
 //
@@ -138,8 +137,8 @@ void note_negative(CorneredHat& hat) {
     }
   if (negative > 0)
     hat.notes.push_back(
-        fmt::format("{} of {} variances are negative: there the noise of the other devices hides "
-                    "the device, or the devices are not independent",
+        fmt::format("{} of {} variances are negative: there the noise of the other devices hides the device, or the "
+                    "devices are not independent",
                     negative, all));
 }
 
@@ -232,8 +231,8 @@ CorneredHat cornered_hat_of_differences(std::span<const std::vector<double>> dif
   check_records(differences);
   if (differences.size() != 3 || options.type != DeviationType::oadev)
     throw usage_error("E0870").says(
-        "differences of devices are taken three at a time, a - b, b - c and c - a, for the "
-        "overlapping Allan deviation");
+        "differences of devices are taken three at a time, a - b, b - c and c - a, for the overlapping Allan "
+        "deviation");
   std::vector<std::vector<double>> x;
   for (const auto& record : differences) x.push_back(phase_of_log(record, options.data, dt_s));
   for (const auto& phase : x)  // a sum has no value behind a gap

@@ -65,9 +65,8 @@ struct DeviationRow {
 std::span<const DeviationRow> deviation_rows();
 const DeviationRow& deviation_row(DeviationType type);
 
-/// Unit of the statistic of a rate in `unit`: the same, or, where it is one of the time error
-/// (TDEV, MTIE…), that of its integral, "deg" of "deg/s". Numbers without a unit are fractional
-/// frequencies, and their time errors seconds.
+/// Unit of the statistic of a rate in `unit`: the same, or, where it is one of the time error (TDEV, MTIE…), that of
+/// its integral, "deg" of "deg/s". Numbers without a unit are fractional frequencies, and their time errors seconds.
 std::string deviation_unit(DeviationType type, std::string_view unit);
 
 std::string_view name_of(DeviationType type);  ///< "oadev"

@@ -7,11 +7,10 @@
 //   quantization  y_t = Qz (w_t - w_{t-1})/dt         4 sin^2(pi nu) Qz^2/dt      3 Qz^2/tau^2
 //   ramp          y_t = R t dt                        none (deterministic)        R^2 tau^2/2
 //
-// h_m = 16(H_2m - H_m) + (4 H_m - H_2m)/m^2, H_m the sum of 1/(2 k - 1) for k = 1 … m.
-// The flicker form is that of Kasdin, Proc. IEEE 83 (1995) 802 (fractional differencing). Its
-// variogram is (4/pi) H_n; summing twice gives s(n) below, and the Allan variance [s(2m) - 4 s(m) +
-// 3 s(0)]/m^2 (docs/theory/allan.md). h_m is the same thing arranged so that
-// nothing cancels: H_2m - H_m tends to ln(2)/2.
+// h_m = 16(H_2m - H_m) + (4 H_m - H_2m)/m^2, H_m the sum of 1/(2 k - 1) for k = 1 … m. The flicker form is that of
+// Kasdin, Proc. IEEE 83 (1995) 802 (fractional differencing). Its variogram is (4/pi) H_n; summing twice gives s(n)
+// below, and the Allan variance [s(2m) - 4 s(m) + 3 s(0)]/m^2 (docs/theory/allan.md). h_m is the same thing arranged so
+// that nothing cancels: H_2m - H_m tends to ln(2)/2.
 
 #include "libchar/allan/noise_curves.hpp"
 
@@ -179,10 +178,8 @@ double phase_covariance(Term term, double n, double dt_s) {
   return 0;
 }
 
-// T: minus the walk's s (white), [(4n^2-1)(4n^2-9) H_n/48 - 25 n^4/72 + 95 n^2/144]/(4 pi)
-// (flicker),
-// (|n|^5 - 5|n|^3 + 4|n|)/240 (walk), |n|/2 (quantization); found by undetermined coefficients from
-// T'' = s.
+// T: minus the walk's s (white), [(4n^2-1)(4n^2-9) H_n/48 - 25 n^4/72 + 95 n^2/144]/(4 pi) (flicker),
+// (|n|^5 - 5|n|^3 + 4|n|)/240 (walk), |n|/2 (quantization); found by undetermined coefficients from T'' = s.
 double summed_phase_covariance(Term term, double n, double dt_s) {
   n = std::fabs(n);
   const double z = n * n;

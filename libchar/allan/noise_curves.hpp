@@ -12,8 +12,7 @@ double unit_allan_variance(Term term, double m, double dt_s);
 /// Sum over the terms of theta * unit_allan_variance.
 double allan_variance(const Mixture& theta, double m, double dt_s);
 
-/// Asymptotes as plotted: Q^2/tau, (2 ln2/pi) B^2, K^2 tau/3, 3 Qz^2/tau^2, R^2 tau^2/2 for unit
-/// coefficient.
+/// Asymptotes as plotted: Q^2/tau, (2 ln2/pi) B^2, K^2 tau/3, 3 Qz^2/tau^2, R^2 tau^2/2 for unit coefficient.
 double allan_asymptote(Term term, double tau_s);
 
 /// Two-sided density S(f) of unit coefficient for samples at 1/dt, 0 < f <= 1/(2 dt) (exact
@@ -32,14 +31,12 @@ double spectrum_asymptote(Term term, double frequency_hz, double dt_s);
 /// H_n = 1 + 1/3 + … + 1/(2n-1) = [psi(n + 1/2) + gamma]/2 + ln 2, for real n >= 0 (0 for n = 0).
 double odd_harmonic(double n);
 
-/// Generalised covariance s(n) of the summed samples x_t = y_1 + … + y_t at lag n, unit
-/// coefficient: every combination sum_j c_j x_{t+j} whose weights annihilate constants and straight
-/// lines has variance sum_jk c_j c_k s(j - k). White and quantization are exact for integer n; at
-/// real n quantization is 0 except at n = 0. The ramp has none: 0.
+/// Generalised covariance s(n) of the summed samples x_t = y_1 + … + y_t at lag n, unit coefficient: every combination
+/// sum_j c_j x_{t+j} whose weights annihilate constants and straight lines has variance sum_jk c_j c_k s(j - k). White
+/// and quantization are exact for integer n; at real n quantization is 0 except at n = 0. The ramp has none: 0.
 double phase_covariance(Term term, double n, double dt_s);
 
-/// The same for x summed once more, T with T(n+1) - 2 T(n) + T(n-1) = s(n): all that the modified
-/// Allan variance needs.
+/// The same for x summed once more, T with T(n+1) - 2 T(n) + T(n-1) = s(n): all that the modified Allan variance needs.
 double summed_phase_covariance(Term term, double n, double dt_s);
 
 // Exact curves of a sampled first-order Gauss-Markov process of unit variance (model/sensor_model.hpp).

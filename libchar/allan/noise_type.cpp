@@ -1,6 +1,5 @@
-// W. J. Riley, C. A. Greenhall, "Power law noise identification using the lag 1 autocorrelation",
-// EFTF 2004 (what Stable32 does where at least 30 readings are left): phase x decimated by m, a
-// quadratic taken out, then
+// W. J. Riley, C. A. Greenhall, "Power law noise identification using the lag 1 autocorrelation", EFTF 2004 (what
+// Stable32 does where at least 30 readings are left): phase x decimated by m, a quadratic taken out, then
 //   r = lag-1 autocorrelation of z,  delta = r/(1 + r)
 //   until delta < 1/4 or after the second difference: z <- differences of z, d <- d + 1
 //   alpha = 2 - 2 (delta + d), rounded as -round(2 delta) - 2 d + 2

@@ -75,9 +75,8 @@ struct CharacterizationBench {
   std::vector<std::string> notes;
 };
 
-/// Records are simulated one after the other, and each is given to every method in turn. Throws
-/// Error(usage) for a method that is not known, Error(input) for a model without white noise,
-/// flicker or walk.
+/// Records are simulated one after the other, and each is given to every method in turn. Throws Error(usage) for a
+/// method that is not known, Error(input) for a model without white noise, flicker or walk.
 CharacterizationBench bench_characterization(const BenchSignal& signal, const CharacterizationBenchOptions& options,
                                              Progress& progress = no_progress(), HeapMeter* heap = nullptr);
 
@@ -295,10 +294,9 @@ struct BenchInputOptions {
   std::size_t most_channels = 3;        ///< of a log: those with the most noise terms
 };
 
-/// A scene file: its scene. A model file: a signal. A log: it is characterized, and each channel's
-/// model is a signal, as long as the log (at most `most_samples`). Throws what reading and
-/// characterizing throw; Error(input) for a log or model with no noise to simulate, or a model
-/// without a rate.
+/// A scene file: its scene. A model file: a signal. A log: it is characterized, and each channel's model is a signal,
+/// as long as the log (at most `most_samples`). Throws what reading and characterizing throw; Error(input) for a log or
+/// model with no noise to simulate, or a model without a rate.
 void add_bench_input(const std::string& path, const BenchInputOptions& options, BenchInputs& inputs,
                      Progress& progress = no_progress());
 

@@ -101,8 +101,7 @@ std::string verdict_of(const CharacterizationBench& bench) {
   const EstimatorAccuracy *ours = best(true), *others = best(false);
   if (ours == nullptr) return "";
   std::string out = fmt::format(
-      "{}: of the methods that find the terms themselves {} is most exact, {} × the bound at {} ns "
-      "per sample",
+      "{}: of the methods that find the terms themselves {} is most exact, {} × the bound at {} ns per sample",
       bench.signal.name, ours->name, number_text(ours->error, 3), number_text(ours->ns_per_sample.value, 3));
   if (others != nullptr)
     out += fmt::format("; the best recipe of others, {}, {} ×", others->name, number_text(others->error, 3));
@@ -114,10 +113,8 @@ std::string verdict_of(const FusionBench& bench) {
   for (const FusionBenchRow& row : bench.rows)
     if (!row.bound && row.excess.count > 0 && (best == nullptr || row.excess.value < best->excess.value)) best = &row;
   return best == nullptr ? ""
-                         : fmt::format(
-                               "Fusion: {} has the least error over all scenes, {} × that of "
-                               "the yardstick.",
-                               best->label, number_text(1 + best->excess.value, 3));
+                         : fmt::format("Fusion: {} has the least error over all scenes, {} × that of the yardstick.",
+                                       best->label, number_text(1 + best->excess.value, 3));
 }
 
 BenchSection legend_section(const CharacterizationBench& bench) {
@@ -126,20 +123,13 @@ BenchSection legend_section(const CharacterizationBench& bench) {
   out.table = Table("Method|What it does");
   for (const EstimatorAccuracy& method : bench.methods) out.table.add({method.name, method.what});
   out.notes = {
-      "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on "
-      "such "
-      "a record. RMSE over it: 1 is as good as can be; a coefficient that is in the records and "
-      "not "
-      "detected counts as an estimate of zero, which can be nearer than the bound says where the "
-      "bound is wide. False terms: records in which a coefficient is stated that is not in them "
-      "(–: "
-      "it is told which there are, or all are). Time over the first: of the first method listed "
-      "below, record by record. Methods that are told count against each other "
-      "only. "
-      "A coefficient whose bound is wider than half of it is not in the mean that the front and "
-      "the chart go by. Front: no method is at least as fast and more "
-      "exact; "
-      "else by how much the best of those that are is more exact."};
+      "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on such a record. RMSE "
+      "over it: 1 is as good as can be; a coefficient that is in the records and not detected counts as an estimate of "
+      "zero, which can be nearer than the bound says where the bound is wide. False terms: records in which a "
+      "coefficient is stated that is not in them (–: it is told which there are, or all are). Time over the first: of "
+      "the first method listed below, record by record. Methods that are told count against each other only. A "
+      "coefficient whose bound is wider than half of it is not in the mean that the front and the chart go by. Front: "
+      "no method is at least as fast and more exact; else by how much the best of those that are is more exact."};
   return out;
 }
 
@@ -189,10 +179,9 @@ BenchSection over_all(const FusionBench& bench) {
                             true});
   }
   out.notes = {
-      "–: does not run on this scene. Excess: RMSE over the yardstick's, minus one; mean over the "
-      "runs and its 95 % interval by "
-      "Student's t. Times: median over the runs and the order statistics that hold it with 95 %. "
-      "Over all: geometric means over the scenes of the most frequent kind."};
+      "–: does not run on this scene. Excess: RMSE over the yardstick's, minus one; mean over the runs and its 95 % "
+      "interval by Student's t. Times: median over the runs and the order statistics that hold it with 95 %. Over all: "
+      "geometric means over the scenes of the most frequent kind."};
   if (chart.points.size() > 1) out.charts = {chart};
   return out;
 }
@@ -227,10 +216,9 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
     out.notes = {"Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
   if (sensors)
     out.notes = {
-        "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the "
-        "time of an instant reaches the time between two); beyond the largest number tried by the "
-        "exponent. More sensors than that are not worth their error with this method on one "
-        "processor."};
+        "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the time of an instant "
+        "reaches the time between two); beyond the largest number tried by the exponent. More sensors than that are "
+        "not worth their error with this method on one processor."};
   return out;
 }
 
@@ -248,8 +236,7 @@ BenchSection sensors_section(const DesignBench& bench) {
     out.table.add({row.model, number_text(row.single, 4), count_text(row.sensors), number_text(row.predicted, 4),
                    row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
   out.notes = {
-      "For independent sensors: what they share (temperature, supply, a common clock) no number of "
-      "them removes."};
+      "For independent sensors: what they share (temperature, supply, a common clock) no number of them removes."};
   return out;
 }
 
@@ -265,8 +252,7 @@ BenchSection records_section(const DesignBench& bench) {
                    row.seconds ? number_text(row.samples, 3) : "–",
                    row.simulated.count == 0 ? "not checked" : figure_text(row.simulated, 3, 100)});
   out.notes = {
-      "By the Cramér-Rao bound; simulated: the relative RMSE of the Whittle likelihood on records "
-      "of that length."};
+      "By the Cramér-Rao bound; simulated: the relative RMSE of the Whittle likelihood on records of that length."};
   return out;
 }
 
@@ -276,11 +262,10 @@ std::string digits_text(const StressCell& cell) { return std::isnan(cell.digits)
 BenchSection stress_section(const StressBench& bench) {
   BenchSection out;
   out.title = "Stress: digits that are right, worst first";
-  out.sentences = {
-      fmt::format("{} hard inputs and subjects: {} compared with a reference, {} held, {} refused in a "
-                  "sentence, {} wrong.",
-                  bench.cells.size(), bench.count(StressOutcome::digits), bench.count(StressOutcome::held),
-                  bench.count(StressOutcome::refused), bench.count(StressOutcome::wrong))};
+  out.sentences = {fmt::format(
+      "{} hard inputs and subjects: {} compared with a reference, {} held, {} refused in a sentence, {} wrong.",
+      bench.cells.size(), bench.count(StressOutcome::digits), bench.count(StressOutcome::held),
+      bench.count(StressOutcome::refused), bench.count(StressOutcome::wrong))};
   for (const StressCell& cell : bench.cells)
     if (cell.outcome == StressOutcome::wrong)
       out.sentences.push_back(fmt::format("Wrong: {}, {}: {}.", cell.subject, cell.input, cell.what));
@@ -298,11 +283,10 @@ BenchSection stress_section(const StressBench& bench) {
                    count(StressOutcome::refused)});
   }
   out.notes = {
-      "Compared: estimators with their definitions in long double, weights with a QR decomposition "
-      "in long double, fits and fusion with themselves on the same samples in comfortable numbers; "
-      "of the worst value of a curve, of a path together. Held: estimates are numbers in the range "
-      "of what came in, no variance is negative. Methods as published state nothing. Every cell is "
-      "in bench.json."};
+      "Compared: estimators with their definitions in long double, weights with a QR decomposition in long double, "
+      "fits and fusion with themselves on the same samples in comfortable numbers; of the worst value of a curve, of a "
+      "path together. Held: estimates are numbers in the range of what came in, no variance is negative. Methods as "
+      "published state nothing. Every cell is in bench.json."};
   return out;
 }
 

@@ -143,8 +143,8 @@ std::vector<std::string> notes_on(const SensorModel& model) {
   if (model.noise_shape.kind != NoiseShape::Kind::none || model.bandwidth_hz || model.gauss_markov.sigma > 0 ||
       model.flicker_phase > 0)
     out.emplace_back(
-        "the model has a shape, a bandwidth or a further process: the bound is that of its terms "
-        "without them, which nobody can reach");
+        "the model has a shape, a bandwidth or a further process: the bound is that of its terms without them, which "
+        "nobody can reach");
   return out;
 }
 

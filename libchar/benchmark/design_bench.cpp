@@ -1,6 +1,5 @@
-// Independent sensors with Allan variances v_i at tau, weighted by 1/v_i: 1/v = sum 1/v_i; n equal
-// ones: v/n. The length of a record: where the Cramer-Rao bound of a term falls to the share
-// (fit/bounds.hpp).
+// Independent sensors with Allan variances v_i at tau, weighted by 1/v_i: 1/v = sum 1/v_i; n equal ones: v/n. The
+// length of a record: where the Cramer-Rao bound of a term falls to the share (fit/bounds.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -84,8 +84,7 @@ FusionBenchScene described(const Scene& scene, const ReplayResult& first, std::s
   out.name = scene.name.empty() ? scene.file : scene.name;
   out.file = scene.file;
   out.simulated = scene.simulate.has_value();
-  out.yardstick = first.has_reference ? "the least error that fixed weights, or the best filter, "
-                                        "could have had"
+  out.yardstick = first.has_reference ? "the least error that fixed weights, or the best filter, could have had"
                                       : "the best of the methods";
   out.instants = first.instants;
   out.sensors = first.sensors.size();
@@ -189,8 +188,14 @@ void run_scene(Scene scene, const FusionBenchOptions& options, HeapMeter* heap,
 
 std::vector<Scene> bench_scenes() {
   std::vector<Scene> out;
-  for (const auto& [name, text] : bench_scene_texts()) {
-    out.push_back(parse_scene(text, std::string(name)));
+  const std::pair<const char*, std::string_view> texts[] = {{"rv-3.3-uncalibrated.yaml", scene_rv_3_3_uncalibrated()},
+                                                            {"rv-3.3-calibrated.yaml", scene_rv_3_3_calibrated()},
+                                                            {"rv-5.1-fault-free.yaml", scene_rv_5_1_fault_free()},
+                                                            {"rv-5.1-faults.yaml", scene_rv_5_1_faults()},
+                                                            {"lever-arm.yaml", scene_lever_arm()},
+                                                            {"rv-2.5-tilt.yaml", scene_rv_2_5_tilt()}};
+  for (const auto& [name, text] : texts) {
+    out.push_back(parse_scene(text, name));
     out.back().file = name;
   }
   return out;

@@ -12,7 +12,6 @@
 #include <thread>
 #include <utility>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
@@ -76,8 +75,7 @@ Machine MachineWatch::finish() const {
 std::string load_sentence(const Machine& machine) {
   if (!(machine.others > 0.1)) return "";
   return fmt::format(
-      "other programs kept {:.1f} of {} processors busy meanwhile: times have wider intervals "
-      "than they need",
+      "other programs kept {:.1f} of {} processors busy meanwhile: times have wider intervals than they need",
       machine.others, machine.cores);
 }
 

@@ -25,9 +25,8 @@ struct Figure {
 /// Statistics, 2003, §7.1). Fewer than six values: no limits.
 Figure median_figure(std::vector<double> values);
 
-/// Median of times whose interval is to hold the median of another run of the same, too: order
-/// statistics at 99 %, and at least 1.5 % to either side (where code and data come to lie differs
-/// from run to run).
+/// Median of times whose interval is to hold the median of another run of the same, too: order statistics at 99 %, and
+/// at least 1.5 % to either side (where code and data come to lie differs from run to run).
 Figure time_figure(std::vector<double> values);
 
 /// Mean and its interval by Student's t. One value: no limits.

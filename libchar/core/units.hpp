@@ -24,10 +24,9 @@ enum class Quantity {
   ratio
 };
 template <>
-inline constexpr auto enum_table<Quantity> =
-    enum_words<Quantity,
-               "angular_rate acceleration magnetic_field pressure temperature voltage angle time "
-               "frequency concentration ratio">;
+inline constexpr auto enum_table<Quantity> = enum_words<
+    Quantity,
+    "angular_rate acceleration magnetic_field pressure temperature voltage angle time frequency concentration ratio">;
 
 struct Unit {
   std::string symbol;  ///< canonical spelling, e.g. "deg/s"

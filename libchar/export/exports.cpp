@@ -36,9 +36,7 @@ void check_needs(const ExportTarget& target, const SensorGroup& group) {
       .says("{} needs models of a gyroscope {} an accelerometer, and there is no {} among {}", target.title,
             both ? "and" : "or", both ? (gyroscope ? "accelerometer" : "gyroscope") : "one of them",
             group.all.empty() ? "no models" : channels_of(group))
-      .hint(
-          "give all files of the device; where name and unit do not say what a channel is: `axis` "
-          "NAME=gx");
+      .hint("give all files of the device; where name and unit do not say what a channel is: `axis` NAME=gx");
 }
 
 void check_options(const ExportOptions& options) {
@@ -93,10 +91,9 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
         fmt::format("not in this file: the low-pass of {}; densities are kept, single samples scatter less", filtered));
   const std::string shaped = among([](const SensorModel& m) { return m.noise_shape.kind != NoiseShape::Kind::none; });
   if (!shaped.empty() && !target.takes.status)
-    out.push_back(
-        fmt::format("not in this file: the shape of the noise of {} over frequency; "
-                    "densities are those of slow frequencies",
-                    shaped));
+    out.push_back(fmt::format(
+        "not in this file: the shape of the noise of {} over frequency; densities are those of slow frequencies",
+        shaped));
   return out;
 }
 

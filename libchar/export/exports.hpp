@@ -1,7 +1,6 @@
 #pragma once
-// Sensor models for the programs that consume them. One table of targets (targets.cpp), one file
-// targets/TARGET.cpp each; nothing here reads or writes files. Conventions and formulas:
-// docs/exports.md.
+// Sensor models for the programs that consume them. One table of targets (targets.cpp), one file targets/TARGET.cpp
+// each; nothing here reads or writes files. Conventions and formulas: docs/exports.md.
 
 #include <array>
 #include <optional>
@@ -16,8 +15,7 @@
 #include "libchar/model/sensor_model.hpp"
 
 namespace libchar {
-// Models that belong to one device: who is the gyroscope, who the accelerometer, and which axis
-// each model speaks of.
+// Models that belong to one device: who is the gyroscope, who the accelerometer, and which axis each model speaks of.
 
 /// One model in its place, and the factor that brings its unit to rad/s, m/s^2, T, Pa…
 struct PlacedModel {
@@ -44,10 +42,9 @@ struct SensorGroup {
 /// are gx gy gz, ax ay az, mx my mz, and g, a, m for one model that stands for all three axes.
 using AxisOverrides = std::vector<std::pair<std::string, std::string>>;
 
-/// Sorts the models (which must outlive the group). Throws Error(input) when two claim one place,
-/// when a model among several says no axis, or when its unit is not that of its kind; Error(usage)
-/// for an override that names no channel or no place. Axes may be missing: `require_axes` asks for
-/// them.
+/// Sorts the models (which must outlive the group). Throws Error(input) when two claim one place, when a model among
+/// several says no axis, or when its unit is not that of its kind; Error(usage) for an override that names no channel
+/// or no place. Axes may be missing: `require_axes` asks for them.
 SensorGroup group_sensors(const std::vector<SensorModel>& models, const AxisOverrides& overrides);
 
 /// Throws Error(input) unless all three axes (or the one named by `only`, 0…2) have a model.
@@ -144,8 +141,7 @@ struct ConsumerNumber {
   std::string unit;
 };
 
-/// Rows for a channel of known quantity; for other channels those that need no convention. Empty
-/// without white noise.
+/// Rows for a channel of known quantity; for other channels those that need no convention. Empty without white noise.
 std::vector<ConsumerNumber> consumer_numbers(const Coefficients& coefficients, const std::string& unit, double rate_hz);
 
 }  // namespace libchar

@@ -85,8 +85,7 @@ std::string objects_of(const Chart& figure, bool grey) {
   std::string out;
   for (const FigureStretch& s : figure.stretches)
     out += fmt::format(
-        "set object rectangle from {}, graph 0 to {}, graph 1 behind fillcolor {} fillstyle solid "
-        "{} noborder\n",
+        "set object rectangle from {}, graph 0 to {}, graph 1 behind fillcolor {} fillstyle solid {} noborder\n",
         gnuplot_number(std::max(s.from, figure.x.low)), gnuplot_number(std::min(s.to, figure.x.high)),
         gnuplot_colour(s.ink, grey), kStretchOpacity);
   for (const FigureBar& b : figure.bars) {
@@ -113,11 +112,9 @@ std::vector<std::string> plots_of(const Chart& figure, bool grey) {
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
     const FigureSeries& s = figure.series[k];
     if (s.low.empty() || s.x.size() < 2) continue;
-    out.push_back(
-        fmt::format("$series{} using 1:3:4 with filledcurves fillcolor {} fillstyle transparent "
-                    "solid {} noborder {}",
-                    k, gnuplot_colour(s.look.ink, grey), kBandOpacity,
-                    s.band.empty() ? "notitle" : "title " + gnuplot_text(s.band)));
+    out.push_back(fmt::format(
+        "$series{} using 1:3:4 with filledcurves fillcolor {} fillstyle transparent solid {} noborder {}", k,
+        gnuplot_colour(s.look.ink, grey), kBandOpacity, s.band.empty() ? "notitle" : "title " + gnuplot_text(s.band)));
   }
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
     const FigureSeries& s = figure.series[k];

@@ -14,8 +14,8 @@ namespace libchar {
 namespace {
 
 constexpr const char* kReadable =
-    "plot draws report.json of characterize or replay (or its folder), what allan and psd print, "
-    "curves.csv, and sensor models";
+    "plot draws report.json of characterize or replay (or its folder), what allan and psd print, curves.csv, and "
+    "sensor models";
 
 std::string format_in(const Document& document) {
   const DocumentEntry* entry = document.kind == Document::Kind::map ? document.find("format") : nullptr;
@@ -34,8 +34,8 @@ std::string format_in(const Document& document) {
   throw input_error("E0975", file)
       .says("is no report, curve or sensor model; is it a log?")
       .hint(
-          "sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar "
-          "characterize {0} -o DIR a report: plot these",
+          "sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar characterize {0} -o DIR a "
+          "report: plot these",
           file);
 }
 

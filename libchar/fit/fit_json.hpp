@@ -14,9 +14,8 @@ const Fields<NoiseFit>& noise_fit_fields();
 /// "residuals": long, and on request only.
 const Fields<NoiseFit>& fit_residual_fields();
 
-/// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…},
-/// second_opinion, goodness. What is not known is null, never absent among those. Residuals only on
-/// request: they are long.
+/// Keys that scripts rely on: name, unit, one object per term {value, ci95, status, upper95…}, second_opinion,
+/// goodness. What is not known is null, never absent among those. Residuals only on request: they are long.
 Json noise_fit_json(const std::string& name, const std::string& unit, const NoiseFit& fit, bool with_residuals = false);
 
 /// The place of a channel that could not be fitted: every term not_fitted, no goodness, and why.

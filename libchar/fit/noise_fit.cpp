@@ -10,7 +10,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/refusal.hpp"
@@ -19,9 +19,9 @@
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/band/band.hpp"
 #include "libchar/fit/detail/band/band_report.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/contradiction.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/band/small_shape.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
@@ -43,8 +43,7 @@ constexpr std::size_t kLowest = 5;   ///< coefficients that a warm-up or a drift
 constexpr auto kQuantization = static_cast<std::size_t>(Term::quantization);
 constexpr auto kRamp = static_cast<std::size_t>(Term::ramp);
 
-/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last
-/// three.
+/// The bins, which of them are fitted, what is offered, and the fit; remedies change the last three.
 struct Attempt {
   const std::vector<PowerBin>* bins = nullptr;
   Band band;
@@ -111,8 +110,7 @@ Band without_lowest(const Attempt& now) {
   return band;
 }
 
-/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are
-/// consistent.
+/// 2 ln L by which the bins of `other` reject the theta of `fit`: small when the two are consistent.
 double rejection(const Attempt& other, const NoiseFit& fit) {
   const BinProblem problem = problem_of(*other.bins, other.band, fit.rate_hz);
   const ModelPoint at{fit.theta, {}};
@@ -120,10 +118,9 @@ double rejection(const Attempt& other, const NoiseFit& fit) {
   return 2 * (value - other.half_deviance);
 }
 
-/// What `rejection` stays below in clean records. Its expectation is the information that the
-/// dropped bins carried, tr(1 - I_dropped I^-1), nearly all in one direction, so that it scatters
-/// like that times a chi-square of one degree of freedom. Below 1 the fit has moved by less than
-/// one standard deviation: not worth a remedy.
+/// What `rejection` stays below in clean records. Its expectation is the information that the dropped bins carried,
+/// tr(1 - I_dropped I^-1), nearly all in one direction, so that it scatters like that times a chi-square of one degree
+/// of freedom. Below 1 the fit has moved by less than one standard deviation: not worth a remedy.
 double rejection_limit(const Attempt& now, const Attempt& dropped) {
   const TermSet terms = only_positive(now.fit.theta);
   const auto information = [&](const Band& band) {
@@ -179,15 +176,13 @@ void answer_low_frequencies(Attempt& now) {
   now.fit.remedies = before;
   now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});
-  now.fit.findings.push_back(
-      finding("lowest_left_out",
-              "The slowest part of the record (warm-up, temperature or drift) does not look like noise and "
-              "was left out of the fit.",
-              "the slowest part does not look like noise and was left out"));
+  now.fit.findings.push_back(finding("lowest_left_out",
+                                     "The slowest part of the record (warm-up, temperature or drift) does not look "
+                                     "like noise and was left out of the fit.",
+                                     "the slowest part does not look like noise and was left out"));
 }
 
-/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what
-/// was measured.
+/// What the Allan curve allows of a term alone: it would nowhere stand above the upper end of what was measured.
 double largest_possible(Term term, const AllanCurve& allan) {
   double largest = std::numeric_limits<double>::infinity();
   for (const AllanPoint& point : allan.points) {
@@ -272,23 +267,21 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
       });
   fit.findings.push_back(
       finding("misfit",
-              fmt::format("The model does not describe the record within its statistical accuracy "
-                          "(chi-square {:.0f} for {:.0f} degrees of freedom, worst near {} Hz), in no band: "
-                          "the intervals are widened by its scatter, and no coefficient is borne out.",
+              fmt::format("The model does not describe the record within its statistical accuracy (chi-square {:.0f} "
+                          "for {:.0f} degrees of freedom, worst near {} Hz), in no band: the intervals are widened by "
+                          "its scatter, and no coefficient is borne out.",
                           fit.goodness.chi2, fit.goodness.dof, brief_text(worst->frequency_hz)),
               "the noise terms do not describe the recording"));
 }
 
-/// After the decisions: the process that was needed gets its intervals, one that is as likely a
-/// sentence.
+/// After the decisions: the process that was needed gets its intervals, one that is as likely a sentence.
 void answer_process(const std::vector<PowerBin>& bins, const Band& band, GaussMarkovChoice& process, NoiseFit& fit) {
   if (!process.needed) return report_not_needed(process, fit);
   process.band = band;
   settle_gauss_markov(bins, process, fit);
 }
 
-/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's
-/// covariance says.
+/// What was fitted in the ramp's column is flicker phase noise; bounds are what the fit's covariance says.
 void settle_flicker_phase(NoiseFit& fit) {
   for (Coefficient& term : fit.term)
     if (term.value) term.bound = term.relative_sd;

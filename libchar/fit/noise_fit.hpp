@@ -11,7 +11,7 @@
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/record/record_sums.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 #include "libchar/fit/signs/temperature.hpp"
 
 namespace libchar {
@@ -22,9 +22,8 @@ struct FitWorkspace;  // allan_fit.hpp
 /// the coefficients scatter more than the likelihood says.
 void widen_as_misfit(double wider, NoiseFit& fit);
 
-/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is
-/// what the second opinion is made of (may be null). Throws Error(numeric) when there are fewer
-/// bins than terms.
+/// The main fit: maximum Whittle likelihood on the bins, decisions, intervals, bounds. `allan` is what the second
+/// opinion is made of (may be null). Throws Error(numeric) when there are fewer bins than terms.
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples,
                         const AllanCurve* allan, const FitOptions& options = {}, FitWorkspace* workspace = nullptr);
 

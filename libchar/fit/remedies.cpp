@@ -13,8 +13,7 @@
 namespace libchar {
 
 double spike_alarm(std::uint64_t samples) {
-  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation
-  // of -1/2.
+  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation of -1/2.
   return std::max(3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
 }
 
@@ -74,8 +73,8 @@ Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
   const std::size_t further = cycles.size() - 1;
   Finding found =
       finding("cycle",
-              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the "
-                          "noise was fitted, and stays in the Allan curve.",
+              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the noise was "
+                          "fitted, and stays in the Allan curve.",
                           duration_text(1 / strongest.frequency_hz), brief_text(strongest.amplitude, 3),
                           further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
               "a cycle was taken out");

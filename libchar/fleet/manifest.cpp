@@ -18,7 +18,6 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 #include "libchar/fleet/detail/log_seen.hpp"
 
 namespace libchar {

@@ -382,9 +382,8 @@ class PlanReader {
   OptionsTable shared_;
 };
 
-/// Whole or not there for whoever reads it now, after a power cut perhaps neither: flushing
-/// thousands of files takes longer than all else of planning, and whoever reads a task sees whether
-/// it is torn.
+/// Whole or not there for whoever reads it now, after a power cut perhaps neither: flushing thousands of files takes
+/// longer than all else of planning, and whoever reads a task sees whether it is torn.
 void write_task(const fs::path& file, const std::string& text) {
   const std::string temporary = detail::temporary_name(file.string(), 0);
   std::ofstream out(temporary, std::ios::binary);

@@ -64,9 +64,8 @@ std::optional<ReplacedPlan> plan_in(const std::filesystem::path& folder);
 /// Results in the folder that are of no unit of the plan.
 std::size_t results_of_others(const FleetPlan& plan, const std::filesystem::path& folder);
 
-/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that
-/// stands there is replaced; results stay, and those of units that are still the same are used.
-/// Throws Error(output).
+/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that stands there is
+/// replaced; results stay, and those of units that are still the same are used. Throws Error(output).
 void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 
 /// Throws Error(input) for anything but a plan, or a plan of another version of the program.
@@ -82,9 +81,8 @@ std::filesystem::path fleet_of_task(const std::string& file);
 /// The file of a unit's task, relative to the folder of the plan.
 std::string task_file(std::size_t unit);
 
-// The results of a fleet put together, in the order of its plan whatever order they came in; of
-// several fleets (batches that were planned on different machines) as if one plan had had all of
-// their devices.
+// The results of a fleet put together, in the order of its plan whatever order they came in; of several fleets (batches
+// that were planned on different machines) as if one plan had had all of their devices.
 
 struct MergeOptions {
   bool partial = false;  ///< merge what there is; devices without a result say so

@@ -1,7 +1,6 @@
 #pragma once
-// A unit of a fleet's work: one log, one channel of it, a stretch of a long one, or the joining of
-// its stretches. What comes out of a unit depends on the log's content, the settings and the
-// version of the program, and so does its name.
+// A unit of a fleet's work: one log, one channel of it, a stretch of a long one, or the joining of its stretches. What
+// comes out of a unit depends on the log's content, the settings and the version of the program, and so does its name.
 
 #include <cstdint>
 #include <map>
@@ -64,9 +63,8 @@ std::string settings_id(const CharacterizeOptions& options);
 /// The same of a unit: those of the whole log, also where it is of one channel.
 std::string settings_id(const FleetUnit& unit);
 
-/// The same of what can make results differ that come from unlike logs. How a log is read (its
-/// names, units, rate, which rows) and which of its channels is the thermometer says what is in it,
-/// and is no way to characterize it.
+/// The same of what can make results differ that come from unlike logs. How a log is read (its names, units, rate,
+/// which rows) and which of its channels is the thermometer says what is in it, and is no way to characterize it.
 std::string analysis_id(const FleetUnit& unit);
 
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).

@@ -1,6 +1,5 @@
 #pragma once
-// The contract of a fusion algorithm: a plain struct with a description, a constructor from the array,
-// and `step`.
+// The contract of a fusion algorithm: a plain struct with a description, a constructor from the array, and `step`.
 //
 //   struct Mean {
 //     static constexpr Description description{.name = "mean", …};

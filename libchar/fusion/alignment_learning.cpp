@@ -1,12 +1,11 @@
 // Learning an alignment. With z the samples as aligned so far and x their mean (blind: its noise is
 // shared by all, and by Gauss-Markov hardly correlated with z - x) or the reference (with a reference):
 //   e_i = z_i - x = b0 + g (x - x0) + sum_k m_k (c_k - c0_k) - d dz_i/dd + noise
-// is solved for each channel, put on top of what is known, and repeated. Interpolation between two
-// samples smooths white noise, and least squares would be rewarded for half a sample: the equation of
-// the delay is therefore taken with an instrument, the slope of what does not hold the channel's own
-// noise (sum slope e = 0): that of the reference, or of the mean of the other channels. What noise
-// they share with e (blind: their parts of x) is taken out, v_j sum h h' / (n (n - 1)), h the taps of a
-// channel and h' their derivative, v_j by the sixth difference of e.
+// is solved for each channel, put on top of what is known, and repeated. Interpolation between two samples smooths
+// white noise, and least squares would be rewarded for half a sample: the equation of the delay is therefore taken with
+// an instrument, the slope of what does not hold the channel's own noise (sum slope e = 0): that of the reference, or
+// of the mean of the other channels. What noise they share with e (blind: their parts of x) is taken out, v_j sum h
+// h' / (n (n - 1)), h the taps of a channel and h' their derivative, v_j by the sixth difference of e.
 // Blind, and where aliased vibration is more than noise (neighbours in e have opposite signs), interpolation
 // is there to damp it: least squares on the own slope and its second derivative (Newton) find the smallest rest.
 // Blind, noise v_i of the channels in x is taken out of both sides (errors in variables):
@@ -203,8 +202,7 @@ class Learner {
     }
   }
 
-  // Interpolation beside a gap or a saturated stretch bends the result; with gaps everywhere there is
-  // nothing else.
+  // Interpolation beside a gap or a saturated stretch bends the result; with gaps everywhere there is nothing else.
   void choose_strictness() {
     realign();
     Index complete = 0;
@@ -452,27 +450,19 @@ class Learner {
     if (options_.delay && still > 0)
       note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero", still, used_.size()));
     if (!delays_.bounds.empty())
-      note(
-          fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most "
-                      "{} samples (95 %)",
-                      delays_.bounds.size(), used_.size(),
-                      brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
+      note(fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most {} samples (95 %)",
+                       delays_.bounds.size(), used_.size(),
+                       brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)
-      note(
-          fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are "
-                      "searched: left at zero",
-                      delays_.ends, used_.size(), kMostDelay));
+      note(fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are searched: left at zero",
+                       delays_.ends, used_.size(), kMostDelay));
     if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
-      note(
-          fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with "
-                      "them is told",
-                      static_cast<std::size_t>(further_) - axes_.size(), further_));
+      note(fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with them is told",
+                       static_cast<std::size_t>(further_) - axes_.size(), further_));
     if (used_.size() < static_cast<std::size_t>(n_))
-      note(
-          fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as "
-                      "they are",
-                      static_cast<std::size_t>(n_) - used_.size(), n_));
+      note(fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",
+                       static_cast<std::size_t>(n_) - used_.size(), n_));
   }
 
   Equations equations(std::size_t k) {

@@ -15,9 +15,8 @@ class BudgetMeter {
  public:
   /// `instants`: how many will come, for the length of the batches. `with_truth`: columns have one.
   BudgetMeter(Eigen::Index channels, Eigen::Index axes, std::int64_t instants, bool with_truth);
-  /// One instant: samples as recorded, with their delays alone taken out (`in_time`), aligned, the
-  /// mean of each further axis, the truth (NaN when blind). An instant at which anything is missing
-  /// is left out.
+  /// One instant: samples as recorded, with their delays alone taken out (`in_time`), aligned, the mean of each further
+  /// axis, the truth (NaN when blind). An instant at which anything is missing is left out.
   void push(const Eigen::VectorXd& recorded, const Eigen::VectorXd& undelayed, const Eigen::VectorXd& aligned,
             const Eigen::VectorXd& cross, double truth);
   ErrorBudget result() const;

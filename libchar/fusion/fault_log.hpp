@@ -42,8 +42,7 @@ struct FaultEvent {
   FaultRule rule = FaultRule::variance;
 };
 
-/// Room is made once, so that noting an event inside `step` does not allocate; events beyond it are
-/// counted.
+/// Room is made once, so that noting an event inside `step` does not allocate; events beyond it are counted.
 class FaultLog {
  public:
   static constexpr std::size_t kRoom = 4096;

@@ -1,6 +1,5 @@
 #pragma once
-// Numbers that change how an algorithm works: a table of rows next to the algorithm, values set by
-// name.
+// Numbers that change how an algorithm works: a table of rows next to the algorithm, values set by name.
 
 #include <span>
 #include <string_view>
@@ -8,8 +7,7 @@
 
 namespace libchar::fusion {
 
-/// One row of an algorithm's table; serves `--set NAME.OPTION=VALUE`, scenes, JSON and the pages on
-/// algorithms.
+/// One row of an algorithm's table; serves `--set NAME.OPTION=VALUE`, scenes, JSON and the pages on algorithms.
 struct Option {
   std::string_view name;
   std::string_view unit;     ///< "" for a pure number
@@ -23,8 +21,7 @@ struct Option {
 class Settings {
  public:
   explicit Settings(std::span<const Option> table = {});
-  /// Throws Error(usage): no such option (with the nearest one), not finite, out of range, not
-  /// whole.
+  /// Throws Error(usage): no such option (with the nearest one), not finite, out of range, not whole.
   void set(std::string_view name, double value);
   /// The name must be one of the table.
   double operator[](std::string_view name) const;

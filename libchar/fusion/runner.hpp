@@ -1,7 +1,6 @@
 #pragma once
-// The engine's side of the contract: the type of an algorithm is erased once a block, not once an
-// instant (inverse-variance on 4 channels: 5.5 ns per instant, 14.6 ns with a virtual call for
-// each).
+// The engine's side of the contract: the type of an algorithm is erased once a block, not once an instant
+// (inverse-variance on 4 channels: 5.5 ns per instant, 14.6 ns with a virtual call for each).
 
 #include <cassert>
 #include <optional>
@@ -10,8 +9,7 @@
 
 namespace libchar::fusion {
 
-/// A block of consecutive instants: column k holds the n samples of instant k. Blocks of any size
-/// give the same bits.
+/// A block of consecutive instants: column k holds the n samples of instant k. Blocks of any size give the same bits.
 using Block = Eigen::Ref<const Eigen::MatrixXd>;
 /// r rows, one column per instant.
 using BlockOut = Eigen::Ref<Eigen::MatrixXd>;
@@ -51,9 +49,9 @@ class RunnerOf final : public Runner {
   static constexpr bool kMayLearn = A::description.needs.reference_helps;
   static constexpr bool kLearns =
       A::description.needs.reference || A::description.needs.reference_throughout || kMayLearn;
-  static_assert(kLearns == Learns<A>,
-                "description.needs.reference (or reference_throughout, reference_helps) and "
-                "learn(y, truth) go together");
+  static_assert(
+      kLearns == Learns<A>,
+      "description.needs.reference (or reference_throughout, reference_helps) and learn(y, truth) go together");
   static_assert(HasOptions<A> || !std::constructible_from<A, const Array&, const Settings&>,
                 "a constructor with Settings goes with a table `options`");
 

@@ -54,8 +54,7 @@ inline constexpr Option kStart{"start_s",
                                1,
                                0,
                                1e6,
-                               "the start is the mean of the angles of gravity of so long, carried "
-                               "along by the gyroscope; 0: the "
-                               "first one alone"};
+                               "the start is the mean of the angles of gravity of so long, carried along by the "
+                               "gyroscope; 0: the first one alone"};
 
 }  // namespace libchar::fusion

@@ -23,9 +23,8 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path, con
 /// What the log itself calls the channels that `options` read.
 std::vector<std::string> names_in_log(const std::string& path, const ReadOptions& options);
 
-/// Options that read only `some` of the channels that `options` read (`all`, with their names in
-/// the end; `in_log` as the log calls them), each with the name, unit and factor that it has among
-/// all.
+/// Options that read only `some` of the channels that `options` read (`all`, with their names in the end; `in_log` as
+/// the log calls them), each with the name, unit and factor that it has among all.
 ReadOptions options_of_channels(const ReadOptions& options, const std::vector<Channel>& all,
                                 const std::vector<std::string>& in_log, const std::vector<std::size_t>& some);
 

@@ -9,8 +9,7 @@
 namespace libchar {
 namespace {
 
-// Writes what it is given; `known` is what an earlier reading found, which is better than what the
-// first rows say.
+// Writes what it is given; `known` is what an earlier reading found, which is better than what the first rows say.
 class Writing final : public BlockSink {
  public:
   Writing(const std::string& to, const WriteOptions& options, const LogInfo* known)

@@ -1,7 +1,6 @@
 #pragma once
-// The log formats: what each is called, which files it takes, what it can hold. Readers, writers,
-// the command line, scenes and docs/formats.md go by this table; detail/format.hpp has the
-// functions behind it.
+// The log formats: what each is called, which files it takes, what it can hold. Readers, writers, the command line,
+// scenes and docs/formats.md go by this table; detail/format.hpp has the functions behind it.
 
 #include <string>
 #include <string_view>

@@ -95,8 +95,7 @@ void judge_gravity(std::span<const Channel> channels, const std::function<Channe
     const Suspicion suspicion = suspicion_of(ratio, channels[triad[0]].unit, steady);
     Finding found =
         finding("not_gravity",
-                fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads "
-                            "{}: {}.",
+                fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads {}: {}.",
                             brief_text(ratio / in_g, 4), unit, brief_text(1 / in_g, 4), suspicion.says),
                 fmt::format("the mean acceleration is {} {}: {}", brief_text(ratio / in_g, 4), unit, suspicion.says));
     if (ratio < kTolerance && suspicion.factor.empty()) found.severity = Severity::caution;

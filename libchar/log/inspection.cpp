@@ -14,8 +14,7 @@
 namespace libchar {
 namespace {
 
-// Channels are measured beside each other; each by one thread, so that nothing depends on their
-// number.
+// Channels are measured beside each other; each by one thread, so that nothing depends on their number.
 class Meters final : public BlockSink {
  public:
   explicit Meters(int threads) : threads_(threads) {}

@@ -16,8 +16,7 @@ struct Inspection {
   std::vector<ChannelQuality> quality;  ///< one per channel
 };
 
-/// Reads a log once, in constant memory. Of a log with several topics, without a choice, it
-/// lists them (`is_listing`).
+/// Reads a log once, in constant memory. Of a log with several topics, without a choice, it lists them (`is_listing`).
 Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
 
 /// Are these topics of a log, to be chosen before it is read?

@@ -74,10 +74,9 @@ class DistinctValues {
   std::vector<double> values_;
 };
 
-// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It
-// is an end of the range when three and more stand in a row, and it has more than twice as many as
-// its neighbour, which the tail of a coarsely rounded signal has not: then all of them are
-// saturated.
+// Samples at one extreme (sign = +1: the maximum, -1: the minimum) and at the value next to it. It is an end of the
+// range when three and more stand in a row, and it has more than twice as many as its neighbour, which the tail of a
+// coarsely rounded signal has not: then all of them are saturated.
 struct Extreme {
   double sign = 1, value = -__builtin_inf(), next = -__builtin_inf(), third = -__builtin_inf();
   std::uint64_t run = 0, count = 0, at_next = 0;
@@ -168,8 +167,7 @@ struct BlockSums {
   double nearest = 0;  // least |x| other than zero
 };
 
-/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every
-/// vector width.
+/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width.
 LIBCHAR_LANES BlockSums sums_of_lanes(const double* x, const double* before, std::size_t n, double shift) {
   Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
@@ -240,9 +238,8 @@ LIBCHAR_LANES bool any_missing_lanes(const double* x, std::size_t n) {
 }
 constexpr InLanes<any_missing_lanes> any_missing;
 
-// Mean and variance only: sums about the block's first value, blocks merged by Chan's formula
-// (core/moments.hpp has all four moments at three times the cost, which a meter that runs on every
-// sample need not pay).
+// Mean and variance only: sums about the block's first value, blocks merged by Chan's formula (core/moments.hpp has all
+// four moments at three times the cost, which a meter that runs on every sample need not pay).
 struct MeanAndSpread {
   double origin = 0;  // the first value: the mean is kept less that, so that an offset costs no digits
   double n = 0, mean = 0, m2 = 0;
@@ -264,8 +261,7 @@ struct MeanAndSpread {
   }
 };
 
-// Raw moments of differences: their mean is next to nothing beside their spread, except for
-// counters.
+// Raw moments of differences: their mean is next to nothing beside their spread, except for counters.
 struct DifferenceMoments {
   double n = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
 
@@ -294,8 +290,7 @@ struct DifferenceMoments {
     if (n < 4 || !(s2 > 0)) return 3;
     const double m = s1 / n, v = s2 / n - m * m;
     const double fourth = s4 / n - 4 * m * s3 / n + 6 * m * m * s2 / n - 3 * m * m * m * m;
-    // A ramp leaves only rounding here, and squares of huge or tiny values leave the range of a
-    // double.
+    // A ramp leaves only rounding here, and squares of huge or tiny values leave the range of a double.
     if (!(v > 1e-9 * (s2 / n)) || !std::isfinite(fourth) || !std::isnormal(v * v)) return 3;
     return fourth / (v * v);
   }
@@ -436,8 +431,7 @@ class CounterWatch {
       return fmt::format("never {}: a clock, a counter or a drift, not noise", rises ? "falls" : "rises");
     const bool saw = back.least > 2 * there.largest && static_cast<double>(back.count) <= 0.125 * steps();
     return saw ? fmt::format(
-                     "{} step by step and falls back {} times: a sawtooth, such as a counter "
-                     "that runs over, not noise",
+                     "{} step by step and falls back {} times: a sawtooth, such as a counter that runs over, not noise",
                      rises ? "rises" : "sinks", back.count)
                : "";
   }
@@ -487,8 +481,7 @@ class CounterWatch {
   Direction up_, down_;
 };
 
-// The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing
-// when there is none.
+// The common step of values that lie on a grid, by Euclid's algorithm with a tolerance; nothing when there is none.
 std::optional<double> grid_step(std::vector<double> values) {
   if (values.size() < 2) return std::nullopt;
   std::sort(values.begin(), values.end());
@@ -511,8 +504,7 @@ std::optional<double> grid_step(std::vector<double> values) {
     step = a;
     if (step < 0.2 * least || step < 4 * tolerance) return std::nullopt;
   }
-  // Refine by least squares through the origin of the grid, widening the stretch so that no step is
-  // miscounted.
+  // Refine by least squares through the origin of the grid, widening the stretch so that no step is miscounted.
   for (std::size_t used = 2; used <= values.size();
        used = used == values.size() ? used + 1 : std::min(used * 2, values.size())) {
     double kk = 0, kv = 0;
@@ -530,8 +522,7 @@ std::optional<double> grid_step(std::vector<double> values) {
   return step;
 }
 
-// 0.05000000000000027 → 0.05: the least number of digits that stands within the grid's own
-// uncertainty.
+// 0.05000000000000027 → 0.05: the least number of digits that stands within the grid's own uncertainty.
 double tidy(double step) {
   for (int digits = 1; digits < 16; ++digits) {
     const double shorter = rounded(step, digits);
@@ -599,9 +590,8 @@ struct QualityMeter::State {
   Beginning beginning;
   std::uint64_t pushed = 0;
   bool float32 = true;
-  // The sample before the block, then samples until the block is full; with it whether a sample
-  // does not follow the one before directly (missing samples between). Room for as many as came so
-  // far.
+  // The sample before the block, then samples until the block is full; with it whether a sample does not follow the one
+  // before directly (missing samples between). Room for as many as came so far.
   std::vector<double> held;
   std::vector<unsigned char> starts;
   std::size_t used = 0;
@@ -817,15 +807,16 @@ void judge_values(const ChannelQuality& q, std::vector<Finding>& out) {
                           fmt::format("{} distinct values: quantization-limited, record with more gain or resolution",
                                       q.distinct_values)));
   else if (q.resolution && q.standard_deviation < 0.5 * *q.resolution)
-    out.push_back(finding("coarse_resolution",
-                          fmt::format("standard deviation is {} of the resolution: quantization hides the noise, "
-                                      "record with more gain",
-                                      brief_text(q.standard_deviation / *q.resolution, 2))));
+    out.push_back(finding(
+        "coarse_resolution",
+        fmt::format("standard deviation is {} of the resolution: quantization hides the noise, record with more gain",
+                    brief_text(q.standard_deviation / *q.resolution, 2))));
   if (q.float32 && q.distinct_values > 16 && q.standard_deviation > 0 && q.float32_step > 0.5 * q.standard_deviation)
     out.push_back(finding(
-        "float_step", fmt::format("32-bit floats step by {} here, which is {} of the standard deviation: "
-                                  "subtract the offset before storing",
-                                  brief_text(q.float32_step), brief_text(q.float32_step / q.standard_deviation, 2))));
+        "float_step",
+        fmt::format(
+            "32-bit floats step by {} here, which is {} of the standard deviation: subtract the offset before storing",
+            brief_text(q.float32_step), brief_text(q.float32_step / q.standard_deviation, 2))));
 }
 
 /// A noise of which a hundredth does not fit into the range is not the one that was recorded.
@@ -863,9 +854,8 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   const bool band = share > kBand && q.signs.nearest_to_zero > kApart * std::max(step, 1 / (2 * n * density));
   Finding found =
       finding(band ? "dead_band" : "missing_mark",
-              band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than "
-                                 "{}: a dead band, and "
-                                 "noise at rest cannot be measured from this",
+              band ? fmt::format("{} of the samples are exactly 0, and no other comes nearer to it than {}: a dead "
+                                 "band, and noise at rest cannot be measured from this",
                                  percent_text(share), brief_text(q.signs.nearest_to_zero, 3))
                    : fmt::format("0 occurs {} times among values that hardly repeat: a mark for missing values?",
                                  q.signs.zeros));
@@ -888,12 +878,12 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   const bool rare = q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
   if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
   Finding stuck = finding(
-      "stuck", q.signs.frozen_runs < 2 || !rare
-                   ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
-                   : fmt::format("one value {} to {} times in a row in {} stretches, {} of the samples: the "
-                                 "sensor or the "
-                                 "link hung",
-                                 kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
+      "stuck",
+      q.signs.frozen_runs < 2 || !rare
+          ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
+          : fmt::format(
+                "one value {} to {} times in a row in {} stretches, {} of the samples: the sensor or the link hung",
+                kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
   if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
   // Where values repeat anyway, as between coarse steps, runs of them are no sign.
   const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
@@ -948,11 +938,10 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   }
   if (q.saturated > 0 && q.distinct_values > 3) {
     const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
-    Finding cut =
-        finding(share > kMostSaturated ? "much_saturated" : "saturated",
-                fmt::format("{} samples ({}) stand at the end of the range ({} or {}): "
-                            "saturated, use a larger full scale",
-                            q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
+    Finding cut = finding(
+        share > kMostSaturated ? "much_saturated" : "saturated",
+        fmt::format("{} samples ({}) stand at the end of the range ({} or {}): saturated, use a larger full scale",
+                    q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
     cut.count = q.saturated;
     if (q.minimum == 0 || q.maximum == 0)
       cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
@@ -963,10 +952,10 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   const double rests = static_cast<double>(again) / static_cast<double>(q.samples);
   if (rests > kDeadBand && q.distinct_values > 16 && q.minimum < q.signs.resting_value &&
       q.signs.resting_value < q.maximum) {
-    Finding dead =
-        finding("dead_band", fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be "
-                                         "measured from this",
-                                         percent_text(rests), brief_text(q.signs.resting_value, 6)));
+    Finding dead = finding(
+        "dead_band",
+        fmt::format("{} of the samples are exactly {}: a dead band, and noise at rest cannot be measured from this",
+                    percent_text(rests), brief_text(q.signs.resting_value, 6)));
     dead.count = q.signs.at_rest;
     out.push_back(std::move(dead));
     return;
@@ -991,9 +980,9 @@ std::vector<Finding> findings_of(const ChannelQuality& q, double rate_hz) {
   judge_values(q, out);
   judge_ends(q, rate_hz, out);
   if (q.samples >= 1000 && q.difference_kurtosis > 10 && !(q.signs.held_times > 1))
-    out.push_back(finding("spiky", fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, "
-                                               "look for outliers",
-                                               brief_text(q.difference_kurtosis))));
+    out.push_back(finding(
+        "spiky", fmt::format("kurtosis of differences {} (3 for Gaussian noise): spikes or movement, look for outliers",
+                             brief_text(q.difference_kurtosis))));
   return out;
 }
 

@@ -45,8 +45,7 @@ struct ChannelQuality {
   double mean = 0, standard_deviation = 0, minimum = 0, maximum = 0;
   std::optional<double> resolution;   ///< least step between distinct values (LSB), when the values lie on a grid
   std::uint64_t distinct_values = 0;  ///< counted up to 4096, then 4096
-  /// samples at the minimum or maximum, if three are consecutive and the value next to it has
-  /// less than half as many
+  /// samples at the minimum or maximum, if three are consecutive and the value next to it has less than half as many
   std::uint64_t saturated = 0;
   std::uint64_t longest_stuck = 0;  ///< longest run of one value
   std::uint64_t at_minimum = 0, at_maximum = 0;

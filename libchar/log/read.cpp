@@ -46,8 +46,8 @@ std::string front_of(const std::string& path) {
     throw input_error("E0101", path)
         .says("is a folder, a file was expected")
         .hint(
-            "of folders those of CSV files are read, and those of rosbag2, which have a "
-            "metadata.yaml (ros2 bag reindex writes one)");
+            "of folders those of CSV files are read, and those of rosbag2, which have a metadata.yaml (ros2 bag "
+            "reindex writes one)");
   }
   std::string bytes(4096, '\0');
   // Only of a regular file can the front be read twice.
@@ -157,9 +157,8 @@ double conversion(const std::string& stated, const Channel& channel) {
       .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 
-// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number
-// in the unit, and values in another unit of the log are converted. Returns the factors, and says in
-// `notes` what was done.
+// Names and units as they are asked for; counts become values, by `channel_scale`, else by a number in the unit, and
+// values in another unit of the log are converted. Returns the factors, and says in `notes` what was done.
 std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOptions& options, ScaleNotes* notes) {
   std::vector<double> factors(channels.size(), 1);
   const std::vector<Channel> stated = channels;
@@ -337,8 +336,7 @@ void judge_values(const Watch& watch, LogInfo& info, const ReadOptions& options,
     if (!(info.channels[c].every > 1)) continue;
     Finding& slow = warnings.add(
         "slow_channel",
-        "channels with a clock of their own among the rows of others: in "
-        "the grid of the table samples are missing",
+        "channels with a clock of their own among the rows of others: in the grid of the table samples are missing",
         fmt::format("channel {}, every {} rows", info.channels[c].name, brief_text(info.channels[c].every, 3)));
     if (slow.help.empty())
       slow.help.push_back({"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
@@ -382,10 +380,8 @@ std::string why_no_rows(const LogInfo& log) {
   if (format == nullptr || !format->about.rows_at_places)
     return fmt::format("its rows have no fixed places ({})", log.format);
   if (!log.time.column.empty())
-    return fmt::format(
-        "it has stamps (column {}), which say where a sample stands only once all "
-        "of them are read",
-        printable(log.time.column));
+    return fmt::format("it has stamps (column {}), which say where a sample stands only once all of them are read",
+                       printable(log.time.column));
   return "";
 }
 

@@ -33,8 +33,7 @@ struct ReadOptions {
       channels;  ///< names or c0, c1… to read, "!name" not to; empty = all. Unknown: Error(usage), the nearest
   std::string
       topic;  ///< of a log with several streams, the one to read; "" = the one that `channels` name, or the only one
-  /// whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when
-  /// recorded), "publish"
+  /// whose stamps, where messages have several: "auto", "header" (the sensor's), "log" (when recorded), "publish"
   std::string time_source = "auto";
   std::vector<std::string> names;  ///< new names of the channels read, in order; empty = as in the log
   std::vector<std::string> units;  ///< units of the channels read, in order, or one for all; empty = as in the log
@@ -118,9 +117,8 @@ LogInfo log_listing(const std::string& path, const ReadOptions& options);
 /// unless the format is given.
 bool read_once(const std::string& path);
 
-/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that
-/// reading ahead keeps busy. More would take turns with it, and its hash is one long chain that all
-/// others wait for in the end.
+/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that reading ahead keeps
+/// busy. More would take turns with it, and its hash is one long chain that all others wait for in the end.
 int threads_beside_reading(const LogInfo& log, int threads);
 
 /// The same, whole, in memory.

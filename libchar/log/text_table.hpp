@@ -1,7 +1,6 @@
 #pragma once
-// A small CSV table whose header names its columns and whose cells may be text: curves and figures
-// that other programs wrote. Delimiter, decimal mark, line ends, quotes and comments are those of
-// logs (docs/formats.md).
+// A small CSV table whose header names its columns and whose cells may be text: curves and figures that other programs
+// wrote. Delimiter, decimal mark, line ends, quotes and comments are those of logs (docs/formats.md).
 
 #include <cstddef>
 #include <cstdint>

@@ -39,13 +39,11 @@ class LogWriter {
   void finish() { commit_together(complete()); }
   /// The files written, the log first.
   virtual std::vector<std::string> files() const = 0;
-  /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for
-  /// them").
+  /// What this format cannot hold of this log, in sentences ("units: a .npy file has no place for them").
   virtual std::vector<std::string> losses() const { return {}; }
 };
 
-/// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format
-/// or suffix.
+/// Channel names, units, rate and start come from `info`. Throws Error(usage) for an unknown format or suffix.
 std::unique_ptr<LogWriter> open_log_writer(const std::string& path, const LogInfo& info,
                                            const WriteOptions& options = {});
 

@@ -37,8 +37,8 @@ enum class DeviceQuantity : std::uint8_t {
 template <>
 inline constexpr auto enum_table<DeviceQuantity> =
     enum_words<DeviceQuantity,
-               "white_noise bias_instability random_walk quantization rate_ramp gauss_markov_sigma "
-               "gauss_markov_time turn_on_bias temperature_coefficient">;
+               "white_noise bias_instability random_walk quantization rate_ramp gauss_markov_sigma gauss_markov_time "
+               "turn_on_bias temperature_coefficient">;
 inline constexpr std::size_t kDeviceQuantities = enum_table<DeviceQuantity>.size();
 
 DeviceQuantity quantity_of(Term term);

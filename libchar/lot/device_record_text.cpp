@@ -53,8 +53,8 @@ const Fields<RecordedValue>& value_fields() {
                            .known = when<has_value>}),
       custom<T, read_in_all, write_in_all>(
           "square_in_all", "list of numbers",
-          {.meaning = "square, its standard deviation and skewness in the model of all terms, none "
-                      "held at zero, where they say more than value and sd"}),
+          {.meaning = "square, its standard deviation and skewness in the model of all terms, none held at zero, where "
+                      "they say more than value and sd"}),
       field<&T::upper95>("upper95", {.range = kNotNegative,
                                      .written = Written::if_known,
                                      .known = when<[](const T& v) { return !std::isnan(v.upper95); }>}),

@@ -129,8 +129,7 @@ void add_devices(double probability, const DeviceTable& table, Statistic& s) {
   }
 }
 
-// Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none
-// stands out.
+// Fills `searched` and `outliers` of each quantity. `probability`: of naming any device where none stands out.
 void search_outliers(const Fleet& fleet, double probability, std::vector<Statistic>& statistics) {
   std::size_t channels = 0, kinds = 0;
   std::vector<DeviceTable> tables(statistics.size());

@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {

@@ -20,11 +20,10 @@ namespace libchar {
 namespace {
 
 // Do two lots scatter alike?
-// With the spread s that both have in common (detail/grouped_effects.hpp) and z = (y - mean of its
-// lot) / sqrt(v + s²), the ratio of the mean squares of z in the two lots is Fisher's F, exactly
-// where either the uncertainties or the spread are nothing. F believes that the values are normal:
-// with the kurtosis g of all z, at least 3, lots of n values have 2 n / (g - (n - 3)/(n - 1))
-// degrees of freedom, n - 1 for g = 3 (Shoemaker, Am. Stat. 57 (2003) 105).
+// With the spread s that both have in common (detail/grouped_effects.hpp) and z = (y - mean of its lot) / sqrt(v + s²),
+// the ratio of the mean squares of z in the two lots is Fisher's F, exactly where either the uncertainties or the
+// spread are nothing. F believes that the values are normal: with the kurtosis g of all z, at least 3, lots of n values
+// have 2 n / (g - (n - 3)/(n - 1)) degrees of freedom, n - 1 for g = 3 (Shoemaker, Am. Stat. 57 (2003) 105).
 
 constexpr std::size_t kLeast = 4;
 
@@ -45,8 +44,7 @@ Powers powers_of(std::span<const double> y, std::span<const double> v, double me
 
 double degrees_of_freedom(double n, double kurtosis) { return 2 * n / (kurtosis - (n - 3) / (n - 1)); }
 
-// Probability of spreads that differ as much where they are equal; 1 of fewer than four values on
-// a side.
+// Probability of spreads that differ as much where they are equal; 1 of fewer than four values on a side.
 double equal_spread_p(std::span<const double> y_a, std::span<const double> v_a, std::span<const double> y_b,
                       std::span<const double> v_b) {
   if (std::min(y_a.size(), y_b.size()) < kLeast) return 1;

@@ -69,13 +69,10 @@ std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& fi
   const bool densities = at.has("densities");
   if (densities == at.has("rate_hz"))
     throw input_error("E0588", file)
-        .says(
-            "versions of imu_utils write different numbers under one name, and the file does not "
-            "say which")
+        .says("versions of imu_utils write different numbers under one name, and the file does not say which")
         .hint(
-            "add a line rate_hz: 200 (the rate) where gyr_n is the noise of a sample, as the "
-            "version of "
-            "2018 writes it, or densities: true for the fork that writes densities");
+            "add a line rate_hz: 200 (the rate) where gyr_n is the noise of a sample, as the version of 2018 writes "
+            "it, or densities: true for the fork that writes densities");
   const double rate_hz = at.number_or("rate_hz", 0), root = densities ? 1 : std::sqrt(rate_hz);
   std::vector<SensorModel> out;
   for (const auto& [part, key] : {std::pair{"Gyr", "gyr"}, std::pair{"Acc", "acc"}}) {
@@ -96,8 +93,7 @@ std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& fi
       }
       model.noise[static_cast<std::size_t>(Term::flicker)] = given(instability_of_floor(slow));
       model.remarks.push_back(std::string(key) +
-                              "_w is the lowest Allan deviation: read as bias instability, not as "
-                              "a random walk");
+                              "_w is the lowest Allan deviation: read as bias instability, not as a random walk");
     }
   }
   return out;

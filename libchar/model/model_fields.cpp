@@ -163,10 +163,10 @@ const Fields<DeterministicTerm>& deterministic_fields() {
   using T = DeterministicTerm;
   static const Fields<T> rows = {
       field<&T::kind>("kind", {.meaning = "what it is", .written = Written::always}),
-      field<&T::size>("size", {.unit = "U",
-                               .meaning = "step: after less before; warm-up: at the first sample; ramp: "
-                                          "over the recording",
-                               .written = Written::always}),
+      field<&T::size>("size",
+                      {.unit = "U",
+                       .meaning = "step: after less before; warm-up: at the first sample; ramp: over the recording",
+                       .written = Written::always}),
       field<&T::sd>("sd", {.unit = "U", .range = kNotNegative, .meaning = "standard deviation"}),
       field<&T::at_s>("at_s", {.unit = "s", .meaning = "step: from the first sample"}),
       field<&T::tau_s>("tau_s", {.unit = "s", .range = kNotNegative, .meaning = "warm-up: time constant"}),
@@ -293,13 +293,12 @@ const Fields<SensorModel>& noise_fields() {
       term_row(Term::walk, "K"),
       term_row(Term::quantization, "Q"),
       term_row(Term::ramp, "R"),
-      part<&SensorModel::gauss_markov>(
-          "gauss_markov", gauss_markov_fields(),
-          {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: density "
-                      "2 sigma^2 tau / (1 + (2 pi f tau)^2)",
-           .meaning = "first-order Gauss–Markov process beside the terms",
-           .otherwise = "none",
-           .form = Entry::Form::flow}),
+      part<&SensorModel::gauss_markov>("gauss_markov", gauss_markov_fields(),
+                                       {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: "
+                                                   "density 2 sigma^2 tau / (1 + (2 pi f tau)^2)",
+                                        .meaning = "first-order Gauss–Markov process beside the terms",
+                                        .otherwise = "none",
+                                        .form = Entry::Form::flow}),
       field<&SensorModel::flicker_phase>(
           "flicker_phase",
           {.unit = "U·s",
@@ -335,8 +334,7 @@ const Fields<SensorModel>& noise_fields() {
 Row<SensorModel> noise_shape_field() {
   return part<&SensorModel::noise_shape>(
       "noise_shape", noise_shape_fields(),
-      {.comment = "what the sensor's filter and surroundings make of the noise: power ratio "
-                  "over frequency",
+      {.comment = "what the sensor's filter and surroundings make of the noise: power ratio over frequency",
        .meaning = "multiplies the density of the noise, not of the signal",
        .otherwise = "none"});
 }

@@ -32,8 +32,7 @@ SensorModel sensor_model_of(const Document& node, const std::string& file, const
 
 // Sensor models as JSON: one model with the keys of its YAML file, several as a list.
 
-/// `format: sensor-model`, `version: 1`: the keys of the model file; read_model_file reads it back
-/// to the same doubles.
+/// `format: sensor-model`, `version: 1`: the keys of the model file; read_model_file reads it back to the same doubles.
 Json model_json(const SensorModel& model);
 
 /// One model: model_json. Several: {"format":"sensor-models","version":1,"models":[…]}.

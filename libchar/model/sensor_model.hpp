@@ -1,13 +1,10 @@
 #pragma once
-// A sensor model: what is needed to simulate one sensor (docs/models.md, [RV 2.2]), and where each
-// number came from.
+// A sensor model: what is needed to simulate one sensor (docs/models.md, [RV 2.2]), and where each number came from.
 //
 //   y = quantize(gain * saturate(low_pass(alpha x + c1 x^2 + c2 x^3 + beta + noise)))
 //
-// Blocks in order; each is skipped when it is the identity. dT = temperature - reference
-// temperature.
+// Blocks in order; each is skipped when it is the identity. dT = temperature - reference temperature.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>

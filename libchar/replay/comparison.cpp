@@ -1,7 +1,6 @@
-// Intervals that do not overlap: for two independent estimates with 95 % intervals of like width, a
-// difference that large comes by chance in about 0.6 % of cases (Schenker & Gentleman, Am. Stat. 55
-// (2001) 182). Two replays of one recording share its noise, so it is rarer still: "not resolved"
-// is said too often rather than too seldom.
+// Intervals that do not overlap: for two independent estimates with 95 % intervals of like width, a difference that
+// large comes by chance in about 0.6 % of cases (Schenker & Gentleman, Am. Stat. 55 (2001) 182). Two replays of one
+// recording share its noise, so it is rarer still: "not resolved" is said too often rather than too seldom.
 
 #include "libchar/replay/comparison.hpp"
 
@@ -138,8 +137,8 @@ void compare_own_errors(const ReplayReport& a, const ReplayReport& b, Difference
     }
   if (names.empty()) return;
   found.say(
-      fmt::format("the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has "
-                  "an RMSE of {} in A, {} in B{}",
+      fmt::format("the samples or their reference differ (scale, rest, lag or resampling): sensor {} alone has an RMSE "
+                  "of {} in A, {} in B{}",
                   names[0], brief_text(a.sensors[first].error.rmse, 7), brief_text(b.sensors[first].error.rmse, 7),
                   names.size() > 1 ? fmt::format("; so do {} others", names.size() - 1) : ""));
 }

@@ -1,7 +1,6 @@
 #pragma once
 // Two replay reports side by side: A, the older or the accepted one, and B.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

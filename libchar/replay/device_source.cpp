@@ -98,10 +98,8 @@ class Writer {
                       sensor->recorded_unit.empty() ? std::string() : ", in " + comment_words(sensor->recorded_unit));
     text += fmt::format(
         "   Rate: {} Hz. A missing sample is NAN.\n\n"
-        "   State: {} bytes. A step: {:.0f} additions and multiplications, {:.0f} divisions, "
-        "{:.0f} square\n"
-        "   roots, {:.0f} tanh, {:.0f} atan2 at most. Cycles of a step, estimated from these "
-        "counts and not\n"
+        "   State: {} bytes. A step: {:.0f} additions and multiplications, {:.0f} divisions, {:.0f} square\n"
+        "   roots, {:.0f} tanh, {:.0f} atan2 at most. Cycles of a step, estimated from these counts and not\n"
         "   measured: Cortex-M4F {:.0f}, Cortex-M33 {:.0f}{}.\n",
         brief_text(learnt_.rate_hz, 6), out.state_bytes, cost.sums, cost.divisions, cost.roots, cost.tanhs,
         cost.arctangents, out.cycles_m4f, out.cycles_m33,
@@ -129,10 +127,8 @@ class Writer {
         "#define ROUND {}\n#define TANH {}\n#define ATAN2 {}\n#define SQRT {}\n\n"
         "typedef {} fusion_real;\ntypedef struct {{\n{}}} fusion_state;\n\n"
         "void fusion_init(fusion_state *s);\n"
-        "/* 1: *x is the estimate and *sd its standard deviation (below zero: not known); 0: none. "
-        "*/\n"
-        "int fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, fusion_real "
-        "*sd);\n\n"
+        "/* 1: *x is the estimate and *sd its standard deviation (below zero: not known); 0: none. */\n"
+        "int fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, fusion_real *sd);\n\n"
         "static int usable(fusion_real sample) {{ return FABS(sample) <= LARGEST; }}\n\n",
         sensors_.size(), f ? "constant##f" : "constant", f ? "1e30f" : "1e100", f ? "FLT_EPSILON" : "DBL_EPSILON",
         f ? "fabsf" : "fabs", f ? "roundf" : "round", f ? "tanhf" : "tanh", f ? "atan2f" : "atan2",
@@ -175,16 +171,14 @@ class Writer {
   }
 
   std::string tail(const fusion::CForm& form) const {
-    const std::string align = aligned() ? limits() +
-                                              "  for (i = 0; i < N; ++i)\n"
-                                              "    if (usable(samples[i])) samples[i] = "
-                                              "(samples[i] - bias_of[i]) / gain_of[i];\n"
-                                        : "";
-    return "\nvoid fusion_init(fusion_state *s) {\n  static const fusion_state zero = {0};\n  *s = "
-           "zero;\n" +
+    const std::string align =
+        aligned() ? limits() +
+                        "  for (i = 0; i < N; ++i)\n"
+                        "    if (usable(samples[i])) samples[i] = (samples[i] - bias_of[i]) / gain_of[i];\n"
+                  : "";
+    return "\nvoid fusion_init(fusion_state *s) {\n  static const fusion_state zero = {0};\n  *s = zero;\n" +
            form.start +
-           "}\n\nint fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, "
-           "fusion_real *sd) {\n"
+           "}\n\nint fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, fusion_real *sd) {\n"
            "  fusion_real samples[N], variance = -1;\n  int i, given;\n"
            "  for (i = 0; i < N; ++i) samples[i] = y[i] * scale_of[i] - offset_of[i];\n" +
            align + "  given = estimate(s, samples, x, &variance);\n" +

@@ -75,9 +75,8 @@ struct GeometricRms {
 };
 GeometricRms geometric_rms(const Meters& meters, const ScoreOptions& options = {});
 
-/// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both
-/// saw at the same time (equally long meters). `level`: share of such intervals that miss. Contains
-/// 1: the difference is not resolved.
+/// Interval of the ratio of the geometric means (RMSE_a / RMSE_b of one meter each), from what both saw at the same
+/// time (equally long meters). `level`: share of such intervals that miss. Contains 1: the difference is not resolved.
 Interval rms_ratio_interval(const Meters& a, const Meters& b, const ScoreOptions& options = {}, double level = 0.05);
 
 /// Sign test: how probable it is by chance that a's errors are the larger ones in so many of

@@ -59,9 +59,7 @@ class Fusing {
         algorithm_(detail::algorithm_to_apply(learnt, options.algorithm)) {
     if (learnt.average_s)
       throw input_error("E0934", learnt.file)
-          .says(
-              "it was learnt on means over the intervals of a slow reference, which are not "
-              "applied to a log yet")
+          .says("it was learnt on means over the intervals of a slow reference, which are not applied to a log yet")
           .got(duration_text(*learnt.average_s));
     find_entry();
     find_channels();
@@ -267,15 +265,15 @@ void Fusing::check_rate() {
   if (entry_->description->needs.noise_models)
     throw input_error("E0867", log_)
         .says(
-            "the log's rate is {} times that of the log where this was learnt: the noise of a "
-            "sample, which {} weighs against the drifts, is not known there",
+            "the log's rate is {} times that of the log where this was learnt: the noise of a sample, which {} weighs "
+            "against the drifts, is not known there",
             brief_text(ratio, 4), algorithm_.label)
         .got("{} Hz", brief_text(instants_->info().rate_hz, 6))
         .hint("learn on a log of this rate, or choose another algorithm");
   result_.warnings.add(
       "another_rate",
-      "the log's rate is not that of the log where this was learnt: delays and "
-      "times are kept, what counts samples (memories, noise of a sample) is not",
+      "the log's rate is not that of the log where this was learnt: delays and times are kept, what counts samples "
+      "(memories, noise of a sample) is not",
       fmt::format("{} Hz, learnt at {} Hz", brief_text(instants_->info().rate_hz, 6), brief_text(learnt_.rate_hz, 6)));
 }
 
@@ -505,9 +503,8 @@ void Fusing::tell() {
   result_.faults = found_faults(*log, sensor_of_, 0, instants_->info().rate_hz);
   if (log->dropped() > 0)
     result_.warnings.add("faults_not_kept",
-                         "more faults than are kept: flags of sensors behind the last one are not "
-                         "complete",
-                         "", log->dropped());
+                         "more faults than are kept: flags of sensors behind the last one are not complete", "",
+                         log->dropped());
 }
 
 FuseResult Fusing::run(ColumnSink& sink) {

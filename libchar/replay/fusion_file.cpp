@@ -46,9 +46,9 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
         "gain", {.range = {-1, std::numeric_limits<double>::max(), true}, .meaning = "beyond one", .otherwise = "0"}),
     field<&LearntAlignment::cross>("cross", {.meaning = "share of each further axis", .otherwise = "none"}),
     field<&LearntAlignment::low>(
-        "low", {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; "
-                           "−1e300: no limit",
-                .otherwise = "no limits"}),
+        "low",
+        {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; −1e300: no limit",
+         .otherwise = "no limits"}),
     field<&LearntAlignment::high>("high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
 };
 
@@ -146,9 +146,7 @@ class FileCheck {
           .says("h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size());
     if (s.flicker.has_value() != s.walk.has_value() || s.gauss_markov_sigma.size() != s.gauss_markov_tau_s.size())
       throw refusal("sensors", i)
-          .says(
-              "a noise model has flicker and walk, and a gauss_markov_tau_s for each "
-              "gauss_markov_sigma");
+          .says("a noise model has flicker and walk, and a gauss_markov_tau_s for each gauss_markov_sigma");
     for (const auto* limits : {&s.alignment.low, &s.alignment.high})
       if (!limits->empty() && limits->size() != 1 + s.cross.size())
         throw refusal("sensors", i).says("alignment: a limit of the sensor and of each of its further axes");
@@ -264,10 +262,10 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
       field<&LearntSensor::cross>("cross", {.meaning = "channels of the device's further axes"}),
       part<&LearntSensor::alignment>("alignment", kLearntAlignmentFields,
                                      {.meaning = "what is taken out of the sensor"}),
-      field<&LearntSensor::step_noise>(
-          "step_noise", {.range = kPositive,
-                         .meaning = "deviation of its noise from sample to sample, told from the differences "
-                                    "between sensors: a log that differs is warned of"}),
+      field<&LearntSensor::step_noise>("step_noise",
+                                       {.range = kPositive,
+                                        .meaning = "deviation of its noise from sample to sample, told from the "
+                                                   "differences between sensors: a log that differs is warned of"}),
       field<&LearntSensor::step_noise_error>(
           "step_noise_error", {.range = kNotNegative, .meaning = "standard error of the logarithm of its square"}),
       maybe_part<&LearntSensor::reading>(
@@ -289,9 +287,10 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
       field<&LearntAlgorithm::refused>("refused", {.meaning = "why it cannot be applied", .otherwise = "it can"}),
       custom<LearntAlgorithm, read_options, write_options_of>("options", "map of numbers", {.meaning = "as used"}),
       field<&LearntAlgorithm::sd_factor>(
-          "sd_factor", {.meaning = "of each input: the stated standard deviation times this covered 95 % of the "
-                                   "errors of the replay",
-                        .otherwise = "not known"}),
+          "sd_factor",
+          {.meaning =
+               "of each input: the stated standard deviation times this covered 95 % of the errors of the replay",
+           .otherwise = "not known"}),
       custom<LearntAlgorithm, read_learnt, write_learnt>("learnt", "map of lists of numbers",
                                                          {.meaning = "from the reference"}),
   };

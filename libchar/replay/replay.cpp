@@ -1,7 +1,6 @@
-// The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that
-// learns in the learning window, one in which the bounds learn on the evaluation and smoothers look
-// at it, one that runs everything on it block by block, algorithm after algorithm, so that all see
-// the same machine.
+// The order of a replay: what the scene holds (length, rate, rest, lag), the plan, one pass that learns in the learning
+// window, one in which the bounds learn on the evaluation and smoothers look at it, one that runs everything on it
+// block by block, algorithm after algorithm, so that all see the same machine.
 
 #include "libchar/replay/replay.hpp"
 
@@ -18,13 +17,12 @@
 #include "libchar/replay/detail/align/lag.hpp"
 #include "libchar/replay/detail/blind_run.hpp"
 #include "libchar/replay/detail/judge/judgement.hpp"
-#include "libchar/replay/detail/judge/partial_scores.hpp"
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
-#include "libchar/replay/detail/plan/copied_sensors.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/plan/tilt_check.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
@@ -547,8 +545,8 @@ void Replay::refuse_sizes() const {
   if (beyond_ && largest_ > 0) return;
   throw input_error("E0909", scene_.file)
       .says(
-          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of "
-          "that size cannot be squared")
+          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that size cannot be "
+          "squared")
       .got(beyond_ ? "beyond 1e100" : brief_text(largest_, 3))
       .hint("give the sensors a `scale` and a `unit`");
 }
@@ -564,10 +562,10 @@ void doubt_offset(ReplayResult& out) {
                width = 0.5 * (score.error.bias_ci95.high - score.error.bias_ci95.low);
   if (!(bias * bias > kShare * rmse * rmse) || !(bias > kTimes * width)) return;
   Finding& found = best.remarks.add(
-      "constant_error", fmt::format("{} of the mean square error is a constant, {}{}: "
-                                    "an offset of the reference or of the sensors",
-                                    percent_text(bias * bias / (rmse * rmse)), number_text(score.error.bias, 3),
-                                    out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
+      "constant_error",
+      fmt::format("{} of the mean square error is a constant, {}{}: an offset of the reference or of the sensors",
+                  percent_text(bias * bias / (rmse * rmse)), number_text(score.error.bias, 3),
+                  out.inputs.empty() || out.inputs[0].unit.empty() ? "" : " " + out.inputs[0].unit));
   found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
 }
 

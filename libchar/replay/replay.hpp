@@ -78,8 +78,7 @@ struct ReplayWorkspace {
 std::vector<std::string> explain_replay(const Scene& scene, const ReplayOptions& options = {},
                                         Progress& progress = no_progress());
 
-/// Throws Error(input) when the scene does not fit its recording, Error(numeric) when no algorithm
-/// can run.
+/// Throws Error(input) when the scene does not fit its recording, Error(numeric) when no algorithm can run.
 ReplayResult replay(const Scene& scene, const ReplayOptions& options = {}, Progress& progress = no_progress(),
                     const ReplayWorkspace& workspace = {});
 
@@ -90,10 +89,9 @@ struct Sweep {
   std::vector<double> values;
 };
 
-/// "minque.gamma=0.99", "minque.gamma=.9,.99,.999", "perceptron.neurons=3..30" (whole numbers, all
-/// of up to twelve, else twelve at about equal ratios). `where` is the option of the command line,
-/// for messages. Throws Error(usage): another form, an unknown algorithm or option, a value out of
-/// range, more than `most` values.
+/// "minque.gamma=0.99", "minque.gamma=.9,.99,.999", "perceptron.neurons=3..30" (whole numbers, all of up to twelve,
+/// else twelve at about equal ratios). `where` is the option of the command line, for messages. Throws Error(usage):
+/// another form, an unknown algorithm or option, a value out of range, more than `most` values.
 Sweep parse_sweep(const std::string& text, const std::string& where, std::size_t most = 100);
 
 /// Every algorithm of the list that is swept is listed once for each combination of the values;

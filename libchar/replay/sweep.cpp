@@ -14,9 +14,7 @@ constexpr std::size_t kRangeValues = 12;
 
 Refusal sweep_refusal(const std::string& where) {
   return usage_error("E0963", where)
-      .says(
-          "expected ALGORITHM.OPTION=NUMBER, or where several are taken NUMBER,NUMBER… or FROM..TO "
-          "of whole numbers")
+      .says("expected ALGORITHM.OPTION=NUMBER, or where several are taken NUMBER,NUMBER… or FROM..TO of whole numbers")
       .hint(where + " minque.gamma=0.99");
 }
 

@@ -98,8 +98,8 @@ void check_units(const SensorRecording& r, const Chosen& chosen) {
           .says("{} is in {}, and {} in {}: they are not one quantity", printable(all[0].name, 40),
                 printable(all[0].unit, 40), printable(channel.name, 40), printable(channel.unit, 40))
           .hint(
-              "choose others with `sensors`, say what they are in with `units`, or give each a "
-              "scale and a unit in a scene file");
+              "choose others with `sensors`, say what they are in with `units`, or give each a scale and a unit in a "
+              "scene file");
 }
 
 void add_model(SceneSensor& sensor, const std::string& file, Scene& scene) {

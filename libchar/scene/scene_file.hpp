@@ -18,9 +18,8 @@ struct SceneReadOptions {
   bool again = false;
 };
 
-/// Reads `format: scene`, `version: 1`, YAML or JSON (docs/scenes.md). Paths are relative to the
-/// scene's folder and stay inside it. Throws Error(input) with place, key and the nearest valid
-/// key.
+/// Reads `format: scene`, `version: 1`, YAML or JSON (docs/scenes.md). Paths are relative to the scene's folder and
+/// stay inside it. Throws Error(input) with place, key and the nearest valid key.
 Scene read_scene_file(const std::string& path, const SceneReadOptions& options = {});
 
 /// Is this meant as a scene? By its suffix (.yaml, .yml, .json), or a line `format: scene` among
@@ -65,8 +64,7 @@ std::string resolve_scene_file(const std::string& named, const SceneFolder& fold
 /// elsewhere. Throws Error(output) for a name that is not UTF-8, which YAML does not allow.
 std::string path_for_scene(const std::string& file, const std::string& scene);
 
-/// Throws Error(output) when an output would overwrite the scene or a file that it names, or two
-/// outputs are one.
+/// Throws Error(output) when an output would overwrite the scene or a file that it names, or two outputs are one.
 void refuse_scene_outputs(const Scene& scene, const std::vector<std::string>& outputs);
 
 // The scene of a recording that somebody describes in a few words instead of in a file.
@@ -83,9 +81,8 @@ struct SensorRecording {
   std::string scene_file;     ///< path of the scene; empty: none
 };
 
-/// A scene as read_scene_file returns it, with every sensor by its own name. Throws Error(usage) for
-/// channels that are not there, that are named twice, or that are in different units (E0749), Error(input)
-/// for files that cannot be read.
+/// A scene as read_scene_file returns it, with every sensor by its own name. Throws Error(usage) for channels that are
+/// not there, that are named twice, or that are in different units (E0749), Error(input) for files that cannot be read.
 Scene scene_from_recording(const SensorRecording& recording);
 
 }  // namespace libchar

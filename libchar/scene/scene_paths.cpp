@@ -8,7 +8,6 @@
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 #include "libchar/scene/scene_file.hpp"
 
 namespace libchar {

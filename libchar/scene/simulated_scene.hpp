@@ -42,10 +42,9 @@ struct SimulatedLog {
   std::size_t channels = 0;        ///< of the log
 };
 
-/// Streams the simulation into `recording.file`, in constant memory, and writes the scene that
-/// replays it; no `scene_file`: the log alone. What `original` says of a replay is kept. Both files
-/// are there, or neither. Throws as check(ArraySimulation) and open_log_writer, and Error(usage)
-/// where a channel has the name of another column.
+/// Streams the simulation into `recording.file`, in constant memory, and writes the scene that replays it; no
+/// `scene_file`: the log alone. What `original` says of a replay is kept. Both files are there, or neither. Throws as
+/// check(ArraySimulation) and open_log_writer, and Error(usage) where a channel has the name of another column.
 SimulatedLog simulate_log(const ArraySimulation& simulation, const SimulatedRecording& recording,
                           const Scene& original = {}, Progress& progress = no_progress());
 
@@ -59,18 +58,16 @@ struct ModelSimulationOptions {
   std::uint64_t devices = 1;      ///< of each model, each with its own draws; numbered from 1
 };
 
-/// Reads the models; sensors are named by their channel, else by their file. How long, and what is
-/// measured, is left to the caller. Throws Error(usage) when the models state several rates, and
-/// what reading a model throws.
+/// Reads the models; sensors are named by their channel, else by their file. How long, and what is measured, is left to
+/// the caller. Throws Error(usage) when the models state several rates, and what reading a model throws.
 ArraySimulation simulation_of_models(const std::vector<std::string>& model_files,
                                      const ModelSimulationOptions& options = {});
 
 // The samples of a true signal that comes from a log.
 
-/// Reads the log of a signal of kind recording into it, and leaves every other kind as it is. The
-/// path is used unchanged, not relative to a scene. A log that is shorter than the simulation is a
-/// warning; one of another rate, with several channels or without a sample is Error(usage) at
-/// `place`.
+/// Reads the log of a signal of kind recording into it, and leaves every other kind as it is. The path is used
+/// unchanged, not relative to a scene. A log that is shorter than the simulation is a warning; one of another rate,
+/// with several channels or without a sample is Error(usage) at `place`.
 void read_recorded_signal(SignalSpec& signal, const std::string& place, const ArraySimulation& simulation,
                           Findings& warnings);
 

@@ -20,9 +20,8 @@ inline r123::Philox4x64::ctr_type block_at(const StreamKey& key, std::uint64_t p
   return r123::Philox4x64()(counter, {{key.seed, key.sensor}});
 }
 
-/// The words of one deviate: the first from the stream, those that one deviate in 36 needs
-/// beyond it (ziggurat rejections, the tail) from blocks of its own, so that they do not move the
-/// next deviate.
+/// The words of one deviate: the first from the stream, those that one deviate in 36 needs beyond it (ziggurat
+/// rejections, the tail) from blocks of its own, so that they do not move the next deviate.
 class DeviateWords {
  public:
   using result_type = std::uint64_t;

@@ -1,7 +1,6 @@
 #pragma once
-// Random numbers that depend on nothing but a key and a position: the same on every machine,
-// whatever the size of the blocks they are drawn in, the number of threads, and what other sensors
-// draw.
+// Random numbers that depend on nothing but a key and a position: the same on every machine, whatever the size of the
+// blocks they are drawn in, the number of threads, and what other sensors draw.
 
 #include <array>
 #include <cstddef>

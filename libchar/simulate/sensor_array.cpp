@@ -1,7 +1,6 @@
-// y_i[k] = model_i(sum_j h_ij x_j(t_k)), block by block: truth signals first, then every sensor on
-// its own streams of random numbers, then faults. With oversampling p everything up to the
-// quantization runs p times as fast and every p-th sample is kept, so that aliases are in the
-// samples.
+// y_i[k] = model_i(sum_j h_ij x_j(t_k)), block by block: truth signals first, then every sensor on its own streams of
+// random numbers, then faults. With oversampling p everything up to the quantization runs p times as fast and every
+// p-th sample is kept, so that aliases are in the samples.
 #include "libchar/simulate/sensor_array.hpp"
 
 #include <algorithm>
@@ -103,8 +102,8 @@ void check(const ArraySimulation& s) {
       throw input_error("E0554")
           .says("two channels would be called {}", sensor.name)
           .hint(
-              "rename the sensor (channel: in a model, name: in a scene); a truth signal is called "
-              "truth unless it has a name");
+              "rename the sensor (channel: in a model, name: in a scene); a truth signal is called truth unless it has "
+              "a name");
     check_sensor(s, sensor);
   }
   for (const SensorFault& fault : s.faults)

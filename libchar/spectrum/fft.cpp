@@ -64,11 +64,10 @@ std::span<const double> RealFft::inverse() {
 
 std::size_t RealFft::size() const { return state_->n; }
 
-// FFTW's estimate is at its worst for lengths with high powers of five, such as 625 or 1000, which
-// records of a round number of samples give: plans of twice the time it could be. For these the
-// transform of n = a b values goes in two steps that FFTW does well (W. M. Gentleman and G. Sande,
-// 1966): over t1 at fixed t2, a turn by exp(-2 pi i m1 t2 / n), over t2; t = b t1 + t2, m = m1 + a
-// m2. The values between the steps stand packed in memory of the object.
+// FFTW's estimate is at its worst for lengths with high powers of five, such as 625 or 1000, which records of a round
+// number of samples give: plans of twice the time it could be. For these the transform of n = a b values goes in two
+// steps that FFTW does well (W. M. Gentleman and G. Sande, 1966): over t1 at fixed t2, a turn by exp(-2 pi i m1
+// t2 / n), over t2; t = b t1 + t2, m = m1 + a m2. The values between the steps stand packed in memory of the object.
 namespace {
 
 /// The first step's length; 0: FFTW alone.
@@ -153,8 +152,7 @@ void ComplexFft::State::two_steps(fftw_complex* from, fftw_complex* to) const {
 
 namespace {
 
-// Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the
-// address.
+// Planned for memory as the caller's will be: FFTW looks at no more than the lowest bits of the address.
 struct PlannedFor {
   Aligned<std::complex<double>> memory;
   fftw_complex* values;
@@ -219,9 +217,8 @@ void ComplexFft::transform(const double* from, double* to) const {
 
 namespace {
 
-// Mean about the first sample, in eight lanes. Centring keeps a large first coefficient from
-// leaving its rounding errors in the others: without it they are 3e-14 where they could be 3e-16,
-// and at an offset of 1e9 nothing is left.
+// Mean about the first sample, in eight lanes. Centring keeps a large first coefficient from leaving its rounding
+// errors in the others: without it they are 3e-14 where they could be 3e-16, and at an offset of 1e9 nothing is left.
 double centre_of(std::span<const double> y) {
   const double first = y[0];
   double lanes[8] = {};
@@ -239,9 +236,8 @@ double centre_of(std::span<const double> y) {
 // DCT-II from one real FFT (J. Makhoul, IEEE Trans. ASSP 28, 1980): with v = (y_0, y_2, y_4, …,
 // y_5, y_3, y_1), V its DFT and W_k = exp(-i pi k / (2n)) V_k,
 //   sum_t y_t cos(pi k (t + 1/2) / n) = Re W_k,      and the same at n - k is -Im W_k.
-// The twiddles exp(-i pi k / (2n)), k <= n/2, are products of two short exact tables, coarse (every
-// 512th) and fine, so that neither a table of n/2 entries nor n/2 sines are paid, and no error
-// builds up along k.
+// The twiddles exp(-i pi k / (2n)), k <= n/2, are products of two short exact tables, coarse (every 512th) and fine, so
+// that neither a table of n/2 entries nor n/2 sines are paid, and no error builds up along k.
 struct Dct::State {
   static constexpr std::size_t kFine = 512;
   RealFft fft;

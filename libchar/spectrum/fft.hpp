@@ -1,19 +1,16 @@
 #pragma once
-// FFTW behind a few small classes; nothing else includes fftw3.h. Plans are FFTW_ESTIMATE
-// (same bits every run), created under one mutex, kept for the next of their length, and run on
-// aligned buffers owned by the object.
+// FFTW behind a few small classes; nothing else includes fftw3.h. Plans are FFTW_ESTIMATE (same bits every run),
+// created under one mutex, kept for the next of their length, and run on aligned buffers owned by the object.
 
 #include <complex>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "libchar/core/hidden.hpp"
 
 namespace libchar {
 
-/// Forward real-to-complex transform of fixed length n: X_k = sum_t x_t exp(-2 pi i k t / n), k =
-/// 0..n/2.
+/// Forward real-to-complex transform of fixed length n: X_k = sum_t x_t exp(-2 pi i k t / n), k = 0..n/2.
 class RealFft {
  public:
   explicit RealFft(std::size_t n);
@@ -28,10 +25,9 @@ class RealFft {
   detail::Hidden<State> state_;
 };
 
-/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i
-/// is at [i * distance + t * step]. Several at once are faster than one by one, because FFTW
-/// puts neighbours into one vector. The memory is the caller's and must be aligned to 64 bytes. An
-/// object serves one thread at a time.
+/// Forward complex transforms of n values in place, `count` of them at once: value t of transform i is at
+/// [i * distance + t * step]. Several at once are faster than one by one, because FFTW puts neighbours into one vector.
+/// The memory is the caller's and must be aligned to 64 bytes. An object serves one thread at a time.
 class ComplexFft {
  public:
   ComplexFft(std::size_t n, std::size_t count, std::size_t step, std::size_t distance);
@@ -51,8 +47,7 @@ class ComplexFft {
 class Dct {
  public:
   explicit Dct(std::size_t n);
-  /// n coefficients of y (n values), valid until the next call. The mean is subtracted first (c_0
-  /// corrected after).
+  /// n coefficients of y (n values), valid until the next call. The mean is subtracted first (c_0 corrected after).
   std::span<const double> transform(std::span<const double> y);
 
  private:

@@ -6,9 +6,8 @@
 // most as F(nu, nu_floor), nu_floor from the scatter of a median of m correlated chi-square values,
 //   relative variance = 1 / (4 m p(q)^2 q^2),   p the density and q the median of chi-square / nu,
 //   nu_floor = 2 / that,
-// and a bin is part of a line when its ratio is above the F quantile of alarm / (number of bins
-// tested). The amplitude is that of the whole main lobe: A^2 / 2 = sum (P_k - floor) df, true at
-// any frequency between bins.
+// and a bin is part of a line when its ratio is above the F quantile of alarm / (number of bins tested). The amplitude
+// is that of the whole main lobe: A^2 / 2 = sum (P_k - floor) df, true at any frequency between bins.
 //
 // Rounding makes lines of its own: a drift of s LSB a second is followed by a sawtooth of s Hz. With
 // noise of standard deviation sigma its k-th harmonic has the amplitude (Widrow & Kollar 2008, 5.3)
@@ -22,7 +21,6 @@
 #include <numbers>
 #include <span>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -143,8 +141,7 @@ class LocalFloor {
     if (right_of(k)) raise(floor, median_of(power_.data() + k + guard_ + 1, kFlank), kFlank);
     return floor;
   }
-  // The answer for nearly every bin, without a median: is the floor of whole flanks at least
-  // `level`?
+  // The answer for nearly every bin, without a median: is the floor of whole flanks at least `level`?
   bool surely_at_least(std::size_t k, double level) const {
     if (k < begin_ + guard_ + kFlank) return false;
     const double value = level * typical_ * (1 + 1e-12);
@@ -227,8 +224,7 @@ struct Found {
   double from_hz = 0, to_hz = 0;
 };
 
-// Neighbouring bins above the threshold are one line; so are those that no more than a main lobe
-// separates.
+// Neighbouring bins above the threshold are one line; so are those that no more than a main lobe separates.
 std::vector<Found> search(const Density& d, std::size_t lobe, double alarm) {
   const std::size_t guard = lobe + 1;
   if (!(d.dof > 0) || d.power.size() < lobe + guard + kLeast + 2) return {};

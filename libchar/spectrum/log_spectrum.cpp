@@ -1,7 +1,6 @@
 // Spectra on a logarithmic frequency axis.
 //
-// Averaging M bins of nu_k degrees of freedom each whose powers are correlated by c_m, m bins
-// apart:
+// Averaging M bins of nu_k degrees of freedom each whose powers are correlated by c_m, m bins apart:
 //   variance / level^2 = (1/M^2) sum_{k,l} c_|k-l| 2 / sqrt(nu_k nu_l),      nu = 2 / that.
 
 #include <algorithm>

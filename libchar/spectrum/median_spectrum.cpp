@@ -4,10 +4,9 @@
 //
 //   E = sum_{i=K-k+1}^{K} 1/i,   Var = sum_{i=K-k+1}^{K} 1/i^2,
 //
-// so that the median of K = 2p + 1 is biased by 1 - 1/2 + 1/3 - … + 1/K, and that of K = 2p, the
-// mean of the middle two, by the sum to K - 1. f = 0 and Nyquist, with one degree of freedom, are
-// divided by the same. Independence is assumed for bias and variance; overlap counts as it does in
-// the mean.
+// so that the median of K = 2p + 1 is biased by 1 - 1/2 + 1/3 - … + 1/K, and that of K = 2p, the mean of the middle
+// two, by the sum to K - 1. f = 0 and Nyquist, with one degree of freedom, are divided by the same. Independence is
+// assumed for bias and variance; overlap counts as it does in the mean.
 
 #include <algorithm>
 
@@ -60,10 +59,8 @@ Spectrum median_welch(std::span<const double> record, double rate_hz, const Welc
   const std::size_t segments = detail::in_memory(layout.count(record.size())), bins = layout.segment / 2 + 1;
   if (static_cast<double>(segments) * static_cast<double>(bins) * sizeof(double) > kMostPowerBytes)
     throw usage_error("E0872", "`average`")
-        .says(
-            "a median takes the powers of all {} segments of {} bins at once, which are more than "
-            "2 GiB",
-            segments, bins)
+        .says("a median takes the powers of all {} segments of {} bins at once, which are more than 2 GiB", segments,
+              bins)
         .hint("give less `overlap`, or read less with `from_s`, `to_s`");
   const std::vector<double> window = window_values(options.window, layout.segment);
   std::vector<std::vector<double>> powers(segments);

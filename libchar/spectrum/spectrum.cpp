@@ -1,7 +1,6 @@
-// Windows as sums of cosines: w_j = a0 - a1 cos(x) + a2 cos(2x) - a3 cos(3x) + a4 cos(4x), x = 2 pi
-// j / n (periodic). Hann: the usual; Blackman-Harris: F. J. Harris, Proc. IEEE 66, 1978, minimum
-// 4-term; flat top: G. D'Antona and A. Ferrero, Digital Signal Processing for Measurement Systems,
-// 2006 (the five terms used by MATLAB and SciPy).
+// Windows as sums of cosines: w_j = a0 - a1 cos(x) + a2 cos(2x) - a3 cos(3x) + a4 cos(4x), x = 2 pi j / n (periodic).
+// Hann: the usual; Blackman-Harris: F. J. Harris, Proc. IEEE 66, 1978, minimum 4-term; flat top: G. D'Antona and A.
+// Ferrero, Digital Signal Processing for Measurement Systems, 2006 (the five terms used by MATLAB and SciPy).
 
 #include "libchar/spectrum/spectrum.hpp"
 
@@ -11,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 namespace {

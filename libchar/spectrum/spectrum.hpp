@@ -57,8 +57,7 @@ struct Spectrum {
 
 // How well a bin of a spectrum is known.
 
-/// Chi-square interval of an average of powers with `dof` degrees of freedom, as multiples of the
-/// average.
+/// Chi-square interval of an average of powers with `dof` degrees of freedom, as multiples of the average.
 std::pair<double, double> interval_factors(double dof, double confidence);
 
 /// The same for one confidence, each number of degrees of freedom computed once: bins and channels

@@ -1,5 +1,4 @@
-// Welch's method over a record in memory: choose the segment, then sum groups of segments, in
-// parallel and in order.
+// Welch's method over a record in memory: choose the segment, then sum groups of segments, in parallel and in order.
 
 #include "libchar/spectrum/welch.hpp"
 
@@ -35,8 +34,7 @@ struct Group {
   std::vector<char> used;
 };
 
-// What one thread works with: halves, each transformed once, where the options allow it; else whole
-// segments.
+// What one thread works with: halves, each transformed once, where the options allow it; else whole segments.
 struct Worker {
   WelchWorkspace::State& memory;
   std::optional<WelchWorkspace::State::Piece> halves;

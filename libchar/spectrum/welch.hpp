@@ -92,9 +92,8 @@ struct Spectrogram {
   std::vector<std::vector<double>> value;  ///< [time][frequency]; empty where a sample is missing
 };
 
-/// The periodogram of each segment of welch() by itself: two degrees of freedom a bin. Needs
-/// `options.segment`. Throws as welch; Error(usage) where the record is shorter than a segment or
-/// the values are more than 2 GiB.
+/// The periodogram of each segment of welch() by itself: two degrees of freedom a bin. Needs `options.segment`. Throws
+/// as welch; Error(usage) where the record is shorter than a segment or the values are more than 2 GiB.
 Spectrogram spectrogram(std::span<const double> record, double rate_hz, const WelchOptions& options);
 
 // Welch's method with the median of the segments in place of their mean: bursts in a few segments do not count.

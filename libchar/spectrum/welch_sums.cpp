@@ -1,6 +1,5 @@
-// Segments of n samples start at 0, D, 2D, … (detail/segments.cpp). Parts A and B of a record, A a
-// multiple of D long: the segments of both are those within A, those within B, and those that start
-// in A and end in B,
+// Segments of n samples start at 0, D, 2D, … (detail/segments.cpp). Parts A and B of a record, A a multiple of D long:
+// the segments of both are those within A, those within B, and those that start in A and end in B,
 //
 //   x[a - n + D .. ), x[a - n + 2 D .. ), …, x[a - D .. )        a samples in A,
 //

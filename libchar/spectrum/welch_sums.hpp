@@ -79,9 +79,8 @@ class WelchStream {
   void push(std::span<const double> samples);
   Spectrum finish(double rate_hz) const;
 
-  /// Length of the blocks that this stream can share: half a segment when the spectrum goes by
-  /// halves, each transformed once, so that the cosine transform of a half costs next to nothing.
-  /// 0: it goes by segments and shares nothing.
+  /// Length of the blocks that this stream can share: half a segment when the spectrum goes by halves, each transformed
+  /// once, so that the cosine transform of a half costs next to nothing. 0: it goes by segments and shares nothing.
   std::uint64_t shared_length() const;
   /// `push`, with every half offered as a block of `shared_length` samples. Either all samples of
   /// a stream are pushed with the same `blocks` or all without.

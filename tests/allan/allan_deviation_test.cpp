@@ -1,5 +1,4 @@
-// Properties of the Allan family (reliability notes, 4): scaling, offsets, drift, gaps, threads,
-// bad input.
+// Properties of the Allan family (reliability notes, 4): scaling, offsets, drift, gaps, threads, bad input.
 
 #include "libchar/allan/allan_deviation.hpp"
 
@@ -366,9 +365,7 @@ TEST_CASE("modified deviations average the terms of means over what is present")
   }
 }
 
-TEST_CASE(
-    "phase data drop exactly the terms that touch a missing point, total deviation takes a "
-    "stretch") {
+TEST_CASE("phase data drop exactly the terms that touch a missing point, total deviation takes a stretch") {
   const std::size_t n = 6000;
   auto y = white(n, 10, 50);
   for (const std::size_t gap : {0UL, 17UL, 1023UL, 1024UL, 3000UL, 3001UL, 3002UL, 5999UL}) y[gap] = std::nan("");

@@ -111,10 +111,9 @@ TEST_CASE("edf of the overlapping Allan deviation against the exact table") {
   CHECK(rows > 30);
 }
 
-// The tables hold five decimals but treat the ends of the record otherwise: they differ from the
-// sum over every pair of terms by up to 0.7 m/N. That sum, done independently in a few lines of
-// Python, gives 0.462889 for white m = 1, 2 where the table has 0.46287; we agree with the sum to
-// 1e-9.
+// The tables hold five decimals but treat the ends of the record otherwise: they differ from the sum over every pair of
+// terms by up to 0.7 m/N. That sum, done independently in a few lines of Python, gives 0.462889 for white m = 1, 2
+// where the table has 0.46287; we agree with the sum to 1e-9.
 TEST_CASE("correlation of octaves against the tables") {
   const Eigen::MatrixXd white = allan_covariance(octaves(16384), kWhite);
   CHECK(white(0, 1) / std::sqrt(white(0, 0) * white(1, 1)) == Approx(0.46288919397005934).epsilon(1e-9));
@@ -337,8 +336,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
         const double mean = sum[k] / records, variance = square[k] / records - mean * mean;
         const double edf = 2 * mean * mean / variance;
         INFO(name_of(type) << " m " << points[k].m << " walk " << walk << " simulated " << edf);
-        // Standard error of a simulated edf: sqrt((2 + 12/edf)/records), times 3; total deviation
-        // is approximate: 12 %.
+        // Standard error of a simulated edf: sqrt((2 + 12/edf)/records), times 3; total deviation is approximate: 12 %.
         const double limit = (type == DeviationType::totdev ? 0.12 : 0.0) + 3 * std::sqrt((2 + 12 / edf) / records);
         CHECK(equivalent_dof(type, walk ? kWalk : kWhite, points[k].m, points[k].terms, 1, 1) ==
               Approx(edf).epsilon(limit));
@@ -346,9 +344,7 @@ TEST_CASE("edf by simulation: white noise and walk, every overlapping type, 3 %"
     }
 }
 
-TEST_CASE(
-    "intervals of a curve: nested, finite, reliable from five degrees of freedom on, a ramp "
-    "narrows them") {
+TEST_CASE("intervals of a curve: nested, finite, reliable from five degrees of freedom on, a ramp narrows them") {
   AllanCurve curve = octaves(1000);
   add_intervals(curve, {1, 0.1, 0.01, 0, 0});
   for (const auto& p : curve.points) {

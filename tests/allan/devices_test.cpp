@@ -127,9 +127,7 @@ TEST_CASE("cornered hat: what is common does not count, order and other statisti
   }
 }
 
-TEST_CASE(
-    "cornered hat of differences: the hat's values without noise of measurement, right ones with "
-    "it") {
+TEST_CASE("cornered hat of differences: the hat's values without noise of measurement, right ones with it") {
   const Records r = devices({1, 2, 3}, 5000, 4);
   Records d(3, std::vector<double>(5000));
   for (std::size_t i = 0; i < 5000; ++i)

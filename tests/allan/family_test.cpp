@@ -313,10 +313,9 @@ Mixture only_noise(int kind) {
 
 }  // namespace
 
-// 600 records of 256 samples of each noise: the ratio to the Allan, modified or Hadamard variance
-// of the same records, and the degrees of freedom. Expected ratios: PVAR/AVAR of the continuous
-// noises (Vernotte 2016, table I): white frequency 6/5, flicker 1.22, walk 1.12 (at m = 16 the
-// sampled noises are 1.20, 1.21, 1.11); TheoBR none.
+// 600 records of 256 samples of each noise: the ratio to the Allan, modified or Hadamard variance of the same records,
+// and the degrees of freedom. Expected ratios: PVAR/AVAR of the continuous noises (Vernotte 2016, table I): white
+// frequency 6/5, flicker 1.22, walk 1.12 (at m = 16 the sampled noises are 1.20, 1.21, 1.11); TheoBR none.
 TEST_CASE("family: simulated noises have the expected values and degrees of freedom") {
   constexpr int kRecords = 600;
   constexpr std::size_t kSamples = 256;

@@ -143,8 +143,7 @@ TEST_CASE("Stable32 1.62: sigma to its four digits, terms exactly") {
 
 TEST_CASE("clock recordings against Stable32") {
   NEEDS_SHARED("data/clock_cs5071a_vs_hmaser_phase.npy");
-  // Stable32 divides the total variance by its expected bias 1 - a tau/T (a = 0.481 flicker, 0.75
-  // walk; SP 1065, 5.11).
+  // Stable32 divides the total variance by its expected bias 1 - a tau/T (a = 0.481 flicker, 0.75 walk; SP 1065, 5.11).
   const auto bias = [](const std::vector<std::string>& row, std::size_t n) {
     const double alpha = std::stod(row[4]);
     const double a = row[0] != "totdev" || alpha > -0.5 ? 0 : alpha > -1.5 ? 0.481 : 0.75;

@@ -1,6 +1,5 @@
-// Cost and error of the Allan curves: `allan_bench [log10 of the number of samples, default 8]`.
-// Times are in units of memcpy of the same array in the same run; errors against 128-bit fixed
-// point.
+// Cost and error of the Allan curves: `allan_bench [log10 of the number of samples, default 8]`. Times are in units of
+// memcpy of the same array in the same run; errors against 128-bit fixed point.
 
 #include <fmt/core.h>
 
@@ -36,8 +35,7 @@ double best_of(int runs, const auto& work) {
   return best;
 }
 
-/// White noise of sigma 1 by sums of uniform integers (exactly representable at any offset used
-/// here).
+/// White noise of sigma 1 by sums of uniform integers (exactly representable at any offset used here).
 std::vector<double> white(std::size_t n, double offset, double drift) {
   std::vector<double> y(n);
   std::uint64_t state = 88172645463325252ULL;
@@ -54,8 +52,7 @@ std::vector<double> white(std::size_t n, double offset, double drift) {
   return y;
 }
 
-/// Cumulated record in fixed point with steps of 2^-60 (relative to sigma = 1), exact in 128 bits
-/// up to 1e11 samples.
+/// Cumulated record in fixed point with steps of 2^-60 (relative to sigma = 1), exact in 128 bits up to 1e11 samples.
 std::vector<Wide> exact_phase(const std::vector<double>& y) {
   std::vector<Wide> x(y.size() + 1);
   for (std::size_t i = 0; i < y.size(); ++i)
@@ -141,8 +138,8 @@ void speed(std::size_t n) {
 void errors() {
   const std::size_t n = 10000000;
   fmt::print(
-      "\nlargest relative error of the deviation at m = 1, 32, 1024, 65536, 1048576; N = {}, "
-      "128-bit fixed-point reference\n",
+      "\nlargest relative error of the deviation at m = 1, 32, 1024, 65536, 1048576; N = {}, 128-bit fixed-point "
+      "reference\n",
       n);
   fmt::print("{:34} {:>10} {:>12}\n", "record (sigma 1)", "pyramid", "full overlap");
   const auto row = [&](const char* name, double offset, double drift) {
@@ -179,8 +176,8 @@ void covariance_cost() {
     const double again = best_of(3, [&] { trace += prepared.at(theta).trace(); });
     const double intervals = best_of(3, [&] { add_intervals(curve, theta); });
     fmt::print(
-        "N = {:5.0e}  {} octaves: covariance {:6.2f} ms, again for another mixture {:.4f} ms; edf "
-        "and intervals {:.2f} ms\n",
+        "N = {:5.0e}  {} octaves: covariance {:6.2f} ms, again for another mixture {:.4f} ms; edf and intervals {:.2f} "
+        "ms\n",
         n, curve.points.size(), first * 1e3, again * 1e3, intervals * 1e3);
   }
 }

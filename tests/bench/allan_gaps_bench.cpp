@@ -1,8 +1,7 @@
-// Missing samples and the Allan deviation: `allan_gaps_bench [records, default 200] [log10 of
-// samples, default 4.2] [type, default oadev]`. White, flicker and walk with samples missing at
-// random and in gaps of random length; per octave the bias of the deviation against the same
-// records whole (per cent) and the share of 95 % intervals that hold the truth, full overlap and
-// one pass.
+// Missing samples and the Allan deviation: `allan_gaps_bench [records, default 200] [log10 of samples, default 4.2]
+// [type, default oadev]`. White, flicker and walk with samples missing at random and in gaps of random length; per
+// octave the bias of the deviation against the same records whole (per cent) and the share of 95 % intervals that hold
+// the truth, full overlap and one pass.
 
 #include <fmt/core.h>
 

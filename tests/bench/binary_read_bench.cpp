@@ -1,5 +1,4 @@
-// How fast binary logs stream, beside a plain pread of the same bytes. Usage: binary_read_bench
-// [MILLIONS OF DOUBLES]
+// How fast binary logs stream, beside a plain pread of the same bytes. Usage: binary_read_bench [MILLIONS OF DOUBLES]
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -65,10 +64,8 @@ double stream(const std::string& path, const libchar::ReadOptions& options) {
 int main(int argc, char** argv) {
   const std::size_t rows = (argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 60) * 1'000'000 / 6;
   const std::string path = (std::filesystem::temp_directory_path() / "libchar-bench.npy").string();
-  fmt::print(
-      "{} rows of 6 channels; best of 3, GB/s of file (file "
-      "cached)\n{:<24}{:>8}{:>8}{:>12}{:>12}\n",
-      rows, "file", "read()", "all", "1 channel", "all + hash");
+  fmt::print("{} rows of 6 channels; best of 3, GB/s of file (file cached)\n{:<24}{:>8}{:>8}{:>12}{:>12}\n", rows,
+             "file", "read()", "all", "1 channel", "all + hash");
   for (const char* dtype : {"f64", "f32"}) {
     for (const char* order : {"interleaved", "planar"}) {
       write_file(path, rows, order, dtype);

@@ -1,7 +1,5 @@
-// Steps, warm-ups and ramps: false alarms on clean records, how often events are found, where they
-// are placed and how large they are said to be, and K afterwards against the fit of the clean
-// record.
-// Usage: events_bench [records = 100]
+// Steps, warm-ups and ramps: false alarms on clean records, how often events are found, where they are placed and how
+// large they are said to be, and K afterwards against the fit of the clean record. Usage: events_bench [records = 100]
 //        events_bench FILE.npy RATE_HZ   prints what is found in each column of a recording,
 //                                        motion and digital faults as well
 #include <fmt/format.h>

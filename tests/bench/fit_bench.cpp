@@ -1,6 +1,5 @@
-// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao
-// bound, bias, coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene
-// letters = all] [blocks]
+// Monte Carlo of the noise fit on the scenes of the theory page: efficiency against the Cramér-Rao bound, bias,
+// coverage, false terms, time. Usage: fit_bench [records per scene = 400] [scene letters = all] [blocks]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -11,7 +10,6 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/curve/bounds.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "libchar/fit/record/record_sums.hpp"
@@ -157,9 +155,8 @@ int main(int argc, char** argv) {
   const bool in_blocks = argc > 3 && std::string(argv[3]) == "blocks";
   fmt::print("records {}; {}\n", records, in_blocks ? "blocks" : "whole record");
   fmt::print(
-      "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  "
-      "cover all  "
-      "optimum  worst    ms/fit  ms/bins  p<.05\n");
+      "         bound %   CRB2/MSE   bias [CRB] cover95 %  detected  undetermined  cover|detected  cover all  optimum  "
+      "worst    ms/fit  ms/bins  p<.05\n");
   for (const Scene& scene : kScenes) {
     if (chosen == "all" || chosen.find(scene.name[0]) != std::string::npos)
       print(scene, run(scene, records, in_blocks));

@@ -117,8 +117,7 @@ void run(const Scene& scene, const std::string& name, const Fault& fault, int re
 int main(int argc, char** argv) {
   const int records = argc > 1 ? std::atoi(argv[1]) : 60;
   fmt::print(
-      "bias and rms error of Q, B, K in Cramér-Rao bounds; left without, right with remedies; how "
-      "often each remedy\n");
+      "bias and rms error of Q, B, K in Cramér-Rao bounds; left without, right with remedies; how often each remedy\n");
   for (const Scene& scene : {Scene{"f", 200, 1e-3, 1e-2, 5e-3}, Scene{"b'", 20.0 / 3, 1e-3, 1.598e-4, 4.137e-6}}) {
     for (const auto& [name, fault] : kFaults)
       if (argc < 3 || name.rfind(argv[2], 0) == 0) run(scene, name, fault, records);

@@ -1,9 +1,8 @@
-// How often a lot's intervals cover, how often devices, batches and lots that are alike are called
-// unlike, and what a hundred thousand devices take. Usage: fleet_lot_bench [lots = 2000] [devices =
-// 100000] [parts = cbdtznks: coverage, batches, differences of two lots, temperatures, zone rules
-// of charts, what is not detected, terms beside a random walk that is not, squares against their
-// information] [FOLDER] With a folder: a fleet of that many devices with all of its results is
-// written there, for `sensorchar fleet merge` to be measured.
+// How often a lot's intervals cover, how often devices, batches and lots that are alike are called unlike, and what a
+// hundred thousand devices take. Usage: fleet_lot_bench [lots = 2000] [devices = 100000] [parts = cbdtznks: coverage,
+// batches, differences of two lots, temperatures, zone rules of charts, what is not detected, terms beside a random
+// walk that is not, squares against their information] [FOLDER] With a folder: a fleet of that many devices with all of
+// its results is written there, for `sensorchar fleet merge` to be measured.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -118,8 +117,7 @@ void batches(int lots) {
   print_rate("batches alike, p below .05", alarms, tests, "5 %");
 }
 
-/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias
-/// repeats beside them.
+/// Slopes of the bias over temperature: of each device, their mean and spread, and how the bias repeats beside them.
 void temperatures(const std::string& title, std::size_t devices, const test::MadeTemperatures& how, int lots) {
   test::MadeLot made;
   made.devices = devices;
@@ -244,8 +242,8 @@ void squares(Term term) {
     }
     const double sd = std::sqrt(square / count), r = std::sqrt(by_information / near) / truth;
     fmt::print(
-        "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), "
-        "skewness {:.2f} ({:.2f} by information), bias {:+.3f} sd ± .009\n",
+        "{} {:.2g}: sd/square {:.3f} by information; variance {:.3f} times ({:.3f} taken), skewness {:.2f} ({:.2f} by "
+        "information), bias {:+.3f} sd ± .009\n",
         title_of(quantity_of(term)), c, r, sd * sd / (r * r * truth * truth), 1 + 0.55 * r / (1 + 1.5 * r),
         third / count / (sd * sd * sd), skewness / near, bias / sd);
   }
@@ -278,8 +276,7 @@ void left_out_lots(Term term, int lots) {
           }
         if (with_mean == 0) continue;
         fmt::print(
-            "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, "
-            "spread {:.3f}\n",
+            "{} devices: {} of {} lots have figures, {} of them of all devices; off by {:+.1f} %, spread {:.3f}\n",
             devices, with_mean, lots, of_all, 100 * sum_mean / with_mean, sum_spread / with_mean);
         print_rate("true mean in its interval", in_mean, with_mean, "95 %");
         print_rate("true spread in its interval", in_spread, with_mean, "95 %");

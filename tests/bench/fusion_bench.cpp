@@ -41,8 +41,7 @@ Settings with(const Entry& entry, const std::vector<std::pair<std::string_view, 
   return settings;
 }
 
-/// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the
-/// record.
+/// RMS of the estimate over RMS of the optimal weights, less one, over the second part of the record.
 double excess(const Eigen::VectorXd& variances, const Settings& settings, const char* name, int seeds) {
   constexpr Eigen::Index kInstants = 200000, kFrom = 10000;
   const Eigen::VectorXd w = variances.cwiseInverse() / variances.cwiseInverse().sum();

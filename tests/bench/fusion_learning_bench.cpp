@@ -128,9 +128,7 @@ void takens() {
         }
         fmt::print("{:>26} {:>4} {:>5} {:>9.2f} {:>12.5f} {:>12.5f}\n", name, d, m, best, rms[0], rms[1]);
       }
-  fmt::print(
-      "as published with R the density, after the training (thesis .1363 and .1569, oracle .1369 "
-      "and .1495):");
+  fmt::print("as published with R the density, after the training (thesis .1363 and .1569, oracle .1369 and .1495):");
   for (const auto& [d, q] : {std::pair{6.0, 1e-2}, std::pair{4.0, 1e-3}}) {
     auto runner = make("kalman-takens-published", white.array,
                        {{"dimension", d}, {"process_variance", q}, {"noise_scale", 1 / 623.0}});

@@ -1,6 +1,5 @@
-// A first-order Gauss-Markov process against flicker and walk: found, its coefficients and their
-// intervals; and how often flicker and walk are taken for one. Usage: gauss_markov_bench [records =
-// 200]
+// A first-order Gauss-Markov process against flicker and walk: found, its coefficients and their intervals; and how
+// often flicker and walk are taken for one. Usage: gauss_markov_bench [records = 200]
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -34,8 +33,8 @@ void print_process(std::size_t samples, double rate_hz, int records) {
     mean_tau += *fit.gauss_markov->tau_s.value / kTau;
   }
   fmt::print(
-      "{:.0f} correlation times: found {} of {}, looked for and left {}; sigma x {:.3f}, tau x "
-      "{:.3f}; intervals hold {} and {}\n",
+      "{:.0f} correlation times: found {} of {}, looked for and left {}; sigma x {:.3f}, tau x {:.3f}; intervals hold "
+      "{} and {}\n",
       static_cast<double>(samples) / rate_hz / kTau, found, records, either, mean_sigma / found, mean_tau / found,
       sigma, tau);
 }

@@ -23,9 +23,8 @@ int main(int argc, char** argv) {
   const auto normal = [&] { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform()); };
   double walk[6] = {};
   fmt::memory_buffer line;
-  line.append(
-      std::string_view("t[s],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s],accel_x[m/s^2],accel_y[m/"
-                       "s^2],accel_z[m/s^2]\n"));
+  line.append(std::string_view(
+      "t[s],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2]\n"));
   for (std::uint64_t row = 0; row < rows; ++row) {
     fmt::format_to(std::back_inserter(line), "{:.3f}", static_cast<double>(row) * 0.005);
     for (int c = 0; c < 6; ++c) {

@@ -26,7 +26,7 @@
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "libchar/spectrum/fft.hpp"

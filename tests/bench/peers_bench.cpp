@@ -1,7 +1,6 @@
-// Our fit against the estimators of imu_utils and allan_variance_ros, and a relative least squares
-// as in nmayorov's script, on the same simulated records; and against the published fits of
-// imu_utils on its own curves of six real IMUs. Usage: peers_bench [records a scene = 12] [scene
-// numbers = all]
+// Our fit against the estimators of imu_utils and allan_variance_ros, and a relative least squares as in nmayorov's
+// script, on the same simulated records; and against the published fits of imu_utils on its own curves of six real
+// IMUs. Usage: peers_bench [records a scene = 12] [scene numbers = all]
 // The estimators are those of `sensorchar bench` (libchar/benchmark/detail/peer_estimators.cpp).
 
 #include <fmt/format.h>
@@ -115,11 +114,10 @@ void run_scene(const Scene& scene, std::uint64_t seed, int records) {
 
 void run_curves(const std::filesystem::path& folder) {
   fmt::print(
-      "\nrms of log10(model/measured deviation) on the curves that imu_utils published, mean of "
-      "three axes:\n\n");
+      "\nrms of log10(model/measured deviation) on the curves that imu_utils published, mean of three axes:\n\n");
   fmt::print(
-      "| IMU | sensor | imu_utils | ours, all terms | ours, decided | worst axis, decided ÷ "
-      "imu_utils |\n|---|---|---|---|---|---|\n");
+      "| IMU | sensor | imu_utils | ours, all terms | ours, decided | worst axis, decided ÷ imu_utils "
+      "|\n|---|---|---|---|---|---|\n");
   for (const std::string imu : {"16448", "A3", "BMI160", "N3", "gx4", "xsens"})
     for (const std::string kind : {"acc", "gyr"}) {
       double theirs = 0, all_terms = 0, decided = 0, worst = 0;

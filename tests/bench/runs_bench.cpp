@@ -1,6 +1,5 @@
-// Runs of one sensor in one likelihood: how often intervals cover, how often equal runs are called
-// unlike, unlike ones found and named, and what the spread of the turn-on bias says. Usage:
-// runs_bench [sets = 100]
+// Runs of one sensor in one likelihood: how often intervals cover, how often equal runs are called unlike, unlike ones
+// found and named, and what the spread of the turn-on bias says. Usage: runs_bench [sets = 100]
 #include <fmt/format.h>
 
 #include <chrono>
@@ -103,8 +102,8 @@ int main(int argc, char** argv) {
                                      {"last run K x 4", usual, 0, {5e-3, 5e-3, 6e-3}, false}};
   fmt::print("{} sets of {} runs of {} samples at {} Hz\n", sets, kRuns, kSamples, kRate);
   fmt::print(
-      "| scene | covers N, B, K | limits alone | called unlike | named: the odd one, others | "
-      "spread > 0 | its interval covers | shape | ms |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| scene | covers N, B, K | limits alone | called unlike | named: the odd one, others | spread > 0 | its "
+      "interval covers | shape | ms |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const Scene& scene : scenes) {
     Tally t;
     for (int s = 0; s < sets; ++s) count_set(scene, 1000 + static_cast<std::uint64_t>(s), t);

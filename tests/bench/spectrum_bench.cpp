@@ -1,5 +1,4 @@
-// Run time of the transforms and of Welch's method, in ns a sample: best of several runs,
-// interleaved.
+// Run time of the transforms and of Welch's method, in ns a sample: best of several runs, interleaved.
 //   build/tests/bench/spectrum_bench [samples]
 
 #include <fmt/format.h>

@@ -68,8 +68,8 @@ void print_effect(const Kind& kind, double lag_s, int records) {
     left_in += untreated;
   }
   fmt::print(
-      "{:9} lag {:2} s: found {:3} of {}, interval holds {:3}, mean {:.4f}, K² {:.2f} × the clean "
-      "fit's, left in {:.2f}\n",
+      "{:9} lag {:2} s: found {:3} of {}, interval holds {:3}, mean {:.4f}, K² {:.2f} × the clean fit's, left in "
+      "{:.2f}\n",
       kind.name, lag_s, found, records, covered, sum / found, with / clean, left_in / clean);
 }
 

@@ -38,9 +38,8 @@ struct Table {
 constexpr const char* kNoMean = "no finite mean: medians, spread without limit";
 
 constexpr const char* kFlicker =
-    "the oracle's noise is white; held flicker is one realisation within the memory, and its "
-    "products "
-    "between sensors do not average out";
+    "the oracle's noise is white; held flicker is one realisation within the memory, and its products between sensors "
+    "do not average out";
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all{
@@ -112,8 +111,7 @@ const std::vector<Table>& tables() {
       {"Kalman-Takens [RV 3.8, table 3.10]",
        {{"Q 1e-2, d 6, M 20", .1363, .1369, .0010},
         {"Q 1e-3, d 4, M 20", .1569, .1495, .0009,
-         "thesis not reproducible: it needs a prediction error of 2.85, that of two neighbours; 20 "
-         "give 2.4"}}},
+         "thesis not reproducible: it needs a prediction error of 2.85, that of two neighbours; 20 give 2.4"}}},
       {"Random weighting [RV 3.9, table 3.10]",
        {{"published, reference 1, from 1", 1.6753, 3.25, kNone, kNoMean, true},
         {"published, reference 1, from 1000", 1.6720, 2.38, kNone, kNoMean, true},

@@ -1,7 +1,6 @@
-// Departures from the noise model that are too weak for the alarm of the fit, or just strong
-// enough: how often the 95 % interval holds N, how far N is off, how often the channel is called
-// good, and how often it is called good while an interval of N, B or K excludes the truth (silent).
-// Usage: valley_bench [records = 24] [kind = ""]
+// Departures from the noise model that are too weak for the alarm of the fit, or just strong enough: how often the 95 %
+// interval holds N, how far N is off, how often the channel is called good, and how often it is called good while an
+// interval of N, B or K excludes the truth (silent). Usage: valley_bench [records = 24] [kind = ""]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -274,8 +273,8 @@ void run(const Kind& kind, int records) {
     width += white.relative_sd / *bound[0] / records;
   }
   fmt::print(
-      "{:30} N {:4.2f} B {:4.2f} K {:4.2f} | det {:3} {:3} {:3} | off {:7.2f} rms {:7.2f} stated "
-      "{:6.2f} | good {:3} silent {:3} |",
+      "{:30} N {:4.2f} B {:4.2f} K {:4.2f} | det {:3} {:3} {:3} | off {:7.2f} rms {:7.2f} stated {:6.2f} | good {:3} "
+      "silent {:3} |",
       kind.name, static_cast<double>(held[0]) / records, static_cast<double>(held[1]) / records,
       static_cast<double>(held[2]) / records, valued[0], valued[1], valued[2], error, std::sqrt(square), width, good,
       silent);

@@ -13,8 +13,8 @@ namespace {
 
 Scene three_sensors() {
   return parse_scene(
-      "format: scene\nversion: 1\nname: three\nsimulate: {rate_hz: 100, samples: 20000, seed: 5, "
-      "truth: {kind: sine, amplitude: 1, frequency_hz: 0.1}}\n"
+      "format: scene\nversion: 1\nname: three\nsimulate: {rate_hz: 100, samples: 20000, seed: 5, truth: {kind: sine, "
+      "amplitude: 1, frequency_hz: 0.1}}\n"
       "sensors:\n"
       "  - {name: a, model: {density: two-sided, white_noise: 0.01}}\n"
       "  - {name: b, model: {density: two-sided, white_noise: 0.02}}\n"
@@ -61,8 +61,8 @@ TEST_CASE("fusion bench: a sweep is a row a value, and the excess follows the op
 }
 
 TEST_CASE(
-    "fusion bench: a scene that feeds none of the algorithms is left out and said, and refused "
-    "where there is no other") {
+    "fusion bench: a scene that feeds none of the algorithms is left out and said, and refused where there is no "
+    "other") {
   FusionBenchOptions options;
   options.seeds = 2;
   options.algorithms = {"minque", "mean"};

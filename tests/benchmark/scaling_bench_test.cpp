@@ -27,9 +27,7 @@ TEST_CASE("exponent: of a power, over the last three octaves only") {
   CHECK(std::isinf(growth_exponent({cost_at(1, 1), cost_at(2, 2)}).ci95.high));
 }
 
-TEST_CASE(
-    "growth is measured over samples, threads, sensors and inputs, and memory is not above "
-    "reason") {
+TEST_CASE("growth is measured over samples, threads, sensors and inputs, and memory is not above reason") {
   ScalingBenchOptions options;
   options.quick = true;
   options.rounds = 1;

@@ -190,9 +190,7 @@ TEST_CASE("the interval of a correlation time holds the time, where other terms 
   CHECK(processes > 0);
 }
 
-TEST_CASE(
-    "what is no phase, no fraction of a frequency and no rate is doubted, with the option that "
-    "fits") {
+TEST_CASE("what is no phase, no fraction of a frequency and no rate is doubted, with the option that fits") {
   Recording recording;
   recording.info.channels.resize(1);
   recording.info.time.rate_hz = 1;

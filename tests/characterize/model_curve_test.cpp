@@ -21,9 +21,7 @@ NoiseFit white_behind_low_pass(double bandwidth_hz) {
 
 }  // namespace
 
-TEST_CASE(
-    "Allan curve of white noise behind a low-pass: the ratios of half the Haar variance of the "
-    "sampled AR(1)") {
+TEST_CASE("Allan curve of white noise behind a low-pass: the ratios of half the Haar variance of the sampled AR(1)") {
   struct Row {
     double bandwidth_over_rate;
     double ratio[6];
@@ -42,8 +40,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the low-pass in the spectrum and in the Allan curve are the same filter") {
-  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled
-  // density
+  // AVAR(1) = integral of S(f) 2 sin^4(pi f dt)/sin^2(pi f dt) over one period of the sampled density
   const double dt_s = 0.01, bandwidth_hz = 13;
   double sum = 0;
   const int steps = 20000;

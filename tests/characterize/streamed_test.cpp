@@ -14,8 +14,7 @@ using namespace libchar;
 
 namespace {
 
-// 60000 rows of white noise with a random walk in two channels; `gap`: rows left out, one cell
-// empty.
+// 60000 rows of white noise with a random walk in two channels; `gap`: rows left out, one cell empty.
 std::filesystem::path log_of(bool gap) {
   const auto path = std::filesystem::temp_directory_path() /
                     (std::string("libchar_streamed_") + std::to_string(::getpid()) + (gap ? "g.csv" : ".csv"));

@@ -209,9 +209,7 @@ TEST_CASE("the bits of a log in stretches depend neither on the division nor on 
   }
 }
 
-TEST_CASE(
-    "channels of a log in stretches are taken a few at a time, and are those of logs of their "
-    "own") {
+TEST_CASE("channels of a log in stretches are taken a few at a time, and are those of logs of their own") {
   constexpr std::size_t kChannels = 5;
   const std::uint64_t rows = 2 * kLeafSamples + 30000;
   auto noise = sensor(0.3);

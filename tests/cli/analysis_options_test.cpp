@@ -125,8 +125,8 @@ TEST_CASE("allan says which deviation a row is, and what a log beyond the memory
     const auto refused = test::run(words);
     CAPTURE(verb);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.err, Contains("error E0701: a curve at other times than octaves takes all samples at "
-                                     "once: 8200 KiB, and 100 KiB are allowed") &&
+    CHECK_THAT(refused.err, Contains("error E0701: a curve at other times than octaves takes all samples at once: 8200 "
+                                     "KiB, and 100 KiB are allowed") &&
                                 Contains("give --memory 8200KiB, or read less with --channel, --from, --to"));
     *(std::find(words.begin(), words.end(), "--memory") + 1) = "8200KiB";
     CHECK(test::run(words).code == 0);

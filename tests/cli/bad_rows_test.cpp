@@ -1,6 +1,5 @@
-// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must
-// be said of it: verdict, exit code, code and place. The rows were written by what is right, not by
-// what the program says.
+// Every row of fixtures/bad: a text or command line that is wrong or odd in one way, and what must be said of it:
+// verdict, exit code, code and place. The rows were written by what is right, not by what the program says.
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -207,12 +206,10 @@ TEST_CASE("every bad input of fixtures/bad gets its verdict, exit code, code and
       fs::create_directories(at / "folder");
       write(at / "good.csv", log.str());
       write(at / "model.sensor.yaml",
-            "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, "
-            "unit: V·√s}\n");
+            "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, unit: V·√s}\n");
       write(at / "scene.scene.yaml",
-            "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 1, truth: [{name: r, "
-            "kind: zero}]}\nsensors:\n  - {name: a, model: {unit: V}}\n  - {name: b, model: {unit: "
-            "V}}\n");
+            "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 1, truth: [{name: r, kind: "
+            "zero}]}\nsensors:\n  - {name: a, model: {unit: V}}\n  - {name: b, model: {unit: V}}\n");
       test::RunOptions where;
       where.folder = at.string();
       const auto ran = test::run(arranged(kind, row, at), where);

@@ -17,8 +17,7 @@ TEST_CASE("round the formats and back to the same bytes") {
                     npy = (folder / "c.npy").string();
   CHECK(test::run({"convert", fixture("fortran_order.npy"), "--rate", "200Hz", "-o", csv}).code == 0);
   CHECK(test::slurp(csv) ==
-        "t[s],c0,c1,c2\n0,0,0.125,0.25\n0.005,0.375,0.5,0.625\n0.01,0.75,0.875,1\n0.015,1.125,1.25,"
-        "1.375\n");
+        "t[s],c0,c1,c2\n0,0,0.125,0.25\n0.005,0.375,0.5,0.625\n0.01,0.75,0.875,1\n0.015,1.125,1.25,1.375\n");
   CHECK(test::run({"convert", csv, "-o", raw, "--order", "planar", "--endian", "big"}).code == 0);
   CHECK(test::run({"convert", raw, "-o", npy, "-q"}).code == 0);
   // The same doubles behind headers of different length.

@@ -72,8 +72,8 @@ class Device {
     std::ofstream(path("log.yaml")) << replaced(replaced(kScene, "SEED", "2"), "FAULTS", kFaults);
     std::ofstream(path("main.c")) << kMain;
     run({"replay", path("scene.yaml"), "-o", path("run"), "--no-allan", "--algorithms",
-         "mean,inverse-variance,minque,virtual-sensor,least-squares,shrunk-least-squares,"
-         "non-negative-least-squares,perceptron,median,neural-simplex",
+         "mean,inverse-variance,minque,virtual-sensor,least-squares,shrunk-least-squares,non-negative-least-squares,"
+         "perceptron,median,neural-simplex",
          "--set", "minque.fault_detection=2"});
     run({"simulate", path("log.yaml"), "-o", path("log.csv")});
   }
@@ -146,9 +146,8 @@ double apart(const std::vector<double>& a, const std::vector<double>& b, std::si
   return out;
 }
 
-/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the
-/// first 49 s none does; later the sensors walk away from what was learnt, and one fails. `from`:
-/// instant of the first value.
+/// What `fuse` adds while a sensor reads otherwise than it was learnt to is not in the C text. In the first 49 s none
+/// does; later the sensors walk away from what was learnt, and one fails. `from`: instant of the first value.
 void check_deviations(const std::vector<double>& fused, const std::vector<double>& c, double tolerance,
                       std::size_t from = 0) {
   constexpr std::size_t kAsLearnt = 4900;

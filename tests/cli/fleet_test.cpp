@@ -44,8 +44,7 @@ struct Fleets {
 };
 
 constexpr const char* kTwoBatches =
-    "log,device,batch\nd0.csv,A1,\"1,x\"\nd1.csv,A2,\"1,x\"\nd2.csv,A1,2\nd3.csv,A3,2\nd4.csv,A4,"
-    "2\n";
+    "log,device,batch\nd0.csv,A1,\"1,x\"\nd1.csv,A2,\"1,x\"\nd2.csv,A1,2\nd3.csv,A3,2\nd4.csv,A4,2\n";
 
 }  // namespace
 

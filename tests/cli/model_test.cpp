@@ -28,12 +28,12 @@ struct ModelBench {
   std::vector<std::string> imu(const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"model"};
     for (const std::string axis : {"x", "y", "z"}) {
-      words.push_back(model("gyr_" + axis,
-                            "unit: deg/s\nwhite_noise: {value: 0.6, unit: deg/√h}\nrandom_walk: "
-                            "{value: 200, unit: deg/h/√h}\n"));
+      words.push_back(
+          model("gyr_" + axis,
+                "unit: deg/s\nwhite_noise: {value: 0.6, unit: deg/√h}\nrandom_walk: {value: 200, unit: deg/h/√h}\n"));
       words.push_back(model("acc_" + axis,
-                            "unit: g\ndensity: one-sided\nwhite_noise: {value: 100, unit: "
-                            "µg/√Hz}\nrandom_walk: {status: not_detected, upper95: 1.0e-7}\n"));
+                            "unit: g\ndensity: one-sided\nwhite_noise: {value: 100, unit: µg/√Hz}\nrandom_walk: "
+                            "{status: not_detected, upper95: 1.0e-7}\n"));
     }
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -130,9 +130,8 @@ TEST_CASE("model: options reach the numbers") {
 TEST_CASE("model: what a channel is can be said with --axis") {
   const ModelBench bench;
   auto words = bench.imu({"--to", "kalibr"});
-  words[1] = bench.model("first",
-                         "unit: deg/s\nwhite_noise: {value: 6, unit: deg/√h}\nrandom_walk: {value: "
-                         "200, unit: deg/h/√h}\n");
+  words[1] = bench.model(
+      "first", "unit: deg/s\nwhite_noise: {value: 6, unit: deg/√h}\nrandom_walk: {value: 200, unit: deg/h/√h}\n");
   const auto refused = test::run(words);
   CHECK(refused.code == 3);
   CHECK_THAT(refused.err, Contains("--axis first=gx"));

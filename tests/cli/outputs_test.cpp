@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kModel =
-    "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, unit: "
-    "V·√s}\n";
+    "format: sensor-model\nversion: 1\nunit: V\nrate_hz: 100\nwhite_noise: {value: 1, unit: V·√s}\n";
 
 void write_log(const fs::path& path) {
   std::ofstream file(path);
@@ -121,10 +120,10 @@ TEST_CASE("standard output as a file: its bytes go there, and the name stays wha
   CHECK_THAT(test::slurp(got), Catch::StartsWith("t[s],x\n0,0\n") && !Contains("rows"));
   CHECK(entries_of(folder.path()) == 3);
   // Into a pipe, .npy too: what it says at its beginning is right.
-  const auto piped = test::run_words({"bash", "-c",
-                                      "\"$0\" convert \"$1\" --as npy -q -o /dev/stdout | cat > "
-                                      "\"$2\" && \"$0\" inspect \"$2\" --rate 100",
-                                      test::program(), log.string(), (folder / "p.npy").string()});
+  const auto piped = test::run_words(
+      {"bash", "-c",
+       "\"$0\" convert \"$1\" --as npy -q -o /dev/stdout | cat > \"$2\" && \"$0\" inspect \"$2\" --rate 100",
+       test::program(), log.string(), (folder / "p.npy").string()});
   CHECK_THAT(piped.out, Contains("1 channel, 100 Hz (given), 20 s"));
 }
 

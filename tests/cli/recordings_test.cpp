@@ -117,9 +117,7 @@ TEST_CASE("characterize --pool: pages, numbers and a model of runs together") {
   CHECK_THAT(compared.out, Contains("N: a or out, not distinguished") || Contains("N: out or a, not distinguished"));
 }
 
-TEST_CASE(
-    "characterize --pool: runs that are not of one sensor end in a sentence, with nothing "
-    "written") {
+TEST_CASE("characterize --pool: runs that are not of one sensor end in a sentence, with nothing written") {
   const Logs logs;
   write_log(logs.folder / "a.csv", "deg/s", 5e-3, 1);
   write_log(logs.folder / "b.csv", "rad/s", 5e-3, 2);

@@ -51,10 +51,8 @@ TEST_CASE("simulate: a true input from a log is read again, a scene without a si
   const auto path = [&](const char* name) { return (folder / name).string(); };
   std::ofstream(path("motion.csv")) << "t[s],rate\n0,1\n0.01,2\n0.02,3\n0.03,5\n";
   std::ofstream(path("s.yaml"))
-      << "format: scene\nversion: 1\nsimulate: {rate_hz: 100, samples: 4, truth: {kind: recording, "
-         "file: "
-         "motion.csv}}\nsensors: [{name: a, model: {unit: m, white_noise: {value: 0.1}, density: "
-         "two-sided}}]\n";
+      << "format: scene\nversion: 1\nsimulate: {rate_hz: 100, samples: 4, truth: {kind: recording, file: "
+         "motion.csv}}\nsensors: [{name: a, model: {unit: m, white_noise: {value: 0.1}, density: two-sided}}]\n";
   REQUIRE(test::run({"simulate", path("s.yaml"), "-o", path("log.csv")}).code == 0);
   const std::string bytes = test::slurp(path("log.csv"));
   REQUIRE(test::run({"simulate", path("log.scene.yaml"), "--force"}).code == 0);

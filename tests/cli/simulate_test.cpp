@@ -99,8 +99,7 @@ TEST_CASE("simulate: a scene file says it all") {
   const std::string scene =
       bench.file("s.scene.yaml",
                  "format: scene\nversion: 1\nname: two\nsimulate:\n  rate_hz: 50\n  samples: 100\n  seed: 4\n"
-                 "  truth: {kind: uniform, amplitude: 10}\nsensors:\n  - {name: g, count: 2, model: "
-                 "gyro.sensor.yaml}\n"
+                 "  truth: {kind: uniform, amplitude: 10}\nsensors:\n  - {name: g, count: 2, model: gyro.sensor.yaml}\n"
                  "faults:\n  - {sensor: g1, kind: dropout, from_s: 1.0, to_s: 1.5}\nlearning: [0, 1]\n");
   const auto ran = test::run({"simulate", scene, "-o", bench.path("a.csv"), "--json"});
   INFO(ran.err);

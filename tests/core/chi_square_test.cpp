@@ -1,9 +1,8 @@
-#include "libchar/core/numeric/chi_square.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
+#include "libchar/core/numeric/distributions.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"
 

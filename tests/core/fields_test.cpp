@@ -93,9 +93,8 @@ TEST_CASE("fields: what is written reads back, in YAML and in JSON") {
   const std::vector<Entry> entries = entries_of(room_fields(), room, {{"name", "people"}});
   const std::string yaml = yaml_of(entries);
   CHECK(yaml ==
-        "name: \"hall\"\ndoors: 1  # for people\n\nheight_m: 0.1\nwidths_m: [1.0, "
-        "0.3333333333333333]\nlamp: {power_w: 7.0, colour: green}\nlight: green  # the usual "
-        "one\nopen: true\n");
+        "name: \"hall\"\ndoors: 1  # for people\n\nheight_m: 0.1\nwidths_m: [1.0, 0.3333333333333333]\nlamp: {power_w: "
+        "7.0, colour: green}\nlight: green  # the usual one\nopen: true\n");
   CHECK(yaml_of(entries, "  ", false).starts_with("  name: \"hall\"\n  doors: 1\n  height_m: 0.1\n"));
   for (const bool json : {false, true}) {
     const Room back = json ? read(dump_json(json_of(entries)), "f.json") : read(yaml);
@@ -152,8 +151,8 @@ TEST_CASE("fields: the words of an enum with a table need no second list") {
 
 TEST_CASE("fields: the table of a page has a row a key") {
   CHECK(markdown_table(lamp_fields()) ==
-        "| key | value | meaning |\n|---|---|---|\n| `power_w` | W | at 230 V |\n| `colour` | red, "
-        "green | of the light |\n");
+        "| key | value | meaning |\n|---|---|---|\n| `power_w` | W | at 230 V |\n| `colour` | red, green | of the "
+        "light |\n");
 }
 
 namespace {

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "libchar/core/file/output_files.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 using namespace libchar;
 

@@ -132,9 +132,7 @@ TEST_CASE("outliers: two of them do not hide each other in a lot of twelve") {
   CHECK(outliers[0].index + outliers[1].index == 6);
 }
 
-TEST_CASE(
-    "outliers of many: at most 1 % of lots without one have one, and those that are there are "
-    "named") {
+TEST_CASE("outliers of many: at most 1 % of lots without one have one, and those that are there are named") {
   test::Gaussian gauss(17);
   for (const double spread : {0.0, 1.0})
     for (const std::size_t count : {61, 300}) {

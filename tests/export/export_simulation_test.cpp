@@ -276,9 +276,7 @@ TEST_CASE("KF-GINS: one correlation time for all, the driving density of each") 
   CHECK(test::has(exported("kf-gins", with_process()).text, "driving density kept"));
 }
 
-TEST_CASE(
-    "who only knows a random walk gets the driving density of a Gauss-Markov process, with a "
-    "sentence") {
+TEST_CASE("who only knows a random walk gets the driving density of a Gauss-Markov process, with a sentence") {
   const double driving = kGyroSigma * std::sqrt(2 / kGyroTau);
   const std::string kalibr = exported("kalibr", with_process()).text;
   CHECK(number_after(kalibr, "gyroscope_random_walk") == Approx(driving));
@@ -316,8 +314,7 @@ TEST_CASE("simulated: the steps of Pegasus and NaveGo give the coefficients back
 
 namespace {
 
-// gnss-ins-sim after the correction of its issue 19; numbers of the gyroscope in deg/h and
-// deg/sqrt(h).
+// gnss-ins-sim after the correction of its issue 19; numbers of the gyroscope in deg/h and deg/sqrt(h).
 Discrete gnss_ins_sim(double white, double stability, double correlation_s, double rate_hz) {
   return {white * std::sqrt(rate_hz), stability * std::sqrt(1 - std::exp(-2 / (rate_hz * correlation_s))),
           1 - 1 / rate_hz / correlation_s, rate_hz};
@@ -375,8 +372,7 @@ std::pair<double, double> vins_belief(double acc_n, double acc_w, double dt, int
   return {std::sqrt(vv), std::sqrt(bb)};
 }
 
-// What really happens: midpoint integration of samples with white noise N, and of a bias that walks
-// with K.
+// What really happens: midpoint integration of samples with white noise N, and of a bias that walks with K.
 std::pair<double, double> vins_truth(double q, double k, double dt, int n, std::uint64_t seed) {
   test::Gaussian gauss(seed);
   double velocity2 = 0, bias2 = 0;

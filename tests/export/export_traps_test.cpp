@@ -10,7 +10,7 @@
 
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/model/model_file.hpp"
 #include "tests/export/imu_models.hpp"
 
@@ -121,8 +121,8 @@ TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {
   CHECK(airsim["AccelBiasStability"].get<double>() == Approx(0.01 * 1000 * std::sqrt(800)));
   // deg/sqrt(h) and (deg/h)/sqrt(h) of a data sheet: pi/180/60 and pi/180/3600/60.
   const SensorModel sheet = parse_sensor_model(
-      "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\nrate_hz: 100\nwhite_noise: "
-      "{value: 1, unit: deg/√h}\n"
+      "format: sensor-model\nversion: 1\nchannel: gyro\nunit: rad/s\nrate_hz: 100\nwhite_noise: {value: 1, unit: "
+      "deg/√h}\n"
       "random_walk: {value: 1, unit: deg/h/√h}\n",
       "sheet.yaml");
   const std::string matlab = exported("matlab", {sheet}).text;
@@ -182,8 +182,7 @@ TEST_CASE("trap: Basalt takes the first value of the document for value0") {
 }
 
 TEST_CASE("trap: hostile channel names stay inside comments") {
-  // XML comments end at "--", C++ lines go on behind a backslash, YAML and MATLAB comments end at a
-  // line's end.
+  // XML comments end at "--", C++ lines go on behind a backslash, YAML and MATLAB comments end at a line's end.
   const std::string name = "a--><evil/>\n%YAML:1.0\nx: 1 -- \xE2\x80\xAE\xFF π\\";
   auto models = test::euroc_imu();
   models[0].channel = name;

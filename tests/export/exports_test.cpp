@@ -250,8 +250,7 @@ TEST_CASE("what differs from axis to axis is said axis by axis") {
   auto models = test::euroc_imu();
   models[1].noise[2] = at_most(1e-4);  // acc_x
   CHECK(has(exported("gnss-ins-sim", models).text,
-            "m/s^2; x neither bias_instability nor random_walk was detected: no varying bias; y "
-            "random_walk with"));
+            "m/s^2; x neither bias_instability nor random_walk was detected: no varying bias; y random_walk with"));
   models[1].noise[0] = at_most(1e-4);
   CHECK(has(exported("ros", models).text, "Hz; x not detected: upper 95 % limit\n"));
   const Json basalt = parse_json(exported("basalt", models).text, "c");
@@ -302,9 +301,7 @@ TEST_CASE("inflation: on request only, before squaring, and said") {
   CHECK(has(refusal("kalibr", test::euroc_imu(), options), "`inflate`"));
 }
 
-TEST_CASE(
-    "an absent term: an upper limit where 0 is refused, 0 in a simulator, left out where "
-    "optional") {
+TEST_CASE("an absent term: an upper limit where 0 is refused, 0 in a simulator, left out where optional") {
   auto models = test::euroc_imu();
   for (SensorModel& m : models) m.noise[2] = at_most(m.unit == "rad/s" ? 5e-6 : 4e-4);
   for (const char* target : {"kalibr", "euroc", "openvins", "orbslam3", "basalt", "vins", "gtsam"}) {

@@ -4,10 +4,9 @@
 //   LIBCHAR_FAULT=KIND:N+   that one and all after it
 //   LIBCHAR_FAULT_LOG=FILE  how often each kind was called, as KIND COUNT lines, and whether a fault came about
 //   LIBCHAR_FAULT_FILE=FILE the file that shrinks or grows
-// Kinds: write open read fsync rename link close stat mmap unlink mkdir malloc thread, and kill:
-// SIGKILL before the N-th call that changes a file system (write, open, fsync, rename, link,
-// unlink, mkdir, truncate); shrink, grow: before the N-th read FILE loses its second half, or gets
-// it once more. What glibc does inside itself is not seen.
+// Kinds: write open read fsync rename link close stat mmap unlink mkdir malloc thread, and kill: SIGKILL before the
+// N-th call that changes a file system (write, open, fsync, rename, link, unlink, mkdir, truncate); shrink, grow:
+// before the N-th read FILE loses its second half, or gets it once more. What glibc does inside itself is not seen.
 
 #include <dlfcn.h>
 #include <fcntl.h>

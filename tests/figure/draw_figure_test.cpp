@@ -170,9 +170,7 @@ TEST_CASE("a PNG is as large as its resolution says, and says it") {
   CHECK(number(41) == 3937);  // points a metre
 }
 
-TEST_CASE(
-    "a hundred thousand points are drawn in seconds, whatever their order, as often as they are "
-    "seen") {
+TEST_CASE("a hundred thousand points are drawn in seconds, whatever their order, as often as they are seen") {
   constexpr std::size_t kPoints = 100'000;
   SourceCurve curve = test::figure_curve("g", "deg/s");
   std::mt19937_64 random(1);

@@ -1,5 +1,4 @@
-// The band: clean records keep their whole spectrum, filters are found or described, and the slow
-// coefficients stay.
+// The band: clean records keep their whole spectrum, filters are found or described, and the slow coefficients stay.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -95,8 +94,7 @@ TEST_CASE("clean records: the whole spectrum, no shape, in all but two of a hund
 }
 
 TEST_CASE("a clean record that fails by chance in its slow part keeps its white noise") {
-  // The only one of these whose whole spectrum has .001 < p < .005, and no band but the lowest a
-  // better one.
+  // The only one of these whose whole spectrum has .001 < p < .005, and no band but the lowest a better one.
   test::NoiseSource source(200'000, 200, 99);
   std::vector<double> y;
   for (int i = 0; i <= 35; ++i) y = source.record(1e-3, 1e-2, 5e-3);
@@ -108,8 +106,7 @@ TEST_CASE("a clean record that fails by chance in its slow part keeps its white 
 }
 
 TEST_CASE("a misfit that may be chance does not cut a band to where white noise is not seen") {
-  // The same record with one sample in a hundred missing: its top octave and a half have 1e-6 < p <
-  // 1e-3.
+  // The same record with one sample in a hundred missing: its top octave and a half have 1e-6 < p < 1e-3.
   test::NoiseSource source(200'000, 200, 99);
   test::Gaussian chance(3);
   std::vector<double> y;
@@ -141,8 +138,7 @@ TEST_CASE("a filter is named or described, and Q, B and K are those of the noise
 }
 
 TEST_CASE("a swaying floor's peaks are left out one by one, and Q, B and K stand on both sides of them") {
-  // Frequency, times of white noise's density at the peak, quality; as under the accelerometers of
-  // ADIS16405.
+  // Frequency, times of white noise's density at the peak, quality; as under the accelerometers of ADIS16405.
   const std::vector<std::array<double, 3>> peaks = {
       {0.5, 1, 6}, {0.6, 4, 20}, {1.65, 1, 12}, {2.7, 0.3, 12}, {10.3, 0.6, 8}};
   const auto sway = [&](std::vector<double> y, std::uint64_t seed) {
@@ -255,9 +251,7 @@ TEST_CASE("what lies above white noise at the slow end is no high-pass") {
   }
 }
 
-TEST_CASE(
-    "white noise beside a fast process, or behind a shelf: N is undetermined, its interval holds "
-    "both levels") {
+TEST_CASE("white noise beside a fast process, or behind a shelf: N is undetermined, its interval holds both levels") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     test::NoiseSource source(60000, kRate, 720 + seed);
     std::vector<double> y = source.record(0.1, 0, 0);

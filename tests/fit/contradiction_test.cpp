@@ -51,9 +51,7 @@ TEST_CASE("a fit that the Allan curve bears out is left alone") {
   for (std::size_t t = 0; t < 3; ++t) CHECK(fit.term[t].status == Status::detected);
 }
 
-TEST_CASE(
-    "a random walk that the Allan curve does not show is undetermined, and the reader is told "
-    "where") {
+TEST_CASE("a random walk that the Allan curve does not show is undetermined, and the reader is told where") {
   NoiseFit fit = fit_of({1e-4, 0, 1e-5, 0, 0});
   answer_contradictions(fit, curve_of({1e-4, 0, 1e-8, 0, 0}));
   REQUIRE(fit.findings.size() == 1);

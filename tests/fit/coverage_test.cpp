@@ -8,7 +8,6 @@
 #include "libchar/core/noise_terms.hpp"
 #include "libchar/fit/curve/bounds.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 #include "tests/support/noise.hpp"

@@ -11,7 +11,7 @@
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -129,9 +129,7 @@ TEST_CASE("a curve of any scale that a double holds has the digits of scale one"
     }
 }
 
-TEST_CASE(
-    "without the length of the record, what the intervals rest on is said, and the option that "
-    "states it") {
+TEST_CASE("without the length of the record, what the intervals rest on is said, and the option that states it") {
   const NoiseFit fit = fit_curve(allan_of({25e-6, 1e-6, 1e-8, 0, 0}, 100.0));
   REQUIRE(fit.findings.size() == 1);
   CHECK(fit.findings[0].sentence.find("`duration_s`") != std::string::npos);
@@ -438,9 +436,8 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
 }
 
 TEST_CASE("curve fit: the last point, of one degree of freedom, does not cost the white noise") {
-  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the
-  // longest averaging time has one term, here a sixth of its expectation. Its logarithm is that of
-  // a chi-square, far from normal.
+  // Overlapping Allan deviation of 655.36 s at 50 Hz, simulated (N 0.0040, B 0.0043, K 0.0014): the longest averaging
+  // time has one term, here a sixth of its expectation. Its logarithm is that of a chi-square, far from normal.
   DigitisedCurve curve;
   curve.is_allan = true;
   curve.rate_hz = 50;

@@ -87,13 +87,9 @@ TEST_CASE("degrees of freedom become the relative uncertainty of the deviation")
   CHECK(table->curves[0].curve.relative_sd == std::vector<double>{0.1, 0.25});
 }
 
-TEST_CASE(
-    "a density in the square of a unit is a curve of a channel in that unit, and zero frequency is "
-    "left out") {
-  const auto table = read(
-      "curve,channel,unit,x,value\noadev,a,deg/s,1,2\npsd,a,(deg/s)²/Hz,0,9\npsd,a,(deg/s)²/"
-      "Hz,1,3\n",
-      false);
+TEST_CASE("a density in the square of a unit is a curve of a channel in that unit, and zero frequency is left out") {
+  const auto table =
+      read("curve,channel,unit,x,value\noadev,a,deg/s,1,2\npsd,a,(deg/s)²/Hz,0,9\npsd,a,(deg/s)²/Hz,1,3\n", false);
   REQUIRE(table);
   REQUIRE(table->curves.size() == 1);
   CHECK(table->curves[0].unit == "deg/s");

@@ -76,9 +76,7 @@ TEST_CASE("ends: the share that goes with them is that of many records") {
   }
 }
 
-TEST_CASE(
-    "ends: white phase noise alone is no white frequency noise, of a clock or of a counting "
-    "sensor") {
+TEST_CASE("ends: white phase noise alone is no white frequency noise, of a clock or of a counting sensor") {
   for (const bool clock : {true, false}) {
     int detected = 0, misfits = 0, quantized = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {

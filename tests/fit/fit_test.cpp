@@ -53,9 +53,7 @@ TEST_CASE("the deviance residual and its slope") {
   }
 }
 
-TEST_CASE(
-    "scaling a record scales the coefficients, an offset of 1e6 sigma changes nothing that "
-    "matters") {
+TEST_CASE("scaling a record scales the coefficients, an offset of 1e6 sigma changes nothing that matters") {
   test::NoiseSource source(50000, 200, 4);
   const std::vector<double> y = source.record(1e-3, 1e-2, 5e-3);
   std::vector<double> scaled = y, shifted = y;

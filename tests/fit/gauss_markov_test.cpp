@@ -51,9 +51,7 @@ bool says(const NoiseFit& fit, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE(
-    "Gauss-Markov: the Allan variance of times far below tau is that of a walk, on both sides of "
-    "the series") {
+TEST_CASE("Gauss-Markov: the Allan variance of times far below tau is that of a walk, on both sides of the series") {
   for (const double m : {1.0, 7.0, 1000.0})
     for (const double across : {1e-12, 0.99e-5, 1.01e-5, 1e-4}) {
       // sigma^2 = 1: K^2 = 2 / tau; the next term of the series is between 1/2 and 3/4 of T/tau.

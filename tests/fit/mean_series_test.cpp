@@ -1,5 +1,4 @@
-// The series of means of a long record: blocks and slow means against the noise they are of, and in
-// parts.
+// The series of means of a long record: blocks and slow means against the noise they are of, and in parts.
 
 #include "libchar/fit/detail/record/mean_series.hpp"
 
@@ -28,8 +27,7 @@ std::vector<double> white_walk_means(std::size_t n, double walk_step, unsigned s
   double walk = 0;
   const double scale = std::sqrt(static_cast<double>(kPerMean));
   for (double& x : means) {
-    // End point and mean of a walk over a step: covariance (1, 1/2; 1/2, 1/3) of the step's
-    // variance.
+    // End point and mean of a walk over a step: covariance (1, 1/2; 1/2, 1/3) of the step's variance.
     const double a = normal(engine), b = normal(engine);
     const double step = walk_step * scale;
     x = normal(engine) + scale * (walk + step * (0.5 * a + b / std::sqrt(12.0)));
@@ -82,9 +80,7 @@ std::vector<PowerBin> series_bins(const std::vector<double>& means) {
 
 }  // namespace
 
-TEST_CASE(
-    "mean series: every coefficient of a long one is there once, slow ones with the whole "
-    "resolution") {
+TEST_CASE("mean series: every coefficient of a long one is there once, slow ones with the whole resolution") {
   const std::size_t n = kMostMeans + 5 * kMeansBlock + 20000;
   const std::vector<PowerBin> bins = series_bins(white_walk_means(n, 0, 2));
   double count = 0, slowest = 1e9;
@@ -98,8 +94,7 @@ TEST_CASE(
 }
 
 TEST_CASE("mean series: bins of a long one have the expectations of white noise and of a walk") {
-  // At level 0 the walk is stronger than the white noise below 1e-4 Hz, in the middle of the
-  // blocks' coefficients.
+  // At level 0 the walk is stronger than the white noise below 1e-4 Hz, in the middle of the blocks' coefficients.
   const double step = 2e-5;
   for (const unsigned seed : {3U, 4U, 5U}) {
     const std::vector<PowerBin> bins = series_bins(white_walk_means(kMostMeans + 3 * kMeansBlock + 12345, step, seed));
@@ -124,9 +119,7 @@ TEST_CASE("mean series: parts of a long record, each less its own first sample, 
   }
 }
 
-TEST_CASE(
-    "mean series: a part with missing samples is cut into pieces that have the noise's "
-    "expectations") {
+TEST_CASE("mean series: a part with missing samples is cut into pieces that have the noise's expectations") {
   std::vector<double> means = white_walk_means(40 * kMeansBlock, 2e-5, 7);
   PowerSums all;
   for (std::size_t part = 0; part < 40; ++part) {

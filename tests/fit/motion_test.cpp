@@ -148,9 +148,7 @@ TEST_CASE("motion: picked up early and put down late, steadily moved between") {
   CHECK(motion.findings[0].severity == Severity::bad);
 }
 
-TEST_CASE(
-    "motion: lines drawn through gaps and a link that hung are not the rest that others move "
-    "against") {
+TEST_CASE("motion: lines drawn through gaps and a link that hung are not the rest that others move against") {
   for (const double slope : {1e-3 * kMotionSigma, 1e-9 * kMotionSigma}) {
     test::NoiseSource source(kMotionSamples, kMotionRate, 37);
     std::vector<double> y = source.record(kMotionQ, kMotionB, kMotionK);

@@ -1,5 +1,4 @@
-// Parts of a record joined against the record as one part: bins of clean records, gaps, missing
-// samples.
+// Parts of a record joined against the record as one part: bins of clean records, gaps, missing samples.
 
 #include "libchar/fit/record/power_sums.hpp"
 

@@ -85,8 +85,7 @@ TEST_CASE("a long gap between taken blocks starts a new segment") {
   std::size_t taken = 0;
   const auto bins = by_blocks(x, taken);
   CHECK(taken == 6);
-  // A block that ends a segment is a tail when it is pushed, so that only the sums can be compared:
-  // all samples are in.
+  // A block that ends a segment is a tail when it is pushed, so that only the sums can be compared: all samples are in.
   double got = 0, wanted = 0;
   for (const PowerBin& bin : bins) got += bin.dof;
   for (const PowerBin& bin : pushed(x)) wanted += bin.dof;

@@ -1,5 +1,4 @@
-// What is a spike and what is not: alone, in pairs and runs, at the ends; and noise of kinds that
-// only look wild.
+// What is a spike and what is not: alone, in pairs and runs, at the ends; and noise of kinds that only look wild.
 #include "libchar/fit/signs/spike_cleaner.hpp"
 
 #include <catch2/catch.hpp>
@@ -217,8 +216,7 @@ TEST_CASE("a step, a loud stretch and a missing stretch are no spikes") {
   CHECK(found.count.samples == 19600);
 }
 
-// 60 records a kind and length: at a rate of 1 % five or more would be called spikes in one of 3,000
-// such tests.
+// 60 records a kind and length: at a rate of 1 % five or more would be called spikes in one of 3,000 such tests.
 TEST_CASE("noise of other kinds has no spikes") {
   const Kind kinds[] = {{"white", [](std::size_t n, std::uint64_t s) { return white(n, s); }},
                         {"t3", [](std::size_t n, std::uint64_t s) { return student(n, s, 3); }},

@@ -46,9 +46,8 @@ T strd_model(const std::string& name, const T* b, const double* x) {
   throw std::runtime_error("no such problem: " + name);
 }
 
-/// Of b = scale * u. Covariances are taken at u = 1, in shares of the solution as our fits take
-/// them (of ln theta): a direction counts as not determined by how small it is beside the others,
-/// which units must not decide.
+/// Of b = scale * u. Covariances are taken at u = 1, in shares of the solution as our fits take them (of ln theta): a
+/// direction counts as not determined by how small it is beside the others, which units must not decide.
 struct StrdResidual {
   const StrdProblem* problem;
   const StrdRow* row;

@@ -141,8 +141,7 @@ TEST_CASE("workers call the program by a path with any letters, or by a command 
     fs::permissions(folder / "ssh", fs::perms::owner_all);
     export_jobs(jobs, engines()[2], fleet, options);
     fs::remove(calls);
-    CHECK(std::system(fmt::format("PARALLEL_SSH='{}' sh '{}/fleet.parallel.sh' --sshlogin 1/worker "
-                                  "2> /dev/null",
+    CHECK(std::system(fmt::format("PARALLEL_SSH='{}' sh '{}/fleet.parallel.sh' --sshlogin 1/worker 2> /dev/null",
                                   (folder / "ssh").string(), fleet.string())
                           .c_str()) == 0);
     CHECK(test::slurp(calls) == expected);

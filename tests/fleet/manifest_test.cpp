@@ -26,14 +26,14 @@ const std::string kHead = "format: fleet-manifest\nversion: 1\n";
 }  // namespace
 
 TEST_CASE("a manifest: defaults, what an entry sets over them, paths from its folder") {
-  const Manifest m = parse_manifest(kHead +
-                                        "defaults: {type: imu-x, batch: b1, limits: sheet.yaml, options: "
-                                        "{reading: {rate_hz: 200}}}\n"
-                                        "devices:\n"
-                                        "  - {device: A01, log: a/01.npy, temperature_c: 25}\n"
-                                        "  - {log: /logs/02.npy, batch: b2, options: {reading: {rate_hz: 100}}}\n"
-                                        "  - {device: A03, log: ../c.csv, options: {reading: {rate_hz: 200}}}\n",
-                                    "/fleet/line7.yaml");
+  const Manifest m =
+      parse_manifest(kHead +
+                         "defaults: {type: imu-x, batch: b1, limits: sheet.yaml, options: {reading: {rate_hz: 200}}}\n"
+                         "devices:\n"
+                         "  - {device: A01, log: a/01.npy, temperature_c: 25}\n"
+                         "  - {log: /logs/02.npy, batch: b2, options: {reading: {rate_hz: 100}}}\n"
+                         "  - {device: A03, log: ../c.csv, options: {reading: {rate_hz: 200}}}\n",
+                     "/fleet/line7.yaml");
   REQUIRE(m.devices.size() == 3);
   CHECK(m.devices[0].log == "/fleet/a/01.npy");
   CHECK(m.devices[0].type == "imu-x");

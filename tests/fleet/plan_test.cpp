@@ -160,8 +160,7 @@ TEST_CASE("limits that fit no channel are told before the work, with the entry o
                     Contains("line7.yaml:7:5") && Contains("gy"));
   manifest.devices[0].limits = (folder / "other.yaml").string();
   test::write_file(folder / "other.yaml",
-                   "format: noise-limits\nversion: 1\nlimits:\n  - {white_noise: {value: 5, unit: "
-                   "m/s/√h}}\n");
+                   "format: noise-limits\nversion: 1\nlimits:\n  - {white_noise: {value: 5, unit: m/s/√h}}\n");
   CHECK_NOTHROW(planned_with("{channels: [gy], white_noise: {value: 5, unit: deg/√h}}"));
   // Angles: their rates are known once they are read.
   manifest.options[0].data = SampleKind::phase;

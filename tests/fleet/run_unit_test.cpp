@@ -300,8 +300,10 @@ TEST_CASE("a log in which nothing could be fitted has no result, and says why") 
     CHECK(fleet_status(plan, fleet).no_result == (by_channel ? 2 : 1));
     const auto records = merged_records(plan, fleet);
     CHECK(records[0].problem.empty());
-    CHECK_THAT(records[1].problem, Contains("d1.csv: error E0711: no channel could be fitted; gx: no curves and no "
-                                            "fit: 1 sample, and so no rate"));
+    CHECK_THAT(
+        records[1].problem,
+        Contains(
+            "d1.csv: error E0711: no channel could be fitted; gx: no curves and no fit: 1 sample, and so no rate"));
     CHECK(records[1].channels.empty());
   }
 }

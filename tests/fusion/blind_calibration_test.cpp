@@ -1,5 +1,4 @@
-// Blind calibration: known answers for both gauges, the published recursion, and what taking off
-// the noise is worth.
+// Blind calibration: known answers for both gauges, the published recursion, and what taking off the noise is worth.
 
 #include "libchar/fusion/algorithms/blind_calibration.hpp"
 

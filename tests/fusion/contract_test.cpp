@@ -69,12 +69,10 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   CHECK(why_not(needing({.max_channels = 2}), test::array(3)) ==
         "foo takes at most 2 channels (its memory grows with their square); this scene has 3");
   CHECK(why_not(needing({.more_than_inputs = 2}), two) ==
-        "foo needs at least 3 channels for 1 input; this scene has 2 (the difference of two "
-        "channels tells the sum of "
+        "foo needs at least 3 channels for 1 input; this scene has 2 (the difference of two channels tells the sum of "
         "their variances, not which is the noisier)");
   CHECK(why_not(needing({.noise_levels = true}), two) ==
-        "foo needs a noise level (above zero) for each channel; give a sensor model, noise or a "
-        "rest");
+        "foo needs a noise level (above zero) for each channel; give a sensor model, noise or a rest");
   two.noise_levels = Eigen::Vector2d(1, 0);
   CHECK_FALSE(why_not(needing({.noise_levels = true}), two).empty());
   two.noise_levels = Eigen::Vector2d(1, 2);

@@ -458,9 +458,7 @@ TEST_CASE("minque starts by medians: one sensor that is far off moves nobody") {
   CHECK((out.x - x).cwiseAbs().maxCoeff() < 4);
 }
 
-TEST_CASE(
-    "minque: an array that moves as nobody said stands the watch down instead of throwing sensors "
-    "out") {
+TEST_CASE("minque: an array that moves as nobody said stands the watch down instead of throwing sensors out") {
   // From 10 s on every sensor sees a motion of its own, ten times its noise.
   Gyroscopes g = gyroscopes(40000, 91);
   test::Gaussian gauss(7);

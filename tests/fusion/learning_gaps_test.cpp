@@ -1,5 +1,4 @@
-// Learning windows in which the truth is missing now and then: the time of such an instant has
-// passed all the same.
+// Learning windows in which the truth is missing now and then: the time of such an instant has passed all the same.
 
 #include <catch2/catch.hpp>
 

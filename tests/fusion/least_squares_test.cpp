@@ -123,8 +123,7 @@ TEST_CASE("bounds: best channel, optimal weights, sections") {
     return std::sqrt((test::run(*bound, y).x - x).middleCols(from, count).squaredNorm() / static_cast<double>(count));
   };
   CHECK(rms("sectioned-least-squares", 0, 3000) == Approx(1 / std::sqrt(1.5)).epsilon(0.03));
-  // Weights that sum to one may lean on a channel that is dead at zero, the mean of the input:
-  // variance 2 * 25 / 27.
+  // Weights that sum to one may lean on a channel that is dead at zero, the mean of the input: variance 2 * 25 / 27.
   CHECK(rms("sectioned-least-squares", 3000, 3000) == Approx(std::sqrt(50.0 / 27)).epsilon(0.03));
   CHECK(rms("optimal-weights", 0, 6000) > rms("sectioned-least-squares", 0, 6000));
   CHECK(rms("best-sensor", 0, 6000) == Approx(2).epsilon(0.03));

@@ -41,8 +41,7 @@ TEST_CASE("minque: faults are found, kept out and let in again") {
   INFO("detection " << detection);
   auto minque = test::make("minque", array, {{"fault_detection", detection}, {"recovery_samples", 200}});
   const test::Run out = test::run(*minque, inputs.block("y", 6));
-  // Sensor 1 dead from 3000 on (counted from zero), sensor 2 -30 % from 3800, sensor 3 +25 % from
-  // 4400 to 4999.
+  // Sensor 1 dead from 3000 on (counted from zero), sensor 2 -30 % from 3800, sensor 3 +25 % from 4400 to 4999.
   struct Expected {
     std::int64_t from, to;
     int channel;
@@ -89,8 +88,7 @@ Recorded made(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Eigen:
   return m;
 }
 
-/// Squared error of the estimates over that of generalized least squares with the true variances,
-/// input by input.
+/// Squared error of the estimates over that of generalized least squares with the true variances, input by input.
 Eigen::VectorXd regret(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Runner& runner, Eigen::Index from) {
   const Recorded m = made(h, variances, 60000, 11);
   const test::Run out = test::run(runner, m.y, h.cols());

@@ -202,9 +202,7 @@ TEST_CASE("simplex, decision: each rule by itself takes the lead away, 32 good i
   CHECK(judged.worst({1, 1}) == -1);
 }
 
-TEST_CASE(
-    "simplex, past: an input that has a past is smoothed, nearly as a Kalman filter would that "
-    "knew it") {
+TEST_CASE("simplex, past: an input that has a past is smoothed, nearly as a Kalman filter would that knew it") {
   test::Gaussian gauss(5);
   const auto ratio = [&](double keep) {  // x an AR(1) of variance 1, sensors of variance 1: V = 0.5
     PastNetwork past(1);

@@ -1,5 +1,4 @@
-// The tanh network against fixtures/known/fusion/mlp.csv; its training: what it reaches and what it
-// refuses.
+// The tanh network against fixtures/known/fusion/mlp.csv; its training: what it reaches and what it refuses.
 
 #include "libchar/fusion/algorithms/perceptron.hpp"
 

@@ -1,5 +1,4 @@
-// What each algorithm promises, in one table: an algorithm that is registered
-// without a row here fails.
+// What each algorithm promises, in one table: an algorithm that is registered without a row here fails.
 
 #include <catch2/catch.hpp>
 #include <cstring>

@@ -230,8 +230,7 @@ TEST_CASE("noise of very different size") {
       CHECK(out.x.allFinite());
       CHECK(sane_variance(out.variance));
       if (named(entry, {"inverse-variance", "optimal-weights"})) CHECK(apart(out.x, scene.truth) < 8);
-      // Without a word on the noise: the three good channels carry the weight after the first
-      // hundred instants.
+      // Without a word on the noise: the three good channels carry the weight after the first hundred instants.
       if (named(entry, {"minque"})) CHECK(apart(out.x.rightCols(1000), scene.truth.rightCols(1000)) < 10);
     });
   }

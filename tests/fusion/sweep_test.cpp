@@ -147,8 +147,7 @@ TEST_CASE("benign scenes: a shift of the input shifts the estimates") {
         REQUIRE(a.has_value() == b.has_value());
         if (!a) continue;
         INFO(entry.description->name << " on " << scene.name << ", shift " << shift);
-        // The shifted samples themselves are rounded to 2^-33; a network's training turns that
-        // into a little more.
+        // The shifted samples themselves are rounded to 2^-33; a network's training turns that into a little more.
         const double tolerance = entry.description->name == "perceptron" ? 1e-4 : 1e-7;
         CHECK(apart(b->x.array() - shift, a->x, 1) < tolerance);
       }

@@ -27,8 +27,7 @@ Eigen::MatrixXd samples_of(const test::Vectors& file) {
   return file.values.middleCols(file.column("gyro"), 3).transpose();
 }
 
-/// A slow turn through +-pi several times, with noise and a gyroscope bias; row 3 is the true
-/// angle.
+/// A slow turn through +-pi several times, with noise and a gyroscope bias; row 3 is the true angle.
 Eigen::MatrixXd turning(Eigen::Index instants, double noise = 0.05, double bias = 0.02) {
   test::Gaussian gauss(3);
   Eigen::MatrixXd y(4, instants);

@@ -1,7 +1,6 @@
-// libFuzzer target of the CSV reader: the first two bytes choose block size and options, the rest
-// is the file. It is read in small blocks and in one, with one thread and sometimes more: values,
-// counts, warnings and errors must agree. The reader itself throws std::logic_error when its
-// account of bytes and cells does not balance.
+// libFuzzer target of the CSV reader: the first two bytes choose block size and options, the rest is the file. It is
+// read in small blocks and in one, with one thread and sometimes more: values, counts, warnings and errors must agree.
+// The reader itself throws std::logic_error when its account of bytes and cells does not balance.
 //   csv_fuzz -max_total_time=60 -max_len=4096 -timeout=5 -rss_limit_mb=1024 corpus
 //   fixtures/known/badinputs/csv
 #include <sys/mman.h>

@@ -1,6 +1,5 @@
-// The door between the HDF5 library's process and this one: any bytes as its listing are none, or
-// one that is the same when written again; and (one input in sixteen, a process is started for it)
-// any bytes as a file.
+// The door between the HDF5 library's process and this one: any bytes as its listing are none, or one that is the same
+// when written again; and (one input in sixteen, a process is started for it) any bytes as a file.
 
 #include "libchar/log/arrays/hdf5_worker.hpp"
 #include "tests/fuzz/fuzz_support.hpp"

@@ -1,5 +1,4 @@
-// Any bytes as a .npy file: an Error or rows, the same rows at every block size, and every byte
-// accounted for.
+// Any bytes as a .npy file: an Error or rows, the same rows at every block size, and every byte accounted for.
 
 #include <cstdint>
 #include <cstdlib>

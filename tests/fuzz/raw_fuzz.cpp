@@ -16,8 +16,7 @@
 
 namespace {
 
-// open_raw finds the sidecar by its name, so that this one needs names: in memory (/dev/shm), one
-// pair a process.
+// open_raw finds the sidecar by its name, so that this one needs names: in memory (/dev/shm), one pair a process.
 const std::string& base() {
   static const std::string path = "/dev/shm/libchar-raw-fuzz-" + std::to_string(::getpid()) + ".bin";
   return path;

@@ -1,6 +1,5 @@
-// Any bytes as device records, one a line: the fast way to read one and the way by a document
-// agree, what is read is written and read back, and the lot of such devices is computed and
-// reported, whatever their numbers are.
+// Any bytes as device records, one a line: the fast way to read one and the way by a document agree, what is read is
+// written and read back, and the lot of such devices is computed and reported, whatever their numbers are.
 
 #include <nlohmann/json.hpp>
 
@@ -40,8 +39,8 @@ void report(const std::vector<DeviceRecord>& records) {
   FleetLotOptions options;
   if (records.size() % 2 == 1)
     options.limits[""] = parse_limits(
-        "format: noise-limits\nversion: 1\nlimits:\n  - {kind: angular_rate, white_noise: "
-        "{value: 2, unit: deg/√h}, bias_instability: {value: 5, unit: deg/h}}\n",
+        "format: noise-limits\nversion: 1\nlimits:\n  - {kind: angular_rate, white_noise: {value: 2, unit: deg/√h}, "
+        "bias_instability: {value: 5, unit: deg/h}}\n",
         "l.yaml");
   try {
     const FleetLot lot = fleet_lot(records, options);

@@ -1,7 +1,6 @@
-// Partial states of a log with anything in them, under lengths and digests that fit: refused, or
-// joined and characterized as far as the numbers allow. The first byte chooses what was
-// characterized; behind it are, by the second byte, the whole content or changes of a true one,
-// which may be longer than an input.
+// Partial states of a log with anything in them, under lengths and digests that fit: refused, or joined and
+// characterized as far as the numbers allow. The first byte chooses what was characterized; behind it are, by the
+// second byte, the whole content or changes of a true one, which may be longer than an input.
 
 #include <algorithm>
 #include <cmath>

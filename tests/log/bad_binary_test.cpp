@@ -1,5 +1,4 @@
-// Every npy and raw case of the shared table of bad inputs: verdict, place, and one line that says
-// what is wrong.
+// Every npy and raw case of the shared table of bad inputs: verdict, place, and one line that says what is wrong.
 
 #include <catch2/catch.hpp>
 #include <fstream>

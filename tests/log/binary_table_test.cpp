@@ -1,7 +1,6 @@
-// Binary logs of the field, read as a new user would: the file and, where it holds several streams,
-// a topic. Names, units, rate, first stamp and samples by value. The files are written by
-// independent writers or laid out byte by byte (fixtures/README.md); the formulas of their makers
-// stand here again.
+// Binary logs of the field, read as a new user would: the file and, where it holds several streams, a topic. Names,
+// units, rate, first stamp and samples by value. The files are written by independent writers or laid out byte by byte
+// (fixtures/README.md); the formulas of their makers stand here again.
 
 #include <fmt/format.h>
 
@@ -73,8 +72,8 @@ std::vector<TableLog> flight_logs() {
        {{0, 5, 101375}, {1, 0, 31.25}}},
       {"flight/instances.ulg",
        "vehicle_imu 1",
-       "delta_angle[0][rad] delta_angle[1][rad] delta_angle[2][rad] delta_velocity[0][m/s] "
-       "delta_velocity[1][m/s] delta_velocity[2][m/s]",
+       "delta_angle[0][rad] delta_angle[1][rad] delta_angle[2][rad] delta_velocity[0][m/s] delta_velocity[1][m/s] "
+       "delta_velocity[2][m/s]",
        200,
        20 * kSecond + 120 * kMicro,
        120,
@@ -143,8 +142,8 @@ std::vector<TableLog> flight_logs() {
 std::vector<TableLog> ros_logs() {
   constexpr std::int64_t kStart = 1700000000 * kSecond;
   const std::string imu =
-      "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] "
-      "linear_acceleration.x[m/s^2] linear_acceleration.y[m/s^2] linear_acceleration.z[m/s^2]";
+      "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] linear_acceleration.x[m/s^2] "
+      "linear_acceleration.y[m/s^2] linear_acceleration.z[m/s^2]";
   const std::string magnetic = "magnetic_field.x[T] magnetic_field.y[T] magnetic_field.z[T]";
   const std::vector<TableSample> readings = {
       {0, 10, 0.001 * 10 - 0.3}, {1, 4, 2}, {2, 7, -1}, {3, 99, 24.75}, {4, 3, 0.25}, {5, 50, 9.81 - 50 * 1e-4}};

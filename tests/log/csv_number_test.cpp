@@ -71,8 +71,7 @@ TEST_CASE("the quick number gives the bits of from_chars, whatever the way of wr
 }
 
 TEST_CASE("numbers halfway between two doubles round to even") {
-  // m + 1/2 ulp with m odd and even, written out in full: 2^53 + 1 and its kin, shifted below the
-  // mark.
+  // m + 1/2 ulp with m odd and even, written out in full: 2^53 + 1 and its kin, shifted below the mark.
   for (const char* text :
        {"9007199254740993", "9007199254740995", "900719925474099.3", "9007199254740.993", "1.0000000000000002",
         "4503599627370496.5", "4503599627370497.5", "450359962737049.65", "0.5", "0.25", "2.50", "1125899906842624.125",

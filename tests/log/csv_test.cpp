@@ -50,8 +50,7 @@ TEST_CASE("EuRoC: the header is a comment, stamps are 19-digit nanoseconds") {
 TEST_CASE("TUM: blanks between columns, several comment lines") {
   const Recording r = read_text(
       "# accelerometer data\n# file: 'rgbd.bag'\n# timestamp ax ay az\n"
-      "1311868164.363181 -0.1 9.7 1.2\n1311868164.365181  -0.2   9.8 1.3 \n 1311868164.367181 -0.3 "
-      "9.9 1.4\n");
+      "1311868164.363181 -0.1 9.7 1.2\n1311868164.365181  -0.2   9.8 1.3 \n 1311868164.367181 -0.3 9.9 1.4\n");
   CHECK(names(r) == Names{"ax", "ay", "az"});
   CHECK(r.info.time.start_ns == 1311868164363181000);
   CHECK(r.info.time.rate_hz == Approx(500));
@@ -174,9 +173,11 @@ TEST_CASE("channels are selected by name, in file order, and nothing else is par
 }
 
 TEST_CASE("the first line that cannot be is named with line, column and byte") {
-  CHECK(failure("t,x\n0,1\n1,1e400\n")
-            .find("log.csv:3:3 (byte 10): error E0312: number out of range; got \"1e400\"; hint: "
-                  "`overflow_as_missing`") == 0);
+  CHECK(
+      failure("t,x\n0,1\n1,1e400\n")
+          .find(
+              "log.csv:3:3 (byte 10): error E0312: number out of range; got \"1e400\"; hint: `overflow_as_missing`") ==
+      0);
   CHECK(failure("").find("log.csv:1:1 (byte 0): error E0322: the file is empty") == 0);
   CHECK(failure("t,x\n").find("no data rows") != std::string::npos);
   CHECK(failure("\x1F\x8B\x08").find(LIBCHAR_HAVE_ZLIB ? "compressed" : "cannot unpack") != std::string::npos);
@@ -259,8 +260,7 @@ TEST_CASE("numbers with their unit behind them: the unit of the column") {
   // Grafana, as it shows the values.
   const Recording grafana = read_text(
       "\"Time\",\"temp\",\"a\"\n"
-      "2024-01-05 12:00:00,0.686 °C,12.3 m/s²\n2024-01-05 12:00:01,,12.4 m/s²\n2024-01-05 "
-      "12:00:02,-1.5 °C,NaN\n");
+      "2024-01-05 12:00:00,0.686 °C,12.3 m/s²\n2024-01-05 12:00:01,,12.4 m/s²\n2024-01-05 12:00:02,-1.5 °C,NaN\n");
   CHECK(names(grafana) == Names{"temp|°C", "a|m/s²"});
   CHECK(grafana.samples[0][2] == -1.5);
   CHECK(std::isnan(grafana.samples[0][1]));
@@ -444,9 +444,9 @@ TEST_CASE("names that are given go by what is read") {
   options.channels = {"gz"};
   CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options), Catch::Contains("3 given, and 1 channel is read: gz"));
   options.channels = {"a"};
-  CHECK_THAT(failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
-             Catch::Contains("`channels` chooses by the names in the log, gx, gy, gz, and `names` "
-                             "then name what was chosen"));
+  CHECK_THAT(
+      failure("t,gx,gy,gz\n1,2,3,4\n2,3,4,5\n", options),
+      Catch::Contains("`channels` chooses by the names in the log, gx, gy, gz, and `names` then name what was chosen"));
 }
 
 TEST_CASE("web pages and JSON documents are called by their names") {

@@ -99,9 +99,7 @@ TEST_CASE("DataFlash: every letter by value, arrays, doubled labels, and what is
   CHECK(why["BADX"] == "its format has the letter x");
 }
 
-TEST_CASE(
-    "DataFlash: bursts of the batch sampler stand at their instants, and what they are good for is "
-    "said") {
+TEST_CASE("DataFlash: bursts of the batch sampler stand at their instants, and what they are good for is said") {
   const Recording accel = read_bin(bin("batch.bin"), "ISBD accel 0");
   CHECK(bin_channels(accel.info) == "x[m/s^2] y[m/s^2] z[m/s^2] ");
   CHECK(accel.info.time.rate_hz == Approx(1000).epsilon(1e-12));

@@ -55,8 +55,8 @@ std::string said_by(const LogInfo& info) {
 std::vector<Export> robot_exports() {
   std::vector<Export> out;
   out.push_back({"rostopic echo -p, sensor_msgs/Imu",
-                 "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angular_velocity.x,"
-                 "field.linear_acceleration.z\n" +
+                 "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angular_velocity.x,field."
+                 "linear_acceleration.z\n" +
                      lines(12,
                            [](int k) {
                              return fmt::format("{},{},{},imu_link,{},9.81\n",
@@ -124,11 +124,11 @@ std::vector<Export> robot_exports() {
        "time unit: ns"});
   out.push_back(
       {"PX4 ulog2csv sensor_combined",
-       "timestamp,gyro_rad[0],gyro_rad[1],gyro_integral_dt,accelerometer_timestamp_relative,"
-       "accelerometer_m_s2[0],magnetometer_ga[2]\n" +
+       "timestamp,gyro_rad[0],gyro_rad[1],gyro_integral_dt,accelerometer_timestamp_relative,accelerometer_m_s2[0],"
+       "magnetometer_ga[2]\n" +
            lines(12, [](int k) { return fmt::format("{},0.01,{},4000,0,-0.2,0.31\n", 112574307 + 4000 * k, k); }),
-       "gyro[0][rad/s] gyro[1][rad/s] gyro_integral_dt[] accelerometer_timestamp_relative[] "
-       "accelerometer[0][m/s2] magnetometer[2][Gauss]",
+       "gyro[0][rad/s] gyro[1][rad/s] gyro_integral_dt[] accelerometer_timestamp_relative[] accelerometer[0][m/s2] "
+       "magnetometer[2][Gauss]",
        250,
        112574307000,
        {0.01, 0, 4000, 0, -0.2, 0.31},
@@ -159,8 +159,7 @@ std::vector<Export> robot_exports() {
                  {0, 3, 0, 2050},
                  "left out columns of words: flightModeFlags"});
   out.push_back({"Blackbox Explorer export",
-                 "\"Product\",\"Blackbox flight data recorder by Nicholas Sherlock\"\n\"Data "
-                 "version\",\"2\"\n"
+                 "\"Product\",\"Blackbox flight data recorder by Nicholas Sherlock\"\n\"Data version\",\"2\"\n"
                  "\"looptime\",\"125\"\n\"gyro_scale\",\"0x3f800000\"\n"
                  "\"loopIteration\",\"time\",\"gyroADC[0]\",\"gyroADC[1]\"\n" +
                      lines(40, [](int k) { return fmt::format("{},{},5,{}\n", k, 1000000 + 500 * k, k); }),
@@ -215,8 +214,7 @@ std::vector<Export> phone_exports() {
                  {0.0853, 0.01, 0, 0.03},
                  "time column: time, not seconds_elapsed"});
   out.push_back({"AndroSensor",
-                 "sep=;\nACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Time since start in ms "
-                 ";YYYY-MO-DD HH-MI-SS_SSS\n" +
+                 "sep=;\nACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Time since start in ms ;YYYY-MO-DD HH-MI-SS_SSS\n" +
                      lines(12,
                            [](int k) {
                              return fmt::format("0.1;{};{};2024-05-01 12:00:0{}:{:03d}\n", k, 5 + 100 * k, k / 10,
@@ -289,8 +287,7 @@ std::vector<Export> imu_exports() {
        "time unit: 100us, from the rate of 100 Hz"});
   out.push_back({"Movella DOT",
                  "DeviceTag:,DOT 1\r\nFirmwareVersion:,2.0.0\r\nAppVersion:,v2022.0\r\nSyncStatus:,Synced\r\n"
-                 "OutputRate:,60Hz\r\nFilterProfile:,General\r\nMeasurementMode:,Rate quantities (with "
-                 "mag)\r\n"
+                 "OutputRate:,60Hz\r\nFilterProfile:,General\r\nMeasurementMode:,Rate quantities (with mag)\r\n"
                  "StartTime:,2022-05-01 12:00:00\r\n\r\n"
                  "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Gyr_X\r\n" +
                      lines(24, [](int k) { return fmt::format("{},{},0.1,{},9\r\n", k, 1013245 + 16667 * k, k); }),
@@ -409,23 +406,22 @@ std::vector<Export> bench_exports() {
                  std::int64_t{1714564800} * 1000000000,
                  {1013.0},
                  "is read with the month first"});
-  out.push_back({"InfluxDB annotated CSV, one field",
-                 "#group,false,false,true,true,false,false,true,true\r\n"
-                 "#datatype,string,long,dateTime:RFC3339,dateTime:RFC3339,dateTime:RFC3339,double,string,"
-                 "string\r\n"
-                 "#default,mean,,,,,,,\r\n,result,table,_start,_stop,_time,_value,_field,_measurement\r\n" +
-                     lines(12,
-                           [](int k) {
-                             return fmt::format(
-                                 ",,0,2024-05-01T00:00:00Z,2024-05-02T00:00:00Z,"
-                                 "2024-05-01T12:00:{:02d}.5Z,{},gx,imu\r\n",
-                                 k, k + 0.25);
-                           }),
-                 "result[] table[] _value[]",
-                 1,
-                 std::int64_t{1714564800} * 1000000000 + 500000000,
-                 {NAN, 0, 0.25},
-                 "_time"});
+  out.push_back(
+      {"InfluxDB annotated CSV, one field",
+       "#group,false,false,true,true,false,false,true,true\r\n"
+       "#datatype,string,long,dateTime:RFC3339,dateTime:RFC3339,dateTime:RFC3339,double,string,string\r\n"
+       "#default,mean,,,,,,,\r\n,result,table,_start,_stop,_time,_value,_field,_measurement\r\n" +
+           lines(12,
+                 [](int k) {
+                   return fmt::format(
+                       ",,0,2024-05-01T00:00:00Z,2024-05-02T00:00:00Z,2024-05-01T12:00:{:02d}.5Z,{},gx,imu\r\n", k,
+                       k + 0.25);
+                 }),
+       "result[] table[] _value[]",
+       1,
+       std::int64_t{1714564800} * 1000000000 + 500000000,
+       {NAN, 0, 0.25},
+       "_time"});
   out.push_back({"InfluxDB annotated CSV, two fields side by side",
                  ",result,table,_time,_value,_field\n" + lines(24,
                                                                [](int k) {
@@ -501,8 +497,7 @@ std::vector<Export> bench_exports() {
                  {0.01, 0},
                  "units in line 2"});
   out.push_back({"Tektronix MSO",
-                 "Model,MSO24\r\nFirmware Version,1.44\r\n\r\nWaveform Type,ANALOG,,\r\nHorizontal "
-                 "Units,s,,\r\n"
+                 "Model,MSO24\r\nFirmware Version,1.44\r\n\r\nWaveform Type,ANALOG,,\r\nHorizontal Units,s,,\r\n"
                  "Sample Interval,1e-05,,\r\nRecord Length,12,,\r\n\r\nLabels,,,\r\nTIME,CH1,CH2\r\n" +
                      lines(20, [](int k) { return fmt::format("{:.6e},0.02,{}\r\n", -1e-4 + 1e-5 * k, k); }),
                  "CH1[] CH2[]",
@@ -550,9 +545,8 @@ std::vector<Export> bench_exports() {
        "units in line 3"});
   out.push_back(
       {"HOBO",
-       "\"Plot Title: 10012345\"\r\n\"#\",\"Date Time, GMT+02:00\",\"Temp, °C (LGR S/N: "
-       "10012345)\","
-       "\"Stopped (LGR S/N: 10012345)\"\r\n" +
+       "\"Plot Title: 10012345\"\r\n\"#\",\"Date Time, GMT+02:00\",\"Temp, °C (LGR S/N: 10012345)\",\"Stopped (LGR "
+       "S/N: 10012345)\"\r\n" +
            lines(24, [](int k) { return fmt::format("{},05/13/24 01:{:02d}:00 PM,21.{:03d},\r\n", k + 1, k, k); }),
        "Temp[°C] Stopped[]",
        1.0 / 60,

@@ -1,5 +1,4 @@
-// The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on
-// made-up clocks.
+// The time base from stamps: rate, jitter, gaps, doubles, steps back, rollovers; known answers on made-up clocks.
 #include "libchar/log/time/grid.hpp"
 
 #include <fmt/format.h>
@@ -209,12 +208,13 @@ TEST_CASE("a few hundred first rows at another rate are left out") {
 TEST_CASE("stamps too far away for a grid are refused with their distance") {
   CHECK_THAT(failure("t_ns,x\n-3000000000000000000,1\n-2999999999000000000,2\n"
                      "3000000000000000000,3\n3000000001000000000,4\n"),
-             Catch::Contains("log.csv:4:1: error E0316: wild time stamp: 6e+09 s away from the "
-                             "first"));
+             Catch::Contains("log.csv:4:1: error E0316: wild time stamp: 6e+09 s away from the first"));
   auto t = even(1001, 1000);
   for (int i = 0; i < 100; ++i) t.push_back(200001000000 + 1000 * i);
-  CHECK_THAT(failure(log_of(t)), Catch::Contains("log.csv:1003:1: error E0316: wild time stamp: 2e+05 s after the row "
-                                                 "before (199999999 missing samples)"));
+  CHECK_THAT(
+      failure(log_of(t)),
+      Catch::Contains(
+          "log.csv:1003:1: error E0316: wild time stamp: 2e+05 s after the row before (199999999 missing samples)"));
 }
 
 TEST_CASE("16- and 32-bit microsecond clocks run over and go on") {

@@ -15,9 +15,7 @@ using test::array_fault;
 using test::array_log;
 using test::check_common_log;
 
-TEST_CASE(
-    "hdf5: datasets of one length are one table, with their units, in any chunks, orders and "
-    "filters") {
+TEST_CASE("hdf5: datasets of one length are one table, with their units, in any chunks, orders and filters") {
   NEEDS_LIBRARY(HDF5);
   const Recording log = array_log("log.h5");
   check_common_log(log);

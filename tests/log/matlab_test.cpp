@@ -90,9 +90,7 @@ TEST_CASE("matlab: a file cut anywhere is refused in one sentence, or has fewer 
   }
 }
 
-TEST_CASE(
-    "matlab: changed bytes of compressed arrays are noticed, others end in a sentence or in "
-    "values") {
+TEST_CASE("matlab: changed bytes of compressed arrays are noticed, others end in a sentence or in values") {
   NEEDS_LIBRARY(ZLIB);
   const std::string bytes = test::slurp(test::fixture("arrays/log_v5_compressed.mat"));
   const Recording truth = array_log("log_v5_compressed.mat");

@@ -89,8 +89,8 @@ TEST_CASE("MCAP: topics are listed with types, counts, rates and fields, or why 
 TEST_CASE("MCAP: any message by its embedded definition") {
   const test::Rows odd = test::read_rows("mcap", test::ros("ros2.mcap"), test::of_topic("/odd"));
   CHECK(test::channel_names(odd.info) ==
-        "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state "
-        "cells[1].volts cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
+        "on ticks small[0] small[1] small[2] port age[s] raw cells[0].volts cells[0].state cells[1].volts "
+        "cells[1].state more[0].volts more[0].state gains[0] gains[1] gains[2] last");
   REQUIRE(odd.columns.size() == 18);
   for (std::size_t k = 0; k < 20; ++k) {
     const auto i = static_cast<double>(k);
@@ -272,8 +272,7 @@ TEST_CASE("MCAP: cut in front of its first whole message, where it ends and insi
   const std::string zstd = test::slurp(test::ros("ros2_zstd.mcap"));
   CHECK_THAT(test::refusal("mcap", changed_mcap(folder, zstd.substr(0, 3000))),
              Catch::Contains("E0426") &&
-                 Catch::Contains("holds no whole message: the file ends at "
-                                 "byte 3000 inside a chunk") &&
+                 Catch::Contains("holds no whole message: the file ends at byte 3000 inside a chunk") &&
                  Catch::Contains("begins at byte 55"));
   CHECK_THAT(test::refusal("mcap", changed_mcap(folder, zstd.substr(0, 8))),
              Catch::Contains("ends at byte 8 without its end mark"));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "libchar/log/ros/messages/known_messages.hpp"
 #include "libchar/log/ros/messages/message_decoder.hpp"
 
 using namespace libchar;

@@ -1,5 +1,4 @@
-// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our
-// writer.
+// Fixtures by NumPy itself (fixtures/npy/make.py), so that our reader is not checked against our writer.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -226,9 +225,8 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
   const NpyHeader spaced = header_of("{ \"shape\" : ( 2 , 2 ) ,'fortran_order':True,'descr':'=f8'}\n");
   CHECK(spaced.shape == std::vector<std::uint64_t>{2, 2});
   CHECK(spaced.fortran_order);
-  const NpyHeader quoted = header_of(
-      "{'descr': [('a\\'b', '<f4'), (\"c\\\\\", '|i1', 2)], 'fortran_order': False, 'shape': (3,), "
-      "}");
+  const NpyHeader quoted =
+      header_of("{'descr': [('a\\'b', '<f4'), (\"c\\\\\", '|i1', 2)], 'fortran_order': False, 'shape': (3,), }");
   CHECK(quoted.fields[0].name == "a'b");
   CHECK(quoted.fields[1].name == "c\\");
   CHECK(quoted.item_bytes == 6);

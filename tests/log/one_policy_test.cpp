@@ -1,6 +1,5 @@
-// The same dirty data in every format: the same samples, counts, warnings and codes. And of every
-// log that is accepted the account of its rows: rows in = rows used + rows dropped with a reason +
-// rows outside the window.
+// The same dirty data in every format: the same samples, counts, warnings and codes. And of every log that is accepted
+// the account of its rows: rows in = rows used + rows dropped with a reason + rows outside the window.
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -39,10 +38,8 @@ std::vector<std::string> in_all_formats(const DirtyRows& rows, const test::Tempo
     for (const auto& row : rows) file << shortest(row[0]) << ',' << shortest(row[1]) << ',' << shortest(row[2]) << '\n';
   }
   {
-    std::string header =
-        "{'descr': [('t_s', '<f8'), ('x', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': "
-        "(" +
-        std::to_string(rows.size()) + ",), }";
+    std::string header = "{'descr': [('t_s', '<f8'), ('x', '<f8'), ('y', '<f8')], 'fortran_order': False, 'shape': (" +
+                         std::to_string(rows.size()) + ",), }";
     header.resize(181, ' ');
     header += '\n';
     std::ofstream(npy, std::ios::binary) << std::string("\x93NUMPY\x01\x00\xB6\x00", 10) << header << dirty_bytes(rows);
@@ -222,9 +219,7 @@ TEST_CASE("the same dirty data in each format are read alike, counted alike and 
   }
 }
 
-TEST_CASE(
-    "rows in are rows used, dropped with a reason, or outside the window: every log that is "
-    "accepted") {
+TEST_CASE("rows in are rows used, dropped with a reason, or outside the window: every log that is accepted") {
   std::size_t accepted = 0;
   for (const char* place : {"known/badinputs/csv", "known/badinputs/npy", "known/badinputs/raw", "npy", "."}) {
     for (const auto& entry : std::filesystem::directory_iterator(test::fixture(place))) {

@@ -141,10 +141,7 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
   CHECK_FALSE(has(meter(coarse).findings, "stuck"));
 }
 
-TEST_CASE(
-    "zeros among values that hardly repeat are marks, or a dead band, and those of a coarse sensor "
-    "are "
-    "values") {
+TEST_CASE("zeros among values that hardly repeat are marks, or a dead band, and those of a coarse sensor are values") {
   const std::vector<double> x = gaussian(50000, 1);
   CHECK(meter(x).findings.empty());
   std::vector<double> filled = x, dead = x, coarse = x, moving = x;
@@ -463,9 +460,7 @@ TEST_CASE("a sawtooth wraps, with the period of its jumps, and noise does not") 
   CHECK(first.finish().signs.wraps == q.signs.wraps);
 }
 
-TEST_CASE(
-    "a dead band is named, with its value and share, and coarse rounding and held values are "
-    "none") {
+TEST_CASE("a dead band is named, with its value and share, and coarse rounding and held values are none") {
   std::vector<double> x = gaussian(50000, 1);
   for (double& v : x) v = std::fabs(v) < 1.5 ? 0.0 : v;
   const ChannelQuality q = meter(x);

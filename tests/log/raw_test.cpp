@@ -96,8 +96,8 @@ TEST_CASE("the time channel has its scale and offset, too") {
 TEST_CASE("a YAML sidecar says the same as a JSON one") {
   const std::string bytes("\x00\x00\x80\x3F\x00\x00\x00\x40", 8);
   const Raw yaml(bytes,
-                 "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: "
-                 "1403636579758555392\nchannels:\n  - {name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
+                 "# my rig\ndtype: f32\nendian: little\nrate_hz: 200.0\nt0_ns: 1403636579758555392\nchannels:\n  - "
+                 "{name: gyro_x, unit: deg/s}\n  - name: \"010\"\n",
                  ".yaml");
   const auto got = yaml.read();
   CHECK(got.columns == std::vector<ColumnValues>{{1}, {2}});
@@ -237,10 +237,8 @@ TEST_CASE("YAML is read without the parts that bite") {
   CHECK_THAT(refused(std::string(200, '[')), Catch::Contains("x.json:1:"));
   CHECK_THAT(refused("\tdtype: f64\n"), Catch::Contains("not valid YAML"));
   CHECK_THAT(refused(""), Catch::Contains("empty"));
-  const Json node =
-      as_json(parse_yaml_document("a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: "
-                                  "18446744073709551615\n",
-                                  "x"));
+  const Json node = as_json(parse_yaml_document(
+      "a: 010\nb: 0x10\nc: -3\nd: 1.5\ne: .nan\nf: '7'\ng: [1, {h: null}]\ni: 18446744073709551615\n", "x"));
   CHECK(node["a"] == "010");
   CHECK(node["b"] == "0x10");
   CHECK(node["c"] == -3);

@@ -1,5 +1,4 @@
-// The door to all formats: choice of the format, hashes, pipes, real recordings against the figures
-// beside them.
+// The door to all formats: choice of the format, hashes, pipes, real recordings against the figures beside them.
 #include "libchar/log/read.hpp"
 
 #include <sys/stat.h>

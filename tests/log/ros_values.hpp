@@ -46,8 +46,8 @@ inline std::string refusal(const std::string& format, const std::filesystem::pat
 /// says that it is not measured.
 inline void check_imu(const Rows& rows, std::size_t n) {
   CHECK(channel_names(rows.info) ==
-        "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] "
-        "linear_acceleration.x[m/s^2] linear_acceleration.y[m/s^2] linear_acceleration.z[m/s^2]");
+        "angular_velocity.x[rad/s] angular_velocity.y[rad/s] angular_velocity.z[rad/s] linear_acceleration.x[m/s^2] "
+        "linear_acceleration.y[m/s^2] linear_acceleration.z[m/s^2]");
   CHECK(rows.info.time.column == "header.stamp");
   REQUIRE(rows.columns.size() == 6);
   REQUIRE(rows.time_ns.size() == n);

@@ -1,6 +1,5 @@
-// Logs of which the truth is known: causes by which stamps are no even row of instants, in every unit,
-// with jitter and with gaps. Each is read with the right rate and no gap that is none, or is refused
-// with options that read it.
+// Logs of which the truth is known: causes by which stamps are no even row of instants, in every unit, with jitter and
+// with gaps. Each is read with the right rate and no gap that is none, or is refused with options that read it.
 
 #include <fmt/format.h>
 

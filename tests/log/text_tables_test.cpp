@@ -92,9 +92,8 @@ TEST_CASE("JSON that is broken is refused with the number of the object, a cut e
 namespace {
 
 std::string lvm(const std::string& columns, const std::string& body) {
-  return "LabVIEW "
-         "Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nMulti_Headings\tYes\nX_Columns\t" +
-         columns + "\nDate\t2026/11/22\n***End_of_Header***\t\n\t\n" + body;
+  return "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nMulti_Headings\tYes\nX_Columns\t" + columns +
+         "\nDate\t2026/11/22\n***End_of_Header***\t\n\t\n" + body;
 }
 
 std::string segment(const std::string& clock, const std::string& x0, const std::string& names) {
@@ -143,11 +142,11 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
 }
 
 TEST_CASE("Shimmer: a line between names and units says that values are calibrated") {
-  const Recording log = read_recording(Written("a.csv",
-                                               "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro "
-                                               "X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
-                                               "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
-                                           .path);
+  const Recording log = read_recording(
+      Written("a.csv",
+              "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
+              "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
+          .path);
   CHECK(names(log) == "Accel X[m/(s^2)] Gyro X[deg/s] ");
   CHECK(log.samples[1][1] == 0.25);
 }
@@ -182,8 +181,7 @@ TEST_CASE("a folder of CSV files is read as the archive of them is") {
   const test::TemporaryFolder folder;
   for (const char* name : {"Accelerometer", "Gyroscope"})
     std::ofstream(folder / (std::string(name) + ".csv"))
-        << "time,seconds_elapsed,z,y,x\n1700000000000000000,0,9,1,0\n1700000000010000000,0.01,9,1,"
-           "1\n"
+        << "time,seconds_elapsed,z,y,x\n1700000000000000000,0,9,1,0\n1700000000010000000,0.01,9,1,1\n"
            "1700000000020000000,0.02,9,1,2\n1700000000030000000,0.03,9,1,3\n";
   const std::string path = (folder / ".").string();
   const Recording log = read_recording(path, topic("Gyroscope"));

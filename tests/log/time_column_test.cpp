@@ -184,13 +184,14 @@ TEST_CASE("of several columns of time the choice is said where it is the device'
     std::ofstream(folder / "x.csv") << header << "\n0,0,1\n5000,5,2\n10000,10,1\n";
     return read_recording((folder / "x.csv").string()).info.guesses;
   };
-  CHECK(guesses("host_time[us],device_time[ms],x") ==
-        std::vector<std::string>{"time column: device_time[ms], the device's own clock, not "
-                                 "host_time[us] (`time_column` takes another one)"});
+  CHECK(
+      guesses("host_time[us],device_time[ms],x") ==
+      std::vector<std::string>{
+          "time column: device_time[ms], the device's own clock, not host_time[us] (`time_column` takes another one)"});
   CHECK(guesses("device_time[us],y[ms],x").empty());
-  CHECK(guesses("host_timestamp[us],timestamp[ms],x") ==
-        std::vector<std::string>{"time column: timestamp[ms], not host_timestamp[us] "
-                                 "(`time_column` takes another one)"});
+  CHECK(
+      guesses("host_timestamp[us],timestamp[ms],x") ==
+      std::vector<std::string>{"time column: timestamp[ms], not host_timestamp[us] (`time_column` takes another one)"});
 }
 
 TEST_CASE("the device's own time is preferred to the host's") {
@@ -232,8 +233,8 @@ TEST_CASE("an array without names is all channels, a first column that rises eve
   const auto guesses = [](const ReadOptions& options) {
     return test::read_rows("npy", test::fixture("npy/c_order.npy"), options).info.guesses;
   };
-  CHECK(guesses({}) == std::vector<std::string>{"first column: rises evenly, kept as a channel "
-                                                "(`time_column` c0 takes it as time)"});
+  CHECK(guesses({}) ==
+        std::vector<std::string>{"first column: rises evenly, kept as a channel (`time_column` c0 takes it as time)"});
   CHECK(test::read_rows("npy", test::fixture("npy/c_order.npy"), {}).info.time.candidate == "c0");
   ReadOptions options;
   options.rate_hz = 100;  // who knows the rate looks for no stamps

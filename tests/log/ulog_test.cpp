@@ -112,8 +112,8 @@ TEST_CASE("ULog: topics are listed with rows, rates, fields and which are sensor
 TEST_CASE("ULog: instances, nested messages, arrays, padding and every type by value") {
   const Recording imu = read_recording(flight("instances.ulg"), of_topic("vehicle_imu 1"));
   CHECK(channels_of(imu.info) ==
-        "delta_angle[0][rad] delta_angle[1][rad] delta_angle[2][rad] delta_velocity[0][m/s] "
-        "delta_velocity[1][m/s] delta_velocity[2][m/s] ");
+        "delta_angle[0][rad] delta_angle[1][rad] delta_angle[2][rad] delta_velocity[0][m/s] delta_velocity[1][m/s] "
+        "delta_velocity[2][m/s] ");
   CHECK(imu.info.time.rate_hz == Approx(200).epsilon(1e-12));
   CHECK(imu.info.time.start_ns == 20'000'120'000);
   CHECK(imu.info.rows == 116);

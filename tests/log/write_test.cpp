@@ -143,8 +143,7 @@ TEST_CASE("raw keeps names, units, rate and start, CSV too, its absolute start a
   }
   CHECK(test::slurp(folder / "a.csv") ==
         "t[ns],gyro_x[deg/"
-        "s]\n1403636579758555392,1\n1403636579763555392,2\n1403636579768555392,"
-        "3\n1403636579773555392,4\n");
+        "s]\n1403636579758555392,1\n1403636579763555392,2\n1403636579768555392,3\n1403636579773555392,4\n");
   write((folder / "b.csv").string(), info_of({{"c0", ""}}, 200, 2'500'000'000), {{1, kMissing, 3}});
   CHECK(test::slurp(folder / "b.csv") == "t[s],c0\n2.5,1\n2.505,\n2.51,3\n");
   CHECK(read_recording((folder / "b.csv").string()).info.time.start_ns == 2'500'000'000);

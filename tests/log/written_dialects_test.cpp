@@ -1,7 +1,6 @@
-// Tables written in every dialect that comes of delimiter × decimal mark × quotes × header × units ×
-// dates × text columns × comments, with one to eight columns and 5 to 5,000 rows. Each is read with
-// its values, names, units and rate, or refused; none is read wrong in silence, and at least 98 of
-// 100 are read.
+// Tables written in every dialect that comes of delimiter × decimal mark × quotes × header × units × dates × text
+// columns × comments, with one to eight columns and 5 to 5,000 rows. Each is read with its values, names, units and
+// rate, or refused; none is read wrong in silence, and at least 98 of 100 are read.
 
 #include <fmt/format.h>
 
@@ -40,12 +39,10 @@ struct Written {
   std::vector<std::vector<double>> values;
 
   std::string title() const {
-    return fmt::format(
-        "delimiter '{}' {} stamps {} words {} header {} quotes {} front {} columns {} rows {} "
-        "digits {}",
-        delimiter == '\t' ? "tab" : std::string(1, delimiter), comma ? "comma" : "point", static_cast<int>(stamps),
-        static_cast<int>(words), static_cast<int>(header), static_cast<int>(quotes), static_cast<int>(front), columns,
-        rows, digits);
+    return fmt::format("delimiter '{}' {} stamps {} words {} header {} quotes {} front {} columns {} rows {} digits {}",
+                       delimiter == '\t' ? "tab" : std::string(1, delimiter), comma ? "comma" : "point",
+                       static_cast<int>(stamps), static_cast<int>(words), static_cast<int>(header),
+                       static_cast<int>(quotes), static_cast<int>(front), columns, rows, digits);
   }
 };
 

@@ -35,18 +35,14 @@ std::size_t named(double shared, double factor, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE(
-    "devices as a whole: a sound lot names one in half of 1 % at most where channels are "
-    "independent") {
+TEST_CASE("devices as a whole: a sound lot names one in half of 1 % at most where channels are independent") {
   CHECK(named(0, 1, 1) <= kLots / 200);
   // Where devices differ as much as their channels do, six devices tell that apart badly.
   CHECK(named(1, 1, 2) <= kLots / 50);
   CHECK(named(5, 1, 3) <= kLots / 50);
 }
 
-TEST_CASE(
-    "devices as a whole: one that is 1.4 times as noisy in three channels of six devices is named "
-    "in most lots") {
+TEST_CASE("devices as a whole: one that is 1.4 times as noisy in three channels of six devices is named in most lots") {
   CHECK(named(0, 1.4, 4) >= 7 * kLots / 10);
   CHECK(named(0, 1.25, 5) >= 2 * kLots / 10);
 }

@@ -26,9 +26,8 @@ const QuantityLot& find(const FleetLot& lot, const std::string& group, DeviceQua
 
 NoiseLimits limits(const std::string& value) {
   return parse_limits(
-      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    "
-      "bias_instability: {value: " +
-          value + ", unit: deg/s}\n",
+      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    bias_instability: {value: " + value +
+          ", unit: deg/s}\n",
       "limits.yaml");
 }
 
@@ -297,8 +296,7 @@ TEST_CASE("units of one quantity are converted, unlike ones are not compared") {
   const std::vector<std::string> notes = fleet_lot(records).notes;
   REQUIRE(notes.size() == 2);
   CHECK(notes[1] ==
-        "gyro_x of mems has 2 units, V (imu4), deg/s (imu1, imu2, imu3 and 196 more): compared "
-        "within each.");
+        "gyro_x of mems has 2 units, V (imu4), deg/s (imu1, imu2, imu3 and 196 more): compared within each.");
 }
 
 TEST_CASE("scales of temperature with unlike zeros are not converted") {
@@ -357,8 +355,8 @@ TEST_CASE("channels without a unit are no kind of their own") {
   CHECK(find(lot, "angular_rate in deg/s", DeviceQuantity::white_noise).counts.members == 392);
   REQUIRE(lot.notes.size() == 2);
   CHECK(lot.notes[0] ==
-        "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 "
-        "and 193 more): compared within each.");
+        "gyro_x of mems has 2 units, no unit (imu1, imu2, imu3 and 1 more), deg/s (imu5, imu6, imu7 and 193 more): "
+        "compared within each.");
 }
 
 TEST_CASE("a device with recordings in two batches is of the first, and said so by name") {
@@ -379,8 +377,8 @@ TEST_CASE("a device with recordings in two batches is of the first, and said so 
   CHECK(find(lot, "gyro_x", DeviceQuantity::white_noise).batches[1].counts.members == 179);
   REQUIRE(lot.notes.size() == 1);
   CHECK(lot.notes[0] ==
-        "2 devices have recordings in several batches, and count in the first of them: imu4 (batch "
-        "1, batch 2), imu12 (batch 1, batch 10).");
+        "2 devices have recordings in several batches, and count in the first of them: imu4 (batch 1, batch 2), imu12 "
+        "(batch 1, batch 10).");
   // What one recording does not state, another may.
   records[11].batch = "";
   CHECK(device_batches(records).batch[11] == "10");
@@ -438,6 +436,6 @@ TEST_CASE("a result that is not there yet is no failure, and where there is none
   CHECK(lot.failed == std::vector<std::size_t>{0});
   CHECK(lot.awaited == std::vector<std::size_t>{1, 2, 3});
   CHECK(lot.verdict ==
-        "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there "
-        "yet. There is no result to judge.");
+        "4 devices: 1 recording could not be characterized, of 3 recordings the result is not there yet. There is no "
+        "result to judge.");
 }

@@ -97,9 +97,7 @@ TEST_CASE("a scale multiplies, an order does not matter, many values are taken t
   CHECK(of_many.spread == Approx(0.3).epsilon(0.1));
 }
 
-TEST_CASE(
-    "records of unlike lengths have errors of their own, and one sd that is far off bends no "
-    "line") {
+TEST_CASE("records of unlike lengths have errors of their own, and one sd that is far off bends no line") {
   test::Gaussian gauss(11);
   Squares in = made(150, 1, 0.2, 20, 30, gauss);
   const Squares longer = made(50, 1, 0.2, 0.5, 400, gauss, 16000);

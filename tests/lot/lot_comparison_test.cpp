@@ -129,8 +129,8 @@ TEST_CASE("what cannot be compared is said, and lots without a common channel ar
   }
   const FleetComparison c = compare_lots(a, b);
   REQUIRE(c.not_compared.size() == 3);
-  CHECK_THAT(c.not_compared[0], Contains("200 of 200 devices of A and of 0 of 200 devices of B: too few of B for "
-                                         "means."));
+  CHECK_THAT(c.not_compared[0],
+             Contains("200 of 200 devices of A and of 0 of 200 devices of B: too few of B for means."));
   CHECK(c.not_compared[1] == "gyro_y of mems in deg/s: only in A.");
   CHECK(c.not_compared[2] == "gyro_z of mems in deg/s: only in B.");
   for (DeviceRecord& r : b) r.type = "fog";

@@ -96,9 +96,7 @@ TEST_CASE("values that are known well have the arithmetic mean and standard devi
   CHECK(found.mean_ci95.high == Approx(2.5 + 2.7764451 * std::sqrt(0.25)));
 }
 
-TEST_CASE(
-    "arithmetic mean and standard deviation of devices, normal or lognormal, lie in their "
-    "intervals") {
+TEST_CASE("arithmetic mean and standard deviation of devices, normal or lognormal, lie in their intervals") {
   constexpr int kLots = 200;
   constexpr double kSpread = 0.3;
   for (const bool lognormal : {false, true}) {

@@ -85,9 +85,7 @@ TEST_CASE("temperature does not make the bias repeat worse, and the bias is that
   CHECK(tc.temperatures->slopes[0].temperature_c.high == 85);
 }
 
-TEST_CASE(
-    "two recordings a device, no temperature twice: the coefficient's error is not known, and it "
-    "is not given") {
+TEST_CASE("two recordings a device, no temperature twice: the coefficient's error is not known, and it is not given") {
   test::MadeTemperatures how;
   how.at_c = {0, 50};
   auto records = test::made_temperature_lot(of_devices(20), how, 6).records;

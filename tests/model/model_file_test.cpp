@@ -9,7 +9,7 @@
 
 #include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "tests/report/synthetic.hpp"
 #include "tests/support/shared.hpp"
 

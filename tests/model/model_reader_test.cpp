@@ -65,8 +65,7 @@ TEST_CASE("model reader: units of data sheets become the two-sided density of th
   CHECK(white_of("rad/s·√s", "one-sided") == 1);  // Q itself: no side to take
   CHECK(white_of("deg/h/√Hz", "two-sided") == Approx(degree / 3600).epsilon(1e-14));
   const SensorModel m = parse(
-      "density: one-sided\nbias_instability: {value: 7, unit: deg/h, reading: floor}\nrandom_walk: "
-      "{value: 2, unit: "
+      "density: one-sided\nbias_instability: {value: 7, unit: deg/h, reading: floor}\nrandom_walk: {value: 2, unit: "
       "deg/h/√h}\nquantization: {value: 3, unit: arcsec}\nrate_ramp: {value: 4, unit: deg/h/h}\n");
   CHECK(*m.noise[1].value == Approx(7 * degree / 3600 / 0.66428247).epsilon(1e-8));
   CHECK(*m.noise[2].value == Approx(2 * degree / 3600 / 60).epsilon(1e-14));
@@ -144,8 +143,7 @@ TEST_CASE("model reader: bad files name place, key and what would be right") {
   starts("deterministic: [{size: 1, at_s: 3}]\n", "5:");
   starts("deterministic: [{kind: stp, size: 1, at_s: 3}]\n", "5:24: error E0544");
   starts("findings: [{code: motion, severity: dire}]\n", "5:");
-  CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: "
-                "\"g·√s\"}\n")
+  CHECK(refusal("format: sensor-model\nversion: 1\nunit: m/s^2\nwhite_noise: {value: 1e308, unit: \"g·√s\"}\n")
             .starts_with("m.yaml:4:14: error E0545: white_noise: is out of range"));
   CHECK(refusal("format: sensor-model\nversion: 2\n").starts_with("m.yaml:2:10: error E0546"));
   CHECK(refusal("version: 1\n").starts_with("m.yaml:1:1: error E0546"));

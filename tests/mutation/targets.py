@@ -23,7 +23,7 @@ TARGETS = [
     ("libchar/fit/record/power_bins.cpp", ["fit"], 1),
     ("libchar/fusion/algorithms/*.cpp", ["fusion"], 1),
     ("libchar/core/numeric/moments.cpp", ["core"], 1),
-    ("libchar/core/numeric/chi_square.cpp", ["core"], 1),
+    ("libchar/core/numeric/distributions.cpp", ["core"], 1),
     ("libchar/core/numeric/random_effects.cpp", ["core"], 1),
     ("libchar/core/numeric/dense.cpp", ["core", "fusion"], 1),
     # Documents and their numbers

@@ -9,7 +9,6 @@
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/sha256.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
@@ -21,7 +20,6 @@
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 #include "tests/properties/generate.hpp"
 
 using namespace libchar;

@@ -86,9 +86,8 @@ TEST_CASE("property: a curve without noise gives its coefficients back") {
     const NoiseFit fit = fit_curve(curve, three_terms());
     for (std::size_t i = 0; i < 3; ++i) {
       RC_ASSERT(fit.term[i].value.has_value());
-      // Deviations of few degrees of freedom lie below the truth in the mean of their logarithm,
-      // and are taken so: an exact curve comes out a little high, by a small part of what is stated
-      // as uncertainty.
+      // Deviations of few degrees of freedom lie below the truth in the mean of their logarithm, and are taken so: an
+      // exact curve comes out a little high, by a small part of what is stated as uncertainty.
       RC_ASSERT(std::abs(std::log(*fit.term[i].value / std::sqrt(theta[i]))) <= 0.3 * fit.term[i].relative_sd + 1e-5);
     }
   });

@@ -117,9 +117,7 @@ TEST_CASE("property: a CSV file reads back to the bits that were written") {
     RC_ASSERT(same_samples(read_back(path), columns));
   });
 }
-TEST_CASE(
-    "property: a .npy file reads back to the bits that were written, in either order and byte "
-    "order") {
+TEST_CASE("property: a .npy file reads back to the bits that were written, in either order and byte order") {
   const test::TemporaryFolder folder;
   holds([&] {
     const std::vector<Record> columns = any_columns();
@@ -144,9 +142,7 @@ TEST_CASE("property: a raw file and its sidecar read back to the bits that were 
     RC_ASSERT(same_samples(read_back(path), columns));
   });
 }
-TEST_CASE(
-    "property: whatever a table holds, it is read or refused in a sentence, and every row is "
-    "accounted for") {
+TEST_CASE("property: whatever a table holds, it is read or refused in a sentence, and every row is accounted for") {
   holds([] {
     const BlockReading read = reading_of(any_table(), 1 << 16, 1);
     if (!read.refused.empty()) return;

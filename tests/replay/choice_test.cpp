@@ -1,12 +1,11 @@
 // Which method is recommended, and of what "does fusion pay?" is answered.
-#include "libchar/replay/detail/judge/choice.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <catch2/catch.hpp>
 
 #include "libchar/fusion/registry.hpp"
+#include "libchar/replay/detail/judge/judgement.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/view/ranking.hpp"
 #include "tests/replay/replay_numbers.hpp"
@@ -69,8 +68,7 @@ TEST_CASE("choice: one sensor handed on is no fusion") {
 }
 
 TEST_CASE(
-    "choice: forms as published run by name or on request, and the question of fusion is that of "
-    "the best fusion") {
+    "choice: forms as published run by name or on request, and the question of fusion is that of the best fusion") {
   test::SceneBench bench;
   std::string text = "t[s],a,b,c,x\n";
   test::Gaussian gauss(9);
@@ -81,8 +79,7 @@ TEST_CASE(
   }
   bench.put("log.csv", text);
   const std::string head =
-      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c]\nreference: x\nlearning: "
-      "[0, 20]\n";
+      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c]\nreference: x\nlearning: [0, 20]\n";
   const Scene scene = bench.read(head);
   const ReplayResult plain = replay(scene);
   for (const AlgorithmResult& a : plain.algorithms)

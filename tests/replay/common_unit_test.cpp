@@ -38,8 +38,8 @@ std::string log_in(const UnitCase& units, double first) {
 }
 
 constexpr const char* kUnitScene =
-    "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, noise: 0.1}, b, "
-    "c]\nreference: {channels: [x]}\nevaluation: [0, end]\n";
+    "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, noise: 0.1}, b, c]\nreference: {channels: "
+    "[x]}\nevaluation: [0, end]\n";
 
 std::string unit_refusal(const test::SceneBench& bench) {
   try {
@@ -90,21 +90,19 @@ TEST_CASE("units of a scene: sensors of one quantity are converted to the refere
   }
 }
 
-TEST_CASE(
-    "units of a scene: two quantities are refused in a sentence, weights of a scene convert "
-    "themselves") {
+TEST_CASE("units of a scene: two quantities are refused in a sentence, weights of a scene convert themselves") {
   test::SceneBench bench;
   bench.put("log.csv", log_in({"V", "deg/s", 1}, 1));
   CHECK_THAT(unit_refusal(bench), Contains("E0918") && Contains("a is in V, and x in deg/s"));
   bench.put("log.csv", log_in({"degC", "K", 1}, 1));
   CHECK_THAT(unit_refusal(bench), Contains("E0918"));
   const ReplayResult own =
-      replay(bench.read("format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, scale: "
-                        "2, unit: K}, b, c]\nreference: {channels: [x]}\n"));
+      replay(bench.read("format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, scale: 2, unit: K}, b, "
+                        "c]\nreference: {channels: [x]}\n"));
   CHECK(own.sensors[0].unit == "K");
   bench.put("log.csv", log_in({"rad/s", "deg/s", 1}, 1));
   const ReplayResult weighed =
-      replay(bench.read("format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, h: "
-                        "[0.5]}, b, c]\nreference: {channels: [x]}\n"));
+      replay(bench.read("format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, h: [0.5]}, b, "
+                        "c]\nreference: {channels: [x]}\n"));
   CHECK(weighed.sensors[0].unit == "rad/s");
 }

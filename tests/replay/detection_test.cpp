@@ -11,12 +11,11 @@ namespace {
 ReplayResult watched_run(const std::string& faults, const std::string& algorithms, const std::string& more = "") {
   const test::SceneBench bench;
   std::string text =
-      "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 300, seed: 3,"
-      " truth: {kind: sine, amplitude: 2, frequency_hz: 0.7}}\nsensors:\n";
+      "format: scene\nversion: 1\nsimulate: {rate_hz: 100, duration_s: 300, seed: 3, truth: {kind: sine, amplitude: 2, "
+      "frequency_hz: 0.7}}\nsensors:\n";
   for (const char* name : {"a", "b", "c", "d", "e"})
     text += std::string("  - {name: ") + name +
-            ", model: {unit: rad/s, density: two-sided, white_noise: {value: 0.01, unit: "
-            "rad/s/√Hz}}}\n";
+            ", model: {unit: rad/s, density: two-sided, white_noise: {value: 0.01, unit: rad/s/√Hz}}}\n";
   text += faults + "fault_free_s: 100\nreference: truth\nalgorithms: " + algorithms + "\n" + more;
   return replay(bench.read(text));
 }
@@ -43,9 +42,7 @@ TEST_CASE("detection: delays over the rate of false alarms, at the usual one tho
   CHECK(result.detection[5].alarms_without_fault == 0);
 }
 
-TEST_CASE(
-    "detection: any algorithm that has the detector, with its own recovery, else nothing is "
-    "computed") {
+TEST_CASE("detection: any algorithm that has the detector, with its own recovery, else nothing is computed") {
   const ReplayResult watched = watched_run(kTwoFaults, "[{name: mean, fault_detection: 1, recovery_window: 400}]");
   REQUIRE(watched.detection.size() == 6);
   CHECK(watched.detection[3].answers[0].returned_s == watched.algorithms[0].answers[0].returned_s);

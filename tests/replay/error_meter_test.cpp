@@ -130,8 +130,7 @@ TEST_CASE("scores: a difference is resolved when there is one") {
   const auto e = errors(20000, 0.9, 1), other = errors(20000, 0.9, 2);
   std::vector<double> worse = e;
   for (std::size_t i = 0; i < worse.size(); ++i) worse[i] = 1.02 * e[i] + 0.01 * other[i];
-  // Paired: a 2 % difference between errors that go together shows, where each interval alone is
-  // wider.
+  // Paired: a 2 % difference between errors that go together shows, where each interval alone is wider.
   const ErrorMeter bad = metered(worse), good = metered(e), third = metered(errors(20000, 0.9, 3));
   const Interval paired = rms_ratio_interval({&bad}, {&good});
   CHECK(paired.low > 1.015);

@@ -173,8 +173,7 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
 }
 
 TEST_CASE(
-    "fuse: where a sensor reads otherwise, the standard deviation of methods that follow it covers "
-    "what it does") {
+    "fuse: where a sensor reads otherwise, the standard deviation of methods that follow it covers what it does") {
   HonestBench bench;
   using Spoil = double (*)(double, int);
   const std::pair<const char*, Spoil> kinds[] = {

@@ -8,7 +8,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/replay/detail/align/resampled.hpp"
-#include "libchar/replay/detail/plan/rest.hpp"
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
 #include "tests/replay/scene_text.hpp"
 
 using namespace libchar;
@@ -110,10 +110,9 @@ TEST_CASE("instants: times in seconds are instants at or after them") {
 TEST_CASE("instants: faults of the scene are injected, whatever window is read") {
   const test::SceneBench bench;
   bench.put("log.csv", numbered(1000, 10));
-  const Scene scene =
-      bench.read(kHead +
-                 "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, to_s: "
-                 "30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
+  const Scene scene = bench.read(kHead +
+                                 "recording: log.csv\nsensors: [a, b]\nfaults: [{sensor: b, kind: stuck, from_s: 20, "
+                                 "to_s: 30}, {sensor: a, kind: bias, value: 1000, from_s: 50}]\n");
   const Instants instants(scene, no_progress());
   const Columns columns = all_of(instants, 250, 600, 64);
   CHECK(columns.samples(1, 0) == 2 * 199);
@@ -125,11 +124,10 @@ TEST_CASE("instants: faults of the scene are injected, whatever window is read")
 
 TEST_CASE("instants: a simulation is the same in every pass") {
   const test::SceneBench bench;
-  const Scene scene =
-      bench.read(kHead +
-                 "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, {kind: "
-                 "sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: gyro.sensor.yaml, h: [1, 0]}, "
-                 "{name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
+  const Scene scene = bench.read(kHead +
+                                 "simulate: {rate_hz: 100, samples: 5000, seed: 3, truth: [{kind: sine, name: x}, "
+                                 "{kind: sine, name: y, frequency_hz: 3}]}\nsensors: [{name: a, model: "
+                                 "gyro.sensor.yaml, h: [1, 0]}, {name: b, model: none, h: [0, 1]}]\nreference: [y]\n");
   const Instants instants(scene, no_progress());
   const Columns first = all_of(instants, 0, 5000, 1000), second = all_of(instants, 0, 5000, 777);
   CHECK(first.samples == second.samples);

@@ -40,9 +40,7 @@ TEST_CASE("band filter: Butterworth coefficients of scipy.signal.butter(2, …)"
   CHECK(low.a2 == Approx(0.19581571265583306).epsilon(1e-14));
 }
 
-TEST_CASE(
-    "band filter: a band as scipy.signal.sosfilt runs it, begun in the first sample's steady "
-    "state") {
+TEST_CASE("band filter: a band as scipy.signal.sosfilt runs it, begun in the first sample's steady state") {
   const BandFilter filter = band_filter(0.5, 12, 100);
   std::vector<double> x;
   for (int k = 0; k < 60; ++k) x.push_back(5 + std::sin(0.37 * k) + std::fmod(0.01 * k * k, 3));

@@ -1,5 +1,4 @@
-// Every shipped scene, cut short, through every algorithm it can run: what must not change the
-// numbers does not.
+// Every shipped scene, cut short, through every algorithm it can run: what must not change the numbers does not.
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -95,9 +95,8 @@ TEST_CASE("replay: nothing is learnt that nobody needs") {
 
 TEST_CASE("replay: without skipping the numbers of all algorithms are the same") {
   const test::SceneBench bench;
-  const Scene scene = bench.read(array_scene(4000,
-                                             "learning: [0, 10]\nfaults: [{sensor: g1, kind: "
-                                             "scale, value: 0.5, from_s: 25, to_s: 35}]\n"));
+  const Scene scene = bench.read(
+      array_scene(4000, "learning: [0, 10]\nfaults: [{sensor: g1, kind: scale, value: 0.5, from_s: 25, to_s: 35}]\n"));
   ReplayOptions options;
   options.no_skip = true;
   CHECK(numbers(replay(scene, options)) == numbers(replay(scene)));
@@ -207,8 +206,8 @@ TEST_CASE("replay: a rest gives offsets and noise levels") {
 TEST_CASE("replay: two inputs, each with its own scores and optimum") {
   const test::SceneBench bench;
   std::string text =
-      "format: scene\nversion: 1\nsimulate:\n  rate_hz: 100\n  samples: 8000\n  truth: [{kind: "
-      "noise, name: a, bandwidth_hz: 3}, {kind: noise, name: w, bandwidth_hz: 2}]\nsensors:\n";
+      "format: scene\nversion: 1\nsimulate:\n  rate_hz: 100\n  samples: 8000\n  truth: [{kind: noise, name: a, "
+      "bandwidth_hz: 3}, {kind: noise, name: w, bandwidth_hz: 2}]\nsensors:\n";
   for (int i = 0; i < 6; ++i)
     text += "  - {name: s" + std::to_string(i) + ", h: [1, " + std::to_string(0.1 * i - 0.25) +
             "], model: {unit: m/s^2, density: two-sided, white_noise: {value: " + std::to_string(1e-2 * (i + 1)) +
@@ -236,8 +235,8 @@ TEST_CASE("replay: an estimated lag aligns sensors and reference") {
   }
   bench.put("late.csv", log);
   const ReplayResult result =
-      replay(bench.read("format: scene\nversion: 1\nrecording: late.csv\nsensors: [a, b, c]\nreference: "
-                        "{channels: [x], lag_s: estimate}\nalgorithms: [mean]\n"));
+      replay(bench.read("format: scene\nversion: 1\nrecording: late.csv\nsensors: [a, b, c]\nreference: {channels: "
+                        "[x], lag_s: estimate}\nalgorithms: [mean]\n"));
   CHECK(result.lag_estimated);
   CHECK(result.lag_s == Approx(0.137).margin(0.002));
   CHECK(named(result, "mean").rmse < 0.01);
@@ -305,9 +304,8 @@ TEST_CASE("replay: a sensor with every second sample takes nothing from the othe
            std::to_string(x) + "\n";
   }
   bench.put("half.csv", log);
-  const ReplayResult result =
-      replay(bench.read("format: scene\nversion: 1\nrecording: half.csv\nsensors: [a, b, c]\nreference: "
-                        "x\nlearning: [0, 10]\n"));
+  const ReplayResult result = replay(bench.read(
+      "format: scene\nversion: 1\nrecording: half.csv\nsensors: [a, b, c]\nreference: x\nlearning: [0, 10]\n"));
   CHECK(named(result, "mean").availability == 1);
   CHECK_FALSE(named(result, "mean").inputs[0].allan.points.empty());
   // It needs all three at once, so that no two of its errors follow each other.
@@ -425,8 +423,8 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));
   const ReplayResult twice =
-      replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, "
-                        "channel: a}, d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
+      replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, {name: again, channel: a}, "
+                        "d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
   REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
   CHECK(twice.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"again repeats a"});
   CHECK(twice.sensors[2].copy_of == "a");

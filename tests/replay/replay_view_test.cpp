@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "libchar/replay/detail/tracks/thinned_tracks.hpp"
+#include "libchar/replay/detail/tracks/run_tracks.hpp"
 #include "libchar/replay/view/ranking.hpp"
 #include "libchar/report/replay/replay_text.hpp"
 #include "tests/replay/replay_numbers.hpp"

@@ -1,11 +1,10 @@
 // What the values of a slow reference stand for is declared, or read off the sensors.
-#include "libchar/replay/detail/align/slow_reference.hpp"
-
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "libchar/replay/detail/align/reference_track.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/replay_numbers.hpp"
 #include "tests/replay/scene_text.hpp"

@@ -19,25 +19,23 @@ using namespace libchar;
 namespace {
 
 const std::string kSmoothed =
-    "algorithms: [virtual-sensor, {name: virtual-sensor, smoothed: 1},"
-    " {name: virtual-sensor, smoothed: 1, fault_detection: 1}]\n";
+    "algorithms: [virtual-sensor, {name: virtual-sensor, smoothed: 1}, {name: virtual-sensor, smoothed: 1, "
+    "fault_detection: 1}]\n";
 
 std::string walking_sensors() {
   std::string text = "sensors:\n";
   for (const auto& [name, white, walk] : {std::tuple{"a", 0.01, 0.02}, std::tuple{"b", 0.01, 0.02},
                                           std::tuple{"c", 0.04, 0.002}, std::tuple{"d", 0.04, 0.002}})
     text += fmt::format(
-        "  - {{name: {}, model: {{unit: rad/s, density: two-sided, white_noise: {{value: {}, unit: "
-        "rad/s/√Hz}},"
-        " random_walk: {{value: {}, unit: rad/s/√s}}}}}}\n",
+        "  - {{name: {}, model: {{unit: rad/s, density: two-sided, white_noise: {{value: {}, unit: rad/s/√Hz}}, "
+        "random_walk: {{value: {}, unit: rad/s/√s}}}}}}\n",
         name, white, walk);
   return text;
 }
 
 std::string simulated_walks() {
-  return "format: scene\nversion: 1\nsimulate: {rate_hz: 20, duration_s: 600, seed: 5, truth: "
-         "{kind: noise,"
-         " standard_deviation: 1, bandwidth_hz: 2}}\n" +
+  return "format: scene\nversion: 1\nsimulate: {rate_hz: 20, duration_s: 600, seed: 5, truth: {kind: noise, "
+         "standard_deviation: 1, bandwidth_hz: 2}}\n" +
          walking_sensors();
 }
 

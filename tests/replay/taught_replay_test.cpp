@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "libchar/replay/detail/align/term_choice.hpp"
+#include "libchar/replay/detail/align/alignment_stage.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/view/ranking.hpp"
 #include "libchar/report/replay/replay_text.hpp"

@@ -68,9 +68,7 @@ TEST_CASE("tilt check: a delay of the gyroscope or of the accelerometers is told
   CHECK(said(0.3, [](Instant& i) { i.x *= 1.1; }).empty());
 }
 
-TEST_CASE(
-    "tilt check: a right set-up is silent, also at rest, with an offset, in other units and when "
-    "shaken") {
+TEST_CASE("tilt check: a right set-up is silent, also at rest, with an offset, in other units and when shaken") {
   const auto as_it_is = [](Instant&) {};
   CHECK(said(0.8, as_it_is).empty());
   CHECK(said(0, as_it_is).empty());

@@ -67,9 +67,7 @@ TEST_CASE("verdict: whether fusion pays is said against the best single sensor, 
   CHECK_THAT(test::verdict_of(result, false), StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
 }
 
-TEST_CASE(
-    "verdict: without a reference the method is chosen that is best with one, whatever the worst "
-    "sensors do") {
+TEST_CASE("verdict: without a reference the method is chosen that is best with one, whatever the worst sensors do") {
   // Two good sensors of seven, gains and noise mixed; the scale of the worst is a hundred times that of the best.
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
@@ -102,9 +100,7 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   CHECK(result.best);
 }
 
-TEST_CASE(
-    "verdict: of three sensors the method that withstands a failing one is chosen, and the one is "
-    "named") {
+TEST_CASE("verdict: of three sensors the method that withstands a failing one is chosen, and the one is named") {
   // Leave-one-out leaves two sensors, too few for the methods that watch each other.
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const test::SceneBench bench;
@@ -122,9 +118,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "verdict: sound sensors with offsets, gains and noise of their own are none that fail or stand "
-    "apart") {
+TEST_CASE("verdict: sound sensors with offsets, gains and noise of their own are none that fail or stand apart") {
   std::size_t said = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const test::SceneBench bench;

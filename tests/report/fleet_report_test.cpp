@@ -96,8 +96,8 @@ TEST_CASE("lot.json keeps its schema and names its files with their digests") {
   const auto records = two_batches();
   FleetLotOptions options;
   options.limits[""] = parse_limits(
-      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    bias_instability: "
-      "{value: 3e-3, unit: deg/s}\n",
+      "format: noise-limits\nversion: 1\nlimits:\n  - channels: [gyro_x]\n    bias_instability: {value: 3e-3, unit: "
+      "deg/s}\n",
       "limits.yaml");
   const FleetLot lot = fleet_lot(records, options);
   const auto files = test::written_fleet({records, &lot, "fleet", {}, {}});
@@ -135,9 +135,9 @@ TEST_CASE("the report of a lot at several temperatures says where its coefficien
     }
   CHECK(found == 2);
   const std::string page = fleet_html(report);
-  CHECK_THAT(page, Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at "
-                            "-20 to 60 °C") &&
-                       Contains("Coefficients of 12 devices"));
+  CHECK_THAT(page,
+             Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at -20 to 60 °C") &&
+                 Contains("Coefficients of 12 devices"));
   CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature of each"));
 }
 
@@ -191,8 +191,8 @@ TEST_CASE("numbers of any size make a lot, a page and a document") {
     }
     FleetLotOptions options;
     options.limits[""] = parse_limits(
-        "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    bias_instability: "
-        "{value: 2e-3, unit: deg/s}\n",
+        "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    bias_instability: {value: 2e-3, unit: "
+        "deg/s}\n",
         "limits.yaml");
     const FleetLot lot = fleet_lot(records, options);
     const FleetReport report{records, &lot, "", {}, {}};

@@ -117,8 +117,7 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
   const test::TemporaryFolder folder;
   for (const auto& [name, result] :
        {std::pair{"plain.html", test::synthetic_imu()}, std::pair{"hostile.html", test::hostile()}}) {
-    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its
-    // own.
+    // HTML 4's parser does not know section, figure, header, main, footer; those complaints are its own.
     const std::string path = (folder / name).string(), log = path + ".log";
     write_whole_file(path, without_assets(html_report(result)));
     const int code = std::system(("xmllint --html --noout '" + path + "' 2>'" + log + "'").c_str());
@@ -127,9 +126,8 @@ TEST_CASE("html: a parser that knows nothing of us finds it well-formed") {
     std::istringstream lines(test::slurp(log));
     for (std::string line; std::getline(lines, line);) {
       if (line.find("error :") != std::string::npos &&
-          !std::regex_search(line,
-                             std::regex("Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) "
-                                        "invalid")))
+          !std::regex_search(
+              line, std::regex("Tag (section|figure|figcaption|header|main|footer|details|summary|canvas) invalid")))
         complaints += line + "\n";
     }
     CHECK(complaints.empty());

@@ -1,6 +1,5 @@
-// make_fleet KIND FOLDER: writes the report of a synthetic fleet for the browser test
-// (browser_test.py). KIND is a number of devices, or "hostile": names that want to be something
-// else.
+// make_fleet KIND FOLDER: writes the report of a synthetic fleet for the browser test (browser_test.py). KIND is a
+// number of devices, or "hostile": names that want to be something else.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -74,9 +73,8 @@ int main(int argc, char** argv) {
     FleetLotOptions options;
     if (kind != "hostile")
       options.limits["mems"] = parse_limits(
-          "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    "
-          "bias_instability: {value: 3.5e-3, unit: deg/s}\n    white_noise: {value: 20.5, unit: "
-          "deg/√h}\n",
+          "format: noise-limits\nversion: 1\nlimits:\n  - kind: angular_rate\n    bias_instability: {value: 3.5e-3, "
+          "unit: deg/s}\n    white_noise: {value: 20.5, unit: deg/√h}\n",
           "limits.yaml");
     const FleetLot lot = fleet_lot(records, options);
     write_fleet_report({records, &lot, "made of numbers", {"make_fleet", kind}, {}}, folder, true);

@@ -1,5 +1,4 @@
-// make_report KIND FOLDER: writes a report of a synthetic characterization for the browser test
-// (browser_test.py).
+// make_report KIND FOLDER: writes a report of a synthetic characterization for the browser test (browser_test.py).
 #include <cstdio>
 #include <exception>
 #include <filesystem>

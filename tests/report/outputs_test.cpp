@@ -95,9 +95,7 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   for (const char* key : {"chi2", "dof", "p"}) CHECK(gyr_z["goodness"].contains(key));
 }
 
-TEST_CASE(
-    "report.json: every number reads back to the same double, and the text is valid JSON for every "
-    "input") {
+TEST_CASE("report.json: every number reads back to the same double, and the text is valid JSON for every input") {
   const auto result = test::synthetic_imu();
   const Json back = parse_json(dump_json(json_report(result)), "report.json");
   for (std::size_t c = 0; c < result.channels.size(); ++c) {

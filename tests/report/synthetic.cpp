@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace test {
 

@@ -1,6 +1,5 @@
 #pragma once
-// A characterization made from formulas and a seed instead of a recording: what a report has to be
-// able to show.
+// A characterization made from formulas and a seed instead of a recording: what a report has to be able to show.
 
 #include <random>
 #include <string>

@@ -205,8 +205,7 @@ TEST_CASE("bad scenes: names of files") {
          {"sensors: [a]\nrecording: {file: \"" + c.name + "\"}\n",
           "sensors: [{name: a, model: \"" + c.name + "\"}]\nrecording: log.csv\n",
           "sensors: [a]\nrecording: log.csv\nreference: {channels: [a], recording: \"" + c.name + "\"}\n",
-          "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 1, samples: 1, truth: {kind: "
-          "recording, file: \"" +
+          "sensors: [{name: a, model: none}]\nsimulate: {rate_hz: 1, samples: 1, truth: {kind: recording, file: \"" +
               c.name + "\"}}\n"})
       CHECK_THAT(bench.refusal(kHead + text), Contains(": error " + c.code + ": "));
   }
@@ -237,12 +236,11 @@ TEST_CASE("bad scenes: names of files") {
 
 TEST_CASE("bad scenes: names of sensors and outputs") {
   const test::SceneBench bench;
-  CHECK_THAT(bench.refusal(kHead + "recording: log.csv\nsensors:\n  - {name: a, channel: a}\n  - "
-                                   "{name: a, channel: b}\n"),
-             StartsWith("s.yaml:6:12: error E0737: sensors[1].name: two sensors have the name a"));
-  const Scene clash = bench.read(kHead +
-                                 "recording: log.csv\nsensors: [{name: R, channel: a}, "
-                                 "{name: r, channel: b}]\n");
+  CHECK_THAT(
+      bench.refusal(kHead + "recording: log.csv\nsensors:\n  - {name: a, channel: a}\n  - {name: a, channel: b}\n"),
+      StartsWith("s.yaml:6:12: error E0737: sensors[1].name: two sensors have the name a"));
+  const Scene clash =
+      bench.read(kHead + "recording: log.csv\nsensors: [{name: R, channel: a}, {name: r, channel: b}]\n");
   CHECK_THAT(clash.warnings.find("case_clash")->where.rows.at(0), Contains("s.yaml:4:41"));
   const std::string html = bench.path("r.html");
   CHECK_THROWS_WITH(refuse_scene_outputs(clash, {html, html}), Contains("E0746"));
@@ -250,12 +248,14 @@ TEST_CASE("bad scenes: names of sensors and outputs") {
   std::string many = kHead + "recording: log.csv\nsensors:\n";
   for (int i = 0; i < 100000; ++i) many += "  - {name: s" + std::to_string(i) + ", channel: x}\n";
   CHECK_THAT(bench.refusal(many), Contains("E0736: sensors: 100000 sensors are more than the 10000"));
-  CHECK_THAT(bench.refusal(kHead + "simulate: {rate_hz: 1, samples: 1}\nsensors: [{name: a, model: "
-                                   "none, count: 10000}, {name: b, model: none}]\n"),
+  CHECK_THAT(bench.refusal(kHead + "simulate: {rate_hz: 1, samples: 1}\nsensors: [{name: a, model: none, count: "
+                                   "10000}, {name: b, model: none}]\n"),
              Contains("E0736"));
-  CHECK_THAT(bench.refusal(kHead + "simulate: {rate_hz: 1, samples: 1}\nsensors: [{name: a, model: "
-                                   "none, count: 18446744073709551615}]\n"),
-             Contains("E0736"));
+  CHECK_THAT(
+      bench.refusal(
+          kHead +
+          "simulate: {rate_hz: 1, samples: 1}\nsensors: [{name: a, model: none, count: 18446744073709551615}]\n"),
+      Contains("E0736"));
 }
 
 TEST_CASE("bad scenes: every class has its case, with the verdict of EXPECT.tsv") {

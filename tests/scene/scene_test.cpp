@@ -18,14 +18,13 @@ const std::string kSceneHead = "format: scene\nversion: 1\n";
 const std::string kRecorded = kSceneHead + "recording: log.csv\nsensors: [a, b, c]\n";
 const std::string kSimulated =
     kSceneHead +
-    "simulate:\n  rate_hz: 100\n  duration_s: 2.5\n  seed: 18446744073709551615\n  oversampling: "
-    "4\n  truth:\n    - {kind: sine, name: angle, amplitude: 0.3, frequency_hz: 0.5, offset: -1}\n"
-    "    - {kind: derivative, of: angle, name: rate}\n    - {kind: points, points: [[0, 1], [2, "
-    "-3.5]]}\n  truth_bandwidth_hz: 20\n  temperature: {kind: ramp, slope: 0.1, offset: 20}\n  "
-    "low_pass_start: zero\nsensors:\n  - {name: g, model: gyro.sensor.yaml, h: [0, 1, 0], count: "
-    "3}\n  - name: p\n    h: [0.1, 0, 1]\n    model: {unit: g, white_noise: {value: 1e-4, unit: "
-    "\"g·√s\"}}\n  - {name: perfect, h: [1, 0, 0], model: none}\nfaults:\n  - {sensor: g2, kind: "
-    "stuck, from_s: 1}\n  - {sensor: p, kind: scale, value: 1.5, from_s: 0.5, to_s: 1.5}\n";
+    "simulate:\n  rate_hz: 100\n  duration_s: 2.5\n  seed: 18446744073709551615\n  oversampling: 4\n  truth:\n    - "
+    "{kind: sine, name: angle, amplitude: 0.3, frequency_hz: 0.5, offset: -1}\n"
+    "    - {kind: derivative, of: angle, name: rate}\n    - {kind: points, points: [[0, 1], [2, -3.5]]}\n  "
+    "truth_bandwidth_hz: 20\n  temperature: {kind: ramp, slope: 0.1, offset: 20}\n  low_pass_start: zero\nsensors:\n  "
+    "- {name: g, model: gyro.sensor.yaml, h: [0, 1, 0], count: 3}\n  - name: p\n    h: [0.1, 0, 1]\n    model: {unit: "
+    "g, white_noise: {value: 1e-4, unit: \"g·√s\"}}\n  - {name: perfect, h: [1, 0, 0], model: none}\nfaults:\n  - "
+    "{sensor: g2, kind: stuck, from_s: 1}\n  - {sensor: p, kind: scale, value: 1.5, from_s: 0.5, to_s: 1.5}\n";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
@@ -39,13 +38,12 @@ TEST_CASE("scene: a recording, its sensors and what is known about it") {
   const test::SceneBench bench;
   const Scene s =
       bench.read(kSceneHead +
-                 "name: three monitors\nrecording: {file: log.csv, rate_hz: 99.5, delimiter: \",\", decimal: "
-                 "point, header: yes, names: [a, b], units: g, time_column: t, time_unit: s, skip_rows: 0, "
-                 "format: csv, from_s: 0.01, to_s: 60}\nsensors:\n  - {name: left, channel: a}\n  - {channel: "
-                 "b, h: 1, model: gyro.sensor.yaml}\n  - c\nreference: {channels: [pm25], recording: "
-                 "station.csv, lag_s: estimate}\nlearning: [0, 10.5]\nevaluation: [10.5, end]\nfaults:\n  - "
-                 "{sensor: left, kind: bias, value: -2, from_s: 3}\nalgorithms: [mean, {name: minque, gamma: "
-                 "0.999, recovery: 5}]\n");
+                 "name: three monitors\nrecording: {file: log.csv, rate_hz: 99.5, delimiter: \",\", decimal: point, "
+                 "header: yes, names: [a, b], units: g, time_column: t, time_unit: s, skip_rows: 0, format: csv, "
+                 "from_s: 0.01, to_s: 60}\nsensors:\n  - {name: left, channel: a}\n  - {channel: b, h: 1, model: "
+                 "gyro.sensor.yaml}\n  - c\nreference: {channels: [pm25], recording: station.csv, lag_s: "
+                 "estimate}\nlearning: [0, 10.5]\nevaluation: [10.5, end]\nfaults:\n  - {sensor: left, kind: bias, "
+                 "value: -2, from_s: 3}\nalgorithms: [mean, {name: minque, gamma: 0.999, recovery: 5}]\n");
   CHECK(s.name == "three monitors");
   CHECK(s.recording == bench.path("log.csv"));
   CHECK(*s.reading.rate_hz == 99.5);
@@ -108,8 +106,7 @@ TEST_CASE("scene: a truth signal out of a recording") {
   ArraySimulator simulator(*s.simulate);
   CHECK(simulator.next(10)[0][5] == 8);
   CHECK_THAT(bench.refusal(text("50", "{kind: recording, file: motion.csv, channel: angle}")),
-             Contains("E0742: simulate.truth.file: is a recording at 100 Hz, and the simulation "
-                      "runs at 50 Hz"));
+             Contains("E0742: simulate.truth.file: is a recording at 100 Hz, and the simulation runs at 50 Hz"));
   CHECK_THAT(bench.refusal(text("100", "{kind: recording, file: motion.csv}")), Contains("holds 2 channels"));
   CHECK_THAT(bench.refusal(text("100", "{kind: recording, channel: x}")), Contains("file is missing"));
 }
@@ -118,13 +115,12 @@ TEST_CASE("scene: what is written reads back to the same scene") {
   const test::SceneBench bench;
   for (const std::string& text :
        {kRecorded, kSimulated,
-        kRecorded + "reference: {channels: [truth, b], mean: true, lag_s: -0.1}\nsimulated: {seed: "
-                    "7, faults: [{sensor: b, kind: noise, value: 0.3}]}\nalgorithms: [{name: "
-                    "takens, neighbours: 12}, mean]\n",
-        kSceneHead + "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, "
-                     "rate_hz: 1e12, overflow_as_missing: true, skip_repeated_header: true}\nsensors: "
-                     "[{name: a, h: [1, 0]}, {name: b, h: [-0.3333333333333333, 5e-324]}]\nreference: "
-                     "[b, c]\nlearning: [0.30000000000000004, end]\n"}) {
+        kRecorded + "reference: {channels: [truth, b], mean: true, lag_s: -0.1}\nsimulated: {seed: 7, faults: "
+                    "[{sensor: b, kind: noise, value: 0.3}]}\nalgorithms: [{name: takens, neighbours: 12}, mean]\n",
+        kSceneHead +
+            "recording: {file: log.csv, delimiter: tab, encoding: latin1, time_column: none, rate_hz: 1e12, "
+            "overflow_as_missing: true, skip_repeated_header: true}\nsensors: [{name: a, h: [1, 0]}, {name: b, h: "
+            "[-0.3333333333333333, 5e-324]}]\nreference: [b, c]\nlearning: [0.30000000000000004, end]\n"}) {
     const Scene s = bench.read(text);
     const std::string written = scene_yaml(s);
     const Scene again = bench.read(written, "again.yaml");
@@ -234,8 +230,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("evaluation: [1, 2, 3]\n", "5:13: error E0740");
   recorded("evaluation: [end, 2]\n", "5:14: error E0740");
   recorded("faults: [{sensor: bb, kind: bias, value: 1}]\n",
-           "5:19: error E0738: faults[0].sensor: bb is not a sensor of this scene; got \"bb\"; "
-           "hint: did you mean b?");
+           "5:19: error E0738: faults[0].sensor: bb is not a sensor of this scene; got \"bb\"; hint: did you mean b?");
   recorded("faults: [{sensor: b, kind: bais, value: 1}]\n", "5:28: error E0544");
   recorded("faults: [{sensor: b, kind: bias}]\n", "5:10: error E0542: faults[0].value is missing");
   recorded("faults: [{sensor: b, kind: stuck, value: 1}]\n",
@@ -248,8 +243,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("reference: []\n", "5:12: error E0736: reference");
   recorded("reference: [truth, truth]\n", "5:12: error E0737: reference");
   recorded("reference: [truth, a]\n",
-           "4:11: error E0741: sensors[0]: the row h of sensor a has 1 weight, and there are 2 "
-           "true inputs");
+           "4:11: error E0741: sensors[0]: the row h of sensor a has 1 weight, and there are 2 true inputs");
   recorded("reference: {channels: a, lag_s: guess}\n", "5:33: error E0545: reference.lag_s");
   recorded("reference: {chanels: a}\n", "5:13: error E0540: unknown key in reference");
   recorded("simulated: {sed: 1}\n", "5:13: error E0540");
@@ -288,12 +282,10 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   simulated("samples: 9, truth: {kind: sin}", "4:51: error E0544: simulate.truth.kind: expected one of");
   simulated("samples: 9, truth: sin", "4:44: error E0544");
   simulated("samples: 9, truth: {kind: constant, amplitude: 2}",
-            "4:61: error E0739: simulate.truth.amplitude: is a key of sine, chirp, uniform, "
-            "sine_of, cosine_of, and this signal is of kind constant; got \"amplitude\"; hint: "
-            "constant reads value");
+            "4:61: error E0739: simulate.truth.amplitude: is a key of sine, chirp, uniform, sine_of, cosine_of, and "
+            "this signal is of kind constant; got \"amplitude\"; hint: constant reads value");
   simulated("samples: 9, truth: {kind: sine, amplitud: 2}",
-            "4:57: error E0540: unknown key in simulate.truth; got \"amplitud\"; hint: did you "
-            "mean amplitude?");
+            "4:57: error E0540: unknown key in simulate.truth; got \"amplitud\"; hint: did you mean amplitude?");
   simulated("samples: 9, truth: [{kind: derivative, of: truth2}, {kind: sine}]",
             "4:68: error E0738: simulate.truth[0].of");
   simulated("samples: 9, truth: [{kind: sine, name: x}, {kind: sine_of, of: xx}]",
@@ -307,8 +299,8 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
              Contains("E0554") || Contains("E0743"));
   CHECK_THAT(bench.refusal(kSceneHead + "sensors: [{name: a}]\nsimulate: {rate_hz: 10, samples: 9}\n"),
              Contains("E0743: sensors[0].model: a simulated sensor needs a model"));
-  CHECK_THAT(bench.refusal(kSceneHead + "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, "
-                                        "model: none}]\nreference: trut\n"),
+  CHECK_THAT(bench.refusal(kSceneHead +
+                           "simulate: {rate_hz: 10, samples: 9}\nsensors: [{name: a, model: none}]\nreference: trut\n"),
              Contains("E0738: reference: trut is not a truth signal") && Contains("did you mean truth?"));
   CHECK_THAT(bench.refusal("format: sensor-model\nversion: 1\n"), Contains("E0546"));
 }
@@ -342,10 +334,9 @@ TEST_CASE("scene: outputs never overwrite what a scene reads, nor one another") 
 TEST_CASE("a tilt, a rest, a scale and a noise are read and written", "[scene]") {
   const test::SceneBench bench;
   const Scene scene = bench.read(
-      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: g, channel: a}, {name: x, "
-      "channel: b, scale: -1}, {name: z, channel: c, noise: 0.5}]\nreference: d\n"
-      "tilt: {gyroscope: g, accelerometer_x: x, accelerometer_z: z}\nrest: [0, 2]\nfault_free_s: "
-      "3\n");
+      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: g, channel: a}, {name: x, channel: b, scale: "
+      "-1}, {name: z, channel: c, noise: 0.5}]\nreference: d\n"
+      "tilt: {gyroscope: g, accelerometer_x: x, accelerometer_z: z}\nrest: [0, 2]\nfault_free_s: 3\n");
   REQUIRE(scene.tilt);
   CHECK(scene.tilt->accelerometer_z == 2);
   CHECK(scene.sensors[1].scale == -1);

@@ -150,9 +150,8 @@ TEST_CASE("a stationary start draws the states' joint distribution and counts fr
   }
 }
 
-// E (y_{t+n} - y_t)^2 of the stream, from the map that takes start and driving deviates to the
-// samples: it must be (4/pi) H_n wherever in the record it is taken, also across the start (y_{-1}
-// = 0).
+// E (y_{t+n} - y_t)^2 of the stream, from the map that takes start and driving deviates to the samples: it must be
+// (4/pi) H_n wherever in the record it is taken, also across the start (y_{-1} = 0).
 TEST_CASE("the increments of a stationary start are stationary") {
   constexpr std::size_t length = 200;
   const FlickerFilter filter = design_flicker(length);

@@ -14,7 +14,7 @@
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/band/low_pass.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/spectrum/fft.hpp"
@@ -350,9 +350,7 @@ TEST_CASE("the samples of a seed stay what they are") {
   CHECK(x[999] == Approx(250.77387683495408).epsilon(1e-12));
 }
 
-TEST_CASE(
-    "a Gauss-Markov process is simulated with its variance and covariance, from the first sample "
-    "on") {
+TEST_CASE("a Gauss-Markov process is simulated with its variance and covariance, from the first sample on") {
   NoiseDesign design;
   design.rate_hz = 4;
   design.gauss_markov_sigma = 0.3;

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 using namespace libchar;
 

@@ -1,5 +1,4 @@
-// Columns and rows of complex values against the defining sum, among them lengths that go in two
-// steps.
+// Columns and rows of complex values against the defining sum, among them lengths that go in two steps.
 
 #include <catch2/catch.hpp>
 #include <cmath>

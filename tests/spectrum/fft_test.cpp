@@ -23,8 +23,7 @@ std::vector<double> gaussian(std::size_t n, unsigned seed, double offset = 0) {
   return y;
 }
 
-// cos(pi p / q) and sin with the argument reduced in integers first, so that the reference is good
-// to the last digit.
+// cos(pi p / q) and sin with the argument reduced in integers first, so that the reference is good to the last digit.
 long double cosine(std::size_t p, std::size_t q) {
   return std::cos(std::numbers::pi_v<long double> * static_cast<long double>(p % (2 * q)) /
                   static_cast<long double>(q));
@@ -46,9 +45,8 @@ double relative_l2(const std::vector<long double>& wanted, const std::vector<lon
 const std::vector<std::size_t> kLengths = {1,  2,  3,   4,   5,   6,   7,   8,   9,    16,   17,   30,   31,
                                            64, 97, 100, 127, 128, 243, 500, 511, 1009, 1024, 1025, 2048, 3001};
 
-// Relative error in the mean square. FFTW reaches about 0.3 eps sqrt(log2 n) where n has small
-// factors; large primes run through Rader's convolution and pay a few times
-// that.
+// Relative error in the mean square. FFTW reaches about 0.3 eps sqrt(log2 n) where n has small factors; large primes
+// run through Rader's convolution and pay a few times that.
 double limit(std::size_t n) {
   const double eps = std::numeric_limits<double>::epsilon();
   return 0.6 * eps * std::sqrt(1 + std::log2(static_cast<double>(n))) * (std::has_single_bit(n) ? 1 : 3);

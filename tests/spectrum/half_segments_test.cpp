@@ -234,9 +234,7 @@ TEST_CASE("halves: other windows, overlaps, trends and lengths go another way") 
   CHECK_FALSE(HalfSegments::suits(options));
 }
 
-TEST_CASE(
-    "a stream by halves gives the bits of the whole, however it is pushed, with missing samples "
-    "too") {
+TEST_CASE("a stream by halves gives the bits of the whole, however it is pushed, with missing samples too") {
   auto x = noise(50021, 3, 2);
   for (const bool dirty : {false, true}) {
     if (dirty) x[5] = x[17003] = x[17004] = x[50020] = kMissing;

@@ -15,8 +15,7 @@ using namespace libchar;
 
 namespace {
 
-// Noise of density f^-exponent, by shaping white noise in the frequency domain over twice the
-// length.
+// Noise of density f^-exponent, by shaping white noise in the frequency domain over twice the length.
 std::vector<double> coloured(std::size_t n, double exponent, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -40,8 +39,7 @@ WelchOptions line_segments(std::uint64_t n) {
   return options;
 }
 
-// Column `name` position of a plain little-endian double array file (version 1 header), rows of
-// equal size.
+// Column `name` position of a plain little-endian double array file (version 1 header), rows of equal size.
 std::vector<double> npy_column(const std::filesystem::path& path, std::size_t column, std::size_t columns) {
   const std::string bytes = test::slurp(path);
   const std::size_t header = 10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
@@ -105,8 +103,7 @@ TEST_CASE("noise of any slope raises no false alarm") {
     }
   CHECK(alarms <= 2);  // 360 spectra at 1e-3 each: 0.36 expected
 
-  // The promised rate itself, where it can be counted: at a generous alarm the count stays below
-  // it.
+  // The promised rate itself, where it can be counted: at a generous alarm the count stays below it.
   int generous = 0;
   for (unsigned seed = 0; seed < 300; ++seed)
     generous += !find_lines(welch(coloured(4096, 0, 1000 + seed), 1), 0.2).empty();

@@ -109,9 +109,7 @@ TEST_CASE("Welch's spectrum is its definition, for odd, prime and even segments 
     }
 }
 
-TEST_CASE(
-    "the sum of the spectrum is the mean square (rectangular, no overlap), one- and two-sided, "
-    "even and odd") {
+TEST_CASE("the sum of the spectrum is the mean square (rectangular, no overlap), one- and two-sided, even and odd") {
   for (const std::size_t n : {50U, 51U}) {
     const auto x = white_samples(n * 20, 2);
     double square = 0;
@@ -130,9 +128,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "two-sided frequencies run from above -Nyquist to +Nyquist and hold half the one-sided "
-    "density") {
+TEST_CASE("two-sided frequencies run from above -Nyquist to +Nyquist and hold half the one-sided density") {
   const auto x = white_samples(4000, 3);
   for (const std::size_t n : {64U, 65U}) {
     WelchOptions options = welch_segments(n);
@@ -249,9 +245,7 @@ TEST_CASE("linear detrending removes a line, and leaves the noise") {
   CHECK(welch(drifting, 1, options).value[1] > 1e3 * without.value[1]);
 }
 
-TEST_CASE(
-    "white noise has the density 2 sigma^2 / rate, and its scatter is the stated degrees of "
-    "freedom") {
+TEST_CASE("white noise has the density 2 sigma^2 / rate, and its scatter is the stated degrees of freedom") {
   for (const double overlap : {0.0, 0.5, 0.75}) {
     for (const Window window : {Window::hann, Window::rectangular, Window::blackman_harris}) {
       CAPTURE(overlap, name_of(window));
@@ -399,9 +393,7 @@ TEST_CASE("segments that touch a missing sample are dropped and counted, and the
   CHECK(apart.dof == wanted.dof);
 }
 
-TEST_CASE(
-    "the default segment is a quarter of the record, shorter where samples are missing, with a "
-    "note") {
+TEST_CASE("the default segment is a quarter of the record, shorter where samples are missing, with a note") {
   CHECK(welch(white_samples(1003, 1), 1).segment == 250);
   CHECK(welch(white_samples(10, 1), 1).segment == 8);
   auto x = white_samples(4000, 10);

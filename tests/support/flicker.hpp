@@ -13,8 +13,7 @@ using namespace libchar;
 
 /// What the filter gives, computed from its sections (no simulation): impulse response at lag k,
 /// |H|^2 at nu cycles a sample, and the variogram E(y_{t+n} - y_t)^2 of its stationary output, unit
-/// driving noise. Fractional differencing has Gamma(k+1/2)/(Gamma(k+1) sqrt pi), 1/(2 sin pi nu),
-/// (4/pi) H_n.
+/// driving noise. Fractional differencing has Gamma(k+1/2)/(Gamma(k+1) sqrt pi), 1/(2 sin pi nu), (4/pi) H_n.
 inline double flicker_response(const FlickerFilter& filter, double k) {
   double sum = 0;
   for (std::size_t j = 0; j < filter.loss.size(); ++j)

@@ -1,6 +1,5 @@
 #pragma once
-// Exact simulation of sampled noise with known coefficients, from an own seeded generator (the same
-// bits everywhere).
+// Exact simulation of sampled noise with known coefficients, from an own seeded generator (the same bits everywhere).
 
 #include <cmath>
 #include <cstdint>

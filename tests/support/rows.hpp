@@ -1,6 +1,5 @@
 #pragma once
-// All rows of a log as its format delivers them, in one piece: for tests of a format below the
-// common part of reading.
+// All rows of a log as its format delivers them, in one piece: for tests of a format below the common part of reading.
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,6 @@
 #pragma once
-// Documents against docs/schema, in every test that runs the program. The keywords that those
-// schemas use, and no others; tests/cli/schema_test.py holds the same against an independent
-// validator.
+// Documents against docs/schema, in every test that runs the program. The keywords that those schemas use, and no
+// others; tests/cli/schema_test.py holds the same against an independent validator.
 
 #include <string>
 #include <vector>

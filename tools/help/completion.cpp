@@ -196,8 +196,8 @@ std::string bash_completion(const ProgramUsage& program) {
   for (const VerbUsage& verb : program.verbs)
     text += fmt::format("    {}) echo {} ;;\n", verb.name, quoted_word(all_flags(verb)));
   text += fmt::format(
-      "  esac\n}}\n\n# Values of a flag of a verb; nothing for one without a "
-      "value.\n_{}_value() {{\n  case \"$1 $2\" in\n",
+      "  esac\n}}\n\n# Values of a flag of a verb; nothing for one without a value.\n_{}_value() {{\n  case \"$1 $2\" "
+      "in\n",
       program.name);
   for (const VerbUsage& verb : program.verbs)
     for (const OptionUsage& option : verb.options) {
@@ -227,20 +227,19 @@ std::string zsh_completion(const ProgramUsage& program) {
   for (const VerbUsage& verb : program.verbs) text += "    " + quoted_word(verb.name + ":" + brief(verb.what)) + "\n";
   text += "    'help:what a verb does'\n  )\n  _describe verb verbs\n}\n\n";
   text += fmt::format(
-      "_{0}() {{\n  if (( CURRENT == 2 )); then\n    _{0}_verbs\n    return\n  fi\n  local "
-      "verb=$words[2]\n  shift words\n"
-      "  (( CURRENT-- ))\n  if [[ $verb == help ]]; then\n    (( CURRENT == 2 )) && _{0}_verbs\n  "
-      "elif (( $+functions[_{0}_$verb] )); then\n"
-      "    _{0}_$verb\n  fi\n}}\n\nif [[ $funcstack[1] == _{0} ]]; then\n  _{0} \"$@\"\nelse\n  "
-      "compdef _{0} {0}\nfi\n",
+      "_{0}() {{\n  if (( CURRENT == 2 )); then\n    _{0}_verbs\n    return\n  fi\n  local verb=$words[2]\n  shift "
+      "words\n"
+      "  (( CURRENT-- ))\n  if [[ $verb == help ]]; then\n    (( CURRENT == 2 )) && _{0}_verbs\n  elif (( "
+      "$+functions[_{0}_$verb] )); then\n"
+      "    _{0}_$verb\n  fi\n}}\n\nif [[ $funcstack[1] == _{0} ]]; then\n  _{0} \"$@\"\nelse\n  compdef _{0} {0}\nfi\n",
       program.name);
   return text;
 }
 
 std::string fish_completion(const ProgramUsage& program) {
   std::string text = fmt::format(
-      "# fish completion of {0}: made by {0} --generate fish\n\nfunction __{0}_verb\n  set -l "
-      "words (commandline -opc)\n"
+      "# fish completion of {0}: made by {0} --generate fish\n\nfunction __{0}_verb\n  set -l words (commandline "
+      "-opc)\n"
       "  test (count $words) -ge 2; and test $words[2] = $argv[1]\nend\n\nfunction __{0}_no_verb\n"
       "  test (count (commandline -opc)) -eq 1\nend\n\n",
       program.name);
@@ -248,8 +247,8 @@ std::string fish_completion(const ProgramUsage& program) {
     text += fmt::format("complete -c {} -n '__{}_no_verb' -f -a {} -d {}\n", program.name, program.name, verb.name,
                         fish_quoted(brief(verb.what)));
   text += fmt::format(
-      "complete -c {0} -n '__{0}_no_verb' -f -a help -d 'what a verb does'\ncomplete -c {0} -n "
-      "'__{0}_verb help' -f -a {1}\n",
+      "complete -c {0} -n '__{0}_no_verb' -f -a help -d 'what a verb does'\ncomplete -c {0} -n '__{0}_verb help' -f -a "
+      "{1}\n",
       program.name, fish_quoted(all_verbs(program)));
   for (const OptionUsage& option : program.options)
     for (const std::string& flag : option.flags)

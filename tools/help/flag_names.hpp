@@ -17,8 +17,7 @@ void set_flags_of_verb(const std::set<std::string>& flags);
 /// Options of the library with what they are on the command line: a flag, or one with its value ("--bad-rows drop").
 std::vector<std::pair<std::string, std::string>> flags_of_options();
 
-/// The text with every option of the library in backquotes replaced by its flag; what has no flag
-/// stays.
+/// The text with every option of the library in backquotes replaced by its flag; what has no flag stays.
 std::string with_flags(const std::string& message);
 
 /// The same for everything a problem says itself; what it quotes from the input stays. A hint that names an

@@ -90,9 +90,8 @@ std::string program_man_page(const ProgramUsage& program) {
   page += ".br\n" + bold(program.name + " help") + " [" + italic("VERB") + "]\n";
   page += ".SH DESCRIPTION\n" + roff(program.what) + "\n";
   page += paragraph(
-      "Results go to standard output, progress and messages to standard error. An error is one "
-      "sentence with a code, its place, "
-      "and what to do.");
+      "Results go to standard output, progress and messages to standard error. An error is one sentence with a code, "
+      "its place, and what to do.");
   page += ".SH VERBS\n";
   for (const VerbUsage& verb : program.verbs)
     page += tagged("\\fB" + roff(typed(verb.name)) + "\\fP",

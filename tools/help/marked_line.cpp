@@ -5,8 +5,8 @@
 #include <fstream>
 #include <regex>
 
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
-#include "libchar/core/text/utf8.hpp"
 
 namespace sensorchar {
 namespace {

@@ -255,9 +255,9 @@ void add_design_options(VerbOptions& options, BenchVerb& verb) {
 
 void add_comparison_options(VerbOptions& options, BenchVerb& verb) {
   options
-      .add_text("--against", verb.against,
-                "bench.json of an earlier run with the same options: exit 6 where a figure is worse "
-                "beyond both intervals")
+      .add_text(
+          "--against", verb.against,
+          "bench.json of an earlier run with the same options: exit 6 where a figure is worse beyond both intervals")
       .value_name("FILE");
   options.add_number("--tolerance", verb.tolerance, "percent that a figure may be worse by (default: 5)", 0, 1000)
       .value_name("PERCENT");
@@ -293,8 +293,8 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .value_name("NAME,…");
   options
       .add_texts("--sweep", verb->sweeps,
-                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
-                 "FROM..TO; several make a grid")
+                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or FROM..TO; several "
+                 "make a grid")
       .one_value_each()
       .value_name("SWEEP");
   add_design_options(options, *verb);

@@ -1,5 +1,4 @@
-// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a
-// colleague.
+// characterize LOG… -o DIR: everything about a recording, in files that can be shown to a colleague.
 
 #include <fmt/format.h>
 
@@ -295,32 +294,32 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
   options.add_texts("LOG", verb->logs, "recordings (" + readable_files() + "; - reads CSV from standard input)")
       .required();
   options
-      .add_text("-o,--output", verb->folder,
-                "folder for the results (made when absent; with several logs one folder each "
-                "inside; default: LOG-report)")
+      .add_text(
+          "-o,--output", verb->folder,
+          "folder for the results (made when absent; with several logs one folder each inside; default: LOG-report)")
       .value_name("DIR")
       .writes();
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
   options.add_flag("--no-timing", verb->no_timing,
                    "without the time it took: the same input and options give the same bytes");
-  options.add_flag("--verify", verb->verify,
-                   "simulate every channel from its model, characterize that, and compare (exit code "
-                   "6 when they disagree)");
+  options.add_flag(
+      "--verify", verb->verify,
+      "simulate every channel from its model, characterize that, and compare (exit code 6 when they disagree)");
   options
       .add_text("--limits", verb->limits,
-                "check each noise term against data-sheet limits (docs/recordings.md): pass, fail or "
-                "undecided; exit code 6 when one fails")
+                "check each noise term against data-sheet limits (docs/recordings.md): pass, fail or undecided; exit "
+                "code 6 when one fails")
       .value_name("FILE");
   options.add_count("--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
-  const Option pool = options.add_flag("--pool", verb->pool,
-                                       "the LOGs are runs of one sensor: one set of coefficients by one "
-                                       "likelihood, whether they have "
-                                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
+  const Option pool =
+      options.add_flag("--pool", verb->pool,
+                       "the LOGs are runs of one sensor: one set of coefficients by one likelihood, whether they have "
+                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
   options
       .add_flag("--lot", verb->lot,
-                "compare the LOGs as devices side by side, as fleet merge does: mean and spread of "
-                "each term, outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
+                "compare the LOGs as devices side by side, as fleet merge does: mean and spread of each term, "
+                "outliers, overlaid curves (index.html, lot.json, coefficients.csv)")
       .excludes(pool);
   options.only("with --verify or --pool", [verb = verb.get()] { return verb->verify || verb->pool; }, {"--seed"});
   add_characterize_options(options, session, verb->analysis);
@@ -332,8 +331,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
 VerbEntry verb_characterize() {
   return {2,
           "characterize",
-          "Analyse a recording completely: report.html, report.json, curves.csv, one "
-          "sensor model per channel",
+          "Analyse a recording completely: report.html, report.json, curves.csv, one sensor model per channel",
           characterize_options,
           {{"everything about a recording", "sensorchar characterize imu.csv -o report"},
            {"one channel, its longest still stretch, as one document",

@@ -136,8 +136,8 @@ void compare_sensors(Session& session, const CompareVerb& verb) {
 void run_compare(Session& session, const CompareVerb& verb) {
   for (const std::string& report : verb.inputs)
     refuse_lot_report(report,
-                      "lots are compared as fleets (sensorchar fleet plan LOG… -o A): sensorchar fleet "
-                      "compare A B, or sensorchar fleet merge A B -o REPORT for one report of both");
+                      "lots are compared as fleets (sensorchar fleet plan LOG… -o A): sensorchar fleet compare A B, or "
+                      "sensorchar fleet merge A B -o REPORT for one report of both");
   const auto is_replay = [](const std::string& path) { return detail::document_format(path) == "replay-report"; };
   if (std::all_of(verb.inputs.begin(), verb.inputs.end(), is_replay))
     compare_two_replays(session, verb);
@@ -149,31 +149,26 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<CompareVerb>();
   options
       .add_texts("INPUT", verb->inputs,
-                 "recordings, reports of characterize (or their folders; runs.json, fit --json, "
-                 "allan --json), curves and sensor models in any mixture; or two reports of replay")
+                 "recordings, reports of characterize (or their folders; runs.json, fit --json, allan --json), curves "
+                 "and sensor models in any mixture; or two reports of replay")
       .required();
   options
       .add_texts("--fail-if", verb->checks,
-                 "exit code 6 when a later input is worse than the first by more: rmse+5%, "
-                 "ns_per_sample+20%, "
-                 "peak_bytes+10%, regret+0.5% (points), white_noise+10% (beyond its interval); "
-                 "minque:rmse+5% "
-                 "for one algorithm, gyro_x:white_noise+5% for one channel; "
-                 "several times")
+                 "exit code 6 when a later input is worse than the first by more: rmse+5%, ns_per_sample+20%, "
+                 "peak_bytes+10%, regret+0.5% (points), white_noise+10% (beyond its interval); minque:rmse+5% for one "
+                 "algorithm, gyro_x:white_noise+5% for one channel; several times")
       .value_name("[LABEL:]METRIC+N%")
       .one_value_each();
   options.add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
   options
       .add_texts("-c,--channel", verb->channels,
-                 "channels by name or pattern; gyro_x and accel_x fit any channel that measures "
-                 "them (all)")
+                 "channels by name or pattern; gyro_x and accel_x fit any channel that measures them (all)")
       .separated_by_commas()
       .once_each();
   options.add_texts("--label", verb->labels, "a name for each input (default: of its file)").separated_by_commas();
   options
       .add_text("--limits", verb->limits,
-                "data-sheet limits (docs/recordings.md) as a row of the table and a line in the "
-                "figures")
+                "data-sheet limits (docs/recordings.md) as a row of the table and a line in the figures")
       .value_name("FILE");
   const Option json = options.add_flag("--json", verb->json, "one JSON document instead of the table");
   const Option markdown =

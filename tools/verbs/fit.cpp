@@ -176,24 +176,22 @@ void add_only(VerbOptions& options, const FitVerb& verb) {
 std::function<void()> fit_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<FitVerb>();
   options
-      .add_text("LOG|CURVE", verb->input,
-                "recording (" + readable_files() +
-                    "), or with --curve a table: averaging "
-                    "time or frequency, then values")
+      .add_text(
+          "LOG|CURVE", verb->input,
+          "recording (" + readable_files() + "), or with --curve a table: averaging time or frequency, then values")
       .required();
   options.add_choice("--curve", verb->curve, {"none", "allan", "psd"},
                      "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
   options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
-  options.add_choice("--quantity", verb->quantity, {"auto", "root", "power"},
-                     "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan "
-                     "root, psd power)");
+  options.add_choice(
+      "--quantity", verb->quantity, {"auto", "root", "power"},
+      "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");
   options.add_duration("--duration", verb->duration_s,
                        "length of the record behind a --curve allan: gives honest intervals");
   options.add_document_output(verb->output);
   options
       .add_text("--models", verb->models,
-                "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and "
-                "model --to")
+                "folder for a sensor model per channel (CHANNEL.sensor.yaml), for simulate and model --to")
       .value_name("FOLDER");
   options.add_flag("--force", verb->force, "overwrite the output files");
   options.add_flag("--json", verb->json, "one JSON document instead of a table");

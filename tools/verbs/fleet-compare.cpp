@@ -30,8 +30,8 @@ struct CompareFleetsVerb {
   throw usage_error("E0205", "fleet compare")
       .says("two fleets are compared, or two batches of one")
       .hint(
-          "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW (where "
-          "a name has a comma: --batches OLD --batches NEW)");
+          "sensorchar fleet compare A B, or sensorchar fleet compare DIR --batches OLD,NEW (where a name has a comma: "
+          "--batches OLD --batches NEW)");
 }
 
 /// "OLD,NEW", or one a word.

@@ -78,8 +78,8 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
   options.only("where jobs have limits: slurm, snakemake", [verb] { return verb->engine != "parallel"; }, {"--slower"});
   options
       .add_text("--program", verb->jobs.program,
-                "the program on the workers: the path of one that is there, or a command line for a "
-                "shell (default: sensorchar)")
+                "the program on the workers: the path of one that is there, or a command line for a shell (default: "
+                "sensorchar)")
       .value_name("COMMAND");
   return [&session, verb] { run_export(session, *verb); };
 }

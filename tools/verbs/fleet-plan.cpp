@@ -105,11 +105,9 @@ void run_plan(Session& session, PlanVerb verb) {
     if (replaced) document["replaces"] = {{"devices", replaced->devices}, {"other_results", others}};
     return print(dump_json(document));
   }
-  std::string text = fmt::format(
-      "{} in {} of work; {} have a result already, the others take about {} on "
-      "one core\n",
-      plural(plan.devices.size(), "device"), plural(plan.units.size(), "unit"), status.done,
-      duration_text(status.seconds_left));
+  std::string text = fmt::format("{} in {} of work; {} have a result already, the others take about {} on one core\n",
+                                 plural(plan.devices.size(), "device"), plural(plan.units.size(), "unit"), status.done,
+                                 duration_text(status.seconds_left));
   if (stated > 0) text += fmt::format("the digests of {} are stated: workers check them\n", plural(stated, "log"));
   text += unreadable_text(manifest, plan);
   if (replaced) text += replaced_text(*replaced, others);
@@ -126,17 +124,16 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   verb->analysis.options.ten_a_decade = true;
   options
       .add_texts("MANIFEST|LOG", verb->inputs,
-                 "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or "
-                 "logs, each a "
-                 "device called as its file is; a quoted pattern stands for its files")
+                 "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or logs, each a device "
+                 "called as its file is; a quoted pattern stands for its files")
       .required();
   options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results")
       .value_name("DIR")
       .required();
   options
-      .add_texts("--sums", verb->sums,
-                 "file with digests of logs, as sha256sum prints them: the plan takes none of these, "
-                 "workers check them")
+      .add_texts(
+          "--sums", verb->sums,
+          "file with digests of logs, as sha256sum prints them: the plan takes none of these, workers check them")
       .value_name("FILE")
       .one_value_each();
   options.add_flag("--json", verb->json, "print what was planned as JSON");
@@ -146,8 +143,7 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   options.add_flag("--skip-unreadable", verb->plan.skip_unreadable,
                    "plan the others where logs cannot be read; the report names those");
   options.add_bytes("--split-above", verb->plan.split_bytes,
-                    "logs larger than this are divided in stretches where their format allows (default: "
-                    "4GiB)");
+                    "logs larger than this are divided in stretches where their format allows (default: 4GiB)");
   options.add_bytes("--stretch", verb->plan.stretch_bytes, "size of a stretch, about (default: 1GiB)");
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_plan(session, *verb); };

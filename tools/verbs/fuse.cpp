@@ -75,9 +75,9 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
       .one_value_each()
       .value_name("SENSOR=CHANNEL,…")
       .once_each();
-  options.add_instant("--fault-free", verb->options.fault_free_s,
-                      "so long no sensor fails at the start of this log (default: not known, but "
-                      "of the log of the replay)");
+  options.add_instant(
+      "--fault-free", verb->options.fault_free_s,
+      "so long no sensor fails at the start of this log (default: not known, but of the log of the replay)");
   add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");

@@ -1,5 +1,4 @@
-// sensorchar inspect LOG…: what is in a log, what was guessed, what was repaired, and what to type
-// next.
+// sensorchar inspect LOG…: what is in a log, what was guessed, what was repaired, and what to type next.
 
 #include <fmt/format.h>
 

@@ -178,18 +178,17 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
   sub.add_enum("--axes", options.axes,
-               "one number for three axes: the largest, their root mean square, or one axis (auto: each "
-               "its own where the consumer takes three, else max)");
+               "one number for three axes: the largest, their root mean square, or one axis (auto: each its own where "
+               "the consumer takes three, else max)");
   sub.add_texts("--axis", verb.places,
-                "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, "
-                "a, m alone for all three axes")
+                "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, a, m alone for "
+                "all three axes")
       .value_name("CHANNEL=PLACE")
       .one_value_each()
       .once_each();
   sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
   sub.add_number("--floor-tau", options.floor_tau_s,
-                 "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from "
-                 "the model)",
+                 "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from the model)",
                  kSmall);
   sub.add_number("--correlation-time", options.correlation_s,
                  "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)", kSmall);
@@ -238,9 +237,8 @@ void add_only(VerbOptions& options, const ModelVerb& verb) {
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
   options.add_texts("FILE", verb->files,
-                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, "
-                    "report.json); the axes of one device together. With --to c the folder of a replay or "
-                    "its fusion.yaml");
+                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, report.json); the axes "
+                    "of one device together. With --to c the folder of a replay or its fusion.yaml");
   options.add_text("--algorithm", verb->algorithm, "c: method of the replay (default: what it recommends)")
       .value_name("NAME");
   options.add_choice("--dtype", verb->dtype, {"f64", "f32"}, "c: double or float (default: f64)");

@@ -43,9 +43,7 @@ double length_mm(const std::string& flag, const std::string& text) {
     if (value && *value > 0) return *value * factor;
   }
   throw usage_error("E0981", flag)
-      .says(
-          "a length was expected: a number above zero with mm, cm, in or pt, or one-column, "
-          "two-columns")
+      .says("a length was expected: a number above zero with mm, cm, in or pt, or one-column, two-columns")
       .got(text)
       .hint("such as 85mm");
 }
@@ -186,9 +184,8 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options.add_flag("--list", verb->list, "list the figures").alone();
   options
       .add_texts("-c,--channel", verb->figure.channels,
-                 "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*'; "
-                 "gyro_x fits "
-                 "any channel that measures it (all)")
+                 "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*'; gyro_x fits any "
+                 "channel that measures it (all)")
       .separated_by_commas()
       .once_each();
   options.add_text("--algorithm", verb->figure.algorithm,

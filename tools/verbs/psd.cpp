@@ -120,15 +120,14 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
                    "list the spectral lines (with --json: in addition to the spectra)");
   add_spectrum_options(options, analysis.spectrum, analysis.segment_s, analysis.quarter_segments);
   options.add_enum("--average", analysis.average,
-                   "mean of the segments, or their median without its bias: bursts do not count "
-                   "(default: mean)");
-  const Option cross = options
-                           .add_texts("--cross", verb->cross,
-                                      "cross spectrum of two channels A,B: density, phase of B "
-                                      "less that of A, coherence")
-                           .value_name("A,B")
-                           .separated_by_commas()
-                           .one_value_each();
+                   "mean of the segments, or their median without its bias: bursts do not count (default: mean)");
+  const Option cross =
+      options
+          .add_texts("--cross", verb->cross,
+                     "cross spectrum of two channels A,B: density, phase of B less that of A, coherence")
+          .value_name("A,B")
+          .separated_by_commas()
+          .one_value_each();
   Option coherence =
       options.add_texts("--coherence", verb->coherence, "coherence of two channels A,B, and where it is significant")
           .value_name("A,B")

@@ -294,23 +294,21 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
                                 .known_words(algorithm_names());
   options
       .add_flag("--published", verb->published,
-                "also run the algorithms exactly as published (…-published), next to the robust "
-                "ones")
+                "also run the algorithms exactly as published (…-published), next to the robust ones")
       .excludes(algorithms);
   options.add_texts("--set", verb->settings, "option of an algorithm, ALGORITHM.OPTION=NUMBER")
       .value_name("SETTING")
       .once_each();
   options
       .add_texts("--sweep", verb->sweeps,
-                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or "
-                 "FROM..TO; several make a grid")
+                 "run an algorithm once with each value of an option, ALGORITHM.OPTION=NUMBER,… or FROM..TO; several "
+                 "make a grid")
       .one_value_each()
       .value_name("SWEEP");
   options.add_duration("--window", verb->window_s, "length of the window RMS (default: a fiftieth of the evaluation)");
   options.add_instant("--budget", verb->budget_s,
-                      "processor time that leave-one-out of one algorithm may take, counted by "
-                      "its declared cost; beyond, "
-                      "it runs on stretches or not at all (default: 10 s)");
+                      "processor time that leave-one-out of one algorithm may take, counted by its declared cost; "
+                      "beyond, it runs on stretches or not at all (default: 10 s)");
   options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
   options
       .add_text("--estimates", verb->estimates,
@@ -322,9 +320,9 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-skip", verb->no_skip,
                    "do all work whether an output needs it or not; the numbers are the same");
   options
-      .add_text("--write-scene", verb->scene_file,
-                "write all that was said as a scene file, which replays to the same results; without "
-                "-o nothing else is done")
+      .add_text(
+          "--write-scene", verb->scene_file,
+          "write all that was said as a scene file, which replays to the same results; without -o nothing else is done")
       .writes()
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
@@ -338,12 +336,10 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
 VerbEntry verb_replay() {
   return {8,
           "replay",
-          "Compare all fusion algorithms on a recording or a scene: report.html, "
-          "report.json, report.md",
+          "Compare all fusion algorithms on a recording or a scene: report.html, report.json, report.md",
           replay_options,
           {{"every algorithm on the channels of a recording",
-            "sensorchar replay array.csv --sensors 'gyro*' --reference truth --learning 0..150 -o "
-            "array-replay"},
+            "sensorchar replay array.csv --sensors 'gyro*' --reference truth --learning 0..150 -o array-replay"},
            {"what a replay of a scene would do, and what it would leave out",
             "sensorchar replay array.scene.yaml --explain"}}};
 }

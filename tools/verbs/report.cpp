@@ -80,8 +80,8 @@ void run_report(Session& session, const ReportVerb& verb) {
   const TableFormat format = verb.latex ? TableFormat::latex : verb.csv ? TableFormat::csv : TableFormat::markdown;
   for (const std::string& file : verb.files)
     refuse_lot_report(file,
-                      "its tables are coefficients.csv and index.html next to it; index.html links to "
-                      "the folder with the report of each device");
+                      "its tables are coefficients.csv and index.html next to it; index.html links to the folder with "
+                      "the report of each device");
   std::string text;
   if (verb.form) {
     text = form_of(session, verb);
@@ -106,9 +106,8 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReportVerb>();
   options
       .add_texts("FILE", verb->files,
-                 "report.json of characterize or replay (runs.json of pooled runs, what fit --json "
-                 "prints) or its folder, a recording, or sensor models; several make the table of "
-                 "compare")
+                 "report.json of characterize or replay (runs.json of pooled runs, what fit --json prints) or its "
+                 "folder, a recording, or sensor models; several make the table of compare")
       .required();
   const Option markdown = options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
   const Option latex =

@@ -1,5 +1,4 @@
-// sensorchar simulate MODEL…|SCENE -o LOG: a recording with known truth, streaming, and the scene
-// that replays it.
+// sensorchar simulate MODEL…|SCENE -o LOG: a recording with known truth, streaming, and the scene that replays it.
 
 #include <fmt/format.h>
 
@@ -273,9 +272,8 @@ void add_length_options(VerbOptions& options, SimulateVerb& verb) {
 void add_input_options(VerbOptions& options, SimulateVerb& verb) {
   options
       .add_text("--truth", verb.truth,
-                "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, "
-                "noise, uniform, random_walk, ramp, or recording,file=LOG,channel=NAME; its keys "
-                "are those of scenes (default: zero)")
+                "true input: a number, or KIND,key=value,… with KIND zero, constant, sine, chirp, noise, uniform, "
+                "random_walk, ramp, or recording,file=LOG,channel=NAME; its keys are those of scenes (default: zero)")
       .value_name("SIGNAL");
   options
       .add_text("--temperature", verb.temperature,
@@ -283,8 +281,8 @@ void add_input_options(VerbOptions& options, SimulateVerb& verb) {
       .value_name("SIGNAL");
   options.add_texts("--fault", verb.faults, kFaultHelp).value_name("FAULT");
   options.add_flag("--deterministic", verb.deterministic,
-                   "put in the steps, warm-ups and ramps that the models' recordings had, at their "
-                   "times (default: they are of that recording, not of the sensor)");
+                   "put in the steps, warm-ups and ramps that the models' recordings had, at their times (default: "
+                   "they are of that recording, not of the sensor)");
   options.add_count("--oversampling", verb.oversampling, "oversampling factor of the simulation (default: 1)", 1, 1024);
 }
 
@@ -292,16 +290,14 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<SimulateVerb>();
   options
       .add_texts("SOURCE", verb->sources,
-                 "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml); one "
-                 "that simulate "
-                 "wrote makes its log again")
+                 "sensor models (.sensor.yaml), one channel each, or one scene (.scene.yaml); one that simulate wrote "
+                 "makes its log again")
       .required()
       .value_name("MODEL…|SCENE");
   options
       .add_text("-o,--output", verb->output,
                 "log to write; its suffix says the format (" + libchar::written_suffixes() +
-                    "; - is standard output, without a scene); of a scene that simulate wrote its "
-                    "own log")
+                    "; - is standard output, without a scene); of a scene that simulate wrote its own log")
       .value_name("LOG");
   add_length_options(options, *verb);
   add_input_options(options, *verb);

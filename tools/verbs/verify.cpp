@@ -139,8 +139,7 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
       .value_name("FOLDER");
   options
       .add_text("--rerun", verb->again,
-                "run it again into this new folder, as the report's command says, and compare "
-                "every number")
+                "run it again into this new folder, as the report's command says, and compare every number")
       .value_name("FOLDER");
   options.add_flag("--allow-read", verb->allow_read,
                    "allow the report's command to read files outside this folder (or --in) and the report's");

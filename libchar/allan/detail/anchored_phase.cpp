@@ -1,6 +1,5 @@
-// Differences of a cumulated record, re-anchored every block. Why: the plain sum of 1e8 samples
-// with an offset of 1e9 standard deviations is 100 % noise, and 9.81 m/s^2 with 1e-3 noise already
-// costs eight digits (docs/theory/allan.md).
+// Differences of a cumulated record, re-anchored every block. Why: the plain sum of 1e8 samples with an offset of 1e9
+// standard deviations is 100 % noise, and 9.81 m/s^2 with 1e-3 noise already costs eight digits (docs/theory/allan.md).
 
 #include "libchar/allan/detail/anchored_phase.hpp"
 
@@ -19,8 +18,7 @@ namespace {
 // Sums of squared differences over contiguous samples: eight partial sums in fixed order, so that
 // the bits do not depend on the vector width the processor has.
 
-/// d_t = c0 + c1 t + c2 t^2 + (second or third difference of at[0][t], at[1][t], …), t = 0, stride,
-/// 2 stride, …
+/// d_t = c0 + c1 t + c2 t^2 + (second or third difference of at[0][t], at[1][t], …), t = 0, stride, 2 stride, …
 struct DifferenceRun {
   const double* at[4] = {};
   double c[3] = {};
@@ -229,8 +227,7 @@ AnchoredPhase anchored_phase_of_phase(std::span<const double> points, bool summe
     const auto block = points.subspan(b * kBlock, std::min(kBlock, points.size() - b * kBlock));
     anchor = first_finite(block, anchor / scale) * scale;
     const double last = block.empty() ? anchor : finite_or(block.back() * scale, anchor);
-    // Multiples of a slope of few digits are exact, so removing it rounds nothing but the small
-    // rest.
+    // Multiples of a slope of few digits are exact, so removing it rounds nothing but the small rest.
     const float slope = static_cast<float>((last - anchor) / static_cast<double>(kBlock));
     phase.base[b] = two_sum(anchor, -origin);
     phase.anchor[b] = {static_cast<double>(slope), 0};

@@ -25,9 +25,8 @@ struct IndexRange {
 /// polynomial + small local rest (double):
 ///   x_{bL+j} = X_b + j A_b + local_{bL+j},
 ///   W_{bL+j} = W_b + j X_b + j(j-1)/2 A_b + local2_{bL+j},
-/// A_b the first sample of block b less the first of the record. The local rests are sums of at
-/// most L deviations from a neighbour, so an offset cancels before anything is added, and a drift
-/// up to its change within one block.
+/// A_b the first sample of block b less the first of the record. The local rests are sums of at most L deviations from
+/// a neighbour, so an offset cancels before anything is added, and a drift up to its change within one block.
 struct AnchoredPhase {
   static constexpr std::size_t kBlock = 1024;  // L
   std::size_t points = 0;                      ///< of x; W has one more

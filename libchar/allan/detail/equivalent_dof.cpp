@@ -1,5 +1,4 @@
-// v = mean of M squared Gaussian terms d_i with autocovariance R(l), terms `q` samples apart, mean
-// mu (ramp):
+// v = mean of M squared Gaussian terms d_i with autocovariance R(l), terms `q` samples apart, mean mu (ramp):
 //   E v = R(0) + mu^2,   Var v = (2/M^2) sum_k (M - |k|) [R(qk)^2 + 2 mu^2 R(qk)],
 //   edf = 2 (E v)^2 / Var v
 // exact for the discrete mixture; R from equivalent_dof.hpp. White, m = 1: 2M/3. Walk, m = 1: M.
@@ -21,11 +20,10 @@
 
 namespace libchar {
 
-// With s(n) the generalised covariance of the phase (noise_curves.hpp), T(n) its double sum and
-// delta2_m f(n) = f(n+m) - 2 f(n) + f(n-m): products of differences have covariance equal to the
-// differences of s. White, walk and quantization are piecewise polynomials, so that everything
-// vanishes beyond the reach of the differences; flicker leaves a tail delta4 s ~ -m^4/(pi n^2). Far
-// from its kinks flicker is developed in the derivatives of
+// With s(n) the generalised covariance of the phase (noise_curves.hpp), T(n) its double sum and delta2_m
+// f(n) = f(n+m) - 2 f(n) + f(n-m): products of differences have covariance equal to the differences of s. White, walk
+// and quantization are piecewise polynomials, so that everything vanishes beyond the reach of the differences; flicker
+// leaves a tail delta4 s ~ -m^4/(pi n^2). Far from its kinks flicker is developed in the derivatives of
 //   4 pi s(n) = 2 n^2 ln n + (2 gamma + 4 ln 2 - 3) n^2 - (ln n)/2 + const - 17/(480 n^2) + …
 
 namespace {
@@ -109,11 +107,9 @@ PerTerm hadamard_term_covariance(double m, double lag, double dt_s) {
   return sixth_differences(phase_covariance, tail, m, lag, -1 / (m * m), dt_s);
 }
 
-/// Same for the second difference of the phase averaged over m points (modified Allan): delta6_m
-/// T(lag) / m^4.
+/// Same for the second difference of the phase averaged over m points (modified Allan): delta6_m T(lag) / m^4.
 PerTerm modified_term_covariance(double m, double lag, double dt_s) {
-  // delta6 T/m^4 = m^2 (s'''' + m^2 s^(6)/4 + 13 m^4 s^(8)/240), since T'' = s up to terms of order
-  // m^-2
+  // delta6 T/m^4 = m^2 (s'''' + m^2 s^(6)/4 + 13 m^4 s^(8)/240), since T'' = s up to terms of order m^-2
   const auto tail = [m](double n) {
     const double v = m * m / (n * n);
     return -v * (4 + v * (6 + v * 26)) / kFourPi;

@@ -69,9 +69,9 @@ std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64
 
 void note_stride(std::uint64_t points, std::vector<std::string>& notes) {
   if (points == 0) return;
-  notes.push_back("at " + std::to_string(points) +
-                  " averaging times not every term is used, but one every m/16 samples or more "
-                  "(`full_overlap` takes all)");
+  notes.push_back(
+      "at " + std::to_string(points) +
+      " averaging times not every term is used, but one every m/16 samples or more (`full_overlap` takes all)");
 }
 
 }  // namespace libchar

@@ -46,9 +46,8 @@ std::uint64_t theo_factor(double tau);
 /// Averaging times of TheoH up to this many samples are the Allan deviation's: a fifth of the record.
 std::uint64_t last_allan_factor(std::uint64_t samples);
 
-/// Phase points first, first + 1 … of a stretch, less a straight line (of which the statistics see
-/// nothing), times the scale. The sum begins anew here: what a long record adds up to costs its
-/// differences no digits.
+/// Phase points first, first + 1 … of a stretch, less a straight line (of which the statistics see nothing), times the
+/// scale. The sum begins anew here: what a long record adds up to costs its differences no digits.
 void local_phase(const FamilyInput& input, std::size_t first, std::span<double> out);
 /// The same with the line, which begins at 0.
 void local_phase_with_offset(const FamilyInput& input, std::size_t first, std::span<double> out);

@@ -1,7 +1,6 @@
-// Parabolic deviation: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, "The parabolic
-// variance (PVAR): a wavelet variance based on the least-square fit", IEEE Trans. UFFC 63 (2016)
-// 611-623, eq. 8. The frequency in two neighbouring windows of m phase points is the slope of the
-// line that fits them best:
+// Parabolic deviation: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, "The parabolic variance (PVAR): a wavelet
+// variance based on the least-square fit", IEEE Trans. UFFC 63 (2016) 611-623, eq. 8. The frequency in two neighbouring
+// windows of m phase points is the slope of the line that fits them best:
 //
 //   PVAR = 72 / (n m^4 tau^2) sum_i [ sum_{k<m} ((m-1)/2 - k) (x_{i+k} - x_{i+m+k}) ]^2
 //

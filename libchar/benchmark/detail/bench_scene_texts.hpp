@@ -2,15 +2,9 @@
 // The built-in scenes: files of fixtures/scenes, embedded at build time.
 
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace libchar {
 
-/// (file name, text)
-std::vector<std::pair<std::string_view, std::string_view>> bench_scene_texts();
-
-// Written by libchar/cmake/embed.cmake.
 std::string_view scene_rv_3_3_uncalibrated();
 std::string_view scene_rv_3_3_calibrated();
 std::string_view scene_rv_5_1_fault_free();

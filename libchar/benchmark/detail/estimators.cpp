@@ -108,33 +108,28 @@ NoiseEstimate allan_edf_plain(std::span<const double> y, double rate_hz, const T
 const std::vector<Estimator>& estimators() {
   static const std::vector<Estimator> rows = {
       {"sensorchar",
-       "what a characterization does: Whittle likelihood, terms decided by likelihood ratio, "
-       "remedies "
-       "on alarm, a second opinion from the Allan curve",
+       "what a characterization does: Whittle likelihood, terms decided by likelihood ratio, remedies on alarm, a "
+       "second opinion from the Allan curve",
        whole_fit},
       {"whittle", "Whittle likelihood of the whole record's cosine transform, terms told", whittle, true, true},
       {"whittle-blocks", "the same of blocks of 16384 samples and their means: constant memory", whittle_blocks, true,
        true},
       {"allan-covariance",
-       "least squares on the overlapping Allan variances at octaves (stride m/4) with their whole "
-       "covariance",
+       "least squares on the overlapping Allan variances at octaves (stride m/4) with their whole covariance",
        allan_covariance_stride, true, true},
       {"allan-covariance-overlap", "the same with full overlap", allan_covariance_overlap, true, true},
-      {"allan-edf",
-       "least squares on the logarithms of the Allan variances, each weighted by its degrees of "
-       "freedom",
+      {"allan-edf", "least squares on the logarithms of the Allan variances, each weighted by its degrees of freedom",
        allan_edf, true, true},
       {"allan-edf-plain", "the same on non-overlapping Allan variances", allan_edf_plain, true, true},
       {"read-off",
-       "as in textbooks (IEEE 952 annex C): N at 1 s on the line of slope -1/2, B at the lowest "
-       "point over 0.664, K at 3 s on the line of slope +1/2",
+       "as in textbooks (IEEE 952 annex C): N at 1 s on the line of slope -1/2, B at the lowest point over 0.664, K at "
+       "3 s on the line of slope +1/2",
        read_off, false},
       {"log-log", "unweighted least squares on the logarithms of the variances", log_log, false},
       {"relative-nnls", "least squares of model over measured variance, coefficients not negative",
        relative_least_squares, false},
       {"imu_utils",
-       "recipe of imu_utils: 100 logarithmic strides, unweighted log10 least squares of five "
-       "squared coefficients",
+       "recipe of imu_utils: 100 logarithmic strides, unweighted log10 least squares of five squared coefficients",
        imu_utils, false},
       {"allan_variance_ros", "recipe of allan_variance_ros: averages side by side, means of logarithms",
        allan_variance_ros, false},

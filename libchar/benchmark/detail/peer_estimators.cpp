@@ -1,6 +1,5 @@
-// Asymptotes that these recipes assume of the Allan variance at tau, per squared coefficient (IEEE
-// Std 952-1997, annex C): 3/tau^2 quantization, 1/tau white, 2 ln 2/pi flicker, tau/3 walk, tau^2/2
-// ramp.
+// Asymptotes that these recipes assume of the Allan variance at tau, per squared coefficient (IEEE Std 952-1997, annex
+// C): 3/tau^2 quantization, 1/tau white, 2 ln 2/pi flicker, tau/3 walk, tau^2/2 ramp.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -17,7 +17,7 @@
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {
@@ -53,8 +53,7 @@ Document unquoted(const std::string& value) {
   return node;
 }
 
-// Builds the tree from the parser's events, so that an alias is seen as an alias and never
-// followed.
+// Builds the tree from the parser's events, so that an alias is seen as an alias and never followed.
 class Builder : public YAML::EventHandler {
  public:
   explicit Builder(const std::string& file) : file_(file) {}

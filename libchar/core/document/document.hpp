@@ -2,7 +2,6 @@
 // A YAML or JSON document as a tree that remembers the place of every key and value, so that a
 // refusal can name line and column.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,10 +37,9 @@ struct DocumentEntry {
 inline constexpr std::size_t kMaxDocumentBytes = std::size_t{16} << 20U;
 inline constexpr std::size_t kMaxDocumentDepth = 64;
 
-/// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys,
-/// duplicate keys or second document; depth <= 64, size <= 16 MiB, keys <= 1024 characters. A plain
-/// scalar that reads as a decimal number becomes one ("010", "0x10", ".inf" and "no" are texts).
-/// Throws Error(input) with FILE:LINE:COL.
+/// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys, duplicate keys or second
+/// document; depth <= 64, size <= 16 MiB, keys <= 1024 characters. A plain scalar that reads as a decimal number
+/// becomes one ("010", "0x10", ".inf" and "no" are texts). Throws Error(input) with FILE:LINE:COL.
 Document parse_yaml_document(std::string_view text, const std::string& file);
 
 /// JSON when `file` ends in .json, else YAML.

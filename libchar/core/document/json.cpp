@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
 namespace {

@@ -12,7 +12,7 @@
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/json.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -1,9 +1,7 @@
 #pragma once
-// Reading a document against what its format allows: every refusal names file, line, key and the
-// nearest valid key.
+// Reading a document against what its format allows: every refusal names file, line, key and the nearest valid key.
 
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -53,8 +51,7 @@ class MapReader {
   std::string word(std::string_view key, const std::vector<std::string>& words) const;
   /// A list of exactly two numbers, the first below the second.
   std::pair<double, double> interval(std::string_view key) const;
-  /// The same, `value` following `key` or in its list; in a report an end may be null:
-  /// infinite.
+  /// The same, `value` following `key` or in its list; in a report an end may be null: infinite.
   Interval interval_in(std::string_view key, const Document& value) const;
   /// A list of numbers; one bare number is a list of one.
   std::vector<double> numbers(std::string_view key) const;

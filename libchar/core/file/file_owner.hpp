@@ -63,8 +63,7 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();
-  /// False where the file system has no locks: the folder is not locked, and nobody can know whose its files
-  /// are.
+  /// False where the file system has no locks: the folder is not locked, and nobody can know whose its files are.
   bool held() const { return held_; }
 
  private:

@@ -10,7 +10,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/file/unfinished_files.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 
@@ -263,9 +263,7 @@ void refuse_interrupted(const std::filesystem::path& folder_or_file) {
   if (folder.empty()) folder = ".";
   if (whole ? !has_journal(folder) : !journal_names(folder, folder_or_file.filename())) return;
   throw output_error("E0516", folder.string())
-      .says(
-          "a run was interrupted while it gave its results their names: some files here may be "
-          "older than others")
+      .says("a run was interrupted while it gave its results their names: some files here may be older than others")
       .hint("run it again into this folder");
 }
 

@@ -16,8 +16,7 @@ struct OutputFile {
   std::string path, text;
 };
 
-/// Makes the folder and finds out whether these files can be written, before hours of work. Throws
-/// as `write_outputs`.
+/// Makes the folder and finds out whether these files can be written, before hours of work. Throws as `write_outputs`.
 void check_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
                    const std::vector<std::string>& inputs, bool force);
 

@@ -6,9 +6,8 @@
 
 namespace libchar {
 
-/// SHA-256 of a stream of bytes: the same digest as sha256sum prints. By OpenSSL
-/// (sha256_openssl.cpp), or where there is none, as in
-/// a web page, in C++ (sha256_portable.cpp).
+/// SHA-256 of a stream of bytes: the same digest as sha256sum prints. By OpenSSL (sha256_openssl.cpp), or without it,
+/// in a web page, in C++ (sha256_portable.cpp).
 class Sha256 {
  public:
   Sha256();

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace libchar {
 
@@ -30,8 +29,7 @@ class WholeFile {
   void rewrite(std::size_t offset, std::string_view bytes);
   /// All bytes get to the disk.
   void flush_to_disk();
-  /// Everything of commit() that can fail for want of space or rights, short of taking the name. The folder is
-  /// locked.
+  /// Everything of commit() that can fail for want of space or rights, short of taking the name. The folder is locked.
   void prepare();
   /// Throws Error(output) where the name has been taken since: by a folder, or, unless files are overwritten,
   /// by anything.

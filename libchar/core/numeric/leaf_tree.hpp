@@ -1,9 +1,8 @@
 #pragma once
-// A record of any length as leaves of 2^20 samples, joined in a binary tree by their numbers, like
-// a binary counter: node (height, place) is of the leaves place * 2^height up to the next place,
-// and two become one only when they are the halves of such a node. So the operands and the order of
-// every sum are those of the record, whoever computes it: one thread or many, one machine or a
-// hundred.
+// A record of any length as leaves of 2^20 samples, joined in a binary tree by their numbers, like a binary counter:
+// node (height, place) is of the leaves place * 2^height up to the next place, and two become one only when they are
+// the halves of such a node. So the operands and the order of every sum are those of the record, whoever computes it:
+// one thread or many, one machine or a hundred.
 
 #include <cstdint>
 #include <utility>
@@ -22,9 +21,8 @@ struct LeafNode {
   std::uint64_t end_leaf() const { return (place + 1) << height; }
 };
 
-/// Of one channel. `Stage` has a type `Sums`, `join(Sums&, Sums later)`, and `settle(Sums&, height,
-/// first_leaf)`, which is called once for every node and may make less of what grows with the
-/// record.
+/// Of one channel. `Stage` has a type `Sums`, `join(Sums&, Sums later)`, and `settle(Sums&, height, first_leaf)`, which
+/// is called once for every node and may make less of what grows with the record.
 template <class Stage>
 class LeafTree {
  public:
@@ -47,8 +45,7 @@ class LeafTree {
   /// Those that have no sibling here, left to right.
   std::vector<LeafNode<Sums>>& nodes() { return nodes_; }
   bool empty() const { return nodes_.empty(); }
-  /// All of a record: the nodes that are left, of falling height, joined left to right. The tree is
-  /// empty then.
+  /// All of a record: the nodes that are left, of falling height, joined left to right. The tree is empty then.
   Sums whole() {
     std::vector<LeafNode<Sums>> rest = std::exchange(nodes_, {});
     for (LeafNode<Sums>& node : rest) {

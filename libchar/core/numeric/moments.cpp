@@ -151,8 +151,7 @@ void Moments::push(std::span<const double> samples) {
       if (started_) origin_ = std::isfinite(*first) ? *first : 0;
     }
   while (x != end) {
-    // A whole block without NaN is taken where it lies; the blocks are the same as when filled one
-    // by one.
+    // A whole block without NaN is taken where it lies; the blocks are the same as when filled one by one.
     if (pending_count_ == 0 && end - x >= kBlock && extremes(x, kBlock, minimum_, maximum_)) {
       done_ = merged(done_, of_block(x, kBlock));
       x += kBlock;

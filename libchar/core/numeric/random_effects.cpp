@@ -11,7 +11,6 @@
 #include "libchar/core/numeric/random_effects.hpp"
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
 

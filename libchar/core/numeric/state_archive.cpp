@@ -48,9 +48,8 @@ StateWriter::StateWriter(std::string_view kind, std::uint32_t version)
 
 void StateWriter::number(std::uint64_t value) { bytes_ += little(value, 8); }
 
-// mantissa * 2^exponent with a mantissa of 64 bits: exact for every format of at most as many. Of
-// 113, as a web page has them, these are
-// the first.
+// mantissa * 2^exponent with a mantissa of 64 bits: exact for every format of at most as many. Of 113, as a web page
+// has them, these are the first.
 void StateWriter::wide(long double value) {
   unsigned char kind = std::signbit(value) ? negative : positive;
   int exponent = 0;

@@ -1,7 +1,6 @@
 #pragma once
-// What runs side by side. This room is the only place that knows how: by oneTBB (threads.cpp), or
-// one after the other on a platform
-// without threads (serial.cpp: LIBCHAR_SERIAL, a web page). Results never depend on it.
+// What runs side by side. This room is the only place that knows how: by oneTBB (threads.cpp), or one after the other
+// on a platform without threads (serial.cpp: LIBCHAR_SERIAL, a web page). Results never depend on it.
 //
 //   parallel::for_each(0, n, [&](std::size_t i) { … });       each index once, in any order
 //   parallel::in_order(most, read, {work}, take);              a stream: read and take in order, work side by side
@@ -54,9 +53,8 @@ void both(Call<void()> one, Call<void()> other);
 /// While it waits inside, this thread begins nothing from outside.
 void isolated(Call<void()> work);
 
-/// Items from `read` until it gives none, at most `most` of them under way. `read`, `first` and
-/// `last` see them one at a time and in
-/// order, each on any thread; `work` sees several at once.
+/// Items from `read` until it gives none, at most `most` of them under way. `read`, `first` and `last` see them one at
+/// a time and in order, each on any thread; `work` sees several at once.
 struct Stages {
   Call<void*()> read;
   Call<void(void*)> first, work, last;

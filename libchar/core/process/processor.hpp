@@ -4,7 +4,6 @@
 // which tests the code that every other processor runs.
 
 #include <atomic>
-#include <string_view>
 
 #if defined(__x86_64__) && !defined(LIBCHAR_PORTABLE)
 #define LIBCHAR_X86_64
@@ -25,8 +24,7 @@ Instructions instructions_there();
 inline std::atomic<Instructions> g_instructions{instructions_there()};
 inline Instructions instructions() { return g_instructions.load(std::memory_order_relaxed); }
 
-/// While one lives, kernels use no more than these: for tests and benches. Results never depend on
-/// it.
+/// While one lives, kernels use no more than these: for tests and benches. Results never depend on it.
 class UseInstructions {
  public:
   explicit UseInstructions(Instructions most) : before_(g_instructions.exchange(most)) {}

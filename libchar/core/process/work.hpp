@@ -28,8 +28,8 @@ enum class WorkKind : std::size_t {
 template <>
 inline constexpr auto enum_table<WorkKind> =
     enum_words<WorkKind,
-               "passes rows segments cosine_transforms floor_medians allan_terms descents "
-               "simulated_samples learnt_instants training_steps fused_instants blind_instants">;
+               "passes rows segments cosine_transforms floor_medians allan_terms descents simulated_samples "
+               "learnt_instants training_steps fused_instants blind_instants">;
 
 using WorkDone = std::array<std::uint64_t, enum_table<WorkKind>.size()>;
 
@@ -49,8 +49,7 @@ class WorkMeter {
   WorkDone before_;
 };
 
-// How much heap a piece of work holds. The library cannot know; a program that counts
-// (tools/heap_meter.cpp) can say.
+// How much heap a piece of work holds. The library cannot know; a program that counts (tools/heap_meter.cpp) can say.
 
 struct HeapUse {
   std::int64_t held = 0;  ///< bytes allocated minus bytes freed since `begin`, on this thread

@@ -1,7 +1,6 @@
 #pragma once
-// std::from_chars and std::to_chars of double, on every platform: with a C++ library that lacks
-// them (a web page's) by fast_float and
-// fmt, to the same values and characters.
+// std::from_chars and std::to_chars of double, on every platform: with a C++ library that lacks them (a web page's) by
+// fast_float and fmt, to the same values and characters.
 
 #include <charconv>
 

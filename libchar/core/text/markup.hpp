@@ -22,8 +22,7 @@ bool begins_like_a_formula(std::string_view text);
 /// columns of a log keep their names, which must read back as they were.
 std::string csv_cell(std::string_view text);
 
-/// A number that reads back; nothing for what is not known or not finite (a spreadsheet makes text
-/// of "nan").
+/// A number that reads back; nothing for what is not known or not finite (a spreadsheet makes text of "nan").
 std::string csv_cell(double value);
 std::string csv_cell(const std::optional<double>& value);
 template <std::integral T>

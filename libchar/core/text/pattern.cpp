@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

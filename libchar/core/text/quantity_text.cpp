@@ -22,8 +22,7 @@ using Units = std::initializer_list<std::pair<std::string_view, double>>;
 
 bool may_follow(char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; }
 
-// A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor
-// "nan", "inf", "0x10".
+// A decimal number as one writes it: "+5" and "5." are fine, "010" is not (eight or ten?), nor "nan", "inf", "0x10".
 std::pair<double, std::string_view> leading_number(std::string_view text, const std::string& expected) {
   std::string_view digits = text;
   if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -106,8 +105,8 @@ double parse_duration_s(std::string_view text, bool lasts) {
 
 double parse_rate_hz(std::string_view text) {
   const std::string expected =
-      "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a "
-      "bare number is in hertz)";
+      "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a bare number is in "
+      "hertz)";
   const auto rate = [&] {
     const std::size_t over = text.find('/');
     if (over != std::string_view::npos && over > 0) {
@@ -132,11 +131,9 @@ std::string range_form(RangeOf what) {
     case RangeOf::duration_s:
       return "FROM..TO, from a time to a later one (10s..20min; 50.. and ..50 are open at an end)";
     case RangeOf::rate_hz:
-      return "LOW..HIGH, from a frequency to a higher one (0.1..20, 50Hz..2kHz; 0.1.. is open "
-             "above)";
+      return "LOW..HIGH, from a frequency to a higher one (0.1..20, 50Hz..2kHz; 0.1.. is open above)";
     case RangeOf::number:
-      return "LOW..HIGH, from a number to a larger one (0.01..100; 1.. and ..100 are open at an "
-             "end)";
+      return "LOW..HIGH, from a number to a larger one (0.01..100; 1.. and ..100 are open at an end)";
   }
   return "";
 }

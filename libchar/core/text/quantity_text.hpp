@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <string_view>
 
 #include "libchar/core/numeric/interval.hpp"
@@ -26,8 +25,7 @@ double parse_duration_s(std::string_view text, bool lasts = false);
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
 
-/// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers
-/// without.
+/// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers without.
 enum class RangeOf { duration_s, rate_hz, number };
 
 /// FROM..TO, FROM < TO: the one grammar of ranges. An end that is left out is open: 0 (of numbers

@@ -18,8 +18,7 @@ std::string did_you_mean(const std::optional<std::string>& near, std::string oth
 /// "a, b, c and 9 more": the first twelve names.
 std::string first_names(const std::vector<std::string>& names);
 
-/// Number of single-character edits (insert, delete, replace, swap of neighbours) between two
-/// words.
+/// Number of single-character edits (insert, delete, replace, swap of neighbours) between two words.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 }  // namespace libchar

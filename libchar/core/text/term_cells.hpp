@@ -1,7 +1,6 @@
 #pragma once
-// What is shown of a noise coefficient, made in one place: value and interval in the channel's unit
-// and in the field's, each with what the unit leaves open, and status. Tables, pages, files and
-// sentences only place it.
+// What is shown of a noise coefficient, made in one place: value and interval in the channel's unit and in the field's,
+// each with what the unit leaves open, and status. Tables, pages, files and sentences only place it.
 
 #include <string>
 #include <vector>

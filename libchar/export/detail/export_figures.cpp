@@ -1,5 +1,4 @@
-// Numbers for consumers. The Gauss-Markov bias of correlation time Tc and driving density q has the
-// Allan variance
+// Numbers for consumers. The Gauss-Markov bias of correlation time Tc and driving density q has the Allan variance
 //   q^2 Tc^2 / tau (1 - Tc/(2 tau) (3 - 4 exp(-tau/Tc) + exp(-2 tau/Tc))),
 // whose maximum lies at tau = 1.8926 Tc with a deviation of 0.43654 q sqrt(Tc) = 0.61736 s, s = q
 // sqrt(Tc/2) its steady state. Put on the flicker floor 0.66428 B at the middle of its flat part:
@@ -69,9 +68,9 @@ std::string absence(const AxisNumber& n) {
 
 ExportFigure one_axis(const AxisNumber& n, Absent absent) {
   if (n.driven)
-    return {n.value, false,
-            "driving density sigma sqrt(2/tau) of the Gauss-Markov process: as a walk it holds for "
-            "times well below tau"};
+    return {
+        n.value, false,
+        "driving density sigma sqrt(2/tau) of the Gauss-Markov process: as a walk it holds for times well below tau"};
   if (n.value) {
     if (n.status == Status::misfit) return {n.value, false, "misfit: the noise terms do not describe the recording"};
     const bool doubtful = n.status == Status::undetermined;
@@ -234,8 +233,8 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
     out.steady_sd = kSteadyOverB * b;
     out.driving = out.steady_sd * std::sqrt(2 / out.correlation_s);
     out.origin = fmt::format(
-        "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, "
-        "steady state 1.0760 B{}",
+        "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, steady state 1.0760 "
+        "B{}",
         shortest(rounded(b, 4)), shortest(rounded(out.correlation_s * kPeakTau, 4)),
         k > 0 ? "; random_walk is left out" : "");
     return out;
@@ -314,8 +313,7 @@ ImuFigures imu_figures(const SensorGroup& group, const ExportOptions& options, c
   out.accelerometer_rate_hz = rate_of(*group.accelerometer, notes);
   if (std::abs(out.gyroscope_rate_hz - out.accelerometer_rate_hz) > 1e-3 * out.gyroscope_rate_hz)
     notes.push_back(
-        fmt::format("gyroscope ({} Hz) and accelerometer ({} Hz) have different rates; the file "
-                    "names the first",
+        fmt::format("gyroscope ({} Hz) and accelerometer ({} Hz) have different rates; the file names the first",
                     shortest(rounded(out.gyroscope_rate_hz, 6)), shortest(rounded(out.accelerometer_rate_hz, 6))));
   return out;
 }

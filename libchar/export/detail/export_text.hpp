@@ -21,8 +21,7 @@ std::string export_list(const std::array<double, 3>& values);
 /// The value, or 0.
 double value_or_zero(const ExportFigure& figure);
 
-/// Text for one line of a comment of any language: ASCII, no "--" (XML), no backslash at the end
-/// (C++).
+/// Text for one line of a comment of any language: ASCII, no "--" (XML), no backslash at the end (C++).
 std::string comment_text(std::string_view text);
 
 /// "sensorchar VERSION", "source: FILE sha256:…", channels, axes, inflation, `formula`: one line

@@ -1,8 +1,7 @@
-// AirSim settings.json, sensor type 2 (IMU). White noise: AngularRandomWalk in deg/sqrt(h),
-// VelocityRandomWalk in mg/sqrt(Hz) (its documentation says mg). The bias is a pure random walk of
-// density stability/sqrt(tau): GyroBiasStability (deg/h) and AccelBiasStability (ug) are not the
-// bias instability B. A key that is left out keeps AirSim's MPU-6000, so an absent walk is written
-// as 0.
+// AirSim settings.json, sensor type 2 (IMU). White noise: AngularRandomWalk in deg/sqrt(h), VelocityRandomWalk in
+// mg/sqrt(Hz) (its documentation says mg). The bias is a pure random walk of density stability/sqrt(tau):
+// GyroBiasStability (deg/h) and AccelBiasStability (ug) are not the bias instability B. A key that is left out keeps
+// AirSim's MPU-6000, so an absent walk is written as 0.
 
 #include <nlohmann/json.hpp>
 

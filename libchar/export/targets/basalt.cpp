@@ -1,7 +1,6 @@
-// The IMU part of a Basalt calibration. The keys say "std" and mean continuous densities: the code
-// multiplies the noise by sqrt(imu_update_rate) and divides the bias by it. Read by cereal, which
-// finds named values by name but takes the first value of the document for value0: nothing may
-// stand in front of it.
+// The IMU part of a Basalt calibration. The keys say "std" and mean continuous densities: the code multiplies the noise
+// by sqrt(imu_update_rate) and divides the bias by it. Read by cereal, which finds named values by name but takes the
+// first value of the document for value0: nothing may stand in front of it.
 
 #include <nlohmann/json.hpp>
 
@@ -60,8 +59,8 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
       value[std::string(row.key)] = writer.numbers(row, *triad);
     }
   Json head = head_json(group, options,
-                        "noise_std = white_noise, bias_std = random_walk (roots of two-sided, "
-                        "continuous densities, SI units; the code makes them discrete itself)");
+                        "noise_std = white_noise, bias_std = random_walk (roots of two-sided, continuous densities, SI "
+                        "units; the code makes them discrete itself)");
   if (!comments.empty()) head["comments"] = comments;
   Json document;
   document["value0"] = value;

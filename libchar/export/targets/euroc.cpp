@@ -10,10 +10,10 @@ namespace {
 Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "density = white_noise, walk = random_walk (roots of two-sided, "
-                                  "continuous densities)"),
-                       "# ");
+  out.text =
+      commented(head_lines(group, options,
+                           "density = white_noise, walk = random_walk (roots of two-sided, continuous densities)"),
+                "# ");
   out.text +=
       "sensor_type: imu\n"
       "comment: noise by sensorchar\n"

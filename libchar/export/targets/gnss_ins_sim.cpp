@@ -53,12 +53,11 @@ Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options
   Export out;
   GnssInsSimWriter writer{options, out};
   out.text = commented(head_lines(group, options,
-                                  "arw = white_noise 60 180/pi, vrw = white_noise 60, b_stability "
-                                  "= steady standard deviation of a Gauss-Markov bias"),
+                                  "arw = white_noise 60 180/pi, vrw = white_noise 60, b_stability = steady standard "
+                                  "deviation of a Gauss-Markov bias"),
                        "# ");
   out.text +=
-      "# For the constructor only: imu_model.IMU(accuracy=imu_err, axis=6). set_gyro_error() does "
-      "not convert units.\n"
+      "# For the constructor only: imu_model.IMU(accuracy=imu_err, axis=6). set_gyro_error() does not convert units.\n"
       "# Releases before the correction of issue 19 scale b_stability by 1/fs: take a later one.\n"
       "import numpy as np\n\nimu_err = {\n";
   require_axes(*group.gyroscope, only_axis(options));
@@ -80,8 +79,7 @@ Export write_gnss_ins_sim(const SensorGroup& group, const ExportOptions& options
 ExportTarget gnss_ins_sim_target() {
   return {"gnss-ins-sim",
           "gnss-ins-sim",
-          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, "
-          "m/s^2",
+          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, m/s^2",
           "imu_err.py",
           ExportNeeds::gyroscope_and_accelerometer,
           "NBK",

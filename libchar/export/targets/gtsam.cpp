@@ -15,8 +15,8 @@ Export write_gtsam(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "GTSAM", out.notes);
   out.text = commented(head_lines(group, options,
-                                  "covariance = white_noise^2, random_walk^2 (two-sided, continuous "
-                                  "densities; GTSAM makes them discrete itself)"),
+                                  "covariance = white_noise^2, random_walk^2 (two-sided, continuous densities; GTSAM "
+                                  "makes them discrete itself)"),
                        "// ");
   if (options.gravity)
     out.text += fmt::format("auto p = gtsam::PreintegrationCombinedParams::MakeSharedU({});  // m/s^2, z up\n",
@@ -32,8 +32,7 @@ Export write_gtsam(const SensorGroup& group, const ExportOptions& options) {
   for (const Term term : {Term::white, Term::walk})
     for (const char* sensor : {"gyroscope", "accelerometer"}) line(row_of("gtsam", sensor, term));
   out.text +=
-      "// integrationCovariance and biasAccOmegaInt describe the integration and the first bias, "
-      "not the\n"
+      "// integrationCovariance and biasAccOmegaInt describe the integration and the first bias, not the\n"
       "// sensor's noise: they stay yours.\n";
   return out;
 }

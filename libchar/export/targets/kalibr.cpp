@@ -1,6 +1,5 @@
-// Kalibr imu.yaml. Read with PyYAML: a %YAML line is a parse error, and a number without a decimal
-// point before its exponent is text. Kalibr refuses a value that is not > 0, and divides the
-// densities by sqrt(1/update_rate) itself.
+// Kalibr imu.yaml. Read with PyYAML: a %YAML line is a parse error, and a number without a decimal point before its
+// exponent is text. Kalibr refuses a value that is not > 0, and divides the densities by sqrt(1/update_rate) itself.
 
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
@@ -13,8 +12,8 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "Kalibr", out.notes);
   out.text = commented(head_lines(group, options,
-                                  "density = white_noise, walk = random_walk (roots of two-sided, "
-                                  "continuous densities; Kalibr makes them discrete itself)"),
+                                  "density = white_noise, walk = random_walk (roots of two-sided, continuous "
+                                  "densities; Kalibr makes them discrete itself)"),
                        "# ");
   out.text += "rostopic: " + topic_scalar(group, options) + "\n";
   out.text += yaml_line("update_rate", f.gyroscope_rate_hz, "Hz", "");
@@ -27,8 +26,7 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget kalibr_target() {
   return {"kalibr",
           "Kalibr",
-          "continuous densities: N in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), "
-          "m/s^3/sqrt(Hz); all > 0",
+          "continuous densities: N in rad/s/sqrt(Hz), m/s^2/sqrt(Hz); K in rad/s^2/sqrt(Hz), m/s^3/sqrt(Hz); all > 0",
           "imu.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
           "NK",

@@ -1,8 +1,7 @@
-// The imunoise block of KF-GINS (i2Nav-WHU): arw deg/sqrt(h), vrw m/s/sqrt(h); biases are
-// first-order Gauss-Markov processes of steady standard deviation gbstd (deg/h), abstd (mGal) and
-// one correlation time for all of them, corrtime (h): its filter has F = -1/T and the driving
-// density 2 std^2/T (src/kf_gins.cpp, src/kf-gins/gi_engine.cpp). With one T for all, a process of
-// another keeps its driving density: std = q sqrt(T/2).
+// The imunoise block of KF-GINS (i2Nav-WHU): arw deg/sqrt(h), vrw m/s/sqrt(h); biases are first-order Gauss-Markov
+// processes of steady standard deviation gbstd (deg/h), abstd (mGal) and one correlation time for all of them, corrtime
+// (h): its filter has F = -1/T and the driving density 2 std^2/T (src/kf_gins.cpp, src/kf-gins/gi_engine.cpp). With one
+// T for all, a process of another keeps its driving density: std = q sqrt(T/2).
 
 #include <fmt/format.h>
 
@@ -86,8 +85,8 @@ Export write_kf_gins(const SensorGroup& group, const ExportOptions& options) {
   KfGinsWriter writer(options, common_s, out);
   out.text =
       commented(head_lines(group, options,
-                           "arw, vrw = 60 white_noise; gbstd, abstd: steady standard deviation of a Gauss-Markov "
-                           "bias; corrtime: its correlation time, one for all (that of the gyroscope)"),
+                           "arw, vrw = 60 white_noise; gbstd, abstd: steady standard deviation of a Gauss-Markov bias; "
+                           "corrtime: its correlation time, one for all (that of the gyroscope)"),
                 "# ");
   out.text += "imunoise:\n";
   writer.white(*group.gyroscope);
@@ -98,8 +97,8 @@ Export write_kf_gins(const SensorGroup& group, const ExportOptions& options) {
   writer.scale("asstd", *group.accelerometer);
   out.text += fmt::format("  corrtime: {}  # h\n", export_number(common_s / 3600));
   out.notes.emplace_back(
-      "without initbgstd and initbastd KF-GINS starts with gbstd and abstd, which do not hold the "
-      "turn-on bias: state those");
+      "without initbgstd and initbastd KF-GINS starts with gbstd and abstd, which do not hold the turn-on bias: state "
+      "those");
   return out;
 }
 
@@ -108,9 +107,8 @@ Export write_kf_gins(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget kf_gins_target() {
   return {"kf-gins",
           "KF-GINS",
-          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in "
-          "deg/h, mGal, "
-          "one correlation time in h",
+          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its steady standard deviation in deg/h, mGal, one "
+          "correlation time in h",
           "imunoise.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
           "NBK",

@@ -2,7 +2,6 @@
 // the bias between two scans the standard deviation w sqrt(t), t the time between them: all four are continuous
 // densities, N and K (TixiaoShan/LIO-SAM 041f4e6, src/imuPreintegration.cpp).
 
-#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 #include "libchar/export/detail/export_text.hpp"
 #include "libchar/export/detail/target_list.hpp"
@@ -13,10 +12,10 @@ namespace {
 Export write_lio_sam(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "LIO-SAM", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "imuAccNoise, imuGyrNoise = white_noise; imuAccBiasN, "
-                                  "imuGyrBiasN = random_walk (densities)"),
-                       "# ");
+  out.text = commented(
+      head_lines(group, options,
+                 "imuAccNoise, imuGyrNoise = white_noise; imuAccBiasN, imuGyrBiasN = random_walk (densities)"),
+      "# ");
   // Parameters of ROS 2 stand below a node's name, those of ROS 1 below the program's.
   out.text += options.older ? "lio_sam:\n" : "/**:\n  ros__parameters:\n";
   const std::string indent = options.older ? "  " : "    ";

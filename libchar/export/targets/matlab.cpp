@@ -44,14 +44,12 @@ struct MatlabWriter {
     std::string call = fmt::format("{} = {}('NoiseType', 'double-sided'", name, function);
     for (const ConsumerRow* row : rows_of("matlab", triad->kind)) call += argument(*triad, *row, comments);
     const ExportFigure white = scalar_figure(*triad, Term::white, Absent::zero, options);
-    out.text += fmt::format(
-        "% {}: NoiseDensity in ({})/sqrt(Hz), RandomWalk in ({})/s/sqrt(Hz), BiasInstability in "
-        "{}\n",
-        function, unit, unit, unit);
+    out.text +=
+        fmt::format("% {}: NoiseDensity in ({})/sqrt(Hz), RandomWalk in ({})/s/sqrt(Hz), BiasInstability in {}\n",
+                    function, unit, unit, unit);
     out.text += comments;
     out.text += fmt::format(
-        "% Releases without NoiseType apply sqrt(fs/2): there NoiseDensity is sqrt(2) times as "
-        "large, {}.\n",
+        "% Releases without NoiseType apply sqrt(fs/2): there NoiseDensity is sqrt(2) times as large, {}.\n",
         export_number(
             row_value(row_of("matlab", triad->kind, Term::white), 1.4142135623730951 * value_or_zero(white))));
     out.text += call + ");\n";
@@ -62,8 +60,8 @@ Export write_matlab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   MatlabWriter writer{options, out};
   out.text = commented(head_lines(group, options,
-                                  "NoiseDensity = white_noise, RandomWalk = random_walk, "
-                                  "BiasInstability = bias_instability (two-sided densities)"),
+                                  "NoiseDensity = white_noise, RandomWalk = random_walk, BiasInstability = "
+                                  "bias_instability (two-sided densities)"),
                        "% ");
   writer.block(group.gyroscope, "gyro", "gyroparams", "rad/s");
   writer.block(group.accelerometer, "accel", "accelparams", "m/s^2");

@@ -30,8 +30,8 @@ Export write_mujoco(const SensorGroup& group, const ExportOptions& options) {
   out.text = "<!--\n";
   out.text += commented(head_lines(group, options, "noise = white_noise sqrt(f), of a sample"), "  ");
   out.text +=
-      "  MuJoCo 3.1.4 and later do not add this noise: add it where you read the sensor. A bias "
-      "that moves has no place here.\n-->\n<mujoco>\n  <sensor>\n" +
+      "  MuJoCo 3.1.4 and later do not add this noise: add it where you read the sensor. A bias that moves has no "
+      "place here.\n-->\n<mujoco>\n  <sensor>\n" +
       sensors + "  </sensor>\n</mujoco>\n";
   out.notes.emplace_back("MuJoCo 3.1.4 and later do not add the noise: add it where you read the sensor");
   return out;

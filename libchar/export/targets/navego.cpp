@@ -1,9 +1,8 @@
-// The error profile of NaveGo in makers' units, for imu_si_errors(): arw deg/sqrt(h), vrw
-// m/s/sqrt(h), a first-order Gauss-Markov bias by its standard deviation gb_dyn (deg/s), ab_dyn
-// (mg) and correlation time gb_corr, ab_corr (s): simulation/noise_b_dyn.m takes the exact step
-// sigma sqrt(1 - exp(-2 dt/T)). An infinite time would turn it into white noise. arrw, vrrw stay 0:
-// noise_rrw.m steps by arrw dt, not K sqrt(dt), so that a density there would hold at one rate
-// only; a walk goes into gb_dyn with a long correlation time.
+// The error profile of NaveGo in makers' units, for imu_si_errors(): arw deg/sqrt(h), vrw m/s/sqrt(h), a first-order
+// Gauss-Markov bias by its standard deviation gb_dyn (deg/s), ab_dyn (mg) and correlation time gb_corr, ab_corr (s):
+// simulation/noise_b_dyn.m takes the exact step sigma sqrt(1 - exp(-2 dt/T)). An infinite time would turn it into white
+// noise. arrw, vrrw stay 0: noise_rrw.m steps by arrw dt, not K sqrt(dt), so that a density there would hold at one
+// rate only; a walk goes into gb_dyn with a long correlation time.
 
 #include <fmt/format.h>
 
@@ -55,14 +54,13 @@ Export write_navego(const SensorGroup& group, const ExportOptions& options) {
   const double rate = rate_of(*group.gyroscope, out.notes);
   NavegoWriter writer{options, out};
   out.text = commented(head_lines(group, options,
-                                  "arw, vrw = 60 white_noise; gb_dyn, ab_dyn, gb_corr, ab_corr: a "
-                                  "Gauss-Markov bias; arrw, vrrw 0: the walk is in it"),
+                                  "arw, vrw = 60 white_noise; gb_dyn, ab_dyn, gb_corr, ab_corr: a Gauss-Markov bias; "
+                                  "arrw, vrrw 0: the walk is in it"),
                        "% ");
   out.text +=
-      "% For imu_si_errors(imu, 1/imu.freq). The filter takes the bias's driving density as gb_dyn "
-      "sqrt(gb_corr); of these\n"
-      "% processes it is gb_dyn sqrt(2/gb_corr): set imu_si.gb_psd, imu_si.ab_psd to that after "
-      "the conversion.\n";
+      "% For imu_si_errors(imu, 1/imu.freq). The filter takes the bias's driving density as gb_dyn sqrt(gb_corr); of "
+      "these\n"
+      "% processes it is gb_dyn sqrt(2/gb_corr): set imu_si.gb_psd, imu_si.ab_psd to that after the conversion.\n";
   writer.white(*group.gyroscope);
   writer.white(*group.accelerometer);
   writer.line("arrw", {0, 0, 0}, "see above");
@@ -76,15 +74,15 @@ Export write_navego(const SensorGroup& group, const ExportOptions& options) {
 }  // namespace
 
 ExportTarget navego_target() {
-  return {"navego",
-          "NaveGo",
-          "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its standard deviation in deg/s, mg and "
-          "correlation time in s",
-          "imu_profile.m",
-          ExportNeeds::gyroscope_and_accelerometer,
-          "NBK",
-          {.gauss_markov = true},
-          write_navego};
+  return {
+      "navego",
+      "NaveGo",
+      "deg/sqrt(h), m/s/sqrt(h); a Gauss-Markov bias by its standard deviation in deg/s, mg and correlation time in s",
+      "imu_profile.m",
+      ExportNeeds::gyroscope_and_accelerometer,
+      "NBK",
+      {.gauss_markov = true},
+      write_navego};
 }
 
 }  // namespace libchar

@@ -1,7 +1,6 @@
 // OKVIS and OKVIS2: imu_parameters of its configuration, in OpenCV's dialect of YAML. The covariance grows by dt
-// sigma^2 a step: continuous densities N and K (smartroboticslab/okvis2 0f18f34, okvis_ceres/src/ImuError.cpp).
-// a_max and g_max are where it takes a reading for saturated and trusts it a hundred times less: those of the
-// sensor.
+// sigma^2 a step: continuous densities N and K (smartroboticslab/okvis2 0f18f34, okvis_ceres/src/ImuError.cpp). a_max
+// and g_max are where it takes a reading for saturated and trusts it a hundred times less: those of the sensor.
 
 #include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
@@ -25,10 +24,10 @@ Export write_okvis(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OKVIS", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group, options,
-                                   "sigma_g_c, sigma_a_c = white_noise; sigma_gw_c, sigma_aw_c = "
-                                   "random_walk (continuous densities)"),
-                        "# ");
+  out.text += commented(
+      head_lines(group, options,
+                 "sigma_g_c, sigma_a_c = white_noise; sigma_gw_c, sigma_aw_c = random_walk (continuous densities)"),
+      "# ");
   out.text += "imu_parameters:\n" + row_lines("okvis", f, "    ");
   add_range("a_max", *group.accelerometer, options, out);
   add_range("g_max", *group.gyroscope, options, out);

@@ -25,10 +25,10 @@ Export write_openvins(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "OpenVINS", out.notes);
   out.text = "%YAML:1.0\n";
-  out.text += commented(head_lines(group, options,
-                                   "density = white_noise, walk = random_walk (roots of two-sided, "
-                                   "continuous densities)"),
-                        "# ");
+  out.text +=
+      commented(head_lines(group, options,
+                           "density = white_noise, walk = random_walk (roots of two-sided, continuous densities)"),
+                "# ");
   out.text += "imu0:\n";
   out.text += matrix("T_i_b", 4, true, "");
   out.text += row_lines("kalibr", f, "  ");

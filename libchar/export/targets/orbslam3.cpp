@@ -19,8 +19,8 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   const ImuFigures f = imu_figures(group, options, "ORB-SLAM3", out.notes);
   out.text = "%YAML:1.0\n";
   out.text += commented(head_lines(group, options,
-                                   "Noise = white_noise, Walk = random_walk (roots of two-sided, "
-                                   "continuous densities; the code makes them discrete itself)"),
+                                   "Noise = white_noise, Walk = random_walk (roots of two-sided, continuous densities; "
+                                   "the code makes them discrete itself)"),
                         "# ");
   out.text += "# Put the IMU lines into your settings file, which begins with %YAML:1.0 itself.\n";
   if (!options.older) out.text += "File.version: \"1.0\"  # with it IMU.Frequency has to be a real number\n";
@@ -38,8 +38,7 @@ Export write_orbslam3(const SensorGroup& group, const ExportOptions& options) {
   out.text += fmt::format("IMU.Frequency: {:.0f}  # Hz; files without File.version take whole numbers only\n", whole);
   if (whole != f.gyroscope_rate_hz)
     out.notes.push_back(
-        fmt::format("IMU.Frequency: {} Hz rounded to {:.0f}, for files without File.version take "
-                    "whole numbers only",
+        fmt::format("IMU.Frequency: {} Hz rounded to {:.0f}, for files without File.version take whole numbers only",
                     f.gyroscope_rate_hz, whole));
   return out;
 }

@@ -1,8 +1,7 @@
-// The dictionary of Pegasus' IMU(config) for Isaac Sim: white noise by its continuous density (the
-// code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step of driving density random_walk
-// (extensions/…/logic/sensors/imu.py of PegasusSimulator). At its commit 2c99164 the gyroscope's
-// step takes the accelerometer's correlation time, the accelerometer's draws uniform numbers, and
-// neither bias is added to what comes out.
+// The dictionary of Pegasus' IMU(config) for Isaac Sim: white noise by its continuous density (the code divides by
+// sqrt(dt)), and an exact Ornstein-Uhlenbeck step of driving density random_walk (extensions/…/logic/sensors/imu.py of
+// PegasusSimulator). At its commit 2c99164 the gyroscope's step takes the accelerometer's correlation time, the
+// accelerometer's draws uniform numbers, and neither bias is added to what comes out.
 
 #include <fmt/format.h>
 
@@ -42,14 +41,12 @@ Export write_pegasus(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const double rate = std::max(rate_of(*group.gyroscope, out.notes), rate_of(*group.accelerometer, out.notes));
   out.text = commented(head_lines(group, options,
-                                  "noise_density = white_noise (root of the two-sided density); "
-                                  "random_walk = driving density q of a Gauss-Markov bias"),
+                                  "noise_density = white_noise (root of the two-sided density); random_walk = driving "
+                                  "density q of a Gauss-Markov bias"),
                        "# ");
   out.text +=
-      "# For IMU(config=imu_config). Pegasus at commit 2c99164 steps the gyroscope's bias with the "
-      "accelerometer's\n"
-      "# correlation time and adds neither bias to its output: look at logic/sensors/imu.py of "
-      "your release.\n";
+      "# For IMU(config=imu_config). Pegasus at commit 2c99164 steps the gyroscope's bias with the accelerometer's\n"
+      "# correlation time and adds neither bias to its output: look at logic/sensors/imu.py of your release.\n";
   out.text += "imu_config = {\n";
   out.text += pegasus_sensor(*group.gyroscope, "rad/s", options, out);
   out.text += pegasus_sensor(*group.accelerometer, "m/s^2", options, out);
@@ -62,8 +59,7 @@ Export write_pegasus(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget pegasus_target() {
   return {"pegasus",
           "Pegasus for Isaac Sim",
-          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation "
-          "time",
+          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation time",
           "imu_config.py",
           ExportNeeds::gyroscope_and_accelerometer,
           "NBK",

@@ -1,6 +1,5 @@
-// PX4 EKF2 and ArduPilot EK3: noise of the prediction step. A step dt adds (dt noise)^2 to the
-// variance of an angle or a velocity and (dt bias_noise)^2 to that of a bias; white noise adds N^2
-// dt and a random walk K^2 dt:
+// PX4 EKF2 and ArduPilot EK3: noise of the prediction step. A step dt adds (dt noise)^2 to the variance of an angle or
+// a velocity and (dt bias_noise)^2 to that of a bias; white noise adds N^2 dt and a random walk K^2 dt:
 //   noise = N / sqrt(dt),  bias_noise = K / sqrt(dt).
 
 #include <fmt/format.h>
@@ -45,14 +44,15 @@ Export write_px4(const SensorGroup& group, const ExportOptions& options) {
   };
   put_all(group.gyroscope, kGyroscopeDefaults);
   put_all(group.accelerometer, kAccelerometerDefaults);
-  out.text = commented(head_lines(group, options,
-                                  fmt::format("noise = white_noise / sqrt(dt), bias noise = random_walk / "
-                                              "sqrt(dt), dt = {} s, the step of the filter",
-                                              export_number(options.filter_step_s))),
-                       "# ");
+  out.text = commented(
+      head_lines(
+          group, options,
+          fmt::format(
+              "noise = white_noise / sqrt(dt), bias noise = random_walk / sqrt(dt), dt = {} s, the step of the filter",
+              export_number(options.filter_step_s))),
+      "# ");
   out.text +=
-      "# A floor, not advice: vibration and what the filter does not model want ten times as much "
-      "and more, and\n"
+      "# A floor, not advice: vibration and what the filter does not model want ten times as much and more, and\n"
       "# the autopilots clip to their own ranges.\n"
       "# PX4 EKF2 (nsh):\n" +
       px4 + "# ArduPilot EK3 (MAVProxy):\n" + ardupilot;

@@ -1,6 +1,5 @@
-// Covariances of sensor_msgs/Imu (and MagneticField), row by row: the variance of one sample, N^2
-// f. A first element of -1 says that a quantity is not provided; a matrix of zeros would say that
-// its covariance is unknown.
+// Covariances of sensor_msgs/Imu (and MagneticField), row by row: the variance of one sample, N^2 f. A first element of
+// -1 says that a quantity is not provided; a matrix of zeros would say that its covariance is unknown.
 
 #include <fmt/format.h>
 

@@ -1,8 +1,7 @@
-// Parameters of the Gazebo IMU plugins of RotorS, PX4 Gazebo classic and UUV: white noise by its
-// continuous density (the code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step for the
-// bias. The code reads gyroscopeBiasRandomWalk while its own models write gyroscopeRandomWalk
-// (which is ignored, so that the default stays): both are written here. Correlation times have to
-// be > 0.
+// Parameters of the Gazebo IMU plugins of RotorS, PX4 Gazebo classic and UUV: white noise by its continuous density
+// (the code divides by sqrt(dt)), and an exact Ornstein-Uhlenbeck step for the bias. The code reads
+// gyroscopeBiasRandomWalk while its own models write gyroscopeRandomWalk (which is ignored, so that the default stays):
+// both are written here. Correlation times have to be > 0.
 
 #include <fmt/format.h>
 
@@ -43,12 +42,11 @@ Export write_rotors(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
   out.text += commented(head_lines(group, options,
-                                   "NoiseDensity = white_noise (root of the two-sided density); "
-                                   "RandomWalk = driving density q of a Gauss-Markov bias"),
+                                   "NoiseDensity = white_noise (root of the two-sided density); RandomWalk = driving "
+                                   "density q of a Gauss-Markov bias"),
                         "  ");
   out.text +=
-      "  The defaults of the plugins are an ADIS16448 with its noise doubled: leave none of these "
-      "keys out.\n-->\n";
+      "  The defaults of the plugins are an ADIS16448 with its noise doubled: leave none of these keys out.\n-->\n";
   out.text += "<plugin name=\"rotors_gazebo_imu_plugin\" filename=\"librotors_gazebo_imu_plugin.so\">\n";
   out.text += triad_block(*group.gyroscope, "rad/s", options, out);
   out.text += triad_block(*group.accelerometer, "m/s^2", options, out);
@@ -62,8 +60,7 @@ Export write_rotors(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget rotors_target() {
   return {"rotors",
           "RotorS, PX4 Gazebo classic, UUV",
-          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation "
-          "time",
+          "continuous densities: N, and a Gauss-Markov bias by its driving density and correlation time",
           "imu_plugin.xml",
           ExportNeeds::gyroscope_and_accelerometer,
           "NBK",

@@ -1,8 +1,7 @@
-// ROVIO's rovio.info and maplab's sensor file, which stand side by side in the same projects and disagree:
-// ROVIO's numbers are covariances, squares of continuous densities (noise / sqrt(dt) on the readings, noise
-// sqrt(dt) on the biases: ethz-asl/rovio 02a665c, include/rovio/ImuPrediction.hpp); its "att" is the gyroscope
-// and "vel" the accelerometer. maplab's sigmas are the densities themselves, all > 0 (ethz-asl/maplab,
-// sensors/imu.h).
+// ROVIO's rovio.info and maplab's sensor file, which stand side by side in the same projects and disagree: ROVIO's
+// numbers are covariances, squares of continuous densities (noise / sqrt(dt) on the readings, noise sqrt(dt) on the
+// biases: ethz-asl/rovio 02a665c, include/rovio/ImuPrediction.hpp); its "att" is the gyroscope and "vel" the
+// accelerometer. maplab's sigmas are the densities themselves, all > 0 (ethz-asl/maplab, sensors/imu.h).
 
 #include <fmt/format.h>
 
@@ -34,10 +33,9 @@ Export write_rovio(const SensorGroup& group, const ExportOptions& options) {
 Export write_maplab(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   const ImuFigures f = imu_figures(group, options, "maplab", out.notes);
-  out.text = commented(head_lines(group, options,
-                                  "noise_density = white_noise, bias_random_walk = random_walk "
-                                  "(continuous densities)"),
-                       "# ");
+  out.text = commented(
+      head_lines(group, options, "noise_density = white_noise, bias_random_walk = random_walk (continuous densities)"),
+      "# ");
   out.text += "topic: " + topic_scalar(group, options) + "\nsigmas:\n" + row_lines("maplab", f, "  ");
   return out;
 }

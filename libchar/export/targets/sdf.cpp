@@ -58,8 +58,7 @@ std::string triad_element(const char* element, const SensorTriad& triad, const E
 std::string sensor_element(const char* type, double rate_hz, const std::string& inside) {
   return fmt::format(
       "  <sensor name=\"{0}_sensor\" type=\"{0}\">\n    <always_on>1</always_on>\n"
-      "    <update_rate>{1}</update_rate>  <!-- the stddev below holds at this rate only -->\n{2}  "
-      "</sensor>\n",
+      "    <update_rate>{1}</update_rate>  <!-- the stddev below holds at this rate only -->\n{2}  </sensor>\n",
       type, export_number(rate_hz), inside);
 }
 
@@ -106,17 +105,17 @@ Export write_sdf(const SensorGroup& group, const ExportOptions& options) {
   if (sensors.empty())
     throw input_error("E0593")
         .says(
-            "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and "
-            "barometers, and none of these was given")
+            "SDFormat has noise elements for gyroscopes, accelerometers, magnetometers and barometers, and none of "
+            "these was given")
         .hint("where name and unit do not say what a channel is: `axis` NAME=gx");
   out.text = "<?xml version=\"1.0\"?>\n<!--\n";
-  out.text += commented(head_lines(group, options,
-                                   "stddev = white_noise sqrt(update_rate); dynamic bias: driving "
-                                   "density q of a Gauss-Markov process"),
-                        "  ");
+  out.text += commented(
+      head_lines(group, options,
+                 "stddev = white_noise sqrt(update_rate); dynamic bias: driving density q of a Gauss-Markov process"),
+      "  ");
   out.text +=
-      "  bias_stddev is the spread from one switching on to the next: one recording does not show "
-      "it, 0 unless stated.\n"
+      "  bias_stddev is the spread from one switching on to the next: one recording does not show it, 0 unless "
+      "stated.\n"
       "  precision is left out: the noise of rounding is part of white_noise already.\n-->\n";
   out.text += "<link name=\"sensors_link\">\n" + sensors + "</link>\n";
   return out;

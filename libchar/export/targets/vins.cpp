@@ -22,16 +22,13 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
   out.text = "%YAML:1.0\n";
   out.text += commented(
       head_lines(group, options, "acc_n, gyr_n = white_noise sqrt(2 f); acc_w, gyr_w = random_walk sqrt(f)"), "# ");
-  out.text += commented({"Why these factors (f: rate of the IMU messages, dt = 1/f): the midpoint "
-                         "integration takes the two",
-                         "ends of a step as independent, so a step adds dt^2 n^2 / 2 to the variance of "
-                         "the velocity and a",
-                         "second adds dt n^2 / 2; white noise of density N adds N^2 a second, hence n = N "
-                         "sqrt(2 f). A bias step",
-                         "has the variance dt^2 w^2, a second dt w^2; a random walk has K^2 a second, "
-                         "hence w = K sqrt(f).",
-                         "Put these lines into your configuration, which begins with %YAML:1.0 itself."},
-                        "# ");
+  out.text += commented(
+      {"Why these factors (f: rate of the IMU messages, dt = 1/f): the midpoint integration takes the two",
+       "ends of a step as independent, so a step adds dt^2 n^2 / 2 to the variance of the velocity and a",
+       "second adds dt n^2 / 2; white noise of density N adds N^2 a second, hence n = N sqrt(2 f). A bias step",
+       "has the variance dt^2 w^2, a second dt w^2; a random walk has K^2 a second, hence w = K sqrt(f).",
+       "Put these lines into your configuration, which begins with %YAML:1.0 itself."},
+      "# ");
   const auto line = [&](const char* sensor, Term term, double rate, std::string how) {
     const ConsumerRow& row = row_of("vins", sensor, term);
     const ExportFigure& figure = figure_of(f, sensor, term);
@@ -53,8 +50,7 @@ Export write_vins(const SensorGroup& group, const ExportOptions& options) {
 ExportTarget vins_target() {
   return {"vins",
           "VINS-Mono, VINS-Fusion",
-          "per sample, as its code reads them: acc_n, gyr_n = N sqrt(2 f); acc_w, gyr_w = K sqrt(f); "
-          "OpenCV YAML",
+          "per sample, as its code reads them: acc_n, gyr_n = N sqrt(2 f); acc_w, gyr_w = K sqrt(f); OpenCV YAML",
           "imu_vins.yaml",
           ExportNeeds::gyroscope_and_accelerometer,
           "NK",

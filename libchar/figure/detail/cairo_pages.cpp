@@ -74,10 +74,10 @@ Faces faces_of(Findings& warnings) {
   out.plain = face_of(false, plain);
   out.bold = face_of(true, bold);
   if (plain != kFigureFont)
-    warnings.add("figure_font", fmt::format("the font {} is not installed (Debian's package fonts-liberation2): "
-                                            "text stands in {}, whose letters are not as wide as the layout takes "
-                                            "them to be",
-                                            kFigureFont, plain));
+    warnings.add("figure_font",
+                 fmt::format("the font {} is not installed (Debian's package fonts-liberation2): text stands in {}, "
+                             "whose letters are not as wide as the layout takes them to be",
+                             kFigureFont, plain));
   return out;
 }
 

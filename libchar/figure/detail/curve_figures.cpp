@@ -85,9 +85,8 @@ std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen, cons
   return found;
 }
 
-/// Several statistics of one curve each (allan --type oadev,mdev) are meant to be seen beside each
-/// other, and are told apart by their names; of which curve is meant is said too where there are
-/// several.
+/// Several statistics of one curve each (allan --type oadev,mdev) are meant to be seen beside each other, and are told
+/// apart by their names; of which curve is meant is said too where there are several.
 void name_by_statistic(std::vector<ChosenCurve>& chosen) {
   std::set<std::string> names;
   for (const ChosenCurve& one : chosen) names.insert(one.name);

@@ -1,10 +1,7 @@
 #pragma once
-// A drawing: lines, areas and texts at their places on a page, in points (1/72 inch) from its upper
-// left corner. The writers of SVG, PDF and PNG all go through this one list, so that their pictures
-// are the same.
+// A drawing: lines, areas and texts at their places on a page, in points (1/72 inch) from its upper left corner. The
+// writers of SVG, PDF and PNG all go through this one list, so that their pictures are the same.
 
-#include <array>
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>

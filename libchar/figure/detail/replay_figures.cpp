@@ -114,9 +114,7 @@ Chart cost_figure(std::span<const FigureSource> sources, const FigureOptions& op
   const std::vector<CostPoint> points = cost_points(replay, options, kind);
   if (points.empty())
     throw kind_refusal(sources[0], kind.kind)
-        .says(
-            "no method has both an error and this cost (a replay measures costs unless it is told "
-            "not to)");
+        .says("no method has both an error and this cost (a replay measures costs unless it is told not to)");
   Chart out;
   Extent x(true), y(true);
   for (const CostPoint& p : points) {

@@ -104,10 +104,9 @@ std::string svg_of(const Drawing& drawing, const std::string& name) {
   std::string out =
       (name.empty() ? file : "<svg") +
       fmt::format(
-          " viewBox=\"0 0 {0} {1}\" "
-          "role=\"img\" font-family=\"'{2}', Arial, Helvetica, sans-serif\">\n<title>{3}</title>\n"
-          "<clipPath id=\"{8}\"><rect x=\"{4}\" y=\"{5}\" width=\"{6}\" "
-          "height=\"{7}\"/></clipPath>\n",
+          " viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"'{2}', Arial, Helvetica, "
+          "sans-serif\">\n<title>{3}</title>\n"
+          "<clipPath id=\"{8}\"><rect x=\"{4}\" y=\"{5}\" width=\"{6}\" height=\"{7}\"/></clipPath>\n",
           number(drawing.width), number(drawing.height), kFigureFont, markup_entities(about), number(f.left),
           number(f.top), number(f.right - f.left), number(f.bottom - f.top), frame_name(name));
   for (const DrawnPiece& piece : drawing.pieces)

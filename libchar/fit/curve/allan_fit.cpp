@@ -13,8 +13,8 @@
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"

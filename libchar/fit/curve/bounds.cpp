@@ -1,8 +1,7 @@
 // Fisher information of theta from the DCT-II coefficients k = 1..N-1 of a record,
 //   I_ab = 1/2 sum_k S_a(k) S_b(k) / S(k)^2,   S = sum theta_a S_a,
 //   sd(c)/c = 1/2 sqrt((I^-1)_aa) / theta_a
-// (Whittle), summed over log bins with three nodes each, so that N = 1e12 costs as much
-// as N = 1e3.
+// (Whittle), summed over log bins with three nodes each, so that N = 1e12 costs as much as N = 1e3.
 #include "libchar/fit/curve/bounds.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 //                           mixture, refined three times), with the mean and the variance that the
 //                           logarithm of a chi-square of as many degrees of freedom has;
 //   neither                 the scatter about the fit says it: equal relative errors, of a spectrum a power of
-//                           the frequency (detail/curve/curve_scatter.hpp); neighbouring residuals that go
+//                           the frequency (detail/curve/curve_likelihood.hpp); neighbouring residuals that go
 //                           the same way count as fewer points, n (1-r)/(1+r).
 // Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
 // the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
@@ -25,14 +25,12 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
-#include "libchar/fit/detail/curve/curve_scatter.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
@@ -96,8 +94,7 @@ CurveProblem problem_of(const DigitisedCurve& curve) {
   return problem;
 }
 
-/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the
-/// rate is known.
+/// All five terms show in an Allan curve; a spectrum shows no ramp, and quantization only when the rate is known.
 TermSet offered_to(const DigitisedCurve& curve, const FitOptions& options) {
   TermSet terms = options.terms;
   terms[static_cast<std::size_t>(Term::quantization)] = curve.is_allan || curve.rate_hz.has_value();
@@ -188,17 +185,15 @@ void say_what_intervals_mean(const Judge& judge, const std::string& basis, Noise
           "curve_uncertainty", "The intervals rest on the stated uncertainty of the points, taken as independent."));
       return;
     case Scatter::from_duration:
-      fit.findings.push_back(
-          finding("curve_uncertainty",
-                  "The intervals rest on the stated record length: the exact covariance of overlapping "
-                  "Allan variances."));
+      fit.findings.push_back(finding(
+          "curve_uncertainty",
+          "The intervals rest on the stated record length: the exact covariance of overlapping Allan variances."));
       return;
     case Scatter::estimated:
-      fit.findings.push_back(finding("curve_uncertainty",
-                                     "The curve states no uncertainty: the intervals rest on the "
-                                     "scatter of its points about the "
-                                     "fit, " +
-                                         basis + "."));
+      fit.findings.push_back(
+          finding("curve_uncertainty",
+                  "The curve states no uncertainty: the intervals rest on the scatter of its points about the fit, " +
+                      basis + "."));
       return;
   }
 }
@@ -257,8 +252,7 @@ void report_positive_term(const CurveJudgement& found, std::size_t i, double thr
   const Mixture& theta = found.decision.best.theta;
   Coefficient& term = fit.term[i];
   const auto c = static_cast<Eigen::Index>(i);
-  // Points that go together are fewer than they look: a term that needs all of them is not
-  // established.
+  // Points that go together are fewer than they look: a term that needs all of them is not established.
   const bool established = found.decision.ratio[i] * judge.independent / judge.points > threshold;
   term.status = established ? Status::detected : Status::undetermined;
   term.value = std::sqrt(theta[i]);
@@ -514,11 +508,10 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
   NoiseFit misfit = fit_points(curve, offered, options, whole.goodness.chi2 / std::max(1.0, whole.goodness.dof));
   for (Coefficient& term : misfit.term)
     if (term.value) term.status = Status::misfit;
-  misfit.findings.push_back(
-      finding("misfit",
-              "The noise terms do not describe this curve, nor half of its points, within its uncertainty: "
-              "no coefficient is borne out.",
-              "the noise terms do not describe the curve"));
+  misfit.findings.push_back(finding("misfit",
+                                    "The noise terms do not describe this curve, nor half of its points, within its "
+                                    "uncertainty: no coefficient is borne out.",
+                                    "the noise terms do not describe the curve"));
   return misfit;
 }
 

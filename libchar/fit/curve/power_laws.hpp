@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/fit/fit_options.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {

@@ -1,5 +1,4 @@
-// Two means become that of both by their weights, m1 + (m2 - m1) n2 / (n1 + n2): an offset costs no
-// digits.
+// Two means become that of both by their weights, m1 + (m2 - m1) n2 / (n1 + n2): an offset costs no digits.
 #include "libchar/fit/record/mean_meter.hpp"
 
 #include <algorithm>

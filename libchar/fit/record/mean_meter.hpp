@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/halving.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 
@@ -18,8 +18,7 @@ class MeanMeter {
   /// `per_mean`: samples in a mean at first, a power of two.
   explicit MeanMeter(std::uint64_t per_mean) : all_{.length = per_mean} {}
   void push(std::span<const double> samples);
-  /// The samples that `later` has seen follow directly. What is here must be a whole number of its
-  /// means.
+  /// The samples that `later` has seen follow directly. What is here must be a whole number of its means.
   void join(MeanMeter later);
   /// Of the record times a factor.
   void scale(double factor);

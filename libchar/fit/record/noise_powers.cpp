@@ -5,10 +5,9 @@
 #include <memory>
 #include <span>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/spectrum/fft.hpp"

@@ -3,8 +3,7 @@
 
 #include <functional>
 
-#include "libchar/core/noise_terms.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 

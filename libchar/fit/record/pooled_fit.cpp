@@ -11,7 +11,7 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {

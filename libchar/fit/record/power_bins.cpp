@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/present.hpp"
@@ -16,12 +16,11 @@
 namespace libchar {
 namespace {
 
-// Spectral lines in squared transform coefficients, and what to leave out because of them.
-// A coefficient is a line when it exceeds the local floor by what noise does once in 7e7
-// coefficients (32 x the floor for a single transform). The floor is the median of its
-// neighbourhood over the median of chi-square. A sine of power E (in floors) leaks E/(pi d)^2 into
-// the coefficient at distance d whatever its phase, so that the neighbourhood goes as well, out to
-// where the leak is 1 % of the floor: d = sqrt(10 E).
+// Spectral lines in squared transform coefficients, and what to leave out because of them. A coefficient is a line when
+// it exceeds the local floor by what noise does once in 7e7 coefficients (32 x the floor for a single transform). The
+// floor is the median of its neighbourhood over the median of chi-square. A sine of power E (in floors) leaks E/(pi
+// d)^2 into the coefficient at distance d whatever its phase, so that the neighbourhood goes as well, out to where the
+// leak is 1 % of the floor: d = sqrt(10 E).
 
 struct LineClip {
   std::vector<char> clipped;  ///< one flag a coefficient; empty when none is clipped
@@ -51,10 +50,9 @@ LIBCHAR_LANES std::int64_t count_below_lanes(const double* x, std::size_t n, dou
 }
 constexpr InLanes<count_below_lanes> count_below;
 
-/// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients
-/// long, joined by straight lines in log-log, so that the slope of flicker and walk within a
-/// stretch is not taken for a line. A median is looked for where it is asked for: of most stretches
-/// the count of coefficients below a level says enough.
+/// Floor of the coefficients: medians over stretches of an eighth of k, 64 to 2048 coefficients long, joined by
+/// straight lines in log-log, so that the slope of flicker and walk within a stretch is not taken for a line. A median
+/// is looked for where it is asked for: of most stretches the count of coefficients below a level says enough.
 class LocalFloor {
  public:
   LocalFloor(const std::vector<double>& mean, std::size_t first, double chi_median)
@@ -124,9 +122,8 @@ class LocalFloor {
   std::vector<double> part_;  // scratch
 };
 
-/// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and
-/// where the two ends of a smooth record make every second coefficient large, the floor bends
-/// faster than its stretches tell.
+/// Median of the coefficients beside one, its nearest left out: near the zeros of a filter, and where the two ends of a
+/// smooth record make every second coefficient large, the floor bends faster than its stretches tell.
 double median_beside(const std::vector<double>& mean, std::size_t i, std::size_t first) {
   constexpr std::size_t kNearest = 2;
   const std::size_t reach = std::clamp<std::size_t>((first + i) / 64, 16, 128);

@@ -14,8 +14,7 @@ namespace detail {
 struct EndNoise;
 }
 
-/// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood
-/// needs.
+/// A bin of mean squared DCT-II coefficients and its expectation per unit theta: all the likelihood needs.
 struct PowerBin {
   double frequency_hz = 0;            ///< centre
   double energy = 0;                  ///< mean of c_k² (per-sample variance scale: white noise gives Q² fs)
@@ -38,8 +37,7 @@ struct PooledPower {
   std::uint64_t first = 1;
   std::uint64_t pooled = 1;
   std::vector<double> mean;
-  /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become
-  /// fewer; empty: nothing
+  /// of `mean`, what events put there: taken out of the bins, whose degrees of freedom become fewer; empty: nothing
   std::vector<double> of_events = {};
   /// slow cycles, and `mean` without them; empty: none
   std::vector<Cycle> cycles = {};

@@ -1,28 +1,25 @@
 // Squared DCT-II coefficients of a record of any length, in two levels:
 //   above f_split = 15.5/(2 block dt):  transforms of blocks of 2^15 samples, pooled, k >= 16, and of the tail
 //   below f_split:                      the transform of the series of means of block/64 = 512 samples over a whole segment
-// Both use their exact expectations (dct_means). Sixteen coefficients of every block are left to
-// the second level, so that neighbouring blocks stay uncorrelated under flicker and walk and the
-// slow noise is seen with the full resolution of the segment; white noise is exactly uncorrelated
-// within each level.
+// Both use their exact expectations (dct_means). Sixteen coefficients of every block are left to the second level, so
+// that neighbouring blocks stay uncorrelated under flicker and walk and the slow noise is seen with the full resolution
+// of the segment; white noise is exactly uncorrelated within each level.
 //
 // A record comes in parts: the powers of blocks are added, and the series of means is put together
 // from those of the parts, each less its own first sample x_0, once at the end:
 //
 //   sqrt(p) (mean_i - x_0) = sqrt(p) (mean_i - x_0part) + sqrt(p) (x_0part - x_0).
 //
-// A part of a clean record is a multiple of a block long. Where samples are missing the rest of it
-// that fills no block is cut into pieces of 16384, 8192, 4096 and 2048 samples, whose transforms
-// are pooled by their length; the rest of those (at most 2047 samples a part) and of a mean are
-// left out. So is the rest in front of a gap of more than 4096 samples. Whether such a gap ends a
-// segment is decided at the end, when it is known how many samples are in front of it: a record
-// begins anew where it is longer than one in hundred of them. Memory: 64 means a block, and a block
-// of each length.
+// A part of a clean record is a multiple of a block long. Where samples are missing the rest of it that fills no block
+// is cut into pieces of 16384, 8192, 4096 and 2048 samples, whose transforms are pooled by their length; the rest of
+// those (at most 2047 samples a part) and of a mean are left out. So is the rest in front of a gap of more than 4096
+// samples. Whether such a gap ends a segment is decided at the end, when it is known how many samples are in front of
+// it: a record begins anew where it is longer than one in hundred of them. Memory: 64 means a block, and a block of
+// each length.
 //
-// Parts of 2^29 samples are settled: their means become powers of blocks of 2^15 means, as those of
-// mean_series.hpp, and one value for 2^18 samples. Where samples are missing the rest is cut into
-// pieces of 2^14 … 2^6 means, and a gap is measured against all that is in front of the part,
-// present or missing.
+// Parts of 2^29 samples are settled: their means become powers of blocks of 2^15 means, as those of mean_series.hpp,
+// and one value for 2^18 samples. Where samples are missing the rest is cut into pieces of 2^14 … 2^6 means, and a gap
+// is measured against all that is in front of the part, present or missing.
 //
 // Events (steps, a warm-up, a ramp) are e_t with e known: the series of means loses its mean e, and
 // the pooled powers of blocks lose sum e_k² of the transforms of e over the places of the blocks,
@@ -75,8 +72,7 @@ struct Segment {
   }
 
  private:
-  /// sqrt(p) (mean of p samples less `run.shift`), about the segment's shift and without the
-  /// events.
+  /// sqrt(p) (mean of p samples less `run.shift`), about the segment's shift and without the events.
   void add_series(std::span<const double> values, std::uint64_t p, const PowerRun& run, const Shape& shape,
                   std::vector<double>& to) const {
     const double root = std::sqrt(static_cast<double>(p)), moved = root * (run.shift - shift);
@@ -177,9 +173,8 @@ void PowerPart::State::push(std::span<const double> values) {
   }
 }
 
-/// What a present sample after missing ones, or the first of all, begins. The gap in front of the
-/// first run is told even when it is short: with the one at the end of the part before it may be
-/// long.
+/// What a present sample after missing ones, or the first of all, begins. The gap in front of the first run is told
+/// even when it is short: with the one at the end of the part before it may be long.
 void PowerPart::State::begin_run(double first) {
   if (gap > kLongGap && run.samples > 0) end_run();
   if (run.samples == 0) {

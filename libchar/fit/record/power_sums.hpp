@@ -1,6 +1,5 @@
 #pragma once
-// The squared DCT-II coefficients of a part of a record, and how the parts of neighbours become
-// those of both.
+// The squared DCT-II coefficients of a part of a record, and how the parts of neighbours become those of both.
 
 #include <array>
 #include <cstdint>
@@ -16,8 +15,7 @@
 
 namespace libchar::detail {
 
-/// Samples between two long gaps of a part, the missing ones closed up; or only missing ones, at
-/// the end of a part.
+/// Samples between two long gaps of a part, the missing ones closed up; or only missing ones, at the end of a part.
 struct PowerRun {
   std::uint64_t gap = 0;      ///< missing samples in front
   std::uint64_t samples = 0;  ///< not missing
@@ -39,8 +37,7 @@ struct PowerSums {
   std::vector<double> tail;  ///< samples behind the last block of the record's last part
 };
 
-/// One part of a record: in blocks of `kBlock`, whose squares a stage that transforms them anyway
-/// may add up.
+/// One part of a record: in blocks of `kBlock`, whose squares a stage that transforms them anyway may add up.
 class PowerPart final : public BlockTaker {
  public:
   static constexpr std::uint64_t kBlock = std::uint64_t{1} << 15U;
@@ -49,8 +46,7 @@ class PowerPart final : public BlockTaker {
   void push(std::span<const double> samples) override;
   bool take_block(std::span<const double> samples) override;
   void take_power(std::vector<double> power) override;
-  /// `last`: no part follows, so that what is left behind its last block is the record's tail. The
-  /// object is done.
+  /// `last`: no part follows, so that what is left behind its last block is the record's tail. The object is done.
   PowerSums finish(bool last);
 
  private:
@@ -61,10 +57,9 @@ class PowerPart final : public BlockTaker {
 /// Adds the part that follows directly.
 void join(PowerSums& sums, PowerSums later);
 
-/// The series of means of a part of 2^29 samples becomes powers of its blocks and a slow series:
-/// nothing grows with a record but one value for 2^18 samples. `samples_before`: in front of the
-/// part, present or missing; a gap inside it that is longer than a hundredth of those ends a
-/// segment.
+/// The series of means of a part of 2^29 samples becomes powers of its blocks and a slow series: nothing grows with a
+/// record but one value for 2^18 samples. `samples_before`: in front of the part, present or missing; a gap inside it
+/// that is longer than a hundredth of those ends a segment.
 void settle_means(PowerSums& sums, std::uint64_t samples_before);
 
 /// Of the record times a factor.

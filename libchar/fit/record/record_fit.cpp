@@ -14,7 +14,6 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
@@ -26,9 +25,8 @@
 namespace libchar {
 namespace {
 
-// The interval of white noise whose samples are not Gaussian. Whittle's likelihood takes
-// periodogram ordinates for independent. Of white noise of excess kurtosis g they share 2 + g
-// instead of 2: with theta = N^2 and n samples
+// The interval of white noise whose samples are not Gaussian. Whittle's likelihood takes periodogram ordinates for
+// independent. Of white noise of excess kurtosis g they share 2 + g instead of 2: with theta = N^2 and n samples
 //   var(ln theta) = var of the likelihood + g / n
 // (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1: covariance of
 // spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half
@@ -51,8 +49,8 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
   if (wider > 1.05)
     fit.findings.push_back(finding(
-        "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences "
-                                   "{} instead of 3): the interval of N is {} times as wide for it.",
+        "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences {} "
+                                   "instead of 3): the interval of N is {} times as wide for it.",
                                    brief_text(difference_kurtosis), brief_text(wider, 2))));
 }
 
@@ -75,11 +73,12 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers, double ra
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
   const bool noticeable = 1 / share - 1 > kNoticeable * white.relative_sd;
   if (noticeable)
-    fit.findings.push_back(finding("outliers_in_n",
-                                   fmt::format("Outliers too small to be left out one by one add {} to N: N is that of "
-                                               "the Gaussian core of the samples.",
-                                               percent_text(1 / share - 1)),
-                                   "small outliers were taken out of N"));
+    fit.findings.push_back(finding(
+        "outliers_in_n",
+        fmt::format(
+            "Outliers too small to be left out one by one add {} to N: N is that of the Gaussian core of the samples.",
+            percent_text(1 / share - 1)),
+        "small outliers were taken out of N"));
   white.value = core;
 }
 
@@ -101,8 +100,7 @@ double event_variance(std::span<const Event> events, double rate_hz, double samp
   return sum;
 }
 
-/// The octaves of a record without its events: the long ones from its means, of the short ones what
-/// is hardly theirs.
+/// The octaves of a record without its events: the long ones from its means, of the short ones what is hardly theirs.
 AllanCurve curve_without(const FittedSums& sums, std::span<const Event> events, double rate_hz) {
   AllanCurve curve = octave_curve(sums.allan, 1 / rate_hz);
   const std::uint64_t per_mean = sums.means.per_mean(), from = kMeansOfPoint * per_mean;
@@ -255,8 +253,7 @@ NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, cons
   }
   const std::vector<PooledPower> powers = powers_without_ends(std::move(used.bins), events, rate_hz, options);
   NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
-  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not
-  // known.
+  // Spikes and steps are in the kurtosis of the differences; what it would be without them is not known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);
   take_out_outliers(answer.outliers, rate_hz, fit);

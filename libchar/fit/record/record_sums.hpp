@@ -1,6 +1,5 @@
 #pragma once
-// All that a fit needs of a record of any length: sums over its leaves (core/leaf_tree.hpp), which
-// join.
+// All that a fit needs of a record of any length: sums over its leaves (core/leaf_tree.hpp), which join.
 
 #include <cstdint>
 #include <optional>
@@ -66,8 +65,7 @@ FittedSums fitted_sums(std::span<const double> leaf, const LeafKind& kind, const
                        PowerPart* shared = nullptr);
 /// Adds the part that follows directly.
 void join(RecordSums& sums, RecordSums later);
-/// Of a node of the tree, what grows with the record is made less where the node is as long as that
-/// asks for.
+/// Of a node of the tree, what grows with the record is made less where the node is as long as that asks for.
 void settle(RecordSums& sums, std::uint64_t height, std::uint64_t first_leaf);
 
 /// Of the record times a factor.

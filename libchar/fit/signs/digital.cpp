@@ -1,17 +1,14 @@
-// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it.
-// A rail has eight samples and twice as many as the neighbourhood (a thousandth of the range, or
-// one and a half times the distance to the next value). Staircase: with s = sqrt(2) sigma / step,
-// neighbours are equal with probability
+// Rails: a tail falls outwards, so that fewer samples stand at the last value than just inside it. A rail has eight
+// samples and twice as many as the neighbourhood (a thousandth of the range, or one and a half times the distance to
+// the next value). Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
 //   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
-// averaged over where between two steps the value stands, which holds while the noise moves it
-// there (sigma > .3 step).
+// averaged over where between two steps the value stands, which holds while the noise moves it there (sigma > .3 step).
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "libchar/core/numeric/present.hpp"
@@ -61,8 +58,7 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
   for (const Rail& rail : faults.rails)
     faults.findings.push_back(finding(
         "rail",
-        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise "
-                    "comes out too small.",
+        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise comes out too small.",
                     percent_text(rail.share), rail.high ? "largest" : "smallest", with_unit(rail.value, unit))));
   if (faults.staircase)
     faults.findings.push_back(finding(
@@ -129,8 +125,7 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
 }
 
 void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
-  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the
-  // standard deviation.
+  // A rail that less than one sample in a hundred reaches takes less than a hundredth of the standard deviation.
   constexpr double kHarmless = 0.01;
   double clipped = 0;
   for (const Rail& rail : faults.rails) clipped += rail.share;
@@ -146,11 +141,11 @@ void doubt_digital(const DigitalFaults& faults, NoiseFit& fit) {
     if (white.value) white.ci95 = {0, std::max(white.ci95.high, most)};
     if (white.upper95) white.upper95 = std::max(*white.upper95, most);
   }
-  fit.findings.push_back(
-      finding("digital_misfit",
-              fmt::format("No coefficient can be trusted, however well the curves agree: they are those of the "
-                          "{}, not of the noise.",
-                          rounding ? "converter's rounding" : "clipped samples")));
+  fit.findings.push_back(finding(
+      "digital_misfit",
+      fmt::format(
+          "No coefficient can be trusted, however well the curves agree: they are those of the {}, not of the noise.",
+          rounding ? "converter's rounding" : "clipped samples")));
 }
 
 }  // namespace libchar

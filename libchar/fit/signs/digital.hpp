@@ -1,11 +1,9 @@
 #pragma once
-// What the converter and the link did to the samples: rails, repeated values, steps of the
-// converter above the noise.
+// What the converter and the link did to the samples: rails, repeated values, steps of the converter above the noise.
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -66,9 +64,8 @@ void join(DigitalSums& sums, const DigitalSums& later);
 void write_state(const DigitalSums& sums, StateWriter& to);
 DigitalSums read_digital_sums(StateReader& from);
 
-/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`).
-/// `census` of the record. No finding in a record of noise that is sampled and rounded finely,
-/// whatever its length.
+/// `step`: the least step between values, where they lie on a grid (ChannelQuality's `resolution`). `census` of the
+/// record. No finding in a record of noise that is sampled and rounded finely, whatever its length.
 DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& census, double rate_hz,
                                   std::optional<double> step = {}, std::string_view unit = {});
 

@@ -2,10 +2,9 @@
 // beside them. In each round the best place of each kind joins the model by itself, the noise is
 // fitted again without it, and its likelihood ratio
 //   LR = 2 ln L(with it, noise refitted) - 2 ln L(without, noise refitted)
-// is held against the square of the threshold that the look-elsewhere effect of its kind sets
-// (scans.hpp): the kind with the largest LR - threshold^2 is taken, if that is positive. Kinds
-// within kNotTold of it are named: steps, warm-ups and ramps imitate one another. Then the round is
-// repeated on what is left.
+// is held against the square of the threshold that the look-elsewhere effect of its kind sets (scans.hpp): the kind
+// with the largest LR - threshold^2 is taken, if that is positive. Kinds within kNotTold of it are named: steps,
+// warm-ups and ramps imitate one another. Then the round is repeated on what is left.
 #include "libchar/fit/signs/events.hpp"
 
 #include <fmt/format.h>
@@ -406,24 +405,20 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
   found.telegraph = telegraph_of(found.events, found.more ? further_steps(search, now) : 0, duration_s);
   if (found.telegraph) {
     const Telegraph& telegraph = *found.telegraph;
-    found.findings.push_back(
-        finding("events_left_in",
-                fmt::format("The record jumps between two levels about {}{}{} apart, {} times at least: random "
-                            "telegraph noise. What is said of "
-                            "slow noise is about these jumps.",
-                            number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
-                            unit.empty() ? "" : " ", unit, telegraph.jumps)));
+    found.findings.push_back(finding(
+        "events_left_in", fmt::format("The record jumps between two levels about {}{}{} apart, {} times at least: "
+                                      "random telegraph noise. What is said of slow noise is about these jumps.",
+                                      number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
+                                      unit.empty() ? "" : " ", unit, telegraph.jumps)));
   } else if (found.more) {
     const Interval quiet =
         longest_without_steps(found.events, search.series.start_s,
                               search.instant(search.series.start_s + duration_s) - search.series.start_s);
-    Finding many =
-        finding("events_left_in", fmt::format("There are more than {} steps and drifts: the record is no "
-                                              "noise with a few of them, but "
-                                              "handled, moved, or shaken by what happens around it; they "
-                                              "stay in. The longest stretch "
-                                              "without a step that was found is from {} to {} s.",
-                                              search.options.most, place_text(quiet.low), place_text(quiet.high)));
+    Finding many = finding("events_left_in",
+                           fmt::format("There are more than {} steps and drifts: the record is no noise with a few of "
+                                       "them, but handled, moved, or shaken by what happens around it; they stay in. "
+                                       "The longest stretch without a step that was found is from {} to {} s.",
+                                       search.options.most, place_text(quiet.low), place_text(quiet.high)));
     many.help.push_back({"Use the longest stretch without a step.",
                          {{"from_s", place_text(quiet.low)}, {"to_s", place_text(quiet.high)}}});
     found.findings.push_back(std::move(many));

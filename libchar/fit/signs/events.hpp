@@ -3,14 +3,12 @@
 // and taken out as means with a sign before the noise is fitted again. Theory and figures: docs/theory/events.md.
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "libchar/core/finding.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
 #include "libchar/fit/signs/event.hpp"
-#include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
 

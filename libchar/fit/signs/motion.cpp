@@ -298,10 +298,9 @@ std::string change_sentence(const StrengthChange& change) {
 
 void describe(Motion& motion, double duration_s) {
   if (motion.whole) {
-    motion.findings.push_back(
-        finding("moves_throughout",
-                "What is recorded changes throughout (motion, where the sensor is an inertial one): it is "
-                "a signal and no noise."));
+    motion.findings.push_back(finding("moves_throughout",
+                                      "What is recorded changes throughout (motion, where the sensor is an inertial "
+                                      "one): it is a signal and no noise."));
     return;
   }
   if (!motion.moving_s.empty()) {
@@ -310,9 +309,8 @@ void describe(Motion& motion, double duration_s) {
     const std::size_t count = motion.moving_s.size();
     Finding moved =
         finding("motion",
-                fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from "
-                            "{} to {} s; the longest "
-                            "still stretch is {} to {} s.",
+                fmt::format("The sensor was moved or shaken in {} stretch{} ({} of {}), the first from {} to {} s; the "
+                            "longest still stretch is {} to {} s.",
                             motion.moving_s.size(), motion.moving_s.size() == 1 ? "" : "es", duration_text(moving),
                             duration_text(duration_s), place_text(motion.moving_s[0].low),
                             place_text(motion.moving_s[0].high), place_text(motion.still_s ? motion.still_s->low : 0),

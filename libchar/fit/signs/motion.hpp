@@ -3,13 +3,11 @@
 // noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "libchar/core/finding.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/fit/signs/event.hpp"
-#include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
 

@@ -1,19 +1,17 @@
 // A single spike stands out of the three-sample residual e_t = y_t - (y_{t-1} + y_{t+1})/2, from
 // which drift and slow noise cancel, with its full height (its neighbours with half of it):
 //   |e_t| > 6 s_e  and  |e_t| > |e_{t-1}|, |e_{t+1}|,      s = 1.4826 median|.|
-// A run of up to 16 wild rows begins with |y_t - g| > 6 s_d, g the last good sample and s_d of
-// first differences, and ends where two samples are back within 3 s_d of g; at the record's ends
-// one side is enough. What does not come back is a step, and stays. More than six other wild
-// samples within 32 are a loud stretch, and stay. Under Gaussian noise a sample passes 6 s once in
-// 5e8.
+// A run of up to 16 wild rows begins with |y_t - g| > 6 s_d, g the last good sample and s_d of first differences, and
+// ends where two samples are back within 3 s_d of g; at the record's ends one side is enough. What does not come back
+// is a step, and stays. More than six other wild samples within 32 are a loud stretch, and stay. Under Gaussian noise a
+// sample passes 6 s once in 5e8.
 //
-// Spikes or the noise's own tail? A tail is everywhere: most of what lies beyond 5 s lies just
-// beyond it. Under P(size > x) ~ (x/5 s)^-a the logarithms ln(size/5 s) are exponential with mean
-// 1/a (Hill 1975), so that 2.5 * their sum exceeds the 97 % quantile of a gamma distribution in at
-// most 3 % of records with a >= 2.5; and at least a third lies between 5 s and 6 s (0.42 for a = 3,
-// the t distribution of three degrees of freedom). Spikes are what contradicts one of the two.
-// Where more jumps stay than come back the signal itself jumps (telegraph noise), and short stays
-// are no runs of wild rows.
+// Spikes or the noise's own tail? A tail is everywhere: most of what lies beyond 5 s lies just beyond it. Under
+// P(size > x) ~ (x/5 s)^-a the logarithms ln(size/5 s) are exponential with mean 1/a (Hill 1975), so that 2.5 * their
+// sum exceeds the 97 % quantile of a gamma distribution in at most 3 % of records with a >= 2.5; and at least a third
+// lies between 5 s and 6 s (0.42 for a = 3, the t distribution of three degrees of freedom). Spikes are what
+// contradicts one of the two. Where more jumps stay than come back the signal itself jumps (telegraph noise), and short
+// stays are no runs of wild rows.
 #include "libchar/fit/signs/spike_cleaner.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +22,6 @@
 #include <limits>
 #include <numbers>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -216,13 +213,12 @@ std::string spike_sentence(const SpikeCount& count) {
   switch (judge_spikes(count)) {
     case SpikeVerdict::too_many:
       return fmt::format(
-          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 "
-          "%), and all were kept.",
+          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 %), and all were kept.",
           percent_text(static_cast<double>(count.left_out) / static_cast<double>(count.samples)));
     case SpikeVerdict::heavy_tails:
       return fmt::format(
-          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a "
-          "signal that jumps: not taken for spikes, and kept.",
+          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a signal that jumps: "
+          "not taken for spikes, and kept.",
           count.left_out, count.left_out == 1 ? "" : "s");
     default:
       return "";
@@ -263,8 +259,7 @@ void SpikeCleaner::examine(bool last) {
   }
 }
 
-// Rows 0 … b are wild when they all lie far from the median of the 32 behind them, and the step to
-// those is wild.
+// Rows 0 … b are wild when they all lie far from the median of the 32 behind them, and the step to those is wild.
 void SpikeCleaner::look_at_start() {
   if (!(scale_.step > 0)) return;
   const double limit = kSpikeLimit * scale_.step;

@@ -38,9 +38,8 @@ class SpikeScan {
 
 namespace libchar::detail {
 
-/// Sums of squared first differences: of all, and what they would be if the whole distribution were
-/// Gaussian like its core, the scale taken from the differences within `kNear` and within `kFar`
-/// standard deviations of it.
+/// Sums of squared first differences: of all, and what they would be if the whole distribution were Gaussian like its
+/// core, the scale taken from the differences within `kNear` and within `kFar` standard deviations of it.
 struct CoreSums {
   static constexpr double kNear = 1.2, kFar = 2.2;
   double count = 0, all = 0, near = 0, far = 0;
@@ -50,9 +49,8 @@ struct CoreSums {
 /// Of the differences between neighbours that are both present.
 CoreSums core_sums(std::span<const double> record);
 
-/// Variance per sample that outliers add to a record of Gaussian noise: half of what the
-/// differences have beyond their core, with its standard deviation. Where the core itself is not
-/// Gaussian they are the noise's own tails: none.
+/// Variance per sample that outliers add to a record of Gaussian noise: half of what the differences have beyond their
+/// core, with its standard deviation. Where the core itself is not Gaussian they are the noise's own tails: none.
 struct OutlierVariance {
   double variance = 0, sd = 0;
 };

@@ -23,7 +23,6 @@
 
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/core/error.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
@@ -180,8 +179,7 @@ void add_dof(std::vector<AllanCurve>& curves, const NoiseFit& fit) {
   }
 }
 
-/// Curves of the stretches from a record's means of r samples, at the averaging factors of the
-/// record.
+/// Curves of the stretches from a record's means of r samples, at the averaging factors of the record.
 Curves coarse_curves(std::span<const double> means, std::size_t stretches, std::uint64_t r, double dt_s,
                      const NoiseFit& fit) {
   Curves curves = curves_of(means, stretches, dt_s * static_cast<double>(r));
@@ -195,8 +193,7 @@ Curves coarse_curves(std::span<const double> means, std::size_t stretches, std::
   return curves;
 }
 
-/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy
-/// tails.
+/// How many times more than in Gaussian noise ln v scatters at this octave of the pieces: heavy tails.
 double excess_scatter(const Tested& record, double within, std::uint64_t m, const NoiseFit& fit) {
   AllanCurve curve = record.curve_of_piece();
   add_fit_intervals(curve, fit);
@@ -254,11 +251,9 @@ std::string sentence_of(const Stationarity& found, double limit) {
     last = s.tau_s;
   }
   return fmt::format(
-      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of "
-      "stretches of {} differs by {} % (1 sd) beyond "
-      "chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. "
-      "Another recording may differ as "
-      "much.",
+      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of stretches of {} differs "
+      "by {} % (1 sd) beyond chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. Another "
+      "recording may differ as much.",
       duration_text(found.clearest_tau_s), duration_text(found.stretch_s), number_text(100 * there, 2),
       number_text(found.smallest, 3), place_text(found.smallest_s.low), place_text(found.smallest_s.high),
       number_text(found.largest, 3), place_text(found.largest_s.low), place_text(found.largest_s.high),

@@ -53,9 +53,8 @@ namespace detail {
 StretchSpread spread_at(const Stationarity& stationarity, double tau_s);
 }  // namespace detail
 
-/// ln(Allan deviation) of another stretch at this averaging time is within so much of the record's
-/// (95 %, by Student's t, beyond chance): by the spread at the nearest octave; 0 where the record
-/// is steady.
+/// ln(Allan deviation) of another stretch at this averaging time is within so much of the record's (95 %, by Student's
+/// t, beyond chance): by the spread at the nearest octave; 0 where the record is steady.
 double spread_reach(const Stationarity& stationarity, double tau_s);
 
 }  // namespace libchar

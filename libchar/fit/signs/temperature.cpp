@@ -17,7 +17,6 @@
 #include <span>
 #include <vector>
 
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -26,7 +25,7 @@
 #include "libchar/fit/detail/events/regression.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
-#include "libchar/fit/signs/event_series.hpp"
+#include "libchar/fit/signs/event.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -442,8 +441,7 @@ void add_temperature_effect(const TemperatureEffect& effect, double sign, std::s
 std::string temperature_sentence(const TemperatureEffect& effect, std::string_view unit) {
   if (effect.order == 0)
     return fmt::format(
-        "It does not move with temperature ({}, {} to {} {}) beyond chance (p = {}): "
-        "nothing was taken out.",
+        "It does not move with temperature ({}, {} to {} {}) beyond chance (p = {}): nothing was taken out.",
         effect.channel, number_text(effect.range.low, 4), number_text(effect.range.high, 4), effect.unit,
         number_text(effect.p, 2));
   const double relative = effect.sd / std::max(std::abs(effect.coefficient[0]), 1e-300);
@@ -452,16 +450,15 @@ std::string temperature_sentence(const TemperatureEffect& effect, std::string_vi
     lag = fmt::format("a lag of {} ({} to {})", duration_text(effect.lag_s), duration_text(effect.lag_ci95.low),
                       effect.lag_ci95.high > 0 ? duration_text(effect.lag_ci95.high) : std::string("any length"));
   std::string text = fmt::format(
-      "It moves with temperature ({}) by {} [{}, {}] {}/{} at {} {}, with {} and order {}; this "
-      "was "
-      "taken out before the noise was fitted.",
+      "It moves with temperature ({}) by {} [{}, {}] {}/{} at {} {}, with {} and order {}; this was taken out before "
+      "the noise was fitted.",
       effect.channel, number_text(effect.coefficient[0], digits_for(relative)),
       number_text(effect.ci95.low, digits_for(relative)), number_text(effect.ci95.high, digits_for(relative)),
       unit.empty() ? "U" : unit, "K", number_text(effect.mean, 4), effect.unit, lag, effect.order);
   if (effect.like_drift)
     text +=
-        " A straight drift or a warm-up explains the record nearly as well: the record cannot tell "
-        "them from temperature.";
+        " A straight drift or a warm-up explains the record nearly as well: the record cannot tell them from "
+        "temperature.";
   return text;
 }
 

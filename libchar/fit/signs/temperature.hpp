@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "libchar/core/coefficient.hpp"
-#include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/interval.hpp"
 
 namespace libchar {

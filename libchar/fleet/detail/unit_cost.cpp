@@ -69,8 +69,7 @@ class TemporaryTable {
   double bytes_ = 0;
 };
 
-/// Reading, parsing and hashing; where no file can be written or read back, as slow as it is
-/// anywhere.
+/// Reading, parsing and hashing; where no file can be written or read back, as slow as it is anywhere.
 double text_byte_seconds() {
   constexpr double kSlow = 20e-9;
   const TemporaryTable table;

@@ -50,9 +50,8 @@ exit "$code"
 std::string submit(const Array& array, const std::string& list, const JobOptions& options, bool after) {
   const std::string limit = options.at_once > 0 ? fmt::format("%{}", options.at_once) : std::string();
   return fmt::format(
-      "ids=\"$ids:$(sbatch --parsable --job-name=fleet --array=1-{}{} --mem={}M --time={} "
-      "--requeue {}"
-      "--output=jobs/%A_%a.log \"$@\" fleet.slurm.element.sh {})\"\n",
+      "ids=\"$ids:$(sbatch --parsable --job-name=fleet --array=1-{}{} --mem={}M --time={} --requeue "
+      "{}--output=jobs/%A_%a.log \"$@\" fleet.slurm.element.sh {})\"\n",
       array.names.size(), limit, array.limits.memory_mb, array.limits.minutes,
       after ? "--dependency=\"afterany$before\" " : "", list);
 }
@@ -65,8 +64,8 @@ std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs, const fs:
   for (const FleetJob& job : jobs) (job.after.empty() ? first : joins).push_back(job);
   std::vector<OutputFile> files;
   std::string script =
-      "#!/bin/sh\n# Submits the jobs of a fleet; words behind the script's name go to sbatch "
-      "(--partition=…, --account=…).\nset -e\ncd \"$(dirname \"$0\")\"\nids=\n";
+      "#!/bin/sh\n# Submits the jobs of a fleet; words behind the script's name go to sbatch (--partition=…, "
+      "--account=…).\nset -e\ncd \"$(dirname \"$0\")\"\nids=\n";
   std::size_t number = 0;
   const auto add = [&](const std::vector<FleetJob>& some, bool after) {
     for (const Array& array : arrays_of(some, options)) {

@@ -26,8 +26,8 @@ std::string job_row(const std::vector<FleetJob>& jobs, const FleetJob& job, cons
 std::vector<OutputFile> snakemake_files(const std::vector<FleetJob>& jobs, const std::filesystem::path& folder,
                                         const JobOptions& options) {
   std::string text =
-      "# The jobs of a fleet. A job is done when jobs/NAME.done is there; units that have a result "
-      "cost nothing when it runs again.\n"
+      "# The jobs of a fleet. A job is done when jobs/NAME.done is there; units that have a result cost nothing when "
+      "it runs again.\n"
       "JOBS = {\n";
   for (const FleetJob& job : jobs) text += job_row(jobs, job, options);
   text += fmt::format(R"(}}

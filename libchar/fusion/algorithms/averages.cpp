@@ -10,8 +10,7 @@ namespace libchar::fusion {
 
 InverseVariance::InverseVariance(const Array& array) : levels_(array.noise_levels) {
   assert(levels_.size() == array.channels);
-  // Relative to the smallest, so that levels near the ends of the range of a double do not
-  // overflow.
+  // Relative to the smallest, so that levels near the ends of the range of a double do not overflow.
   const double smallest = levels_.minCoeff();
   weights_ = (smallest / levels_.array()).matrix();
   const double sum = weights_.sum();

@@ -79,8 +79,7 @@ bool BlindCalibration::solve_factor() {
   return true;
 }
 
-/// argmin a'(P o C) a on the gauge, by its optimality conditions. In memory of its own: `step`
-/// calls it.
+/// argmin a'(P o C) a on the gauge, by its optimality conditions. In memory of its own: `step` calls it.
 bool BlindCalibration::solve_gram() {
   const Eigen::Index n = mean_.size();
   const double scale = squares_.diagonal().maxCoeff();

@@ -9,16 +9,14 @@
 //   beta_i = mean(u_i) - t / a_i with sum beta = 0. x of beta would be off by (sum 1/a - n)/n of the
 //   input's mean, since the mean of 1/a is not one where that of a is (Jensen)
 //
-// Noise adds its variances D to the diagonal of C and biases every gain. Default: D is taken off,
-// as the noise levels where they are given, else estimated with the gains as the one factor of C =
-// s g g' + D (n > 2), alternating the leading eigenvector of D^-1/2 C D^-1/2 and D = diag(C - s g
-// g'); then (P o (C - D)) a = 0 holds for a = 1/g. With noise_removal = 0: argmin a'(P o C) a on
-// the gauge. Solved when the number of instants has grown by a tenth, from running moments, never
-// per instant.
+// Noise adds its variances D to the diagonal of C and biases every gain. Default: D is taken off, as the noise levels
+// where they are given, else estimated with the gains as the one factor of C = s g g' + D (n > 2), alternating the
+// leading eigenvector of D^-1/2 C D^-1/2 and D = diag(C - s g g'); then (P o (C - D)) a = 0 holds for a = 1/g. With
+// noise_removal = 0: argmin a'(P o C) a on the gauge. Solved when the number of instants has grown by a tenth, from
+// running moments, never per instant.
 //
-// As published: the solution of a single instant, u_ref / u_i of centred samples, smoothed with
-// 0.999999 from one. It is a ratio of Gaussians, without a mean (docs/theory/fusion.md): kept for
-// comparison.
+// As published: the solution of a single instant, u_ref / u_i of centred samples, smoothed with 0.999999 from one. It
+// is a ratio of Gaussians, without a mean (docs/theory/fusion.md): kept for comparison.
 
 #include <Eigen/LU>
 #include <array>

@@ -2,11 +2,10 @@
 // Gains and noise variances of the channels without a reference, as the one factor of their covariance
 // (one_factor.hpp), then generalized least squares with both [Aitken 1936]:
 //   y_i - mean_i = g_i x + e_i,  x = c + sum p_i (y_i - mean_i) / sum p_i g_i,  p_i = g_i / v_i
-// c is the mean of the channels' means, the gauge of the gains (the first channel's is one, as in [RV 3.5],
-// or the mean of 1/g) what cannot be known without a reference. blind-calibration weighs its
-// corrected channels alike; here a noisy one counts as little as it should. A missing sample costs
-// nothing but itself; solved after 20 instants, or three a channel, and when the record has grown
-// by a tenth.
+// c is the mean of the channels' means, the gauge of the gains (the first channel's is one, as in [RV 3.5], or the mean
+// of 1/g) what cannot be known without a reference. blind-calibration weighs its corrected channels alike; here a noisy
+// one counts as little as it should. A missing sample costs nothing but itself; solved after 20 instants, or three a
+// channel, and when the record has grown by a tenth.
 
 #include <Eigen/Core>
 #include <array>

@@ -1,11 +1,10 @@
 #pragma once
 // Fusion of sensors whose errors may be correlated in any way (Julier & Uhlmann 1997):
 //   P^-1 = sum w_i h_i h_i' / v_i,  x = P sum w_i h_i y_i / v_i,  sum w = 1, w >= 0
-// P is no less than the covariance of x whatever the correlations are, which inverse variances cannot
-// say. w makes det P least, by the multiplicative algorithm w_i <- w_i h_i' P h_i / (r v_i) (Titterington
-// 1978; Yu 2010). Of one input, seen alike by all, that is the sensor of the least noise level and no
-// other: without knowing the correlation nothing better can be promised. fast = 1: w_i ~ 1/v_i (Niehsen
-// 2002), an average whose P is larger.
+// P is no less than the covariance of x whatever the correlations are, which inverse variances cannot say. w makes det
+// P least, by the multiplicative algorithm w_i <- w_i h_i' P h_i / (r v_i) (Titterington 1978; Yu 2010). Of one input,
+// seen alike by all, that is the sensor of the least noise level and no other: without knowing the correlation nothing
+// better can be promised. fast = 1: w_i ~ 1/v_i (Niehsen 2002), an average whose P is larger.
 // Of the samples that are there, w is scaled to one again: P holds for them too.
 
 #include <array>

@@ -1,7 +1,6 @@
 #pragma once
-// What came after the M stretches of the past that look most like the last d instants predicts this
-// one; a scalar Kalman update then weighs the prediction against the channels [RV 3.8; Hamilton,
-// Berry, Sauer 2016]:
+// What came after the M stretches of the past that look most like the last d instants predicts this one; a scalar
+// Kalman update then weighs the prediction against the channels [RV 3.8; Hamilton, Berry, Sauer 2016]:
 //   p   = prediction from the neighbours of (z_{k-d} … z_{k-1})       delay_search.hpp
 //   P   = 1 / (1/Q + sum 1/v_i),   x = p + P sum (y_i - p)/v_i        information form
 // z is the inverse-variance mean, v the noise variances, Q the variance of the prediction's error.

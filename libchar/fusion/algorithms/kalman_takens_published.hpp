@@ -2,10 +2,9 @@
 // Kalman-Takens as the listing of [RV 3.8] has it, for comparison:
 //   query and dictionary from simple averages, the first `training` instants of the run
 //   F = p / x_{k-1},  P- = F P F + Q,  P = 1/(1/P- + sum 1/v_i),  x = P (p/P- + sum y_i/v_i)
-// F is no derivative and explodes where the last estimate is near zero; then P- is large and the
-// channels alone decide, which does no harm. Two mends only: v is the noise variance (the listing
-// takes the density, 623 times too small: option noise_scale) and a distance of zero does not
-// divide.
+// F is no derivative and explodes where the last estimate is near zero; then P- is large and the channels alone decide,
+// which does no harm. Two mends only: v is the noise variance (the listing takes the density, 623 times too small:
+// option noise_scale) and a distance of zero does not divide.
 
 #include <array>
 #include <vector>

@@ -222,8 +222,7 @@ void LearntMean::take(const LearntWeights& learnt) {
   direct_ = learnt.weights.cwiseQuotient(learnt.gain);
   total_ = direct_.sum();
   constant_ = learnt.constant - direct_.dot(learnt.bias);
-  // The sum of weights over gains is one but for rounding; the input's offset must not see that
-  // rounding.
+  // The sum of weights over gains is one but for rounding; the input's offset must not see that rounding.
   if ((learnt.gain.array() == 1).all() && std::abs(total_ - 1) < 1e-12) total_ = 1;
 }
 

@@ -19,9 +19,8 @@
 
 namespace libchar::fusion {
 
-// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder
-// QR, so that a learning set of any length takes no more room than a few squares of its width, and
-// no normal matrix is formed.
+// The triangle of a growing least-squares problem: rows are gathered and folded in by Householder QR, so that a
+// learning set of any length takes no more room than a few squares of its width, and no normal matrix is formed.
 
 class Triangle {
  public:
@@ -57,8 +56,7 @@ struct LeastSquaresForm {
   bool calibrate = false;
   bool sum_to_one = true;
   bool constant = false;
-  /// of the covariance of the errors towards its diagonal, sum w = 1 (error_weights.hpp); below zero:
-  /// estimated
+  /// of the covariance of the errors towards its diagonal, sum w = 1 (error_weights.hpp); below zero: estimated
   double shrinkage = 0;
   bool non_negative = false;  ///< weights of at least zero that sum to one
 };
@@ -186,13 +184,10 @@ struct RegularizedLeastSquares : ReferenceWeightedMean {
                                  .learning_complexity = "O(n^2)"};
   static constexpr Option kCalibrate{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first",
                                      true};
-  static constexpr Option kShrinkage{"shrinkage",
-                                     "",
-                                     0.1,
-                                     -1,
-                                     1,
-                                     "share of the covariance's diagonal; 0: none, below zero: "
-                                     "estimated as for independent instants"};
+  static constexpr Option kShrinkage{
+      "shrinkage", "",
+      0.1,         -1,
+      1,           "share of the covariance's diagonal; 0: none, below zero: estimated as for independent instants"};
   static constexpr auto options = [] {
     if constexpr (kNonNegative)
       return std::array{kCalibrate};

@@ -52,8 +52,7 @@ Estimate Minque::step(const Sample& y) { return general_ ? step_with(*general_, 
 template <class Variances>
 Estimate Minque::step_with(Variances& variances, const Sample& y) {
   if (detector_) detect(variances, y);
-  // Where the last instant was complete, this one is taken to be, and looked at when it shows that
-  // it is not.
+  // Where the last instant was complete, this one is taken to be, and looked at when it shows that it is not.
   if (!all_in_use() || !variances.started() || (detector_ && detector_->set_changed())) use_present(y);
   const auto fuse = [&] { return m_ > 0 ? variances.fuse(y.data(), present_.data(), m_) : std::nan(""); };
   // Written so that NaN fails.
@@ -128,9 +127,8 @@ void Minque::remarks(Findings& warnings) const {
   if (detector_) detector_->remarks(description.name, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",
-                 "minque looks for no faults: the memory of the variances (gamma) is not five "
-                 "times that of the "
-                 "fault rule (fault_gamma)");
+                 "minque looks for no faults: the memory of the variances (gamma) is not five times that of the fault "
+                 "rule (fault_gamma)");
   if (general_ || !scalar_.started()) return;
   std::vector<double> direction;
   if (scalar_.blindness(direction) <= kPoorlyKnownVariance) return;
@@ -138,9 +136,8 @@ void Minque::remarks(Findings& warnings) const {
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
   warnings.add("variances_not_identifiable",
-               "minque cannot tell the variances of these channels apart (their sum is known, the "
-               "other channels are too noisy to "
-               "divide it): " +
+               "minque cannot tell the variances of these channels apart (their sum is known, the other channels are "
+               "too noisy to divide it): " +
                    names);
 }
 

@@ -1,8 +1,7 @@
 #pragma once
-// Adaptive weights from variances that the channels tell about each other: recursive re-weighted
-// MINQUE (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by a bank of
-// cumulative sums (fault_detector.hpp) or by the mended rule of [RV] (fault_watch.hpp), then the
-// weighted mean or generalized least squares.
+// Adaptive weights from variances that the channels tell about each other: recursive re-weighted MINQUE
+// (reweighted_variances.hpp, any H: reweighted_matrix.hpp), faults by a bank of cumulative sums (fault_detector.hpp) or
+// by the mended rule of [RV] (fault_watch.hpp), then the weighted mean or generalized least squares.
 
 #include <array>
 #include <optional>
@@ -32,17 +31,14 @@ struct Minque {
       Option{"floor", "", 1e-4, 0, 1, "smallest variance relative to the fused variance of the other channels"},
       Option{"floor_largest", "", 0, 0, 1, "smallest variance relative to the largest one"},
       Option{"start_variance", "U^2", 0, 0, 1e300, "of every channel at the start; 0: from the first instants"},
-      Option{"fault_detection", "", 1, 0, 2,
-             "1: channels that fail are taken out or re-weighted, by cumulative sums; 2: by the "
-             "second "
-             "moment; 0: neither",
-             true},
+      Option{
+          "fault_detection", "", 1, 0, 2,
+          "1: channels that fail are taken out or re-weighted, by cumulative sums; 2: by the second moment; 0: neither",
+          true},
       Option{"false_alarm_s", "s", 1e5, 1, 1e15,
-             "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 "
-             "samples)"},
+             "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 samples)"},
       Option{"recovery_window", "samples", 0, 0, 1e9,
-             "own samples that must agree with the others before a channel comes in again (0: 200, "
-             "or those of 2 s "
+             "own samples that must agree with the others before a channel comes in again (0: 200, or those of 2 s "
              "where they are fewer) (detection 1)",
              true},
       Option{"fault_gamma", "", 0.99, 0.5, 0.999999, "memory of the second moment that shows a fault (detection 2)"},

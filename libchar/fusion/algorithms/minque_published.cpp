@@ -195,8 +195,7 @@ void MinquePublished::judge(const Sample& y) {
   if (changed) choose(y, false);
 }
 
-/// Weights of the channels in use from their variances; returns the variance of the result, NaN for
-/// a simple mean.
+/// Weights of the channels in use from their variances; returns the variance of the result, NaN for a simple mean.
 double MinquePublished::weigh() {
   bool positive = m_ >= 3;
   for (int k = 0; k < m_; ++k) positive = positive && variances_[in_use_[static_cast<std::size_t>(k)]] > 0;
@@ -215,8 +214,7 @@ double MinquePublished::weigh() {
 void MinquePublished::remarks(Findings& warnings) const {
   if (fault_free_ <= 0)
     warnings.add("faults_not_watched",
-                 "minque-published looks for no faults: its thresholds need a stretch that is "
-                 "known to hold none");
+                 "minque-published looks for no faults: its thresholds need a stretch that is known to hold none");
   if (plain_means_ > 0)
     warnings.add("negative_variance",
                  "minque-published used the simple mean where an estimated variance was not above zero", {},

@@ -1,7 +1,6 @@
 #pragma once
-// MINQUE with identity weights on exponentially forgotten moments, a threshold and a recovery time:
-// algorithms 1-3 of [RV 4, 5] with what is wrong in them mended (docs/theory/fusion.md). Kept for
-// comparison; `minque` is the one to use.
+// MINQUE with identity weights on exponentially forgotten moments, a threshold and a recovery time: algorithms 1-3 of
+// [RV 4, 5] with what is wrong in them mended (docs/theory/fusion.md). Kept for comparison; `minque` is the one to use.
 //
 //   v = MINQUE(I) of the moments of the channels in use (minque_published.hpp)
 //   w_i = (1/v_i) / sum_j 1/v_j; the simple mean of the channels in use whenever a v is not above

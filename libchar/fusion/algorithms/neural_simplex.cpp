@@ -212,8 +212,7 @@ void NeuralSimplex::remarks(Findings& warnings) const {
   if (learning_.taught && !network_.right && learning_.teaching)
     warnings.add(
         "network_not_better",
-        "neural-simplex gives its baseline: on what it had not learnt, its network's error "
-        "was " +
+        "neural-simplex gives its baseline: on what it had not learnt, its network's error was " +
             brief_text(std::sqrt(learning_.teaching->network_square() / learning_.teaching->baseline_square()), 3) +
             " times that of the baseline");
 }

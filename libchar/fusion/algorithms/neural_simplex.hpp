@@ -38,9 +38,7 @@ struct NeuralSimplex {
       Option{"starts", "", 2, 1, 100, "trainings from different random weights", true},
       Option{"seed", "", 1, 0, 9007199254740992.0, "of the random weights and choices", true},
       Option{"retraining", "", 1, 0, 1,
-             "1: learns again in the run, without sensors that fail, and from its own past; 0: "
-             "neither",
-             true}};
+             "1: learns again in the run, without sensors that fail, and from its own past; 0: neither", true}};
 
   NeuralSimplex(const Array& array, const Settings& settings);
   NeuralSimplex(const NeuralSimplex&) = delete;

@@ -90,19 +90,15 @@ void Perceptron::finish_learning() {
   const std::size_t training = kept_ - held_out;
   if (training < 2 * network_.size() || held_out == 0)
     throw numeric_error("E0860")
-        .says(
-            "the learning window holds fewer than two instants for each weight of the perceptron "
-            "(" +
-            std::to_string(network_.size()) + " weights)")
+        .says("the learning window holds fewer than two instants for each weight of the perceptron (" +
+              std::to_string(network_.size()) + " weights)")
         .got(std::to_string(training))
         .hint("set fewer neurons, or lengthen the learning window");
   put_in_order();
   standardise();
   if (!std::isfinite(target_.deviation))
     throw numeric_error("E0864")
-        .says(
-            "the reference stands still in the learning window: a network would learn one number "
-            "and no sensor")
+        .says("the reference stands still in the learning window: a network would learn one number and no sensor")
         .hint("learn where the input moves");
   const TrainingRows training_rows{window_.data(), training};
   const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};

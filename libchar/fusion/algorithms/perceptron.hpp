@@ -1,5 +1,5 @@
 #pragma once
-// A tanh network (tanh_network.hpp) that learns the input from all channels at once, by
+// A tanh network (network_training.hpp) that learns the input from all channels at once, by
 // Levenberg-Marquardt on   sum_k (out(z_k) - t_k)^2   over the learning window            [RV 3.7]
 // z and t are channels and reference with mean zero and deviation one, so an offset costs nothing.
 // Of several seeded starts the one that does best on the last part of the window (not used for the
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
-#include "libchar/fusion/detail/network/tanh_network.hpp"
+#include "libchar/fusion/detail/network/network_training.hpp"
 #include "libchar/fusion/detail/uniform.hpp"
 
 namespace libchar::fusion {
@@ -37,8 +37,7 @@ struct Perceptron {
 
   Perceptron(const Array& array, const Settings& settings);
   void learn(const Sample& y, const Sample& truth);
-  /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave
-  /// numbers.
+  /// Throws Error(numeric): fewer instants than twice the number of weights, or no start gave numbers.
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);

@@ -7,10 +7,9 @@
 //   w_i = (1/v_i) / sum_j 1/v_j
 // A variance that comes out below `floor` x the largest is raised to it; [RV] has no rule.
 //
-// As published: v_i = gamma_ii - gamma_ir with gamma_ij = mean over time of y_i y_j and a reference
-// channel r that must be free of faults (for r itself another one). The input's power stands in
-// both terms and cancels on average only, so that the estimates may be negative and the weights
-// have no finite moments (docs/theory/fusion.md).
+// As published: v_i = gamma_ii - gamma_ir with gamma_ij = mean over time of y_i y_j and a reference channel r that must
+// be free of faults (for r itself another one). The input's power stands in both terms and cancels on average only, so
+// that the estimates may be negative and the weights have no finite moments (docs/theory/fusion.md).
 
 #include <array>
 

@@ -34,48 +34,52 @@ class TiltWindow {
   std::vector<double> truth_;
 };
 
-struct TiltComplementaryTuned {
+/// What both hold beside their filter.
+class TiltTuned {
+ public:
+  explicit TiltTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
+  void learn(const Sample& y, const Sample& truth) { window_.add(tilt_sample(channels_, y), truth[0]); }
+  void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
+
+ protected:
+  TiltChannels channels_;
+  double dt_;
+  TiltWindow window_;
+};
+
+struct TiltComplementaryTuned : TiltTuned {
   static constexpr Description description{.name = "tilt-complementary-tuned",
                                            .title = "Tilt: complementary filter, time constant learnt",
                                            .source = "[RV 2.5]",
                                            .complexity = "O(1)",
                                            .needs = kTiltTunedNeeds,
                                            .learning_complexity = "about 50 runs of the filter"};
-  explicit TiltComplementaryTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
-  void learn(const Sample& y, const Sample& truth) { window_.add(tilt_sample(channels_, y), truth[0]); }
-  void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
+  using TiltTuned::TiltTuned;
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
   void remarks(Findings& warnings) const;
 
  private:
-  TiltChannels channels_;
-  double dt_, time_constant_ = 0;
-  TiltWindow window_;
+  double time_constant_ = 0;
   std::optional<ComplementaryFilter> filter_;
 };
 
-struct TiltKalmanTuned {
+struct TiltKalmanTuned : TiltTuned {
   static constexpr Description description{.name = "tilt-kalman-tuned",
                                            .title = "Tilt: Kalman filter, noise learnt",
                                            .source = "[RV 2.5]; Bierman 1977",
                                            .complexity = "O(1)",
                                            .needs = kTiltTunedNeeds,
                                            .learning_complexity = "about 150 runs of the filter"};
-  explicit TiltKalmanTuned(const Array& array) : channels_(*array.tilt), dt_(1 / array.rate_hz) {}
-  void learn(const Sample& y, const Sample& truth) { window_.add(tilt_sample(channels_, y), truth[0]); }
-  void skip(const Sample& y) { window_.add(tilt_sample(channels_, y), std::nan("")); }
+  using TiltTuned::TiltTuned;
   void finish_learning();
   void exchange(LearntExchange& with);
   Estimate step(const Sample& y);
   void remarks(Findings& warnings) const;
 
  private:
-  TiltChannels channels_;
-  double dt_;
   TiltNoise noise_;
-  TiltWindow window_;
   std::optional<TiltKalmanFilter> filter_;
 };
 

@@ -5,7 +5,7 @@
 // tell beside any input - the differences between sensors - is filtered (Bayard & Ploen 2003; Xue et al.
 // 2012). With P the prediction covariance of b and S = C P C' + R:
 //   W = (H' S^-1 H)^-1 H' S^-1,  x = W (y - C b),  var x = (H' S^-1 H)^-1
-//   b <- A (b + P C' S^-1 (I - H W)(y - C b)),   P by the Riccati equation (riccati.hpp)
+//   b <- A (b + P C' S^-1 (I - H W)(y - C b)),   P by the Riccati equation (bias_filter.hpp)
 // P does not depend on the samples. It is computed beforehand at instants 0 to 16 and four times an
 // octave after, by doubling (as accurate as a square root form: nothing is subtracted), and stands in
 // between; a step is a product with the gain that holds. Short gaps take P as if they were none.
@@ -46,9 +46,8 @@ struct VirtualSensor {
              "of the input about zero, for a model of it; 0: nothing is assumed of the input"},
       Option{"input_corner_hz", "Hz", 1, 1e-9, 1e9, "of that model: double pole of the input's spectrum"},
       Option{"smoothed", "", 0, 0, 1,
-             "1: each estimate from the whole run, what comes after it as well (a smoother, for "
-             "logs); "
-             "0: from what came before (a filter)",
+             "1: each estimate from the whole run, what comes after it as well (a smoother, for logs); 0: from what "
+             "came before (a filter)",
              true},
       Option{"most_mb", "MB", 1000, 1, 1e9, "of the run that the smoother keeps; more is refused"}};
   VirtualSensor(const Array& array, const Settings& settings);

@@ -2,7 +2,6 @@
 // Samples fit to learn an alignment from: without those at a limit of the range, without wild ones.
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "libchar/fusion/alignment.hpp"
 

@@ -17,10 +17,9 @@ constexpr std::size_t kGroup = 16;  // starts whose smallest distance is known
 
 using FourBits = std::int64_t __attribute__((vector_size(32)));
 
-/// D_s of all starts, NaN where a value or the successor is missing, the smallest of each group
-/// (the last one may be shorter), and the smallest of each class: starts as many apart as there are
-/// classes, a multiple of the groups' size. Lanes are separate starts, so wider registers give the
-/// same bits.
+/// D_s of all starts, NaN where a value or the successor is missing, the smallest of each group (the last one may be
+/// shorter), and the smallest of each class: starts as many apart as there are classes, a multiple of the groups' size.
+/// Lanes are separate starts, so wider registers give the same bits.
 LIBCHAR_LANES void cityblock_lanes(const double* series, std::size_t starts, const double* query, std::size_t dimension,
                                    double* distances, double* smallest, double* of_class, std::size_t classes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

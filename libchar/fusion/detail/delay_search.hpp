@@ -2,11 +2,10 @@
 // The stretches of a series that are nearest to a given one: for a query q of d values, the M
 // starts s with the smallest cityblock distances
 //   D_s = sum_j |z_{s+j} - q_j|
-// among those whose d values and successor z_{s+d} are all there. The search is exact: all
-// distances (vectorised over s), then one pass that keeps the M best in order: those within a
-// limit that is known from the smallest distances of 3 M classes of starts. Equal distances go by
-// the smaller start. A thousand stretches of six values fit the first cache; a tree would not pay
-// (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances 13 us).
+// among those whose d values and successor z_{s+d} are all there. The search is exact: all distances (vectorised over
+// s), then one pass that keeps the M best in order: those within a limit that is known from the smallest distances of 3
+// M classes of starts. Equal distances go by the smaller start. A thousand stretches of six values fit the first cache;
+// a tree would not pay (m = 1000, d = 6: SciPy's k-d tree 20 us, all distances 13 us).
 
 #include <span>
 #include <vector>

@@ -11,7 +11,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/bias/bias_filter.hpp"
-#include "libchar/fusion/detail/device/c_text.hpp"
+#include "libchar/fusion/detail/device/c_steps.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -44,12 +44,16 @@ const std::vector<double>& learnt_list(const CChoice& choice, std::string_view n
 
 double learnt_number(const CChoice& choice, std::string_view name) { return learnt_list(choice, name, 1)[0]; }
 
-std::string replaced(std::string text, const std::vector<std::pair<std::string_view, std::string>>& with) {
+using Replacements = std::vector<std::pair<std::string_view, std::string>>;
+
+std::string replaced(std::string text, const Replacements& with) {
   for (const auto& [from, to] : with)
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);
   return text;
 }
+
+std::string step(std::string_view text, const Replacements& with) { return replaced(fmt::format("\n{}", text), with); }
 
 class Maker {
  public:
@@ -110,7 +114,7 @@ CForm Maker::weighted(bool alike) {
   }
   CForm out;
   out.functions = (alike ? "" : table("weight", weights)) + (alike ? table("level", variances) : "") +
-                  replaced(std::string(alike ? kMeanInC : kWeightedInC), {{"VARIANCE", number(variance)}});
+                  step(alike ? mean_in_c() : weighted_in_c(), {{"VARIANCE", number(variance)}});
   out.cost.sums = alike ? 2 * n : 3 * n;
   out.cost.divisions = 1;
   return out;
@@ -133,16 +137,42 @@ CForm Maker::least_squares() {
   const bool plain = std::all_of(gain.begin(), gain.end(), [](double g) { return g == 1; });
   if (plain && std::abs(total - 1) < 1e-12) total = 1;
   CForm out;
-  out.functions =
-      table("direct", direct) + table("gain", gain) + table("bias", bias) + table("weight", weight) +
-      replaced(std::string(kLeastSquaresInC), {{"TOTAL", number(total)},
-                                               {"SHIFT", number(learnt_number(choice_, "constant") - shift)},
-                                               {"CONSTANT", number(learnt_number(choice_, "constant"))},
-                                               {"ALL", number(all)},
-                                               {"VARIANCE", number(learnt_number(choice_, "variance"))}});
+  out.functions = table("direct", direct) + table("gain", gain) + table("bias", bias) + table("weight", weight) +
+                  step(least_squares_in_c(), {{"TOTAL", number(total)},
+                                              {"SHIFT", number(learnt_number(choice_, "constant") - shift)},
+                                              {"CONSTANT", number(learnt_number(choice_, "constant"))},
+                                              {"ALL", number(all)},
+                                              {"VARIANCE", number(learnt_number(choice_, "variance"))}});
   out.cost.sums = 3 * static_cast<double>(n_) + 3;
   return out;
 }
+
+constexpr const char* kMinqueState =
+    R"(  fusion_real v[N], inverse[N], r[N], p[N], shown[N], gathered[N], moment[N], work[N];
+  fusion_real first[16 * N];
+  fusion_real fused, x, rounding, gathered_gain, last_gain, gathered_rounding;
+  uint32_t index[N], present[N], calm[N];
+  uint32_t m, use, instants, gathered_instants, first_instants, started, count_out, not_begun, now;
+  unsigned char out[N];
+)";
+
+constexpr const char* kMinqueStart = R"(  {
+    int i;
+    for (i = 0; i < N; ++i) {
+      s->v[i] = START;
+      s->inverse[i] = 1 / START;
+      s->shown[i] = 1;
+      s->moment[i] = -1;
+      s->present[i] = (uint32_t)i;
+      s->index[i] = (uint32_t)N;
+    }
+    s->use = N;
+    s->not_begun = N;
+    s->fused = 1;
+    s->started = STARTED;
+    s->last_gain = LASTING;
+  }
+)";
 
 CForm Maker::minque() {
   const Settings& s = *choice_.settings;
@@ -153,30 +183,29 @@ CForm Maker::minque() {
   const bool watches = s["fault_detection"] != 0 && shorter;
   if (s["fault_detection"] == 1)
     out.notes.emplace_back(
-        "faults are found by the second moment (minque.fault_detection = 2), not by cumulative "
-        "sums, which have no form in C");
+        "faults are found by the second moment (minque.fault_detection = 2), not by cumulative sums, which have no "
+        "form in C");
   const double armed =
       std::max(static_cast<double>(choice_.array->fault_free_samples), std::ceil(1 / (1 - s["gamma"])));
   const double start = s["start_variance"];
-  out.state = std::string(kMinqueStateInC);
-  out.start = replaced(std::string(kMinqueStartInC), {{"STARTED", start > 0 ? "1" : "0"},
-                                                      {"START", number(start > 0 ? start : 1)},
-                                                      {"LASTING", number(1 - s["gamma"])}});
-  out.functions =
-      replaced(std::string(kMinqueInC), {{"FORGETS", start > 0 ? "1" : "0"},
-                                         {"LASTING", number(1 - s["gamma"])},
-                                         {"DAMPING", number(s["damping"])},
-                                         {"NOISE_OF_ROUNDING", number(1e4)},
-                                         {"LEAST_RATIO", number(1e-26)},
-                                         {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
-                                         {"FLOOR", number(s["floor"])},
-                                         {"TINY", number(choice_.single ? 1e-36 : 1e-280)},
-                                         {"SMALLEST_SHARE", number(choice_.single ? 1e-6 : 1e-12)},
-                                         {"WATCHES", watches ? "1" : "0"},
-                                         {"FAULT_GAIN", number(1 - s["fault_gamma"])},
-                                         {"THRESHOLD", number(s["fault_threshold"])},
-                                         {"RECOVERY", fmt::format("{:.0f}u", std::min(s["recovery_samples"], 4e9))},
-                                         {"ARMED", fmt::format("{:.0f}u", std::min(armed, 4e9))}});
+  out.state = kMinqueState;
+  out.start = replaced(kMinqueStart, {{"STARTED", start > 0 ? "1" : "0"},
+                                      {"START", number(start > 0 ? start : 1)},
+                                      {"LASTING", number(1 - s["gamma"])}});
+  out.functions = step(minque_in_c(), {{"FORGETS", start > 0 ? "1" : "0"},
+                                       {"LASTING", number(1 - s["gamma"])},
+                                       {"DAMPING", number(s["damping"])},
+                                       {"NOISE_OF_ROUNDING", number(1e4)},
+                                       {"LEAST_RATIO", number(1e-26)},
+                                       {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
+                                       {"FLOOR", number(s["floor"])},
+                                       {"TINY", number(choice_.single ? 1e-36 : 1e-280)},
+                                       {"SMALLEST_SHARE", number(choice_.single ? 1e-6 : 1e-12)},
+                                       {"WATCHES", watches ? "1" : "0"},
+                                       {"FAULT_GAIN", number(1 - s["fault_gamma"])},
+                                       {"THRESHOLD", number(s["fault_threshold"])},
+                                       {"RECOVERY", fmt::format("{:.0f}u", std::min(s["recovery_samples"], 4e9))},
+                                       {"ARMED", fmt::format("{:.0f}u", std::min(armed, 4e9))}});
   out.reals = 8 * n_ + 16 * n_ + 6;
   out.words = 3 * n_ + 9;
   out.bytes = n_;
@@ -233,16 +262,16 @@ CForm Maker::virtual_sensor() {
   out.state = fmt::format("  fusion_real drift[{}]; /* of the sensors */\n  uint32_t now, epoch;\n", poles.size());
   out.functions = epochs(filter, whole) + table("weight", weights) + table("gain", gains) + table("pole", poles) +
                   channel + "};\n" +
-                  replaced(std::string(kVirtualInC), {{"STATES", std::to_string(poles.size())},
-                                                      {"EPOCHS", std::to_string(filter.epoch_at(1e300) + 1)},
-                                                      {"NEARLY_ONE", number(1 - 1e-6)}});
+                  step(virtual_sensor_in_c(), {{"STATES", std::to_string(poles.size())},
+                                               {"EPOCHS", std::to_string(filter.epoch_at(1e300) + 1)},
+                                               {"NEARLY_ONE", number(1 - 1e-6)}});
   out.reals = poles.size();
   out.words = 2;
   const auto n = static_cast<double>(n_), m = static_cast<double>(poles.size());
   out.cost.sums = 4 * n + 2 * m * n + 3 * m;
   out.notes.emplace_back(
-      "the gains are those of the steady state, also at the start; where a sensor has no sample, "
-      "the weights of the others are scaled up");
+      "the gains are those of the steady state, also at the start; where a sensor has no sample, the weights of the "
+      "others are scaled up");
   return out;
 }
 
@@ -253,15 +282,14 @@ CForm Maker::perceptron() {
   const std::vector<double>& p = learnt_list(choice_, "parameters", hidden * (n_ + 2) + 1);
   std::vector<double> inverse = learnt_list(choice_, "deviations", n_);
   CForm out;
-  out.functions =
-      table("mean", learnt_list(choice_, "means", n_)) + table("deviation", inverse) +
-      table("input_weight", p.data(), hidden * n_) + table("input_bias", p.data() + hidden * n_, hidden) +
-      table("output_weight", p.data() + hidden * (n_ + 1), hidden) +
-      replaced(std::string(kPerceptronInC), {{"HIDDEN", std::to_string(hidden)},
-                                             {"OUTPUT_BIAS", number(p.back())},
-                                             {"TARGET_MEAN", number(learnt_number(choice_, "target_mean"))},
-                                             {"TARGET_DEVIATION", number(learnt_number(choice_, "target_deviation"))},
-                                             {"VARIANCE", number(learnt_number(choice_, "variance"))}});
+  out.functions = table("mean", learnt_list(choice_, "means", n_)) + table("deviation", inverse) +
+                  table("input_weight", p.data(), hidden * n_) + table("input_bias", p.data() + hidden * n_, hidden) +
+                  table("output_weight", p.data() + hidden * (n_ + 1), hidden) +
+                  step(perceptron_in_c(), {{"HIDDEN", std::to_string(hidden)},
+                                           {"OUTPUT_BIAS", number(p.back())},
+                                           {"TARGET_MEAN", number(learnt_number(choice_, "target_mean"))},
+                                           {"TARGET_DEVIATION", number(learnt_number(choice_, "target_deviation"))},
+                                           {"VARIANCE", number(learnt_number(choice_, "variance"))}});
   const auto n = static_cast<double>(n_), h = static_cast<double>(hidden);
   out.cost.sums = n + 2 * n * h + 3 * h + 2;
   out.cost.divisions = n;
@@ -287,14 +315,13 @@ CForm Maker::tilt() {
   CForm out;
   out.state = "  fusion_real angle, rate, heard, steps;\n  unsigned char known;\n";
   out.start = at_zero ? "  s->known = 1;\n" : "";
-  out.functions =
-      replaced(std::string(kTiltInC), {{"GYROSCOPE", std::to_string(choice_.array->tilt->gyroscope)},
-                                       {"ACCELEROMETER_X", std::to_string(choice_.array->tilt->accelerometer_x)},
-                                       {"ACCELEROMETER_Z", std::to_string(choice_.array->tilt->accelerometer_z)},
-                                       {"START", number(at_zero ? 0 : std::floor(start_s / dt + 1e-6))},
-                                       {"LAMBDA", number(lambda)},
-                                       {"DT", number(dt)},
-                                       {"PI", number(std::numbers::pi)}});
+  out.functions = step(tilt_in_c(), {{"GYROSCOPE", std::to_string(choice_.array->tilt->gyroscope)},
+                                     {"ACCELEROMETER_X", std::to_string(choice_.array->tilt->accelerometer_x)},
+                                     {"ACCELEROMETER_Z", std::to_string(choice_.array->tilt->accelerometer_z)},
+                                     {"START", number(at_zero ? 0 : std::floor(start_s / dt + 1e-6))},
+                                     {"LAMBDA", number(lambda)},
+                                     {"DT", number(dt)},
+                                     {"PI", number(std::numbers::pi)}});
   out.reals = 4;
   out.bytes = 1;
   out.cost.sums = 16;
@@ -312,8 +339,6 @@ std::string c_number(double value, bool single) {
   if (single) out += "f";
   return value < 0 ? "(" + out + ")" : out;
 }
-
-std::vector<std::string_view> algorithms_in_c() { return {kInC.begin(), kInC.end()}; }
 
 CForm c_form(const CChoice& choice) { return Maker(choice).make(); }
 

@@ -37,8 +37,6 @@ struct CChoice {
   bool single = false;  ///< float
 };
 
-/// Names of the algorithms that have one, in the order of reports.
-std::vector<std::string_view> algorithms_in_c();
 /// Throws Error(usage): no such form of it, or not for this array or these options.
 CForm c_form(const CChoice& choice);
 

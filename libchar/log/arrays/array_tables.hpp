@@ -1,8 +1,7 @@
 #pragma once
-// Arrays of one length in one group are the columns of one table, which is a topic:
-// np.savez('log.npz', t=t, gyr=gyr, acc=acc) is a table of the fields t, gyr_0, gyr_1… Which arrays
-// belong together, how they are turned, what fields are called, which single number is a sampling
-// rate, and blocks of rows: here, for every container.
+// Arrays of one length in one group are the columns of one table, which is a topic: np.savez('log.npz', t=t, gyr=gyr,
+// acc=acc) is a table of the fields t, gyr_0, gyr_1… Which arrays belong together, how they are turned, what fields are
+// called, which single number is a sampling rate, and blocks of rows: here, for every container.
 
 #include <memory>
 #include <string>

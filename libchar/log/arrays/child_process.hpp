@@ -1,8 +1,7 @@
 #pragma once
-// A parser that others wrote, in a process of its own: what crashes it or makes it run for ever
-// ends that process and nothing else. No program is started; the process is a copy of this one that
-// answers questions through pipes and may write no file. Where there are no processes, as in a web
-// page, the parser runs in this
+// A parser that others wrote, in a process of its own: what crashes it or makes it run for ever ends that process and
+// nothing else. No program is started; the process is a copy of this one that answers questions through pipes and may
+// write no file. Where there are no processes, as in a web page, the parser runs in this
 // one (in_process.cpp): there the page's worker is what it can end.
 
 #include <cstddef>

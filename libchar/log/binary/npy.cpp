@@ -1,5 +1,4 @@
-// The .npy format: 1-D, 2-D (rows × channels, C or Fortran order) and structured arrays of plain
-// numbers.
+// The .npy format: 1-D, 2-D (rows × channels, C or Fortran order) and structured arrays of plain numbers.
 
 #include <fmt/format.h>
 

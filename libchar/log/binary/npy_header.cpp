@@ -6,7 +6,7 @@
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
 
 namespace libchar {

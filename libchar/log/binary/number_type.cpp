@@ -41,8 +41,7 @@ U swapped(U bits) {
   return bits;
 }
 
-// IEEE 754 binary16: 1 sign, 5 exponent (bias 15), 10 fraction bits; every value is exact in
-// binary64.
+// IEEE 754 binary16: 1 sign, 5 exponent (bias 15), 10 fraction bits; every value is exact in binary64.
 double half_value(std::uint16_t bits) {
   const int exponent = (bits >> 10U) & 0x1F;
   const int fraction = bits & 0x3FF;

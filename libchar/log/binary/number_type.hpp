@@ -22,9 +22,8 @@ std::string_view name_of(NumberType type);  ///< "f64", "i16"…
 std::optional<NumberType> find_number_type(std::string_view name);
 bool is_float(NumberType type);
 
-/// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed).
-/// Returns how many of them a double cannot hold exactly (64-bit integers above 2^53), which were
-/// rounded to nearest.
+/// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed). Returns how many of
+/// them a double cannot hold exactly (64-bit integers above 2^53), which were rounded to nearest.
 std::uint64_t read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out);
 
 /// The same as exact 64-bit integers, for stamps; only for integer types. Returns the position of
@@ -35,8 +34,7 @@ std::optional<std::size_t> read_integers(const std::byte* first, std::size_t str
 /// Writes one double as f32 or f64.
 void write_number(double value, NumberFormat format, std::byte* to);
 
-/// Would these values make sense read with the other byte order, and none as they are (magnitudes
-/// like 1e-315)?
+/// Would these values make sense read with the other byte order, and none as they are (magnitudes like 1e-315)?
 bool looks_byte_swapped(std::span<const double> values, NumberType type);
 
 }  // namespace libchar

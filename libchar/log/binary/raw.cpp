@@ -1,5 +1,4 @@
-// The raw format: numbers of one type without a header, interleaved or planar, described by a
-// sidecar.
+// The raw format: numbers of one type without a header, interleaved or planar, described by a sidecar.
 
 #include <fmt/format.h>
 

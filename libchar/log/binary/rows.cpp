@@ -207,8 +207,8 @@ class BinaryRows final : public RowSource {
     if (wanted.probe.size() < std::min<std::uint64_t>(kOrderProbe, layout_.rows)) return;
     if (looks_byte_swapped(wanted.probe, wanted.column.number.type)) {
       warnings.add("implausible_magnitude",
-                   fmt::format("values as small as 10⁻¹⁰⁰ or as large as 10¹⁰⁰ that would be "
-                               "ordinary in {}-endian order: is the byte order right?",
+                   fmt::format("values as small as 10⁻¹⁰⁰ or as large as 10¹⁰⁰ that would be ordinary in {}-endian "
+                               "order: is the byte order right?",
                                wanted.column.number.big_endian ? "little" : "big"),
                    "field " + wanted.column.name);
     }

@@ -1,6 +1,5 @@
 #pragma once
-// The sidecar FILE.json or FILE.yaml that says what a raw binary file holds (docs/formats.md lists
-// the keys).
+// The sidecar FILE.json or FILE.yaml that says what a raw binary file holds (docs/formats.md lists the keys).
 
 #include <cstdint>
 #include <optional>
@@ -33,8 +32,7 @@ struct Sidecar {
 /// The rows that reader, writer and docs/formats.md share.
 const Fields<Sidecar>& sidecar_fields();
 
-/// Path of the sidecar that stands beside `log`, "" when there is none. Throws Error(input) when
-/// there are two.
+/// Path of the sidecar that stands beside `log`, "" when there is none. Throws Error(input) when there are two.
 std::string find_sidecar(const std::string& log);
 
 /// Reads one sidecar (JSON by the suffix .json, else YAML). Throws Error(input) with line, column

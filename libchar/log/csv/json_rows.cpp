@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/head/other_content.hpp"
 #include "libchar/log/csv/made_text.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/json_rows.hpp"
 #include "libchar/log/csv/lvm_rows.hpp"
 #include "libchar/log/csv/sentence_rows.hpp"

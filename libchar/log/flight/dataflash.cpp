@@ -1,9 +1,7 @@
-// ArduPilot's DataFlash log: every message that holds numbers is a topic, of several sensors one
-// each ("GYR 0", "GYR 1"). The batch sampler's messages (ISBH, a header, and ISBD, blocks of 32
-// samples) are bursts: sample k was taken at the header's SampleUS + k / smp_rate, and is count /
-// mul in m/s² (type 0) or rad/s (type 1).
-// Source: ArduPilot's libraries/AP_Logger/LogStructure.h,
-// libraries/AP_InertialSensor/{LogStructure.h,BatchSampler.cpp}.
+// ArduPilot's DataFlash log: every message that holds numbers is a topic, of several sensors one each ("GYR 0", "GYR
+// 1"). The batch sampler's messages (ISBH, a header, and ISBD, blocks of 32 samples) are bursts: sample k was taken at
+// the header's SampleUS + k / smp_rate, and is count / mul in m/s² (type 0) or rad/s (type 1). Source: ArduPilot's
+// libraries/AP_Logger/LogStructure.h, libraries/AP_InertialSensor/{LogStructure.h,BatchSampler.cpp}.
 
 #include <fmt/format.h>
 
@@ -119,8 +117,8 @@ class DataflashReader final : public TopicReader {
     if (!walk_ || log_.contents[topic_].kind) return;
     const DataflashTopic& content = log_.contents[topic_];
     warnings.add("bursts",
-                 fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a "
-                             "spectrum, no good for Allan deviations beyond {}",
+                 fmt::format("bursts of at most {} samples at {} Hz with gaps between them: good for a spectrum, no "
+                             "good for Allan deviations beyond {}",
                              content.burst_samples, brief_text(content.burst_rate_hz, 6),
                              duration_text(content.burst_samples / content.burst_rate_hz)),
                  "", content.bursts);

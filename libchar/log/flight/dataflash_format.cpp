@@ -13,10 +13,9 @@
 
 namespace libchar {
 
-// A message is 0xa3 0x95, its type, and as many bytes as its FMT says. It counts when another one
-// begins behind it, or the end: of one that lost bytes on its way the rest would be wrong numbers.
-// From where that is not so the next such message is looked for byte by byte, and what lies between
-// is counted.
+// A message is 0xa3 0x95, its type, and as many bytes as its FMT says. It counts when another one begins behind it, or
+// the end: of one that lost bytes on its way the rest would be wrong numbers. From where that is not so the next such
+// message is looked for byte by byte, and what lies between is counted.
 
 namespace {
 

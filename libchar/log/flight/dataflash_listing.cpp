@@ -103,10 +103,10 @@ class DataflashLister {
   void note_block(const DataflashKind& kind, const DataflashMessage& message) {
     const DataflashBurst* burst = batches_.burst_of(kind, message.body);
     if (burst == nullptr) {
-      listing_->losses.add("burst_without_header",
-                           "blocks of the batch sampler whose header is not there or says no rate and "
-                           "no scale were left out",
-                           fmt::format("byte {}", message.byte));
+      listing_->losses.add(
+          "burst_without_header",
+          "blocks of the batch sampler whose header is not there or says no rate and no scale were left out",
+          fmt::format("byte {}", message.byte));
       return;
     }
     DataflashTopic* content = topic_of(*burst);

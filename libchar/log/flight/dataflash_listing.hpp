@@ -3,10 +3,8 @@
 // kind, their rows and stamps.
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "libchar/core/finding.hpp"

@@ -1,7 +1,6 @@
-// PX4's ULog: every subscription ("sensor_gyro 0") is a topic with stamps of its own. The samples
-// of a FIFO message are rows: sample k of n was taken at timestamp_sample - (n - 1 - k) dt, and is
-// scale · count. Source: docs.px4.io, "ULog File Format"; PX4's SensorGyroFifo.msg; the rule of the
-// stamps is that of PX4's flight review.
+// PX4's ULog: every subscription ("sensor_gyro 0") is a topic with stamps of its own. The samples of a FIFO message are
+// rows: sample k of n was taken at timestamp_sample - (n - 1 - k) dt, and is scale · count. Source: docs.px4.io, "ULog
+// File Format"; PX4's SensorGyroFifo.msg; the rule of the stamps is that of PX4's flight review.
 
 #include <fmt/format.h>
 
@@ -125,8 +124,7 @@ class UlogReader final : public TopicReader {
     warnings.merge(log_.losses);
     if (log_.dropouts == 0) return;
     const std::string message = fmt::format(
-        "the logger lost messages, {} ms in all: gaps of every topic, which spoil Allan deviations "
-        "near their length",
+        "the logger lost messages, {} ms in all: gaps of every topic, which spoil Allan deviations near their length",
         log_.dropped_ms);
     for (const std::string& place : log_.dropout_places) warnings.add("dropout", message, place);
     if (log_.dropouts > log_.dropout_places.size())

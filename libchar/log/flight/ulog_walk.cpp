@@ -1,7 +1,6 @@
-// A message is u16 size, u8 type and `size` bytes; nothing marks its begin. It counts when its
-// content agrees with its type and another one begins behind it, or the end: of one that lost bytes
-// on its way the rest would be wrong numbers. From where that is not so the next such message is
-// looked for byte by byte, and what lies between is counted.
+// A message is u16 size, u8 type and `size` bytes; nothing marks its begin. It counts when its content agrees with its
+// type and another one begins behind it, or the end: of one that lost bytes on its way the rest would be wrong numbers.
+// From where that is not so the next such message is looked for byte by byte, and what lies between is counted.
 
 #include "libchar/log/flight/ulog_walk.hpp"
 

@@ -16,7 +16,6 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
-#include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/chunked_topics.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/file_window.hpp"
@@ -24,9 +23,8 @@
 namespace libchar {
 namespace {
 
-// Messages of a bag of ROS 1 in the order in which they stand there, and what its index says of them.
-// Source: ROS wiki "Bags/Format/2.0": records of a header (u32 length, then fields u32 length
-// "name=value") and data (u32 length).
+// Messages of a bag of ROS 1 in the order in which they stand there, and what its index says of them. Source: ROS wiki
+// "Bags/Format/2.0": records of a header (u32 length, then fields u32 length "name=value") and data (u32 length).
 
 inline constexpr std::string_view kBagMagic = "#ROSBAG V";
 inline constexpr std::uint64_t kFirstBagRecord = 13;  ///< behind "#ROSBAG V2.0\n"

@@ -72,8 +72,8 @@ void ChunkScan::lose_chunk(Findings& warnings, const char* what, const std::stri
 
 ChunkScan::Step ChunkScan::cut(Findings& warnings, std::string_view inside, std::uint64_t at) const {
   warnings.add("cut_end",
-               fmt::format("the file ends at byte {} {} (a recording that was not closed, or a "
-                           "copy that was cut): only what is whole is read",
+               fmt::format("the file ends at byte {} {} (a recording that was not closed, or a copy that was cut): "
+                           "only what is whole is read",
                            file_.size(), inside),
                at < file_.size() ? fmt::format("which begins at byte {}", at) : std::string());
   return Step::end;

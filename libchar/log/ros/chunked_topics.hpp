@@ -1,7 +1,6 @@
 #pragma once
-// Topics of files whose messages stand in chunks: MCAP and bags. What is common once their records
-// can be read: counts and first messages with or without an index, chunks that need not be looked
-// into, and what is missing at the end.
+// Topics of files whose messages stand in chunks: MCAP and bags. What is common once their records can be read: counts
+// and first messages with or without an index, chunks that need not be looked into, and what is missing at the end.
 
 #include <algorithm>
 #include <cstdint>

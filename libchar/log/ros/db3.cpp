@@ -1,6 +1,5 @@
-// Databases of rosbag2 (SQLite 3): messages in CDR, by definitions in the file (since Iron) or,
-// without, by those of common types. Source: ros2/rosbag2, rosbag2_storage_sqlite3 (tables topics,
-// messages, message_definitions).
+// Databases of rosbag2 (SQLite 3): messages in CDR, by definitions in the file (since Iron) or, without, by those of
+// common types. Source: ros2/rosbag2, rosbag2_storage_sqlite3 (tables topics, messages, message_definitions).
 
 #include <fmt/format.h>
 
@@ -205,9 +204,10 @@ class Db3Reader final : public MessageTopics {
     const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
     const std::uint64_t said = page * number(28, 4);
     if (bytes_ < said)
-      found_early().add("cut_end", fmt::format("the database ends at byte {} of {} (a copy that was cut): "
-                                               "messages in front of that are read",
-                                               bytes_, said));
+      found_early().add(
+          "cut_end",
+          fmt::format("the database ends at byte {} of {} (a copy that was cut): messages in front of that are read",
+                      bytes_, said));
   }
 
   void read_definitions() {

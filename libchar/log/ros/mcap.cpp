@@ -1,6 +1,5 @@
-// MCAP, the container of ROS 2 since Iron and of Foxglove: any message that the file itself
-// describes in ROS's terms, or JSON. Source: mcap.dev/spec and its registry of profiles and
-// encodings.
+// MCAP, the container of ROS 2 since Iron and of Foxglove: any message that the file itself describes in ROS's terms,
+// or JSON. Source: mcap.dev/spec and its registry of profiles and encodings.
 
 #include <fmt/format.h>
 
@@ -22,7 +21,6 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
-#include "libchar/log/ros/byte_reader.hpp"
 #include "libchar/log/ros/chunked_topics.hpp"
 #include "libchar/log/ros/decompress.hpp"
 #include "libchar/log/ros/file_window.hpp"
@@ -432,8 +430,7 @@ class McapScan final : public ChunkScan {
     const auto said = ByteReader(content).number<std::uint32_t>();
     if (!crc_covers_ || said == 0 || said == crc_) return;
     warnings.add("checksum",
-                 "the data are not what their checksum says: something has changed since they were "
-                 "written");
+                 "the data are not what their checksum says: something has changed since they were written");
   }
 
   McapCatalog& catalog_;

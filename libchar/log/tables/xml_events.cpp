@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "libchar/core/refusal.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

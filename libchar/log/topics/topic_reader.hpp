@@ -51,9 +51,8 @@ class TopicReader {
     return {};
   }
 
-  /// Called once, before the first row: what `next` is to deliver. `time` is a field that holds
-  /// stamps, in that unit (exact where they are integers); absent
-  /// when rows bring stamps of their own or there are none.
+  /// Called once, before the first row: what `next` is to deliver. `time` is a field that holds stamps, in that unit
+  /// (exact where they are integers); absent when rows bring stamps of their own or there are none.
   virtual void select(std::size_t topic, const std::vector<std::size_t>& fields, std::optional<std::size_t> time,
                       StampUnit unit) = 0;
 

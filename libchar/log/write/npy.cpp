@@ -1,5 +1,4 @@
-// .npy: a structured array with one field a channel when the channels have names of their own, else
-// a plain 2-D array.
+// .npy: a structured array with one field a channel when the channels have names of their own, else a plain 2-D array.
 
 #include <fmt/format.h>
 

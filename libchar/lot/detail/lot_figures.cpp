@@ -1,11 +1,10 @@
-// Of fits of noise, v_i is not known but taken from the fit, relative to what was found: who is
-// found too large by chance is believed to be known better, and a mean with the weights 1/(v_i +
-// s²) is too large (Doncaster & Spake, Methods Ecol. Evol. 9 (2018) 634, who use a variance in
-// common as here). So the mean has the weights of a typical v, the median of the records of about
-// the same length; Hartung and Knapp's interval holds for any weights. And theta = c² is what a fit
-// finds without bias, so that E[ln c] = ln c - v to second order, which is put back. Mean over 200
-// devices of three terms each: docs/theory/lots.md. The spread, which both would hardly move, is
-// Paule and Mandel's of the v_i.
+// Of fits of noise, v_i is not known but taken from the fit, relative to what was found: who is found too large by
+// chance is believed to be known better, and a mean with the weights 1/(v_i + s²) is too large (Doncaster & Spake,
+// Methods Ecol. Evol. 9 (2018) 634, who use a variance in common as here). So the mean has the weights of a typical v,
+// the median of the records of about the same length; Hartung and Knapp's interval holds for any weights. And
+// theta = c² is what a fit finds without bias, so that E[ln c] = ln c - v to second order, which is put back. Mean over
+// 200 devices of three terms each: docs/theory/lots.md. The spread, which both would hardly move, is Paule and Mandel's
+// of the v_i.
 #include "libchar/lot/detail/lot_figures.hpp"
 
 #include <algorithm>

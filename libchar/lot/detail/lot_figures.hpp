@@ -27,8 +27,7 @@ struct SquareEstimates {
   std::span<const double> sd;
   std::span<const double> skewness;  ///< there; 0 or less: not known
   std::span<const double> samples;   ///< of each record: of about one length, errors are of one kind
-  /// With r = sd / square, the variance is 1 + excess r / (1 + 1.5 r) times that by the
-  /// information.
+  /// With r = sd / square, the variance is 1 + excess r / (1 + 1.5 r) times that by the information.
   double excess = 0;
 };
 
@@ -42,12 +41,10 @@ struct LognormalEffects {
   Interval spread_ci95;
 };
 
-/// Three values at least, one of them above zero. An end of an interval is infinite where the
-/// squares do not end it.
+/// Three values at least, one of them above zero. An end of an interval is infinite where the squares do not end it.
 LognormalEffects lognormal_effects(const SquareEstimates& in);
 
-/// Records of one class have about the same length, within a factor of sqrt 2: their fits err
-/// alike.
+/// Records of one class have about the same length, within a factor of sqrt 2: their fits err alike.
 inline long length_class(double samples) {
   return clamped_whole<long>(std::round(2 * std::log2(std::max(1.0, samples))));
 }
@@ -61,8 +58,7 @@ inline bool enough_count(std::size_t counted, std::size_t members) {
 std::optional<RandomEffects> lot_effects(std::span<const double> value, std::span<const double> variance,
                                          std::size_t members);
 
-/// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the
-/// records, one a value.
+/// The same of noise coefficients as logarithms, estimates by one fit each; `samples` of the records, one a value.
 std::optional<RandomEffects> coefficient_effects(std::span<const double> logarithm, std::span<const double> variance,
                                                  std::span<const double> samples, std::size_t members);
 
@@ -72,8 +68,7 @@ struct LogCoefficient {
 };
 LogCoefficient log_coefficient(const Coefficient& found);
 
-/// Whether a record says something of the coefficient: it was fitted, by a model that describes the
-/// record.
+/// Whether a record says something of the coefficient: it was fitted, by a model that describes the record.
 bool was_sought(Status status);
 
 /// The square of a noise coefficient, whether it was detected or not. Nothing where the model does

@@ -152,8 +152,7 @@ std::optional<Statistic> statistic_of(const Fleet& fleet, std::size_t g, DeviceQ
   const auto limit = std::find_if(fleet.limits.begin(), fleet.limits.end(),
                                   [&](const GroupLimit& l) { return l.group == g && quantity_of(l.term) == quantity; });
   s.limited = limit != fleet.limits.end();
-  // Quantization and ramps are looked for where they are suspected only: that they are not there is
-  // no news.
+  // Quantization and ramps are looked for where they are suspected only: that they are not there is no news.
   const bool usual = quantity < DeviceQuantity::quantization;
   const bool something = lot.counts.counted > 0 || (usual && lot.counts.not_detected > 0);
   if (!something && !s.limited) return std::nullopt;

@@ -12,8 +12,7 @@
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
-// The values of one quantity in a group: one a member, several recordings of a member taken
-// together.
+// The values of one quantity in a group: one a member, several recordings of a member taken together.
 
 // What the recordings of a group's members say of a quantity, one after the other.
 
@@ -25,9 +24,8 @@ struct MemberRecordings {
   std::vector<LotPlace> place;
   std::vector<std::size_t> member;     ///< index into `members`
   std::vector<std::uint32_t> members;  ///< of the group, those that count
-  /// Of noise terms, the squares of all members whose records were fitted, whether they count or
-  /// not; empty where one of them has none. Of several recordings of a member, their mean and the
-  /// samples of all.
+  /// Of noise terms, the squares of all members whose records were fitted, whether they count or not; empty where one
+  /// of them has none. Of several recordings of a member, their mean and the samples of all.
   LotSquares squares;
   LotCounts counts;
   std::vector<LotCounts> batch_counts;  ///< by batch, as `batch_of` says
@@ -39,8 +37,7 @@ struct QuantityValues {
   std::vector<double> y, v;           ///< ln(value), or the value, and its variance
   /// Of the records behind each, of noise terms; empty of others.
   std::vector<double> samples;
-  /// The variances if what they have in common stood at the ends of its interval; empty where they
-  /// are known.
+  /// The variances if what they have in common stood at the ends of its interval; empty where they are known.
   std::vector<double> v_low, v_high;
   LotSquares squares;  ///< of noise terms, also of those that do not count
   std::optional<RepeatedDevices> repeats;

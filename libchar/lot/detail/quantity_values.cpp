@@ -1,15 +1,14 @@
-// A member with several recordings has the value sum w_i y_i / sum w_i, w_i = 1 / (v_i + s²), and
-// the variance 1 / sum w_i, where s is the spread from recording to recording of one member, found
-// over all members that have several (detail/grouped_effects.hpp): a sensor that is switched on
-// again has another bias, and a member that was recorded once is not known better than that. Where
-// members were recorded at several temperatures their biases are those of their lines
-// (temperature_lines.cpp). A temperature coefficient is found inside a recording that has a
-// thermometer, or as the slope of the biases of several recordings. One lot has one of both, never
-// a mixture: the one that counts for more members; as many: that inside recordings, which knows the
-// bias of one switching on only. The slopes' error is estimated, s² with f degrees of freedom, and
-// a spread over it has to know that. The two errors of spread² = total - error are independent and
-// each has its interval, so that they join by the method of variance estimates recovery (Zou &
-// Donner, Stat. Med. 27 (2008) 1693), with P the square that Paule and Mandel's equation gives:
+// A member with several recordings has the value sum w_i y_i / sum w_i, w_i = 1 / (v_i + s²), and the variance 1 / sum
+// w_i, where s is the spread from recording to recording of one member, found over all members that have several
+// (detail/grouped_effects.hpp): a sensor that is switched on again has another bias, and a member that was recorded
+// once is not known better than that. Where members were recorded at several temperatures their biases are those of
+// their lines (temperature_lines.cpp). A temperature coefficient is found inside a recording that has a thermometer, or
+// as the slope of the biases of several recordings. One lot has one of both, never a mixture: the one that counts for
+// more members; as many: that inside recordings, which knows the bias of one switching on only. The slopes' error is
+// estimated, s² with f degrees of freedom, and a spread over it has to know that. The two errors of
+// spread² = total - error are independent and each has its interval, so that they join by the method of variance
+// estimates recovery (Zou & Donner, Stat. Med. 27 (2008) 1693), with P the square that Paule and Mandel's equation
+// gives:
 //   low² = P - hypot(P - low²(s known), P - P(s at its upper end)),   high² = P + hypot(high²(s known) - P, P(s at its lower end) - P)
 
 #include <algorithm>

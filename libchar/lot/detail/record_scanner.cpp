@@ -5,7 +5,7 @@
 
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/text/double_text.hpp"
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 
 namespace libchar {
 namespace {

@@ -9,9 +9,8 @@
 
 namespace libchar {
 
-/// Nothing for a line that is anything else: other keys, another order, escapes, blanks, a value
-/// out of its range. Whoever asks reads it then as a document, which says what is wrong, if
-/// anything is.
+/// Nothing for a line that is anything else: other keys, another order, escapes, blanks, a value out of its range.
+/// Whoever asks reads it then as a document, which says what is wrong, if anything is.
 std::optional<DeviceRecord> scan_device_record(std::string_view line);
 
 /// The record of any document, as parse_device_record has it.

@@ -45,8 +45,7 @@ double side_factor(const MapReader& at, std::string_view key, Density density) {
   if (density == Density::one) return 1 / std::numbers::sqrt2;
   if (density == Density::two) return 1;
   at.refuse(key, "a density is one-sided or two-sided, and this file does not say which",
-            "add density: one-sided (data sheets) or density: two-sided, or give the unit per √h "
-            "or in ·√s");
+            "add density: one-sided (data sheets) or density: two-sided, or give the unit per √h or in ·√s");
 }
 
 // What a coefficient is multiplied by to get the two-sided density in the channel's unit.
@@ -144,8 +143,8 @@ const Fields<Coefficient>& term_fields() {
       field<&Coefficient::value>("value", {.range = kNotNegative, .meaning = "the coefficient"}),
       custom<Coefficient, read_later, write_nothing>(
           "unit", "text",
-          {.meaning = "U·√s, U, U/√s, U·s, U/s, or as data sheets say: deg/√h, °/s/√Hz, mdps/√Hz, "
-                      "µg/√Hz, m/s/√h, deg/h, rad/s²/√Hz, deg/h/√h, arcsec, mV/√Hz…"}),
+          {.meaning = "U·√s, U, U/√s, U·s, U/s, or as data sheets say: deg/√h, °/s/√Hz, mdps/√Hz, µg/√Hz, m/s/√h, "
+                      "deg/h, rad/s²/√Hz, deg/h/√h, arcsec, mV/√Hz…"}),
       field<&Coefficient::upper95>("upper95",
                                    {.range = kNotNegative,
                                     .comment = "one-sided upper 95 % limit",

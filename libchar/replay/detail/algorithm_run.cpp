@@ -17,6 +17,53 @@
 namespace libchar {
 namespace {
 
+constexpr std::int64_t kNotes = 128;
+/// Of the sum of weights: medians that share less of it are not those of one set of weights.
+constexpr double kLeastSum = 0.1;
+
+void add(std::vector<std::vector<double>>& series, const Eigen::VectorXd& values) {
+  series.resize(static_cast<std::size_t>(values.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) series[static_cast<std::size_t>(i)].push_back(values(i));
+}
+
+void take_medians(std::vector<std::vector<double>> notes, std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::erase_if(notes[i], [](double v) { return !std::isfinite(v); });
+    if (!notes[i].empty()) values[i] = median_in_place(notes[i]);
+  }
+}
+
+double sum_of(const std::vector<double>& values) {
+  double out = 0;
+  for (const double value : values) out += value;
+  return out;
+}
+
+}  // namespace
+
+void RunMedians::set_length(std::int64_t instants) { every_ = std::max<std::int64_t>(1, instants / kNotes); }
+
+void RunMedians::note(const std::optional<Eigen::MatrixXd>& weights, const std::optional<Eigen::VectorXd>& variances) {
+  // Where nothing was fused the weights have no sum, and mean nothing.
+  const bool fused = weights && weights->cols() == 1 && weights->allFinite() && weights->array().abs().sum() > 0;
+  if (fused) add(weights_, weights->col(0));
+  if (variances) add(variances_, *variances);
+}
+
+void RunMedians::take(std::vector<double>& weights, std::vector<double>& variances) const {
+  if (variances_.size() == variances.size()) take_medians(variances_, variances);
+  if (weights_.empty() || weights_.size() != weights.size()) return;
+  std::vector<double> sums(weights_[0].size());
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    for (const std::vector<double>& of_sensor : weights_) sums[k] += of_sensor[k];
+  take_medians(weights_, weights);
+  const double sum = sum_of(weights), wanted = median_in_place(sums, Middle::lower);
+  if (sum == wanted || !(std::abs(sum) > kLeastSum * std::abs(wanted))) return;
+  for (double& weight : weights) weight *= wanted / sum;
+}
+
+namespace {
+
 // Values over time, thinned for reports: no extreme is lost.
 
 inline constexpr std::size_t kTrackBins = 400;
@@ -27,8 +74,7 @@ bool still(const std::vector<double>& values) {
                      [&](double v) { return v == values[0] || (std::isnan(v) && std::isnan(values[0])); });
 }
 
-/// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever
-/// changes.
+/// Points (time_s rising) of several series in at most `bins` bins. Empty when no series ever changes.
 Timeline thinned(std::span<const double> time_s, const std::vector<std::vector<double>>& series, std::size_t bins) {
   Timeline out;
   if (time_s.empty() || std::all_of(series.begin(), series.end(), still)) return out;
@@ -52,16 +98,14 @@ Timeline thinned(std::span<const double> time_s, const std::vector<std::vector<d
   return out;
 }
 
-/// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV]
-/// takes the same window and loses the ends. Computed on the meter's cells: the
-/// window is rounded to a whole number of them.
+/// RMS of the error in a window of `window_s` centred on each instant, shorter at both ends. [RV] takes the same window
+/// and loses the ends. Computed on the meter's cells: the window is rounded to a whole number of them.
 Timeline window_rms(const ErrorMeter& meter, double rate_hz, double start_s, double window_s) {
   const std::vector<ErrorCell> cells = meter.cells();
   const double cell_s = static_cast<double>(meter.cell_samples()) / rate_hz;
   const auto half = static_cast<std::size_t>(std::max(0.0, std::round(window_s / cell_s / 2 - 0.5)));
   std::vector<double> times, rms;
-  // Sums over each window of their own: a difference of running sums would keep the traces of a
-  // large error for ever.
+  // Sums over each window of their own: a difference of running sums would keep the traces of a large error for ever.
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::size_t from = c > half ? c - half : 0, to = std::min(cells.size(), c + half + 1);
     double sum = 0, n = 0;
@@ -218,6 +262,8 @@ LearntAlgorithm AlgorithmRun::hand_out() const {
 
 // In parts between the instants at which weights and variances are noted.
 void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
+  x_.resize(frame_->array->inputs(), samples.cols());
+  variance_.resize(x_.rows(), x_.cols());
   Eigen::MatrixXd given;
   if (some_left_out()) given = samples(*frame_->live, Eigen::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
@@ -251,17 +297,12 @@ void AlgorithmRun::thin_notes() {
 
 void AlgorithmRun::run(const Eigen::MatrixXd& samples) {
   if (!alive()) return;
-  x_.resize(frame_->array->inputs(), samples.cols());
-  variance_.resize(x_.rows(), x_.cols());
   timed_run(samples, true);
   steps_ += static_cast<std::uint64_t>(samples.cols());
 }
 
 void AlgorithmRun::repeat(const Eigen::MatrixXd& samples) {
-  if (!alive()) return;
-  x_.resize(frame_->array->inputs(), samples.cols());
-  variance_.resize(x_.rows(), x_.cols());
-  timed_run(samples, false);
+  if (alive()) timed_run(samples, false);
 }
 
 double AlgorithmRun::median_ns() const {

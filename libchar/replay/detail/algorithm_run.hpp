@@ -1,7 +1,10 @@
 #pragma once
 // One algorithm on its way through a replay: it learns, runs block by block, is timed and scored.
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +12,27 @@
 #include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/coverage_meter.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
-#include "libchar/replay/detail/run_medians.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {
+
+/// Weights and variances of a run: medians over time, since at its last instant sensors may be missing.
+/// Notes are taken behind instants that do not depend on the blocks in which the run is read.
+class RunMedians {
+ public:
+  /// Instants from `done` on until the next note is due.
+  std::int64_t until_next(std::int64_t done) const { return every_ - done % every_; }
+  void set_length(std::int64_t instants);
+  /// After an instant whose notes are due.
+  void note(const std::optional<Eigen::MatrixXd>& weights, const std::optional<Eigen::VectorXd>& variances);
+  /// In the place of the values at the end; untouched where nothing was noted. Weights keep the sum that they have at
+  /// most instants.
+  void take(std::vector<double>& weights, std::vector<double>& variances) const;
+
+ private:
+  std::int64_t every_ = 1;
+  std::vector<std::vector<double>> weights_, variances_;  // a series a sensor
+};
 
 /// What all runs of one replay share.
 struct RunFrame {
@@ -51,8 +71,7 @@ class AlgorithmRun {
   /// What it learnt, for the file that applies it.
   LearntAlgorithm hand_out() const;
   void run(const Eigen::MatrixXd& samples);
-  /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block
-  /// are warm-up.
+  /// After `run`: errors of its estimates. `first` instant of the run; the first `skip` of the block are warm-up.
   void score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen::Index skip);
   /// Once more on a block, for the clock alone: its state is not looked at afterwards.
   void repeat(const Eigen::MatrixXd& samples);

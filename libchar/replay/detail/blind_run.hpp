@@ -4,9 +4,8 @@
 //                   of more than 32 sensors 32 are left out in turn, evenly chosen, fewer of more than 128)
 //   split array     e   = (x(even sensors) - x(odd sensors)) / 2: with equal halves of independent
 //                   errors its RMS is that of the whole array's estimate
-// Beyond its budget (blind_share.hpp) it runs on stretches of the run, one after the other, and
-// there are no errors in between. What all sensors have in common (an error of the board, of the
-// temperature) is in neither.
+// Beyond its budget (blind_share.hpp) it runs on stretches of the run, one after the other, and there are no errors in
+// between. What all sensors have in common (an error of the board, of the temperature) is in neither.
 
 #include <memory>
 #include <vector>

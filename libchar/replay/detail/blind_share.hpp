@@ -1,9 +1,8 @@
 #pragma once
-// How much of a run the scores without a reference are made of. Leave-one-out runs an algorithm
-// once for each sensor; where that costs more than is allowed it runs on stretches that are spread
-// evenly over the run, and where those would be shorter than a cell of the error meters it is left
-// out. The cost is counted (fusion::Entry::cost_ns), not measured: what is computed depends on no
-// clock.
+// How much of a run the scores without a reference are made of. Leave-one-out runs an algorithm once for each sensor;
+// where that costs more than is allowed it runs on stretches that are spread evenly over the run, and where those would
+// be shorter than a cell of the error meters it is left out. The cost is counted (fusion::Entry::cost_ns), not
+// measured: what is computed depends on no clock.
 
 #include <algorithm>
 #include <cstddef>

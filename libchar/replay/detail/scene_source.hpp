@@ -58,9 +58,8 @@ std::size_t column_of(const LogInfo& log, const std::string& channel, const std:
 /// What a scene asks of a file is the scene's mistake, not one of the command line.
 Error of_scene(const Error& error, const std::string& file);
 
-/// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that
-/// stand in the same recording, then axis by axis the further axes of all sensors (as recorded).
-/// Valid during the call.
+/// Consecutive samples: the sensors (scaled, faults injected), then the reference channels that stand in the same
+/// recording, then axis by axis the further axes of all sensors (as recorded). Valid during the call.
 using SourceBlock = std::function<void(std::uint64_t first, std::span<const std::span<const double>>)>;
 
 class SceneSource {

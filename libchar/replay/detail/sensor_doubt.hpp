@@ -1,9 +1,8 @@
 #pragma once
-// How far an estimate is off because sensors read otherwise than they were learnt to: with e_i what
-// sensor i reads beyond its usual offset and gain against the median u of all (reading_meter.hpp), a
-// sensor is in doubt while the running mean of e_i or of e_i² over 32 instants is beyond what is
-// usual. While one is, the running mean of (estimate - u)² is added to the variance: the median does
-// not follow a single sensor.
+// How far an estimate is off because sensors read otherwise than they were learnt to: with e_i what sensor i reads
+// beyond its usual offset and gain against the median u of all (reading_meter.hpp), a sensor is in doubt while the
+// running mean of e_i or of e_i² over 32 instants is beyond what is usual. While one is, the running mean of
+// (estimate - u)² is added to the variance: the median does not follow a single sensor.
 
 #include <Eigen/Core>
 #include <optional>

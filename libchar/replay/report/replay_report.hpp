@@ -103,8 +103,7 @@ struct ReplayReport : ReplayFacts {
   std::string_view score_words() const { return reference ? "RMSE" : "Leave-one-out RMS"; }
 };
 
-/// Reads report.json; of a folder, the report.json in it. Throws Error(input) with file, line,
-/// column and key.
+/// Reads report.json; of a folder, the report.json in it. Throws Error(input) with file, line, column and key.
 ReplayReport read_replay_report(const std::string& path);
 
 /// The same from text that stands for a file at `path`.

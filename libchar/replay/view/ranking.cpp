@@ -138,8 +138,7 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
     });
     if (others == 0) return "No other method has a score.";
     return fmt::format(
-        "Every other method{} is worse, by more than one per cent, and the record is long enough "
-        "to tell.",
+        "Every other method{} is worse, by more than one per cent, and the record is long enough to tell.",
         unscored ? " with a score" : "");
   }
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
@@ -220,10 +219,10 @@ SensorSentence sensor_sentence(const ReplayResult& r) {
   const std::string alone =
       fmt::format("{}, the best single sensor ({})", sensor.name, error_text(sensor.error.rmse, r.inputs[0].unit));
   if (ratio > 1 + kPracticalTolerance && interval.low > 1)
-    return {fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: "
-                        "use that sensor alone.",
-                        name, percent_text(ratio - 1), alone),
-            true};
+    return {
+        fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: use that sensor alone.",
+                    name, percent_text(ratio - 1), alone),
+        true};
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
     return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.", whose, percent_text(1 - ratio),
                         percent_text(1 - interval.high), percent_text(1 - interval.low), alone)};
@@ -236,8 +235,8 @@ std::string offsets_sentence(const ReplayResult& r) {
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && a.blind) share = std::max(share, a.blind->offset_share);
   return fmt::format(
-      "{} of the differences between the sensors (mean squares) are in their means, and offsets "
-      "would decide. Give the scene a stretch at rest, a reference, or sensors without offsets.",
+      "{} of the differences between the sensors (mean squares) are in their means, and offsets would decide. Give the "
+      "scene a stretch at rest, a reference, or sensors without offsets.",
       percent_text(share, 3));
 }
 
@@ -255,8 +254,8 @@ std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && !a.bound && !std::isfinite(a.rmse)) unscored.push_back(a.label);
   out.push_back(
-      fmt::format("Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor "
-                  "would decide between the others.",
+      fmt::format("Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor would "
+                  "decide between the others.",
                   list_of(unscored)));
   return out;
 }
@@ -281,10 +280,7 @@ bool detail::learns(const ReplayResult& r, const AlgorithmResult& a) {
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   if (r.offsets_decide && !r.best) return {"No method is recommended: " + offsets_sentence(r), doubtful_sensors(r)};
-  if (!r.best)
-    return {
-        "No algorithm has a score: without a reference and with these sensors nothing can be "
-        "compared."};
+  if (!r.best) return {"No algorithm has a score: without a reference and with these sensors nothing can be compared."};
   const AlgorithmResult& best = r.algorithms[*r.best];
   std::vector<std::string> out =
       r.chosen_as_robust

@@ -8,7 +8,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fusion/fault_log.hpp"
-#include "libchar/replay/detail/tracks/thinned_tracks.hpp"
+#include "libchar/replay/detail/tracks/run_tracks.hpp"
 #include "libchar/replay/view/words.hpp"
 #include "libchar/scene/scene_file.hpp"
 

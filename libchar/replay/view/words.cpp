@@ -9,7 +9,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/replay/detail/plan/band_filter.hpp"
+#include "libchar/replay/detail/plan/preparation.hpp"
 
 namespace libchar {
 
@@ -114,8 +114,7 @@ std::string effect(const ReplayResult& r, const AlignmentResult& a) {
   if (!(a.budget.before > 0)) return "Too few instants of the evaluation have samples of all sensors: no error budget.";
   const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
   return fmt::format(
-      "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples "
-      "of all sensors below their limits.",
+      "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples of all sensors below their limits.",
       a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean", brief_text(a.budget.before, 4), unit,
       brief_text(a.budget.after, 4), unit, a.budget.after / a.budget.before, a.budget.instants);
 }
@@ -156,9 +155,8 @@ std::string offset_words(const ReplayResult& r, const FoundOffset& offset) {
           ? fmt::format(" (95 %: {} to {})", brief_text(offset.ci95.low, 4), with_unit(offset.ci95.high, 4, unit))
           : "";
   std::string out = fmt::format(
-      "The reference reads {}{} more than the sensors: found {}, {}, and subtracted from it. "
-      "Errors "
-      "do not hold this offset any more.",
+      "The reference reads {}{} more than the sensors: found {}, {}, and subtracted from it. Errors do not hold this "
+      "offset any more.",
       with_unit(offset.value, 4, unit), interval,
       offset.in_learning ? "in the learning window" : "on the evaluation itself", window_words(offset.window));
   if (offset.drifts) out += " The difference drifts: elsewhere it may be another.";
@@ -178,11 +176,10 @@ std::vector<std::string> preparation_words(const Scene& scene) {
                               p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
   const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
-  out.push_back(
-      fmt::format("All sensors{} go through one filter: a Butterworth high-pass of second order at "
-                  "{} Hz{}, causal. Its first {} are not learnt from and not scored; noise levels "
-                  "are those behind it, and noise models are not used.",
-                  reference, brief_text(p.from_hz, 6), band, duration_text(settling_s(p))));
+  out.push_back(fmt::format(
+      "All sensors{} go through one filter: a Butterworth high-pass of second order at {} Hz{}, causal. Its first {} "
+      "are not learnt from and not scored; noise levels are those behind it, and noise models are not used.",
+      reference, brief_text(p.from_hz, 6), band, duration_text(settling_s(p))));
   return out;
 }
 

@@ -25,8 +25,7 @@ std::string comparison_text(const Comparison& comparison, std::size_t width = 0)
 /// One page of Markdown.
 std::string comparison_markdown(const Comparison& comparison);
 
-/// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty
-/// when it ran in both.
+/// Why an algorithm has no change, as far as the reports say: "only in A", "skipped in B"; empty when it ran in both.
 std::string side_of(const ComparedAlgorithm& row);
 
 // Two lots side by side, for scripts and a terminal.

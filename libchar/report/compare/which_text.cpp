@@ -117,9 +117,8 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
   }
   out.whole_numbers = true;
   out.note = fmt::format(
-      "* lowest; = not distinguished from it (by the intervals, {} % over the whole comparison); "
-      "σ: Allan deviation; in brackets: 95 % intervals; ≤: not detected, upper 95 % limit; ?: not "
-      "to be relied on.",
+      "* lowest; = not distinguished from it (by the intervals, {} % over the whole comparison); σ: Allan deviation; "
+      "in brackets: 95 % intervals; ≤: not detected, upper 95 % limit; ?: not to be relied on.",
       brief_text(100 * c.probability));
   return out;
 }

@@ -141,9 +141,9 @@ std::string points_figure(const BenchChart& bench, const std::string& about) {
   chart.y = y.axis(bench.y);
   chart.series = {front_line(bench, false), front_line(bench, true)};
   return drawn(chart, kWide,
-               "Lower and further left is better. Dashed: the front, on which nobody is better in "
-               "both; large: on it. Lines: 95 % intervals. Blue: this program; orange: recipes of "
-               "others. Open: told which terms there are, with a front of their own.");
+               "Lower and further left is better. Dashed: the front, on which nobody is better in both; large: on it. "
+               "Lines: 95 % intervals. Blue: this program; orange: recipes of others. Open: told which terms there "
+               "are, with a front of their own.");
 }
 
 namespace {
@@ -151,8 +151,7 @@ namespace {
 /// Of a place on the axis of a lot.
 double value_at(const LotAxis& axis, double place) { return axis.logarithm ? std::exp(place) : place; }
 
-/// Ends with a margin; a limit near the values belongs into the picture, one far away would squeeze
-/// them.
+/// Ends with a margin; a limit near the values belongs into the picture, one far away would squeeze them.
 FigureAxis lot_axis(const LotAxis& axis, double low, double high) {
   if (axis.limit && *axis.limit < high + (high - low) && *axis.limit > low - (high - low)) {
     low = std::min(low, *axis.limit);
@@ -192,12 +191,11 @@ std::string zones_text(const ControlChart& chart, std::size_t values) {
     if (found.alarm)
       alarms += fmt::format("{}{} ({})", alarms.empty() ? "" : ", ", names[r], probability_text(found.p));
   }
-  const std::string end = alarms.empty()
-                              ? fmt::format(
-                                    "No alarm: {} % of charts of as many values show some signal though nothing "
-                                    "changed.",
-                                    number_text(100 * chart.zones.any_by_chance, 2))
-                              : "Alarm, more than chance brings: " + alarms + ".";
+  const std::string end =
+      alarms.empty()
+          ? fmt::format("No alarm: {} % of charts of as many values show some signal though nothing changed.",
+                        number_text(100 * chart.zones.any_by_chance, 2))
+          : "Alarm, more than chance brings: " + alarms + ".";
   return fmt::format("{} values, mean and σ of the moving range. Signals (expected by chance): {}. {}",
                      count_text(values), list, end);
 }

@@ -62,8 +62,7 @@ Table quantities_table(const FleetLot& lot, std::optional<bool> of_kind = {});
 /// recordings are not in memory.
 std::string allan_figures(const FleetReport& report);
 
-/// Histogram, control chart, batches, repeats, limit of one quantity; "" where nothing is known of
-/// it.
+/// Histogram, control chart, batches, repeats, limit of one quantity; "" where nothing is known of it.
 std::string quantity_figures(const FleetReport& report, const QuantityLot& quantity);
 
 }  // namespace libchar

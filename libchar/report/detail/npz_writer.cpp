@@ -7,7 +7,6 @@
 
 #include "libchar/core/file/crc32.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 
 namespace libchar {
 namespace {

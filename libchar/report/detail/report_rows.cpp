@@ -105,8 +105,7 @@ const Fields<LimitReport>& limit_report_fields() {
   return rows;
 }
 
-// The JSON pieces that the verbs share; the keys are those of docs/json.md, which may grow and
-// never change.
+// The JSON pieces that the verbs share; the keys are those of docs/json.md, which may grow and never change.
 
 Json texts_json(const std::vector<std::string>& texts) {
   Json out = Json::array();

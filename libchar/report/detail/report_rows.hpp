@@ -1,6 +1,5 @@
 #pragma once
-// What a report says beside curves and fits: a sentence a channel, what the samples say, rest,
-// limits.
+// What a report says beside curves and fits: a sentence a channel, what the samples say, rest, limits.
 
 #include <functional>
 #include <nlohmann/json.hpp>

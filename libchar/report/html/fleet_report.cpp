@@ -75,9 +75,8 @@ std::string worst_part(const FleetReport& report) {
   std::string out = "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
   if (count > open) out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
   return out +
-         "<p class=\"note\">By how improbable the reason is: so large a deviation from the "
-         "others, of any device of the fleet; or so high a value of a device that stands at its "
-         "limit.</p>\n</section>\n";
+         "<p class=\"note\">By how improbable the reason is: so large a deviation from the others, of any device of "
+         "the fleet; or so high a value of a device that stands at its limit.</p>\n</section>\n";
 }
 
 std::string quantities_part(const FleetLot& lot) {
@@ -88,16 +87,12 @@ std::string quantities_part(const FleetLot& lot) {
   if (has_kinds || !channels.rows.empty()) out += html_table(has_kinds ? kinds : channels, kLook);
   if (has_kinds) out += folded("The same of each channel", html_table(channels, kLook));
   return out +
-         "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, "
-         "what the uncertainty of each "
-         "alone would make is taken out; ≤: none beyond that, 97.5 % limit. In brackets: 95 % "
-         "intervals. 95 % of devices: "
-         "their values as they were measured. A mean \"of\" more devices than are counted is also "
-         "of "
-         "those not detected or doubtful, by what their records show of the square; else only what "
-         "was detected counts, no mean is given where that is under two thirds, and too large by "
-         "up "
-         "to: at most that, if the others are the smallest.</p>\n";
+         "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, what the uncertainty "
+         "of each alone would make is taken out; ≤: none beyond that, 97.5 % limit. In brackets: 95 % intervals. 95 % "
+         "of devices: their values as they were measured. A mean \"of\" more devices than are counted is also of those "
+         "not detected or doubtful, by what their records show of the square; else only what was detected counts, no "
+         "mean is given where that is under two thirds, and too large by up to: at most that, if the others are the "
+         "smallest.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {
@@ -127,8 +122,7 @@ std::string figures_part(const FleetReport& report) {
   if (out.empty()) return "";
   if (left_out > 0)
     out += fmt::format(
-        "<p class=\"note\">Figures of {} more quantities are left out; their numbers stand in "
-        "lot.json.</p>\n",
+        "<p class=\"note\">Figures of {} more quantities are left out; their numbers stand in lot.json.</p>\n",
         left_out);
   return "<section id=\"channels\">\n<h2>Distributions and control charts</h2>\n" + out + "</section>\n";
 }
@@ -151,21 +145,16 @@ std::string devices_part(const FleetLot& lot) {
         std::pair("batch", says_anything(lot.batches)), std::pair("what is the matter", anything_is_the_matter(lot))})
     if (shown) devices.columns.push_back({head});
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
-         "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, "
-         "batch\"></label>\n"
-         "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option "
-         "value=\"1\">that stand "
+         "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, batch\"></label>\n"
+         "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option value=\"1\">that stand "
          "out</option><option value=\"2\">that fail a limit</option><option value=\"4\">not "
-         "characterized</option><option value=\"8\">without a result "
-         "yet</option></select></label>\n<button type=\"button\" id=\"device-before\">‹ "
-         "before</button>"
-         "<button type=\"button\" id=\"device-next\">next ›</button>\n<span id=\"device-place\" "
-         "class=\"dim\"></span>\n"
+         "characterized</option><option value=\"8\">without a result yet</option></select></label>\n<button "
+         "type=\"button\" id=\"device-before\">‹ before</button><button type=\"button\" id=\"device-next\">next "
+         "›</button>\n<span id=\"device-place\" class=\"dim\"></span>\n"
          "</div>\n<div id=\"devices\">" +
          html_table(devices, {.css = "devices"}) +
-         "</div>\n<p class=\"note\">Every coefficient of every device stands in "
-         "coefficients.csv and "
-         "coefficients.npz beside this page.</p>\n</section>\n";
+         "</div>\n<p class=\"note\">Every coefficient of every device stands in coefficients.csv and coefficients.npz "
+         "beside this page.</p>\n</section>\n";
 }
 
 /// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.

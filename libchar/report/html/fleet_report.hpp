@@ -44,9 +44,8 @@ struct FleetReport {
 /// index.html, coefficients.csv, coefficients.npz and lot.json.
 std::vector<std::string> fleet_report_files(const std::filesystem::path& folder);
 
-/// Writes them, all or none; their paths. A hundred thousand devices of six channels are half a
-/// gigabyte, nearly all of it the tables, which go to the disk piece by piece. Throws Error(output)
-/// as write_outputs does.
+/// Writes them, all or none; their paths. A hundred thousand devices of six channels are half a gigabyte, nearly all of
+/// it the tables, which go to the disk piece by piece. Throws Error(output) as write_outputs does.
 std::vector<std::string> write_fleet_report(const FleetReport& report, const std::filesystem::path& folder, bool force);
 Json fleet_json(const FleetReport& report);
 std::string fleet_html(const FleetReport& report);

@@ -1,5 +1,4 @@
-// report.html: one page that carries its data, scripts and styles, and asks for nothing from
-// anywhere.
+// report.html: one page that carries its data, scripts and styles, and asks for nothing from anywhere.
 //
 // The page holds no time: the same characterization gives the same bytes.
 
@@ -44,8 +43,8 @@ void add_derived_rows(Table& table, const ChannelView& view, double rate_hz) {
   const Coefficient& white = (*c.fit)[Term::white];
   if (white.value)
     add("Noise of a single sample", value_text(white, std::sqrt(rate_hz)), view.shown_unit,
-        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this "
-                    "recording have a standard deviation of {} {}",
+        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this recording have a standard "
+                    "deviation of {} {}",
                     brief_text(rate_hz, 6), number_text(c.quality.standard_deviation, 4), view.shown_unit));
   if (const AllanPoint* lowest = view.allan_minimum)
     add("Minimum of the Allan curve", Cell::number(lowest->deviation), view.shown_unit,
@@ -67,9 +66,8 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   std::string html = html_table(out, {.css = "numbers cards", .cards = true});
   if (const Table laws = power_laws_table(fit); !laws.rows.empty()) html += html_table(laws);
   html +=
-      "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; "
-      "a data sheet's noise density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao "
-      "bound for this record length";
+      "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; a data sheet's noise "
+      "density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao bound for this record length";
   if (!fit.band.whole) html += ", were its whole spectrum described by the noise terms";
   return html + ".</p>\n";
 }
@@ -95,13 +93,12 @@ std::string trust(const ChannelView& view, std::size_t index) {
   const NoiseFit& fit = *c.fit;
   std::string out = "<div class=\"two-columns\">\n<div>\n";
   if (!fit.residuals.empty()) {
-    out += plot_figure("residuals", index,
-                       {"Residuals of the fit", "residual", "sd",
-                        "Each point: measured against model in one bin, as a standard normal deviate. "
-                        "They should scatter evenly, 95 % within "
-                        "the grey band; triangles on the edge lie beyond it. Bins outside the fitted band are not "
-                        "shown."},
-                       c.channel.name);
+    out += plot_figure(
+        "residuals", index,
+        {"Residuals of the fit", "residual", "sd",
+         "Each point: measured against model in one bin, as a standard normal deviate. They should scatter evenly, 95 "
+         "% within the grey band; triangles on the edge lie beyond it. Bins outside the fitted band are not shown."},
+        c.channel.name);
   }
   out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
   out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " + std::to_string(fit.iterations) +
@@ -294,13 +291,11 @@ void add_channel(Table& table, const ChannelView& view, std::size_t index, doubl
 
 std::string overview_table(const CharacterizationView& view) {
   Table out(
-      "channel|N (angle random walk, white noise)|B (bias instability)|K (random walk)|Allan "
-      "minimum|"
-      "sample sd N·√f|goodness of fit|verdict");
+      "channel|N (angle random walk, white noise)|B (bias instability)|K (random walk)|Allan minimum|sample sd "
+      "N·√f|goodness of fit|verdict");
   out.note =
-      "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: undetermined, the record "
-      "cannot tell this term from another or contradicts it; or the noise terms do not describe "
-      "the recording.";
+      "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: undetermined, the record cannot tell this "
+      "term from another or contradicts it; or the noise terms do not describe the recording.";
   for (std::size_t i = 0; i < view.channels.size(); ++i)
     add_channel(out, view.channels[i], i, view.result->log.rate_hz_of(view.channels[i].result->channel));
   return html_table(out, {.css = "overview cards", .cards = true});
@@ -342,9 +337,8 @@ bool all_in_detail(const CharacterizationView& view) {
 std::string which_in_detail(const CharacterizationView& view) {
   if (all_in_detail(view)) return "";
   return fmt::format(
-      "<p class=\"note\">Shown here and drawn: the {} of {} channels that ask for a look most. "
-      "Each "
-      "has its sentence and its row of the table above; report.json and curves.csv hold all.</p>\n",
+      "<p class=\"note\">Shown here and drawn: the {} of {} channels that ask for a look most. Each has its sentence "
+      "and its row of the table above; report.json and curves.csv hold all.</p>\n",
       kMostInDetail, view.channels.size());
 }
 
@@ -395,10 +389,8 @@ std::string provenance(const Characterization& result) {
   input.title = "Input";
   add_input_file(input, log);
   add_program(input, result.command);
-  std::string out =
-      "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
-      "class=\"two-columns\">\n<div>\n" +
-      html_table(input, {.css = "facts"});
+  std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"two-columns\">\n<div>\n" +
+                    html_table(input, {.css = "facts"});
   if (!log.dialect.empty()) out += "<h4>How the file was understood</h4>\n" + bullet_list(log.dialect, "plain");
   if (!log.guesses.empty()) out += "<h4>Guessed, not read</h4>\n" + bullet_list(log.guesses, "cautions");
   out += "</div>\n<div>\n" + time_base(log) + warnings_part(log.warnings) + "</div>\n</div>\n";

@@ -16,8 +16,7 @@
 namespace libchar {
 namespace {
 
-// The figures of a replay's page, in their sections; replay_page.js draws into them. "": nothing to
-// draw.
+// The figures of a replay's page, in their sections; replay_page.js draws into them. "": nothing to draw.
 
 std::string of_input(const ReplayResult& r, std::size_t j) {
   return r.inputs.size() > 1 && j < r.inputs.size() ? " of " + r.inputs[j].name : "";
@@ -49,8 +48,8 @@ std::string signal_caption(const ReplayView& view) {
   if (!view.run.sensor.empty()) out += ", and " + view.run.sensor + ", the best single sensor";
   const std::size_t stretches = r.tracks.whole.inputs[0].estimate.time_s.size();
   out += stretches < r.instants ? fmt::format(
-                                      ": smallest and largest in each of {} stretches of {}; closer in, every "
-                                      "instant where the buttons lead.",
+                                      ": smallest and largest in each of {} stretches of {}; closer in, every instant "
+                                      "where the buttons lead.",
                                       stretches, duration_text(view.duration_s / static_cast<double>(stretches)))
                                 : ", at every instant.";
   return joined_sentences(out, marked_text(view));
@@ -66,8 +65,8 @@ std::string run_plots_of(const ReplayView& view, std::size_t j) {
   if (r.has_reference)
     out += plot_figure("error", j,
                        {"Error: estimate − reference" + of_input(r, j), "error", unit,
-                        "The same stretches. What is beyond the frame of the fused estimate's "
-                        "error is cut off where it would hide it."},
+                        "The same stretches. What is beyond the frame of the fused estimate's error is cut off where "
+                        "it would hide it."},
                        view.title);
   return out;
 }
@@ -77,12 +76,13 @@ std::string window_plots(const ReplayView& view) {
   std::string out;
   for (std::size_t j = 0; j < view.inputs.size(); ++j)
     if (view.inputs[j].has_window_rms)
-      out += plot_figure("window", j,
-                         {"RMS of the error in a window" + of_input(r, j), "window RMS", usual_unit(r.inputs[j].unit),
-                          fmt::format("Window of {} centred on each instant. Band: smallest and largest value "
-                                      "in each bin of the plot.",
-                                      duration_text(r.window_s))},
-                         view.title);
+      out += plot_figure(
+          "window", j,
+          {"RMS of the error in a window" + of_input(r, j), "window RMS", usual_unit(r.inputs[j].unit),
+           fmt::format(
+               "Window of {} centred on each instant. Band: smallest and largest value in each bin of the plot.",
+               duration_text(r.window_s))},
+          view.title);
   return out;
 }
 
@@ -136,9 +136,8 @@ std::string cost_figures(const ReplayView& view) {
   if (view.figures.error_over_time)
     plots += plot_figure("cost-time", 0,
                          {"Error against run time", name, unit,
-                          "Lower and further left is better. Dashed: the Pareto front, on which no method is "
-                          "beaten in both; pale marks are. Large mark: the best. Bounds (triangles) are no "
-                          "methods."},
+                          "Lower and further left is better. Dashed: the Pareto front, on which no method is beaten in "
+                          "both; pale marks are. Large mark: the best. Bounds (triangles) are no methods."},
                          view.title);
   if (view.figures.error_over_memory)
     plots += plot_figure(
@@ -156,15 +155,15 @@ std::string run_section(const ReplayView& view) {
   for (std::size_t j = 0; j < std::min(r.inputs.size(), r.tracks.whole.inputs.size()); ++j)
     plots += run_plots_of(view, j);
   if (view.figures.deviations)
-    plots += plot_figure("deviations", 0,
-                         {"Each sensor, from the median of all", "sensor − median", usual_unit(r.sensors[0].unit),
-                          "No reference tells an error; this shows which sensors go their own way. "
-                          "What all share is not seen."},
-                         view.title);
+    plots += plot_figure(
+        "deviations", 0,
+        {"Each sensor, from the median of all", "sensor − median", usual_unit(r.sensors[0].unit),
+         "No reference tells an error; this shows which sensors go their own way. What all share is not seen."},
+        view.title);
   return "<section class=\"part\" id=\"run\">\n<h2>The run</h2>\n" + std::string(kStretchPlace) +
          "<div class=\"over-time run\">\n" + plots +
-         "</div>\n<p class=\"note\">Drag across a plot to look at a stretch; a double click shows "
-         "the whole run.</p>\n</section>\n";
+         "</div>\n<p class=\"note\">Drag across a plot to look at a stretch; a double click shows the whole "
+         "run.</p>\n</section>\n";
 }
 
 /// Dots with whiskers, best first.
@@ -174,9 +173,9 @@ std::string ranking_figure(const ReplayView& view) {
   return "<div class=\"ranked\">\n" +
          plot_figure("ranking", 0,
                      {score_name(r) + " of each method", score_name(r), score_unit(r),
-                      "Whiskers: 95 % interval, none where the error walks or drifts. Shaded: as "
-                      "good as the best, by a difference below 1 % or not resolved by this record. "
-                      "Hollow: bounds, which look at the reference of the run itself."},
+                      "Whiskers: 95 % interval, none where the error walks or drifts. Shaded: as good as the best, by "
+                      "a difference below 1 % or not resolved by this record. Hollow: bounds, which look at the "
+                      "reference of the run itself."},
                      view.title) +
          "</div>\n";
 }
@@ -186,9 +185,8 @@ std::string detection_figure(const ReplayView& view) {
   return "<div class=\"plots\">\n" +
          plot_figure("detection", 0,
                      {"Delay against false alarms", "delay", "s",
-                      "How long each known fault lasts until the detector finds it, when the array "
-                      "may raise one false alarm in the time on the axis (false_alarm_s). No "
-                      "point: not found while it lasted."},
+                      "How long each known fault lasts until the detector finds it, when the array may raise one false "
+                      "alarm in the time on the axis (false_alarm_s). No point: not found while it lasted."},
                      view.title) +
          "</div>\n";
 }
@@ -199,10 +197,9 @@ std::string faults_figure(const ReplayView& view) {
   return std::string(kChoicePlace) + "<div class=\"over-time faults\">\n" +
          plot_figure("faults", 0,
                      {"Faults and findings", "sensor", "",
-                      "Broad grey bars: faults as the scene tells them, with the delay until they "
-                      "were found. Narrow bars: the sensor was out, and which finding put it "
-                      "there; hollow ones: re-weighted for its noise, still in use. Row leads: a "
-                      "network leads instead of the baseline, and why it stopped."},
+                      "Broad grey bars: faults as the scene tells them, with the delay until they were found. Narrow "
+                      "bars: the sensor was out, and which finding put it there; hollow ones: re-weighted for its "
+                      "noise, still in use. Row leads: a network leads instead of the baseline, and why it stopped."},
                      view.title) +
          "</div>\n" + detection_figure(view);
 }
@@ -227,9 +224,8 @@ std::string sensors_figure(const ReplayView& view) {
   return "<div class=\"plots\">\n" +
          plot_figure("sensors", 0,
                      {"Error of each sensor", "RMSE", unit,
-                      "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: "
-                      "noise of a sample as the algorithms were told. A sensor far above its noise "
-                      "failed, saturated or is not calibrated."},
+                      "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: noise of a sample as "
+                      "the algorithms were told. A sensor far above its noise failed, saturated or is not calibrated."},
                      view.title) +
          "</div>\n";
 }
@@ -242,33 +238,25 @@ std::string cost_section(const ReplayView& view) {
   std::string out = "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n";
   if (view.figures.time_matters) return out + all + "</section>\n";
   return out +
-         fmt::format(
-             "<p>At {} Hz every method takes less than {} of one core: run time decides "
-             "nothing here.</p>\n",
-             brief_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
+         fmt::format("<p>At {} Hz every method takes less than {} of one core: run time decides nothing here.</p>\n",
+                     brief_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
          folded("Error against run time and memory", all) + "</section>\n";
 }
 
 // What the columns mean.
 std::string scores_note(const ReplayView& view) {
   if (!view.result->has_reference)
-    return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of "
-           "(the "
-           "estimate from all other sensors) − (the sensor left out), geometric mean over the "
-           "sensors, so that a bad one counts no more "
-           "than a good one; it holds that sensor's own noise. Split-array RMS: of half the "
-           "difference between the estimates "
-           "from two halves of the array. Neither sees an error that all sensors share.</p>\n";
-  return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or "
-         "drifts. "
-         "Regret: how much RMSE is above that of the optimum of " +
+    return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of (the estimate from all "
+           "other sensors) − (the sensor left out), geometric mean over the sensors, so that a bad one counts no more "
+           "than a good one; it holds that sensor's own noise. Split-array RMS: of half the difference between the "
+           "estimates from two halves of the array. Neither sees an error that all sensors share.</p>\n";
+  return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or drifts. Regret: how "
+         "much RMSE is above that of the optimum of " +
          view.optimum +
-         " on this run; a method that follows changes may be below it. “× best method”: interval "
-         "of "
-         "the ratio of RMSEs, from what both saw at the same time; when it holds 1 the difference "
-         "is not resolved, unless the error is larger in every stretch of the run. "
-         "Converged: from here on the window RMS stays within a tenth of its final level. Bounds "
-         "look at the reference of the run itself: they are for comparison. A click on a column's "
+         " on this run; a method that follows changes may be below it. “× best method”: interval of the ratio of "
+         "RMSEs, from what both saw at the same time; when it holds 1 the difference is not resolved, unless the error "
+         "is larger in every stretch of the run. Converged: from here on the window RMS stays within a tenth of its "
+         "final level. Bounds look at the reference of the run itself: they are for comparison. A click on a column's "
          "head sorts by it.</p>\n";
 }
 
@@ -320,8 +308,8 @@ std::string faults(const ReplayView& view) {
 std::string weights(const ReplayView& view) {
   const Table table = weights_table(view);
   return table.rows.empty() ? ""
-                            : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels of "
-                              "the run</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
+                            : "<section class=\"part\" id=\"weights\">\n<h2>Weights and noise levels of the "
+                              "run</h2>\n<div class=\"copy-place\" data-copy=\"weights\"></div>\n" +
                                   html_table(table) + "</section>\n";
 }
 
@@ -345,19 +333,17 @@ std::string inputs(const ReplayView& view) {
 
 std::string provenance(const ReplayView& view) {
   const ReplayResult& r = *view.result;
-  std::string out =
-      "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div "
-      "class=\"two-columns\">\n<div>\n" +
-      inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) + "</div>\n" +
-      headed_list("What the algorithms remark", remark_words(view), "cautions") + "</div>\n</div>\n";
+  std::string out = "<section id=\"provenance\">\n<h2>Where it comes from</h2>\n<div class=\"two-columns\">\n<div>\n" +
+                    inputs(view) + "</div>\n<div>\n" + "<div class=\"wide\">" + warnings_part(view.warnings) +
+                    "</div>\n" + headed_list("What the algorithms remark", remark_words(view), "cautions") +
+                    "</div>\n</div>\n";
   if (!r.plan.empty())
     out +=
         "<details><summary>The plan: what was read, learnt, run and skipped</summary>\n" +
         bullet_list(r.plan, "plain") +
         fmt::format(
-            "<p class=\"note\">Done: {} passes over the samples, {} instants learnt, {} "
-            "fused{}; both "
-            "summed over algorithms.</p>\n",
+            "<p class=\"note\">Done: {} passes over the samples, {} instants learnt, {} fused{}; both summed over "
+            "algorithms.</p>\n",
             r.work.passes, count_text(r.work.learnt), count_text(r.work.steps),
             r.work.blind_steps > 0 ? ", " + count_text(r.work.blind_steps) + " more for the scores without a reference"
                                    : "") +

@@ -30,8 +30,7 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
 
 std::string limits_text(const LimitReport& report, const TextLook& look = {});
 
-/// What is in a log, in text, for a terminal: how it was read, what was guessed and repaired, and a
-/// line a channel.
+/// What is in a log, in text, for a terminal: how it was read, what was guessed and repaired, and a line a channel.
 std::string inspection_text(const Inspection& inspection, std::size_t width = 0);
 
 // What a simulation wrote, for a terminal and for scripts.
@@ -42,8 +41,7 @@ std::string simulation_text(const ArraySimulation& simulation, const SimulatedLo
 /// The keys behind the head of {"format":"simulation","version":1,…} (docs/json.md).
 Json simulation_json(const ArraySimulation& simulation, const SimulatedLog& written);
 
-/// A sensor model in text, for a terminal: its terms with intervals, and the same in the units of
-/// data sheets.
+/// A sensor model in text, for a terminal: its terms with intervals, and the same in the units of data sheets.
 std::string model_text(const SensorModel& model, const TextLook& look = {});
 
 }  // namespace libchar

@@ -5,7 +5,6 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/markup.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 #include "libchar/report/detail/npz_writer.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 

@@ -313,8 +313,7 @@ void add_spectrum(std::string& out, const ChannelView& view) {
 
 std::string csv_curves(const CharacterizationView& view) {
   std::string out =
-      "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model,model_low95,"
-      "model_high95\n";
+      "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95\n";
   for (const ChannelView& channel : view.channels) {
     add_allan(out, channel);
     add_spectrum(out, channel);

@@ -83,26 +83,24 @@ void offset_written(const Field& field, const SceneReference& reference, std::ve
 }
 
 Row<Scene> align_row() {
-  return elsewhere<Scene>("align", "map",
-                          {.meaning = "delays, biases, gains and misalignments are learnt and taken "
-                                      "out before fusion (below)",
-                           .otherwise = "the sensors are fused as recorded"});
+  return elsewhere<Scene>(
+      "align", "map",
+      {.meaning = "delays, biases, gains and misalignments are learnt and taken out before fusion (below)",
+       .otherwise = "the sensors are fused as recorded"});
 }
 
 Row<Scene> warm_up_row() {
-  return field<&Scene::warm_up_s>("warm_up_s",
-                                  {.unit = "s",
-                                   .range = kPositive,
-                                   .meaning = "so long from the start of the evaluation algorithms run, but are not "
-                                              "scored",
-                                   .otherwise = "0"});
+  return field<&Scene::warm_up_s>(
+      "warm_up_s", {.unit = "s",
+                    .range = kPositive,
+                    .meaning = "so long from the start of the evaluation algorithms run, but are not scored",
+                    .otherwise = "0"});
 }
 
 Row<Scene> detrend_row() {
   return field<&Scene::preparation, &ScenePreparation::detrend>(
       "detrend", {.words = kDetrendWords,
-                  .meaning = "what is subtracted from each sensor and the reference: its "
-                             "mean, or its line of least "
+                  .meaning = "what is subtracted from each sensor and the reference: its mean, or its line of least "
                              "squares, over the whole recording",
                   .otherwise = "none"});
 }
@@ -148,8 +146,9 @@ const Fields<Scene>& scene_fields() {
           {.meaning = "in seconds from the first sample; `[from, end]` up to the end", .otherwise = "none"}),
       window_row<&Scene::evaluation>(
           "evaluation", {.meaning = "what is run and scored", .otherwise = "from the end of the learning window on"}),
-      window_row<&Scene::rest>("rest", {.meaning = "the true inputs are zero there: each sensor's mean is "
-                                                   "subtracted, and its noise measured"}),
+      window_row<&Scene::rest>(
+          "rest",
+          {.meaning = "the true inputs are zero there: each sensor's mean is subtracted, and its noise measured"}),
       warm_up_row(),
       detrend_row(),
       high_pass_row(),
@@ -157,10 +156,10 @@ const Fields<Scene>& scene_fields() {
       align_row(),
       fault_free_row(),
       elsewhere<Scene>("faults", "list", {.meaning = "injected into the samples (below)"}),
-      elsewhere<Scene>("simulated", "map",
-                       {.meaning = "written by `simulate`: `{seed, oversampling, faults, simulate…}` that the "
-                                   "recording holds already; nothing of it is injected again, and "
-                                   "`simulate` makes the log again from it"}),
+      elsewhere<Scene>(
+          "simulated", "map",
+          {.meaning = "written by `simulate`: `{seed, oversampling, faults, simulate…}` that the recording holds "
+                      "already; nothing of it is injected again, and `simulate` makes the log again from it"}),
       elsewhere<Scene>("algorithms", "list",
                        {.meaning = "names, or maps `{name: NAME, OPTION: NUMBER…}`",
                         .otherwise = "all whose needs the scene meets"}),
@@ -184,12 +183,13 @@ const Fields<SceneSensor>& sensor_fields() {
       field<&SceneSensor::h>(
           "h", {.meaning = "row of the observation matrix: one weight a truth signal or reference channel",
                 .otherwise = "`1`"}),
-      field<&SceneSensor::scale>("scale", {.meaning = "the recording's samples are multiplied by it on "
-                                                      "reading: a unit, or −1 for an axis turned round",
-                                           .otherwise = "1"}),
-      field<&SceneSensor::unit>("unit", {.meaning = "of the samples after `scale`",
-                                         .otherwise = "the recording's, with the scale beside it where that "
-                                                      "is not 1 or −1"}),
+      field<&SceneSensor::scale>(
+          "scale",
+          {.meaning = "the recording's samples are multiplied by it on reading: a unit, or −1 for an axis turned round",
+           .otherwise = "1"}),
+      field<&SceneSensor::unit>("unit",
+                                {.meaning = "of the samples after `scale`",
+                                 .otherwise = "the recording's, with the scale beside it where that is not 1 or −1"}),
       field<&SceneSensor::noise>("noise", {.range = kPositive,
                                            .meaning = "standard deviation of a sample's noise",
                                            .otherwise = "said by the model, or measured"}),
@@ -197,11 +197,12 @@ const Fields<SceneSensor>& sensor_fields() {
                              {.meaning = "a model file (`docs/models.md`), the keys of one, or `none`. A simulated "
                                          "sensor needs it; `none` is a perfect one"}),
       field<&SceneSensor::cross>(
-          "cross", {.meaning = "channels of the same device's other axes, for the alignment; the sensors name them "
-                               "in one order"}),
+          "cross",
+          {.meaning =
+               "channels of the same device's other axes, for the alignment; the sensors name them in one order"}),
       elsewhere<SceneSensor>("count", "whole number",
-                             {.meaning = "of a simulation: so many devices of one model, called "
-                                         "NAME1, NAME2…, each with its own draws and noise"}),
+                             {.meaning = "of a simulation: so many devices of one model, called NAME1, NAME2…, each "
+                                         "with its own draws and noise"}),
   };
   return rows;
 }
@@ -221,19 +222,20 @@ const Fields<SceneReference>& reference_fields() {
                                                                           {.meaning = "another word for lag_s"}),
       custom<SceneReference, read_offset, offset_written>(
           "offset", "number, or estimate",
-          {.meaning = "the reference reads so much more than the sensors, in "
-                      "its own unit; it is subtracted from it (below)",
+          {.meaning =
+               "the reference reads so much more than the sensors, in its own unit; it is subtracted from it (below)",
            .otherwise = "0"}),
       field<&SceneReference::samples>(
-          "samples", {.words = kReadings,
-                      .meaning = "what each value stands for where there are less than half as many as samples: "
-                                 "the instant of its stamp, or the mean over the interval in front of it, "
-                                 "behind it or around it",
-                      .otherwise = "estimate: the most likely of the four"}),
-      field<&SceneReference::teach>("teach", {.meaning = "false: without a learning window nothing is learnt",
-                                              .otherwise = "true: of a recording of which neither windows "
-                                                           "nor an alignment are given, the first half "
-                                                           "teaches"}),
+          "samples",
+          {.words = kReadings,
+           .meaning = "what each value stands for where there are less than half as many as samples: the instant of "
+                      "its stamp, or the mean over the interval in front of it, behind it or around it",
+           .otherwise = "estimate: the most likely of the four"}),
+      field<&SceneReference::teach>(
+          "teach",
+          {.meaning = "false: without a learning window nothing is learnt",
+           .otherwise =
+               "true: of a recording of which neither windows nor an alignment are given, the first half teaches"}),
   };
   return rows;
 }
@@ -241,26 +243,26 @@ const Fields<SceneReference>& reference_fields() {
 const Fields<SceneAlign>& align_fields() {
   static const Fields<SceneAlign> rows = {
       elsewhere<SceneAlign>("learn", "rest, learning, run, or [from, to]",
-                            {.meaning = "the stretch it is learnt on: a window of the scene, the "
-                                        "whole evaluation, or seconds from the first sample",
+                            {.meaning = "the stretch it is learnt on: a window of the scene, the whole evaluation, or "
+                                        "seconds from the first sample",
                              .otherwise = "learning where the scene has one, else run"}),
       field<&SceneAlign::terms>(
           "terms", {.meaning = "of delay, bias, gain, misalignment", .otherwise = "all; bias only without rest"}),
       field<&SceneAlign::by>("by", {.words = kTeachers,
                                     .meaning = "who knows the truth: sensors takes their mean for it",
                                     .otherwise = "the reference, if there is one"}),
-      field<&SceneAlign::interpolation>(
-          "interpolation", {.words = kInterpolations,
-                            .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is faster "
-                                       "than 0.12 of it, aliased vibration too",
-                            .otherwise = "sinc"}),
-      field<&SceneAlign::choose>("choose", {.meaning = "terms are tried one by one, each learnt on one half of "
-                                                       "the stretch and judged on the other, and kept where "
-                                                       "they pay; needs a reference",
-                                            .otherwise = "false"}),
-      field<&SceneAlign::apply>("apply", {.meaning = "false: the error budget is reported, and the sensors "
-                                                     "are fused as recorded",
-                                          .otherwise = "true"}),
+      field<&SceneAlign::interpolation>("interpolation",
+                                        {.words = kInterpolations,
+                                         .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is "
+                                                    "faster than 0.12 of it, aliased vibration too",
+                                         .otherwise = "sinc"}),
+      field<&SceneAlign::choose>("choose",
+                                 {.meaning = "terms are tried one by one, each learnt on one half of the stretch and "
+                                             "judged on the other, and kept where they pay; needs a reference",
+                                  .otherwise = "false"}),
+      field<&SceneAlign::apply>(
+          "apply", {.meaning = "false: the error budget is reported, and the sensors are fused as recorded",
+                    .otherwise = "true"}),
   };
   return rows;
 }
@@ -291,9 +293,10 @@ const Fields<ArraySimulation>& simulation_fields() {
       field<&ArraySimulation::seed>(
           "seed", {.meaning = "0 to 2⁶⁴ − 1; same seed, same samples", .otherwise = "1", .written = Written::always}),
       field<&ArraySimulation::oversampling>(
-          "oversampling", {.meaning = "everything up to the quantization runs so many times as fast, so that "
-                                      "aliases are in the samples",
-                           .otherwise = "1"}),
+          "oversampling",
+          {.meaning =
+               "everything up to the quantization runs so many times as fast, so that aliases are in the samples",
+           .otherwise = "1"}),
       elsewhere<ArraySimulation>("truth", "list of signals",
                                  {.meaning = "a signal or a list of them", .otherwise = "zero"}),
       field<&ArraySimulation::truth_bandwidth_hz>(
@@ -304,10 +307,10 @@ const Fields<ArraySimulation>& simulation_fields() {
            .otherwise = "as it is"}),
       elsewhere<ArraySimulation>("temperature", "signal", {.meaning = "in °C", .otherwise = "each model's reference"}),
       field<&ArraySimulation::low_pass_starts_at_zero>(
-          "low_pass_start", {.words = kLowPassStarts,
-                             .meaning = "steady: low-passes start in the steady state of the first sample; zero: as "
-                                        "published",
-                             .otherwise = "steady"}),
+          "low_pass_start",
+          {.words = kLowPassStarts,
+           .meaning = "steady: low-passes start in the steady state of the first sample; zero: as published",
+           .otherwise = "steady"}),
   };
   return rows;
 }

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "libchar/core/document/fields.hpp"
 #include "libchar/scene/scene.hpp"

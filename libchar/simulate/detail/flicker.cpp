@@ -1,24 +1,20 @@
-// Fractional differencing of order 1/2 (N. J. Kasdin, Proc. IEEE 83 (1995) 802) as a sum of
-// first-order sections.
+// Fractional differencing of order 1/2 (N. J. Kasdin, Proc. IEEE 83 (1995) 802) as a sum of first-order sections.
 //
 //   h_k = Gamma(k + 1/2)/(Gamma(k + 1) sqrt pi) = (1/pi) int_0^1 p^k dp / sqrt(p (1 - p))
 //
-// With p = 1/(1 + s), s = e^x, this is (1/pi) int p^k sqrt(s)/(1 + s) dx over all x. The integrand
-// of h_k is analytic for |Im x| < pi, that of H(z) = sum_k h_k z^-k for |Im x| < pi/2 + pi nu
-// (there 1 = p/z), so the trapezoid rule of step a converges like exp(-pi^2/a), at every lag and
-// every frequency alike:
+// With p = 1/(1 + s), s = e^x, this is (1/pi) int p^k sqrt(s)/(1 + s) dx over all x. The integrand of h_k is analytic
+// for |Im x| < pi, that of H(z) = sum_k h_k z^-k for |Im x| < pi/2 + pi nu (there 1 = p/z), so the trapezoid rule of
+// step a converges like exp(-pi^2/a), at every lag and every frequency alike:
 //
 //   h_k = sum_j w_j p_j^k,  s_j = e^(j a),  p_j = 1/(1 + s_j),  w_j = (a/pi) sqrt(s_j)/(1 + s_j).
 //
-// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its
-// own Gauss rule in s, what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on
-// the discrete measure, then Golub and Welsch, Math. Comp. 23 (1969) 221): p^k is close to a
-// polynomial of low degree there.
+// The sum has no end on either side. What lies beyond the record (s < 1/(2N)) is replaced by its own Gauss rule in s,
+// what lies below p = 1/2 by its own Gauss rule in p (Stieltjes procedure on the discrete measure, then Golub and
+// Welsch, Math. Comp. 23 (1969) 221): p^k is close to a polynomial of low degree there.
 //
-// Every section x_j[t] = p_j x_j[t-1] + g[t] is driven by the same deviate. Jointly stationary, the
-// states have covariance C_ij = 1/(1 - p_i p_j), the Gram matrix of Szego kernels; the
-// Takenaka-Malmquist functions are orthonormal in that space, which gives the Cholesky factor in
-// closed form:
+// Every section x_j[t] = p_j x_j[t-1] + g[t] is driven by the same deviate. Jointly stationary, the states have
+// covariance C_ij = 1/(1 - p_i p_j), the Gram matrix of Szego kernels; the Takenaka-Malmquist functions are orthonormal
+// in that space, which gives the Cholesky factor in closed form:
 //
 //   L_jk = sqrt(1 - p_k^2)/(1 - p_k p_j) prod_{l<k} (p_j - p_l)/(1 - p_l p_j).
 
@@ -132,8 +128,7 @@ struct Rule {
 
 double node_weight(double s) { return kStep / std::numbers::pi * std::sqrt(s) / (1 + s); }
 
-/// The Gauss rule of n nodes of the discrete measure that has `weight` at `node` (largest node
-/// first).
+/// The Gauss rule of n nodes of the discrete measure that has `weight` at `node` (largest node first).
 Rule gauss_rule(const Rule& measure, int n) {
   const double scale = measure.node.front();
   const Eigen::Map<const Eigen::ArrayXd> raw(measure.node.data(), static_cast<Eigen::Index>(measure.node.size()));

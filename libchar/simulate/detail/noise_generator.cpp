@@ -48,9 +48,7 @@ void check(const NoiseDesign& design) {
       (design.gauss_markov_sigma == 0 || (std::isfinite(design.gauss_markov_tau_s) && design.gauss_markov_tau_s > 0));
   if (!process)
     throw usage_error("E0953")
-        .says(
-            "a Gauss-Markov process needs a finite standard deviation, not negative, and a "
-            "positive correlation time")
+        .says("a Gauss-Markov process needs a finite standard deviation, not negative, and a positive correlation time")
         .got(shortest(design.gauss_markov_sigma) + ", " + shortest(design.gauss_markov_tau_s));
   if (design.bandwidth_hz && !(std::isfinite(*design.bandwidth_hz) && *design.bandwidth_hz > 0))
     throw usage_error("E0953")

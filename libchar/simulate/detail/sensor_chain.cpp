@@ -212,11 +212,10 @@ void SensorChain::run(std::span<double> samples, std::span<const double> tempera
 
 DeviceDraw SensorChain::draw() const { return state_->draw; }
 
-// y = h * u by overlap-save: blocks of n samples, of which the first taps - 1 are those of the block before.
-// boxcar: h = 1/m, m times; bartlett: its convolution with itself; measured: frequency sampling, h
-// = inverse transform of the square root of the ratio (zero phase, moved by half its length), under
-// a Hann window, divided by its sum. (Oppenheim & Schafer, Discrete-Time Signal Processing, 8.7.3
-// and 7.5.)
+// y = h * u by overlap-save: blocks of n samples, of which the first taps - 1 are those of the block before. boxcar:
+// h = 1/m, m times; bartlett: its convolution with itself; measured: frequency sampling, h = inverse transform of the
+// square root of the ratio (zero phase, moved by half its length), under a Hann window, divided by its sum. (Oppenheim
+// & Schafer, Discrete-Time Signal Processing, 8.7.3 and 7.5.)
 
 namespace {
 

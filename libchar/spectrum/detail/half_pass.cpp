@@ -25,8 +25,7 @@ Pass::Pass(const RowTables& tables, RowScratch& scratch, const PairWork& work)
       odd_falling_{scratch.bins(6)},
       odd_falling_before_{scratch.bins(7)} {}
 
-/// A row and its mirror row, which is made of the same two; the first even row and the middle ones
-/// are their own.
+/// A row and its mirror row, which is made of the same two; the first even row and the middle ones are their own.
 void Pass::make(std::size_t r, bool odd, Row to, Row to_mirror) {
   const std::size_t mirror = r == 0 && !odd ? 0 : t_.n1 - (odd ? 1 : 0) - r;
   const double* const values = scratch_.row(odd ? work_.odd : work_.even, r, 0);

@@ -91,9 +91,8 @@ class HalvesInPlace {
   /// Of segments of 2 `half` samples that `HalfSegments::suits`.
   HalvesInPlace(std::size_t half, int threads);
 
-  /// Sums the power of all half-overlapping segments of a record, of at least one; it holds no
-  /// samples afterwards. Says of each segment whether it was used: those that touch a missing
-  /// sample (NaN) are not.
+  /// Sums the power of all half-overlapping segments of a record, of at least one; it holds no samples afterwards. Says
+  /// of each segment whether it was used: those that touch a missing sample (NaN) are not.
   std::vector<char> add_all(std::span<double> record);
   /// Bins 0 … half.
   std::vector<double> power() const;

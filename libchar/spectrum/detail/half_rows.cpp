@@ -79,8 +79,7 @@ void scatter_columns(const double* from, const ColumnStep& step, const ColumnTur
   return InLanes<scatter_columns_lanes>()(from, step, turns, to);
 }
 
-// Both kinds of bins begin alike: A and B from the transform of a + i b at m and at its mirror, and
-// exp(-i pi k / L).
+// Both kinds of bins begin alike: A and B from the transform of a + i b at m and at its mirror, and exp(-i pi k / L).
 #define LIBCHAR_SEPARATE(p, at, back)                                                        \
   const Four u0 = LIBCHAR_FOUR(p.row + at), u1 = LIBCHAR_FOUR(p.row + at + 4);               \
   const Four v0 = LIBCHAR_FOUR(p.mirror + back), v1 = LIBCHAR_FOUR(p.mirror + back + 4);     \
@@ -177,8 +176,7 @@ constexpr std::size_t kColumns = 8;  // a line of the cache from each half
 constexpr std::size_t kPlaces = 2;   // for transformed rows
 constexpr std::size_t kTurnsAtOnce = std::size_t{1} << 14U;
 
-/// Where a column of all rows is more than the cache holds at once, several lines are taken from
-/// each half.
+/// Where a column of all rows is more than the cache holds at once, several lines are taken from each half.
 std::size_t columns_at_once(std::size_t h, std::size_t n2) {
   std::size_t count = h <= (std::size_t{1} << 17U) ? kColumns : 2 * kColumns;
   while (n2 % count != 0) count -= kColumns;

@@ -1,7 +1,6 @@
 #pragma once
-// The two-step transform of a pair of halves into rows of bins (half_segments.cpp has the
-// equations): tables that depend on the length alone, and memory to work in, both shared by all who
-// transform halves of that length.
+// The two-step transform of a pair of halves into rows of bins (half_segments.cpp has the equations): tables that
+// depend on the length alone, and memory to work in, both shared by all who transform halves of that length.
 
 #include <complex>
 #include <cstddef>
@@ -19,8 +18,7 @@ namespace libchar::half_segments {
 
 using Complex = std::complex<double>;
 
-/// Inside a row of bins four values stand as four real and four imaginary parts, in the order that
-/// unpacking gives.
+/// Inside a row of bins four values stand as four real and four imaginary parts, in the order that unpacking gives.
 inline constexpr std::size_t kSlot[4] = {0, 2, 1, 3};
 
 /// Places of the real and imaginary parts of value m2 of a row, and of a sum.
@@ -130,9 +128,8 @@ struct RowTables {
 /// Sums by rows of bins, even ones and then odd ones, in the order of their frequencies; `top` is bin h.
 void natural_order(const RowTables& tables, const double* sums, double top, std::vector<double>& out);
 
-/// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand
-/// in the place of the samples they are made of, every step's columns half in `low` and half in
-/// `high`.
+/// Rows of one kind of bins between the two steps of a transform: whole rows; or, where they stand in the place of the
+/// samples they are made of, every step's columns half in `low` and half in `high`.
 struct RowsBetween {
   double* low;
   double* high;       ///< none: whole rows

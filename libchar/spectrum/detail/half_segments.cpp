@@ -15,12 +15,11 @@
 // The Fourier Transform and Its Applications, on two real transforms in one):
 //   A_m = (U_m + conj U_m')/2,   B_m = (U_m - conj U_m')/(2i),
 //   m' = h - m for even bins, h - 1 - m for odd ones.
-// Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M.
-// Gentleman and G. Sande, 1966; D. H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2
-// m1 / h), over t2; t = n2 t1 + t2, m = m1 + n1 m2. The result is left where it stands, in rows of
-// fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r) backwards, the neighbours m ±
-// 1 are the rows beside it, and everything after the transform goes row by row, from both ends to
-// the middle, as soon as a row is there: memory is what this costs, more than arithmetic.
+// Each transform of h = n1 n2 values goes in two steps that stay in the cache (W. M. Gentleman and G. Sande, 1966; D.
+// H. Bailey, 1990): over t1 at fixed t2, a turn by exp(-2 pi i t2 m1 / h), over t2; t = n2 t1 + t2, m = m1 + n1 m2. The
+// result is left where it stands, in rows of fixed m1: the mirror of row r is row n1 - r (odd bins: n1 - 1 - r)
+// backwards, the neighbours m ± 1 are the rows beside it, and everything after the transform goes row by row, from both
+// ends to the middle, as soon as a row is there: memory is what this costs, more than arithmetic.
 //
 // Only m2 < n2/2 is kept: the rest is the mirror. Inside a row of bins four values stand as four
 // real and four imaginary parts, in the order 0 2 1 3 that unpacking gives.

@@ -1,9 +1,8 @@
-// The first step of a transform reads some columns of both halves, and has as many complex numbers
-// of the even bins: they go where the samples of these columns were, half of them into the one half
-// and half into the other; those of the odd bins go to memory beside. Once a step of the second
-// kind has read its two even rows, their places are free for what the next pair needs of this one:
-// even bins of the second half in the place of that half, odd ones in the place of the first. So a
-// record of n samples in seven segments needs .375 n numbers beside it, and not .875 n.
+// The first step of a transform reads some columns of both halves, and has as many complex numbers of the even bins:
+// they go where the samples of these columns were, half of them into the one half and half into the other; those of the
+// odd bins go to memory beside. Once a step of the second kind has read its two even rows, their places are free for
+// what the next pair needs of this one: even bins of the second half in the place of that half, odd ones in the place
+// of the first. So a record of n samples in seven segments needs .375 n numbers beside it, and not .875 n.
 
 #include <algorithm>
 #include <atomic>

@@ -91,8 +91,7 @@ LIBCHAR_LANES void add_lanes(const double* from, std::size_t n, double* to) {
 }
 constexpr InLanes<add_lanes> add;
 
-// r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap
-// near one).
+// r_lag = sum_t w_t w_{t + lag hop} / sum w^2; by a transform when there are many lags (an overlap near one).
 std::vector<double> window_correlation(const std::vector<double>& w, std::size_t hop, std::size_t lags) {
   std::vector<double> r(lags + 1, 0.0);
   const std::size_t n = w.size();
@@ -314,9 +313,7 @@ void Average::check_powers() const {
   for (const double p : power_) largest = std::max(largest, std::isfinite(p) ? p : HUGE_VAL);
   if (std::isfinite(largest) && (largest >= kSmallest || moves_ || !moves_little_)) return;
   throw numeric_error("E0420")
-      .says(
-          "the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 "
-          "do)")
+      .says("the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)")
       .hint("give them in another unit");
 }
 
@@ -382,8 +379,7 @@ Spectrum Average::finish(const std::vector<double>& window, double rate_hz, std:
   if (used_ == 0)
     throw numeric_error("E0401")
         .says(
-            "a spectrum with segments of {} samples needs as many without a missing one; none was "
-            "found in {} samples",
+            "a spectrum with segments of {} samples needs as many without a missing one; none was found in {} samples",
             layout_.segment, samples)
         .hint("choose a shorter segment");
   Spectrum out = spectrum(window, rate_hz);
@@ -443,8 +439,7 @@ std::uint64_t choose_segment(std::span<const double> record, const WelchOptions&
     // Halving may step over a last chance: any run of eight.
     if (usable_segments(runs, layout_of(kShortestSegment, options.overlap)) == 0)
       throw numeric_error("E0401").says(
-          "a spectrum needs at least {} consecutive samples; the longest stretch without a missing "
-          "one has {}",
+          "a spectrum needs at least {} consecutive samples; the longest stretch without a missing one has {}",
           kShortestSegment, longest(runs));
     segment = kShortestSegment;
   }

@@ -1,6 +1,5 @@
 #pragma once
-// What welch() and WelchStream share: one segment at a time into a sum of power, and the sum into a
-// spectrum.
+// What welch() and WelchStream share: one segment at a time into a sum of power, and the sum into a spectrum.
 
 #include <complex>
 #include <cstddef>
@@ -43,8 +42,7 @@ void note_dropped(std::uint64_t dropped, std::uint64_t used, std::vector<std::st
 class Periodogram {
  public:
   Periodogram(const WelchOptions& options, const std::vector<double>& window);
-  /// Adds |X_k|^2 of the segment to `power` (n/2 + 1 values); false, and nothing added, when a
-  /// sample is missing.
+  /// Adds |X_k|^2 of the segment to `power` (n/2 + 1 values); false, and nothing added, when a sample is missing.
   bool add(const double* x, double* power);
   /// X_0 … X_{n/2} of the segment, valid until the next call; none when a sample is missing.
   std::span<const std::complex<double>> transform(const double* x);

@@ -9,12 +9,11 @@
 
 namespace libchar {
 
-/// sum_{k = low}^{high} f(k), k integer, f analytic between the (real) breakpoints and evaluable at
-/// real k a few lags away from them. Lags within kExact of a breakpoint are added one by one; in
-/// between, panels that double in length away from the breakpoints are integrated by Gauss-Legendre
-/// and the integral turned into the sum by the Euler-Maclaurin formula in its midpoint form, sum =
-/// integral_{a-1/2}^{b+1/2} f - [f'(b+1/2) - f'(a-1/2)]/24 + … The value type needs += and a
-/// product with a double. The cost grows with the logarithm of the number of lags only.
+/// sum_{k = low}^{high} f(k), k integer, f analytic between the (real) breakpoints and evaluable at real k a few lags
+/// away from them. Lags within kExact of a breakpoint are added one by one; in between, panels that double in length
+/// away from the breakpoints are integrated by Gauss-Legendre and the integral turned into the sum by the
+/// Euler-Maclaurin formula in its midpoint form, sum = integral_{a-1/2}^{b+1/2} f - [f'(b+1/2) - f'(a-1/2)]/24 + … The
+/// value type needs += and a product with a double. The cost grows with the logarithm of the number of lags only.
 template <typename Value, typename Function>
 class LagSum {
  public:

@@ -29,8 +29,7 @@ bool any_absent(const double* absent, std::size_t n);
 /// A power of two that brings the largest deviation of the block near 1.
 double block_scale(const double* z, std::size_t n);
 
-// The inner loops of AllanPyramid: squared second differences of sums of 1, 2 and 4 neighbours, and
-// pair sums.
+// The inner loops of AllanPyramid: squared second differences of sums of 1, 2 and 4 neighbours, and pair sums.
 
 /// sum over i of (z_{i+4}+…+z_{i+7} - z_i-…-z_{i+3})^2, i = 0 … n - 8; differences are taken before
 /// sums, so that an offset of z costs nothing. Eight lanes, i in lane i mod 8.

@@ -194,8 +194,8 @@ void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve) 
   const double share = static_cast<double>(curve.missing) / static_cast<double>(curve.samples);
   if (share > kWorthSaying && of_window_means(deviation_row(curve.type)))
     curve.notes.push_back(percent_text(share) +
-                          " of the samples are missing: means are over those that are there, and "
-                          "what the others add to the variance is taken off");
+                          " of the samples are missing: means are over those that are there, and what the others add "
+                          "to the variance is taken off");
   if (without.empty()) return;
   curve.notes.push_back("gaps leave no term at " + std::to_string(without.size()) + " averaging times from " +
                         duration_text(static_cast<double>(without.front()) * curve.dt_s) + " on");
@@ -213,18 +213,16 @@ void note_missing(const std::vector<std::uint64_t>& without, AllanCurve& curve) 
 //
 //   S^2(m) = sum 2^j A(2^j) sigma^2(2^j) / sum A(2^j),     2^j < m:
 //
-// white noise has 2^j sigma^2(2^j) = its variance at every octave, so it is exact for white noise
-// and any gaps; samples missing independently have A ~ 2^-j, which is the sum above. Between
-// octaves S^2 is interpolated as a power of m. Third differences: weights 1, -2, 1 of the windows,
-// so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n). Modified: d is the mean of the Allan terms at m
-// starts in a row, all of which there must be, and c that of theirs times (m^2+1)/(2 m^2), as white
-// noise has it.
+// white noise has 2^j sigma^2(2^j) = its variance at every octave, so it is exact for white noise and any gaps; samples
+// missing independently have A ~ 2^-j, which is the sum above. Between octaves S^2 is interpolated as a power of m.
+// Third differences: weights 1, -2, 1 of the windows, so c = sum (1/a + 4/b + 1/c - 6/m) / (6 n). Modified: d is the
+// mean of the Allan terms at m starts in a row, all of which there must be, and c that of theirs times (m^2+1)/(2 m^2),
+// as white noise has it.
 //
-// v = sum d^2 / (2 n) - c S^2 has the scatter of the whole for what is left, and few degrees of
-// freedom may leave less than nothing. In white noise sum d^2 / (2 n) / (1 + c m) is as good and
-// does neither. So both are weighted: w for the latter, 1 - w for the former, w = 1 / (1 +
-// (z/2)^4), z the distance in standard deviations from what white noise of this S^2 would give
-// (Wilson & Hilferty 1931). Noise bluer than white (z < -4) of which c S^2 leaves less than two
+// v = sum d^2 / (2 n) - c S^2 has the scatter of the whole for what is left, and few degrees of freedom may leave less
+// than nothing. In white noise sum d^2 / (2 n) / (1 + c m) is as good and does neither. So both are weighted: w for the
+// latter, 1 - w for the former, w = 1 / (1 + (z/2)^4), z the distance in standard deviations from what white noise of
+// this S^2 would give (Wilson & Hilferty 1931). Noise bluer than white (z < -4) of which c S^2 leaves less than two
 // standard deviations is hidden, and so it is at longer times.
 
 void PresentTerms::operator+=(const PresentTerms& other) {

@@ -19,9 +19,10 @@
 #include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 
 namespace libchar {
@@ -362,9 +363,8 @@ struct Search {
     return band;
   }
 
-  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their
-  /// skirts is a small misfit, and moves the coefficients less than a deep cut does: there a
-  /// smaller probability passes.
+  /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small
+  /// misfit, and moves the coefficients less than a deep cut does: there a smaller probability passes.
   std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
     const Band holes = without_peaks(whole);
     if (holes.inside == whole.inside) return narrow;
@@ -389,9 +389,8 @@ struct Search {
     return dof > 0 ? chi_square_tail(chi2, dof) : 1;
   }
 
-  /// Where nothing but a sliver at the slow end holds, what stands there is a cycle or a movement,
-  /// not noise in the bandwidth of the sensor: the widest band of white noise from the top down, of
-  /// five octaves at least.
+  /// Where nothing but a sliver at the slow end holds, what stands there is a cycle or a movement, not noise in the
+  /// bandwidth of the sensor: the widest band of white noise from the top down, of five octaves at least.
   std::optional<Band> above_hump(Band band) const {
     constexpr double kLeast = 1.0 / 32;
     const TermSet white = {true, false, false, false, false};
@@ -479,9 +478,8 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
 
 namespace {
 
-/// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its
-/// corner at one of the octaves of the record: what rises from the slow end on is behind a
-/// high-pass.
+/// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its corner at one of the
+/// octaves of the record: what rises from the slow end on is behind a high-pass.
 struct ShelfTest {
   double largest = 0, rising = 0;
 };

@@ -186,9 +186,8 @@ void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
   white.status = Status::undetermined;
   white.ci95.low *= fast;
   Finding both = finding("undetermined",
-                         fmt::format("The spectrum is that of {}: a filter behind white noise, or "
-                                     "white noise of {} and a process of a "
-                                     "correlation time of {}. N is the level of the slow side.",
+                         fmt::format("The spectrum is that of {}: a filter behind white noise, or white noise of {} "
+                                     "and a process of a correlation time of {}. N is the level of the slow side.",
                                      named_shape_text(shape), brief_text(*white.value * fast),
                                      duration_text(1 / (2 * std::numbers::pi * shape.pole_hz))),
                          "N is undetermined: its spectrum has two levels");
@@ -201,12 +200,11 @@ void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
 void report_corner(const Band& band, NoiseFit& fit) {
   report_two_levels(band.named, fit);
   if (band.named.family != NamedShape::Family::high_pass) return;
-  fit.findings.push_back(
-      finding("high_passed",
-              fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an output "
-                          "with its mean taken out. B and K are those in front of it.",
-                          named_shape_text(band.named)),
-              "the slow end of the spectrum falls like behind a high-pass"));
+  fit.findings.push_back(finding("high_passed",
+                                 fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an "
+                                             "output with its mean taken out. B and K are those in front of it.",
+                                             named_shape_text(band.named)),
+                                 "the slow end of the spectrum falls like behind a high-pass"));
 }
 
 std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals) {

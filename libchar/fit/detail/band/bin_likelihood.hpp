@@ -52,8 +52,7 @@ double half_deviance(const BinProblem& problem, const ModelPoint& at);
 /// unknown shape takes of it is taken off.
 TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, const TermSet& terms);
 
-/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are
-/// scaled first.
+/// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are scaled first.
 TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms);
 
 inline TermSet only_positive(const Mixture& theta) {
@@ -66,5 +65,16 @@ inline std::size_t count_of(const TermSet& set) {
   for (const bool in : set) n += in ? 1 : 0;
   return n;
 }
+
+/// The maximum of the likelihood by non-negative Fisher scoring.
+/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`, and over the coefficients of the shape.
+struct ScoringResult {
+  ModelPoint at;
+  double half_deviance = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start = nullptr,
+                    double tolerance = 1e-10);
 
 }  // namespace libchar

@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "libchar/allan/noise_curves.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
@@ -84,9 +84,8 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
     const bool of_process = mostly_process(fit, worst->tau_s / allan.dt_s, allan.dt_s);
     if (of_process) fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
     doubt(fit, of_process ? kTerms : worst->term, 0,
-          fmt::format("At an averaging time of {} the fitted curve stands at {}, the "
-                      "measured Allan deviation within {} … {} (99.7 %): "
-                      "{} is not borne out there and is marked undetermined.",
+          fmt::format("At an averaging time of {} the fitted curve stands at {}, the measured Allan deviation within "
+                      "{} … {} (99.7 %): {} is not borne out there and is marked undetermined.",
                       duration_text(worst->tau_s), brief_text(worst->model), brief_text(worst->measured.low),
                       brief_text(worst->measured.high),
                       of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));
@@ -101,8 +100,8 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
     const double ratio = std::max(*second, *first.value) / std::min(*second, *first.value);
     if (apart > 3 && ratio > kRelevant)
       doubt(fit, t, *second,
-            fmt::format("{} is marked undetermined: the fit does not describe the record, and the "
-                        "Allan curve gives {} instead of {}.",
+            fmt::format("{} is marked undetermined: the fit does not describe the record, and the Allan curve gives {} "
+                        "instead of {}.",
                         long_name(static_cast<Term>(t)), brief_text(*second), brief_text(*first.value)));
   }
 }

@@ -1,12 +1,11 @@
-// Probability integral transform: nu u = nu measured/model is chi-square with nu degrees of freedom
-// under the model, so z = Phi^-1(F(nu u)) is standard normal for every bin, single coefficients
-// included, and sum z^2 is chi-square.
+// Probability integral transform: nu u = nu measured/model is chi-square with nu degrees of freedom under the model, so
+// z = Phi^-1(F(nu u)) is standard normal for every bin, single coefficients included, and sum z^2 is chi-square.
 #include "libchar/fit/detail/band/goodness.hpp"
 
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 
 namespace libchar {
 

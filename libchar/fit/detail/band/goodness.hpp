@@ -6,14 +6,12 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/noise_terms.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
 #include "libchar/fit/fit_result.hpp"
 #include "libchar/fit/record/power_bins.hpp"
 
 namespace libchar {
 
-/// The residual of a gamma bin as a standard normal deviate, Phi^-1(P(chi2_nu <= nu u)): exact for
-/// every nu.
+/// The residual of a gamma bin as a standard normal deviate, Phi^-1(P(chi2_nu <= nu u)): exact for every nu.
 double normal_deviate(double energy_ratio, double dof);
 
 std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins, const Mixture& theta, double rate_hz);

@@ -13,7 +13,6 @@
 #include "libchar/core/process/silent_glog.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/curve/polish.hpp"
 
 namespace libchar {

@@ -16,7 +16,6 @@
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 
 namespace libchar {
 namespace {

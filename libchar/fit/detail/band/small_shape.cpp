@@ -1,5 +1,4 @@
-// A weak low-pass, quantization noise, a second tap, decimation: to first order each multiplies the
-// spectrum by
+// A weak low-pass, quantization noise, a second tap, decimation: to first order each multiplies the spectrum by
 //   exp(a s^m),   s = sin²(pi f / rate),  m = 1, 2 or 4 (how steeply it sets in),  a of either sign.
 // The tests of the fit see it where a/sd(a) is beyond 3; N is wrong by more than its interval from
 // 2 on. So whichever model passes is averaged over it: with z = a_hat/sd(a) of the score test,
@@ -7,11 +6,10 @@
 //   E ln theta   = ln theta_0 + sum_m w_m g_m E[a | z_m]
 //   cov ln theta = cov_0 + sum_m w_m g_m g_m' E[a² | z_m] - (its mean)(its mean)',
 //   g_m = d ln theta/da = -J^+ phi_m,  w_m ~ prior of m times the marginal likelihood of z_m,
-// J the weighted log slopes of the terms (and of a corner), phi_m those of the shape (J. A. Hoeting
-// et al., "Bayesian Model Averaging", Stat. Sci. 14 (1999) 382, with the score in the place of a
-// second maximum: R. D. Cook and S. Weisberg, Biometrika 70 (1983) 1). Heavy tails of the prior
-// leave a shape that is seen as it is; a larger scale covers N better where the tests are blind and
-// costs more where there is nothing: tests/bench/valley_bench shows both.
+// J the weighted log slopes of the terms (and of a corner), phi_m those of the shape (J. A. Hoeting et al., "Bayesian
+// Model Averaging", Stat. Sci. 14 (1999) 382, with the score in the place of a second maximum: R. D. Cook and S.
+// Weisberg, Biometrika 70 (1983) 1). Heavy tails of the prior leave a shape that is seen as it is; a larger scale
+// covers N better where the tests are blind and costs more where there is nothing: tests/bench/valley_bench shows both.
 #include "libchar/fit/detail/band/small_shape.hpp"
 
 #include <algorithm>
@@ -21,7 +19,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/fit/detail/band/band.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 namespace {

@@ -10,16 +10,15 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/bounds.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 
 namespace libchar {
 
-// A term whose true value is zero improves 2 ln L by half a chi-square with one degree of freedom
-// and half a zero (boundary of theta >= 0): threshold 5.41 is passed by 1 % of such terms.
-// Elimination runs backward from the full set, least needed first. Flicker and walk may each be
-// dispensable while the other is there and yet not both (docs/theory/fit.md): then both are kept and
-// reported as undetermined.
+// A term whose true value is zero improves 2 ln L by half a chi-square with one degree of freedom and half a zero
+// (boundary of theta >= 0): threshold 5.41 is passed by 1 % of such terms. Elimination runs backward from the full set,
+// least needed first. Flicker and walk may each be dispensable while the other is there and yet not both
+// (docs/theory/fit.md): then both are kept and reported as undetermined.
 
 namespace {
 
@@ -262,10 +261,9 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
   }
   report_in_all(problem, all, fit.term);
   if (decision.flicker_or_walk) {
-    fit.findings.push_back(
-        finding("flicker_or_walk",
-                "The record shows slow noise but cannot tell bias instability from random walk: each could "
-                "explain it alone. A longer record can tell."));
+    fit.findings.push_back(finding("flicker_or_walk",
+                                   "The record shows slow noise but cannot tell bias instability from random walk: "
+                                   "each could explain it alone. A longer record can tell."));
   }
   return best.at;
 }

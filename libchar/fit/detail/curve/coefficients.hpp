@@ -30,8 +30,7 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
 ModelPoint report_coefficients(const BinProblem& problem, const Decision& decision, const FitOptions& options,
                                NoiseFit& fit);
 
-/// Bounds and record lengths for 10 % of every term with a value; marks those above 30 % as
-/// undetermined.
+/// Bounds and record lengths for 10 % of every term with a value; marks those above 30 % as undetermined.
 void report_bounds(const TermSet& fitted, NoiseFit& fit);
 
 /// Widens sd and intervals for a further parameter that was fitted jointly (the low-pass corner).

@@ -2,11 +2,21 @@
 // each step is the linear problem
 //   min || W diag(1/mu) (t - A theta) ||,  t = mu (1 + ln(v/mu)),
 // solved exactly over theta >= 0; the step is halved while the sum of squares does not fall.
+
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "libchar/allan/allan_covariance.hpp"
+#include "libchar/allan/noise_curves.hpp"
+#include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/whole.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/curve/nonnegative.hpp"
 
 namespace libchar {
@@ -137,6 +147,141 @@ CurveSolution solve_curve_thoroughly(const CurveProblem& problem, const TermSet&
     if (found.sum_of_squares < best.sum_of_squares) best = found;
   }
   return best;
+}
+
+namespace {
+
+/// The smallest multiple of the first point's that makes every averaging time a whole number of samples, to 2 %.
+double likely_rate(const DigitisedCurve& curve) {
+  double rate_hz = 1 / curve.x.front();
+  const auto whole = [&] {
+    return std::all_of(curve.x.begin(), curve.x.end(), [&](double tau_s) {
+      const double m = tau_s * rate_hz;
+      return std::abs(std::round(m) / m - 1) < 0.02;
+    });
+  };
+  for (int i = 0; i < 6 && !whole(); ++i) rate_hz *= 2;
+  return rate_hz;
+}
+
+/// What a record of some length makes of ln(variance): bias, and inverse Cholesky factor of the covariance. A variance
+/// with few degrees of freedom, as at the slow end, is that of a chi-square, whose logarithm is skew.
+class RecordScatter {
+ public:
+  RecordScatter(const DigitisedCurve& curve, double duration_s)
+      : record_(record_of(curve, duration_s)), covariance_(record_) {}
+
+  void weigh(const Mixture& theta, double reading, CurveProblem& problem) const {
+    Mixture noise = theta;
+    noise[static_cast<std::size_t>(Term::ramp)] = 0;  // not random
+    Eigen::MatrixXd covariance = covariance_.at(noise);
+    const auto n = covariance.rows();
+    Eigen::VectorXd level(n), wider(n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      level[j] =
+          allan_variance(noise, static_cast<double>(record_.points[static_cast<std::size_t>(j)].m), record_.dt_s);
+    covariance = level.cwiseInverse().asDiagonal() * covariance * level.cwiseInverse().asDiagonal();
+    problem.bias.resize(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const LogMoments moments = chi_square_log_moments(2 / covariance(j, j));
+      problem.bias[j] = moments.mean;
+      wider[j] = std::sqrt(moments.variance / covariance(j, j));
+    }
+    covariance = wider.asDiagonal() * covariance * wider.asDiagonal();
+    // Neighbours a fraction of an octave apart would be singular without reading errors.
+    covariance.diagonal().array() += reading * reading + 0.01 * covariance.diagonal().array();
+    problem.whitening = inverse_cholesky_factor(covariance);
+  }
+
+ private:
+  static AllanCurve record_of(const DigitisedCurve& curve, double duration_s) {
+    const double rate_hz = curve.rate_hz.value_or(likely_rate(curve));
+    AllanCurve record;
+    record.dt_s = 1 / rate_hz;
+    record.samples = clamped_whole<std::uint64_t>(std::round(duration_s * rate_hz));
+    for (const double tau_s : curve.x) {
+      AllanPoint point;
+      point.m = std::max<std::uint64_t>(1, clamped_whole<std::uint64_t>(std::round(tau_s * rate_hz)));
+      point.m = std::min(point.m, record.samples / 2);
+      point.tau_s = static_cast<double>(point.m) / rate_hz;
+      point.terms = record.samples - 2 * point.m + 1;
+      record.points.push_back(point);
+    }
+    return record;
+  }
+  AllanCurve record_;
+  AllanCovariance covariance_;
+};
+
+CurveSolution solve_weighed(const RecordScatter& scatter, double reading, const TermSet& offered, int rounds,
+                            CurveSolution best, CurveProblem& problem) {
+  for (int round = 0; round < rounds; ++round) {
+    scatter.weigh(best.theta, reading, problem);
+    best = solve_curve_thoroughly(problem, offered);
+  }
+  return best;
+}
+
+Eigen::ArrayXd weights_of_groups(const DigitisedCurve& curve) {
+  return Eigen::Map<const Eigen::ArrayXd>(curve.group.data(), static_cast<Eigen::Index>(curve.group.size())).sqrt();
+}
+
+/// Degrees of freedom of a chi-square whose logarithm has this variance.
+double dof_of_log_variance(double variance) {
+  double low = 1, high = 1e12;
+  while (high / low > 1.0001) {
+    const double middle = std::sqrt(low * high);
+    (chi_square_log_moments(middle).variance > variance ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+CurveSolution weigh_by_duration(const DigitisedCurve& curve, double duration_s, double reading, const TermSet& offered,
+                                CurveProblem& problem) {
+  return solve_weighed(RecordScatter(curve, duration_s), reading, offered, 3, solve_curve_thoroughly(problem, offered),
+                       problem);
+}
+
+std::string weigh_evenly(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem) {
+  if (!curve.group.empty()) problem.weight = weights_of_groups(curve);
+  const double sum = solve_curve_thoroughly(problem, offered).sum_of_squares;
+  return fmt::format(
+      "taken as {} of the ordinate at every point: they say how well the drawn curve fixes the coefficients, not how "
+      "well the record behind it did; `duration_s` states the length of the record where it is known",
+      percent_text(std::sqrt(sum / static_cast<double>(problem.size())) / 2));
+}
+
+std::string weigh_by_frequency(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem) {
+  const auto n = problem.size();
+  const Eigen::ArrayXd together = curve.group.empty() ? Eigen::ArrayXd::Ones(n) : weights_of_groups(curve);
+  Eigen::ArrayXd below(n);  // the highest frequency, ln
+  for (Eigen::Index j = 0; j < n; ++j) below[j] = std::log(curve.x[static_cast<std::size_t>(j)] / curve.x.back());
+  const double free = static_cast<double>(n) - std::min(3.0, static_cast<double>(n) / 2);
+  const CurveProblem plain = problem;
+  double most = -std::numeric_limits<double>::infinity(), highest_dof = 0, power = 0;
+  for (const double slope : {0.0, 0.5, 1.0, 1.5}) {
+    CurveProblem weighed = plain;
+    weighed.weight = together * (0.5 * slope * below).exp();
+    double square = 0;
+    for (int round = 0; round < 3; ++round) {
+      square = solve_curve_thoroughly(weighed, offered).sum_of_squares / free;
+      weighed.bias.resize(n);
+      for (Eigen::Index j = 0; j < n; ++j)
+        weighed.bias[j] = chi_square_log_moments(dof_of_log_variance(square / std::pow(weighed.weight[j], 2))).mean;
+    }
+    const double log_likelihood = 2 * weighed.weight.log().sum() - static_cast<double>(n) * std::log(square);
+    if (!(log_likelihood > most)) continue;
+    most = log_likelihood;
+    problem = weighed;
+    highest_dof = dof_of_log_variance(square);
+    power = slope;
+  }
+  return fmt::format(
+      "which is that of about {} degrees of freedom a point{}; a column edf states them where they are known",
+      brief_text(highest_dof, 2),
+      power > 0 ? fmt::format(" at the highest frequency, with its power of {} below", brief_text(power, 2)) : "");
 }
 
 }  // namespace libchar

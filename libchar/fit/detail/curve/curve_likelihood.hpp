@@ -3,7 +3,9 @@
 // known of the points' scatter.
 
 #include <Eigen/Core>
+#include <string>
 
+#include "libchar/fit/curve/curve_fit.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
@@ -37,5 +39,22 @@ Eigen::ArrayXd curve_residuals(const CurveProblem& problem, const Mixture& theta
 
 /// J'J of the whitened residuals with respect to theta.
 TermMatrix curve_information(const CurveProblem& problem, const Mixture& theta, const TermSet& terms);
+
+// How the points of a curve scatter: as a record of some length makes them, or by what they show themselves.
+
+/// Relative standard deviation of a variance that was read off a graph.
+inline constexpr double kReading = 0.01;
+
+/// Weighs by what a record of this length makes of ln(variance), with `reading` on top; the best
+/// terms with these weights.
+CurveSolution weigh_by_duration(const DigitisedCurve& curve, double duration_s, double reading, const TermSet& offered,
+                                CurveProblem& problem);
+
+/// Equal relative errors, those of the scatter about the fit; a half-sentence about them.
+std::string weigh_evenly(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem);
+
+/// A spectrum's: chi-square with degrees of freedom that go as a power of the frequency, the one
+/// that the points are most likely to come from.
+std::string weigh_by_frequency(const DigitisedCurve& curve, const TermSet& offered, CurveProblem& problem);
 
 }  // namespace libchar

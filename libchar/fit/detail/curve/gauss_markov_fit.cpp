@@ -20,7 +20,7 @@
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
@@ -326,10 +326,10 @@ void report_joint_bounds(const Mixture& log_theta, NoiseFit& fit) {
     term.bound = log_theta[i] / 2;
     if (!(*term.bound > kBadlyKnown) || term.status != Status::detected || i == kLent) continue;
     term.status = Status::undetermined;
-    fit.findings.push_back(
-        finding("too_short", fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is "
-                                         "known to {} (1 sd).",
-                                         long_name(static_cast<Term>(i)), percent_text(*term.bound))));
+    fit.findings.push_back(finding(
+        "too_short",
+        fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is known to {} (1 sd).",
+                    long_name(static_cast<Term>(i)), percent_text(*term.bound))));
   }
 }
 
@@ -383,10 +383,8 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovCho
   widen_for_joint_parameter(spread.log_theta, fit);
   fit.findings.push_back(finding(
       "gauss_markov",
-      fmt::format("Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker "
-                  "and "
-                  "random walk alone do not "
-                  "describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
+      fmt::format("Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker and random "
+                  "walk alone do not describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
                   process_text(process.sigma.value.value_or(0), choice.tau_s), choice.likelihood_ratio, kNeeded)));
   empty_lent_column(fit);
   fit.gauss_markov = process;
@@ -405,9 +403,8 @@ void report_not_needed(const GaussMarkovChoice& choice, NoiseFit& fit) {
   fit.gauss_markov = process;
   fit.findings.push_back(
       finding("gauss_markov_or_terms",
-              fmt::format("The record cannot tell its slow noise from a first-order Gauss-Markov process "
-                          "({}): that with white noise alone is as "
-                          "likely. A longer record can tell.",
+              fmt::format("The record cannot tell its slow noise from a first-order Gauss-Markov process ({}): that "
+                          "with white noise alone is as likely. A longer record can tell.",
                           process_text(choice.rival_sigma, choice.tau_s))));
 }
 

@@ -1,6 +1,5 @@
-// With p <= 5 unknowns the 2^p - 1 sets of positive unknowns can all be solved: the feasible one of
-// least cost is the minimum. No iteration, hence no tolerance. Columns are scaled to a unit
-// diagonal before the Cholesky factorisation.
+// With p <= 5 unknowns the 2^p - 1 sets of positive unknowns can all be solved: the feasible one of least cost is the
+// minimum. No iteration, hence no tolerance. Columns are scaled to a unit diagonal before the Cholesky factorisation.
 #include "libchar/fit/detail/curve/nonnegative.hpp"
 
 #include <cmath>

@@ -1,8 +1,7 @@
 // Expected squares of the law between two terms: those of white noise, flicker and walk go as f^0,
 // f^-1, f^-2, ends of the record included, and their geometric means as the powers between,
 //   A_alpha = A_white^(1 - alpha) A_flicker^alpha (alpha < 1),  A_flicker^(2 - alpha) A_walk^(alpha - 1) (alpha > 1).
-// A scan of alpha, then a parabola through the least deviance; its curvature is the information on
-// alpha.
+// A scan of alpha, then a parabola through the least deviance; its curvature is the information on alpha.
 #include "libchar/fit/detail/curve/power_law.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +10,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/dense.hpp"
-#include "libchar/core/text/readable.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 namespace {
@@ -109,14 +107,14 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
   for (const auto slow : {kFlickerColumn, kWalkColumn, kQuantizationColumn})
     if (fit.term[static_cast<std::size_t>(slow)].value)
       fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;
-  fit.findings.push_back(
-      finding("power_law",
-              fmt::format("The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is "
-                          "neither flicker nor a random walk (2 ln L {:.0f}): B and K stand in for it within "
-                          "this recording and mean nothing beyond it.",
-                          law.exponent, law.exponent - kNormal95 * law.exponent_sd,
-                          law.exponent + kNormal95 * law.exponent_sd, law.likelihood_ratio),
-              fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
+  fit.findings.push_back(finding(
+      "power_law",
+      fmt::format(
+          "The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is neither flicker nor a random "
+          "walk (2 ln L {:.0f}): B and K stand in for it within this recording and mean nothing beyond it.",
+          law.exponent, law.exponent - kNormal95 * law.exponent_sd, law.exponent + kNormal95 * law.exponent_sd,
+          law.likelihood_ratio),
+      fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));
 }
 
 }  // namespace libchar

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libchar/fit/detail/band/scoring.hpp"
+#include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
 
@@ -89,16 +89,10 @@ double bracketed_root(Function&& f, double x_in, double f_in, double x_out, doub
   return 0.5 * (x_in + x_out);
 }
 
-}  // namespace
-
-double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
-                     double rise) {
-  Profile profile(problem, terms, best, term);
-  const double goal = std::sqrt(rise), at = best.at.theta[term];
-  const auto f = [&](double theta) { return profile.root_rise(theta) - goal; };
-  double in = at, f_in = -goal;
-  double step = goal * sd;
-  double out = at + step, f_out = f(out);
+/// Root of f behind `in`, where f < 0: steps grow until one reaches beyond it.
+template <class F>
+double root_beyond(const F& f, double in, double f_in, double step) {
+  double out = in + step, f_out = f(out);
   for (int i = 0; i < 60 && f_out < 0; ++i) {
     in = out;
     f_in = f_out;
@@ -107,6 +101,16 @@ double profile_upper(const BinProblem& problem, const TermSet& terms, const Opti
     f_out = f(out);
   }
   return bracketed_root(f, in, f_in, out, f_out);
+}
+
+}  // namespace
+
+double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
+                     double rise) {
+  Profile profile(problem, terms, best, term);
+  const double goal = std::sqrt(rise), at = best.at.theta[term];
+  const auto f = [&](double theta) { return profile.root_rise(theta) - goal; };
+  return root_beyond(f, at, -goal, goal * sd);
 }
 
 double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
@@ -118,17 +122,7 @@ double profile_lower(const BinProblem& problem, const TermSet& terms, const Opti
   others[term] = false;
   if ((count_of(others) > 0 || problem.shapes() > 0) && profile.root_rise(0) <= goal) return 0;
   const auto f = [&](double log_theta) { return profile.root_rise(std::exp(log_theta)) - goal; };
-  double in = std::log(at), f_in = -goal;
-  double step = goal * std::min(sd / at, 1.0);
-  double out = in - step, f_out = f(out);
-  for (int i = 0; i < 60 && f_out < 0; ++i) {
-    in = out;
-    f_in = f_out;
-    step *= 1.5;
-    out = in - step;
-    f_out = f(out);
-  }
-  return std::exp(bracketed_root(f, in, f_in, out, f_out));
+  return std::exp(root_beyond(f, std::log(at), -goal, -goal * std::min(sd / at, 1.0)));
 }
 
 }  // namespace libchar

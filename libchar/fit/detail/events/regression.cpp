@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
-#include "libchar/fit/detail/events/turning.hpp"
 
 namespace libchar {
 

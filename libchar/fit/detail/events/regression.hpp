@@ -2,14 +2,38 @@
 // Generalised least squares in the cosine domain, where noise is uncorrelated: weights are 1 / E c_k^2.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "libchar/fit/signs/event.hpp"
-#include "libchar/fit/signs/event_series.hpp"
 
 namespace libchar {
+
+/// sin and cos of k a for k = 1, 2, …: a turn from one to the next, set right every 256.
+class Turning {
+ public:
+  explicit Turning(double angle) : angle_(angle), c1_(std::cos(angle)), s1_(std::sin(angle)) {}
+  void next() {
+    ++k_;
+    if (k_ % 256 == 0) {
+      const double at = std::fmod(angle_ * static_cast<double>(k_), 2 * std::numbers::pi);
+      cosine = std::cos(at);
+      sine = std::sin(at);
+      return;
+    }
+    const double c = cosine * c1_ - sine * s1_;
+    sine = sine * c1_ + cosine * s1_;
+    cosine = c;
+  }
+  double cosine = 1, sine = 0;
+
+ private:
+  double angle_, c1_, s1_;
+  std::uint64_t k_ = 0;
+};
 
 // The cosine transforms of steps, warm-ups and ramps, in closed form.
 

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "libchar/fit/detail/events/turning.hpp"
+#include "libchar/fit/detail/events/regression.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {

@@ -2,7 +2,6 @@
 // The score of a step at every place of a series at once.
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>

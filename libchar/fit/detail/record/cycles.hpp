@@ -2,7 +2,6 @@
 // Slow cycles of a record (heating, air conditioning, day and night), taken out of the coefficients of a transform.
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -91,7 +91,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::uint64_t kExactUpTo = 4096;
-constexpr std::uint64_t kOneByOne = 6;
 
 /// E[c_k²] dt² at [k-1] of the series sqrt(m) times means of m samples.
 std::vector<double> exact_means(std::size_t n, std::uint64_t m) {
@@ -117,18 +116,7 @@ double mean_of(const PowerBin& bin, const std::vector<double>& exact) {
 }
 
 double mean_of(const PowerBin& bin, double dt_s) {
-  const auto first = static_cast<double>(bin.first), end = static_cast<double>(bin.end);
-  if (bin.end - bin.first <= kOneByOne) {
-    double sum = 0;
-    for (double k = first; k < end; ++k) sum += flicker_phase_dct_mean(k, bin.length, dt_s);
-    return sum / (end - first);
-  }
-  const double middle = 0.5 * (first + end - 1), half = 0.5 * (end - first);
-  const double node = 0.7745966692414834 * half;
-  return (5 * flicker_phase_dct_mean(middle - node + 1e-7, bin.length, dt_s) +
-          8 * flicker_phase_dct_mean(middle + 1e-7, bin.length, dt_s) +
-          5 * flicker_phase_dct_mean(middle + node + 1e-7, bin.length, dt_s)) /
-         18;
+  return mean_over(bin, [&](double k) { return flicker_phase_dct_mean(k, bin.length, dt_s); });
 }
 
 }  // namespace
@@ -180,8 +168,7 @@ using std::numbers::pi;
 
 constexpr std::uint64_t kSiTable = 64;
 
-// Integral of sin(t)/t over [pi (j-1), pi j] by ten-point Gauss-Legendre (1e-15 on these smooth
-// half waves).
+// Integral of sin(t)/t over [pi (j-1), pi j] by ten-point Gauss-Legendre (1e-15 on these smooth half waves).
 double sine_integral_half_wave(std::uint64_t j) {
   static constexpr std::array<double, 5> node = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
                                                  0.8650633666889845, 0.9739065285171717};
@@ -231,9 +218,8 @@ long double flicker_phase_covariance(std::uint64_t n) {
   return ((4 * x * x - 1) * long_odd_harmonic(n) - 3 * x * x) / (4 * std::numbers::pi_v<long double>);
 }
 
-// Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m,
-// over m. Far lags by its Taylor series, where the difference of huge numbers would lose the
-// digits.
+// Covariance at lag j of means of m samples, times m: minus the second difference of s_F at step m, over m. Far lags by
+// its Taylor series, where the difference of huge numbers would lose the digits.
 double flicker_block_covariance(std::uint64_t j, std::uint64_t m) {
   const auto width = static_cast<double>(m);
   if (j <= 32) {

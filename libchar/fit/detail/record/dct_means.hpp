@@ -42,9 +42,8 @@ std::array<double, kTerms> dct_mean(double k, std::uint64_t n, double dt_s);
 ///   (one DCT-I and one DST-I; docs/theory/fit.md).
 std::vector<double> dct_means_of_covariance(const std::vector<double>& g);
 
-/// E[c_k^2] per unit theta for the series sqrt(m) * (mean of m samples), n of them: white noise
-/// keeps its level fs. Exact for every term (flicker: second differences of the phase's generalised
-/// covariance).
+/// E[c_k^2] per unit theta for the series sqrt(m) * (mean of m samples), n of them: white noise keeps its level fs.
+/// Exact for every term (flicker: second differences of the phase's generalised covariance).
 class BlockMeanDct {
  public:
   BlockMeanDct(std::uint64_t n, std::uint64_t m, double dt_s);

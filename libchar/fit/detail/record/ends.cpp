@@ -2,11 +2,10 @@
 // springs whose ends are held; the DCT-II belongs to free ends. By summation by parts, with s_k the
 // orthonormal DST-I of x_1..x_(n-1), which is white,
 //   c_k = 2 sin(a/2) s_k + sqrt(2/n) cos(a/2) [(-1)^k x_n - x_0],     a = pi k/n.
-// The second part is two random numbers that reach all coefficients, one the even and one the odd
-// ones: slow coefficients are not independent, and a record in four looks as if white frequency
-// noise stood below its phase noise. It is what a change of the first and of the last sample does,
-// so both are taken out as if they were missing, by generalised least squares in the powers p_k of
-// the rest: with u_k = sqrt(2/n) cos(a/2) over one parity
+// The second part is two random numbers that reach all coefficients, one the even and one the odd ones: slow
+// coefficients are not independent, and a record in four looks as if white frequency noise stood below its phase noise.
+// It is what a change of the first and of the last sample does, so both are taken out as if they were missing, by
+// generalised least squares in the powers p_k of the rest: with u_k = sqrt(2/n) cos(a/2) over one parity
 //   alpha = sum u c/p / sum u²/p,  share of c_k's variance that goes with it: h_k = (u_k²/p_k) / sum u²/p.
 #include "libchar/fit/detail/record/ends.hpp"
 
@@ -18,7 +17,6 @@
 #include <utility>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/scoring.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 

@@ -22,9 +22,8 @@ double share_of_ends(const EndNoise& noise, std::uint64_t n);
 /// E[c_k²] of quantization of theta = 1 without the ends of its n samples.
 double quantization_without_ends(double k, std::uint64_t n, double dt_s);
 
-/// The likeliest noise of a record with unknown ends, whose coefficients 0..n-1 these are:
-/// quantization, flicker phase of a clock, and those of white noise, flicker and walk that raise
-/// 2 ln L by 6. `start`: a guess with all terms.
+/// The likeliest noise of a record with unknown ends, whose coefficients 0..n-1 these are: quantization, flicker phase
+/// of a clock, and those of white noise, flicker and walk that raise 2 ln L by 6. `start`: a guess with all terms.
 EndNoise noise_with_ends(std::span<const double> coefficients, const EndNoise& start, bool clock);
 
 /// Leaves out the coefficients of a part, which has ends of its own, that hold more of them than a twentieth.

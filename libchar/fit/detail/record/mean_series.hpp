@@ -1,8 +1,7 @@
 #pragma once
-// The series of means of a record, and of a long one its slow part: blocks of 2^15 means are
-// transformed and their squares pooled, as the samples are, and the coefficients that these leave
-// are taken from the series of means of 512 means. So nothing grows with a record but one value for
-// 2^18 samples, and no transform does.
+// The series of means of a record, and of a long one its slow part: blocks of 2^15 means are transformed and their
+// squares pooled, as the samples are, and the coefficients that these leave are taken from the series of means of 512
+// means. So nothing grows with a record but one value for 2^18 samples, and no transform does.
 
 #include <cstdint>
 #include <optional>

@@ -22,16 +22,14 @@ constexpr double kLeastDof = 0.1;               ///< of a bin: what is all but e
 
 bool take_events(const EventSearch& search) { return !search.events.empty() && !search.more && !search.telegraph; }
 
-/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what
-/// it cannot do.
+/// `series` makes the series. What cannot be searched is fitted as it is; the fit says itself what it cannot do.
 template <class Series>
 EventSearch search_events(const FitOptions& options, const Series& series) {
   if (!options.events || !options.remedies) return {};
   try {
     const EventSeries& searched = series();
     if (searched.value.size() < kFewestPoints) return {};
-    // Phase noise is not among the powers of the search: where it stands, a clock would step all
-    // the time.
+    // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
     EventOptions how;
     how.steps = !options.clock;
     return find_events(searched, fitted_powers(), how, options.unit);

@@ -1,6 +1,5 @@
 #pragma once
-// What of a record is a mean and no noise: temperature, steps, a warm-up, a ramp. Taken out before
-// the noise is fitted.
+// What of a record is a mean and no noise: temperature, steps, a warm-up, a ramp. Taken out before the noise is fitted.
 
 #include <optional>
 #include <span>

@@ -36,8 +36,7 @@ std::uint64_t next_edge(std::uint64_t k) {
 
 using Unit = std::array<double, kTerms>;
 
-/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is
-/// smooth and wide.
+/// Adds `weight` times the mean of unit(k), k = lo..hi-1, to the sum: by Gauss-Legendre where it is smooth and wide.
 template <typename UnitAt>
 void add_run(std::uint64_t lo, std::uint64_t hi, double weight, bool smooth, UnitAt&& unit_at, Unit& sum) {
   static constexpr std::array<double, 4> node = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
@@ -55,15 +54,13 @@ void add_run(std::uint64_t lo, std::uint64_t hi, double weight, bool smooth, Uni
   }
   const double middle = 0.5 * static_cast<double>(lo + hi - 1), half = 0.5 * static_cast<double>(hi - lo);
   for (std::size_t i = 0; i < node.size(); ++i) {
-    // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern
-    // would bite.
+    // An irrational shift keeps the nodes off the integers, where the ramp's odd-even pattern would bite.
     add(middle + half * node[i] + 1e-7, 0.5 * share[i] * weight);
     add(middle - half * node[i] + 1e-7, 0.5 * share[i] * weight);
   }
 }
 
-/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not
-/// clipped.
+/// Mean of unit(k) over the `kept` coefficients of lo..hi-1, run by run of those that were not clipped.
 template <typename UnitAt>
 Unit average_unit(std::uint64_t lo, std::uint64_t hi, const std::vector<char>& clipped, std::uint64_t first,
                   std::uint64_t kept, bool smooth, UnitAt&& unit_at) {

@@ -12,8 +12,7 @@ namespace libchar {
 
 // Mean squared DCT-II coefficients of one transform length become logarithmic bins.
 
-/// The logarithmic bins of a power, with their expectations; `clipped`: coefficients to leave out,
-/// none when empty.
+/// The logarithmic bins of a power, with their expectations; `clipped`: coefficients to leave out, none when empty.
 void append_power_bins(const PooledPower& power, double rate_hz, const std::vector<char>& clipped,
                        std::vector<PowerBin>& bins);
 

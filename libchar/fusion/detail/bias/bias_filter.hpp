@@ -10,13 +10,34 @@
 
 namespace libchar::fusion {
 
-// A sensor's drift as states of first order, b_k+1 = phi b_k + w, var(w) = drive:
-//   Gauss-Markov     phi = exp(-dt/tau), drive = sigma^2 (1 - phi^2), starts with variance sigma^2
-//   flicker B        sum of Gauss-Markov processes a decade apart in tau, each of variance B^2 ln(10)/pi:
-//                    their densities add up to B^2/(2 pi f) within 6 %       (van der Ziel 1950; Keshner 1982)
-//   walk K           drive K^2 dt, tau ten times the slowest flicker, starts with variance zero
-// Flicker is followed between the frequency where white noise hides it and the one where the walk does.
+/// The discrete Riccati equation of a filter:
+///   P' = F P (I + G P)^-1 F' + Q,  G = C' M C, M = R^-1, or beside an input H x that is not known
+///   M = R^-1 - R^-1 H (H' R^-1 H)^-1 H' R^-1
+/// 2^j steps at once have the same form (Anderson 1978; structured doubling, Chu, Fan, Lin 2005):
+///   P_k+m = H_j + A_j' P_k (I + G_j P_k)^-1 A_j
+///   A_j+1 = A_j (I + G_j H_j)^-1 A_j,  G_j+1 = G_j + A_j (I + G_j H_j)^-1 G_j A_j',
+///   H_j+1 = H_j + A_j' H_j (I + G_j H_j)^-1 A_j;   H_j -> the steady state
+/// In the operators A_0 = F', the transposed system.
+class RiccatiSteps {
+ public:
+  RiccatiSteps(const Eigen::MatrixXd& transition, const Eigen::MatrixXd& drive, const Eigen::MatrixXd& information);
+  /// Prediction covariance after as many steps as the operator stands for.
+  Eigen::MatrixXd advance(const Eigen::MatrixXd& p) const;
+  /// Twice as many steps.
+  void twice();
+  /// Doubles until nothing changes any more; then H is the steady state.
+  const Eigen::MatrixXd& steady();
 
+ private:
+  Eigen::MatrixXd a_, g_, h_;
+};
+
+/// A sensor's drift as states of first order, b_k+1 = phi b_k + w, var(w) = drive:
+///   Gauss-Markov     phi = exp(-dt/tau), drive = sigma^2 (1 - phi^2), starts with variance sigma^2
+///   flicker B        sum of Gauss-Markov processes a decade apart in tau, each of variance B^2 ln(10)/pi:
+///                    their densities add up to B^2/(2 pi f) within 6 %       (van der Ziel 1950; Keshner 1982)
+///   walk K           drive K^2 dt, tau ten times the slowest flicker, starts with variance zero
+/// Flicker is followed between the frequency where white noise hides it and the one where the walk does.
 struct BiasStates {
   Eigen::VectorXd pole, drive, start;  ///< phi, variance a step, variance before the first instant
   std::vector<Eigen::Index> channel;   ///< whose samples it is in

@@ -9,7 +9,7 @@
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
-#include "libchar/fusion/detail/bias/riccati.hpp"
+#include "libchar/fusion/detail/bias/bias_filter.hpp"
 
 namespace libchar::fusion {
 namespace {

@@ -1,8 +1,7 @@
 #pragma once
-// A bank of cumulative sums of log-likelihood ratios (Page 1954; Lorden 1971: no test of one false
-// alarm in e^h samples answers sooner), for each sensor one row a kind and a size of fault. z is the
-// sensor's residual in units of its expected deviation, u the fused input in units of its own
-// deviation, w = 1 (0: no sample here, nothing happens):
+// A bank of cumulative sums of log-likelihood ratios (Page 1954; Lorden 1971: no test of one false alarm in e^h samples
+// answers sooner), for each sensor one row a kind and a size of fault. z is the sensor's residual in units of its
+// expected deviation, u the fused input in units of its own deviation, w = 1 (0: no sample here, nothing happens):
 //
 //   bias  t   mean of z becomes t          S <- max(0, S + t z - t^2/2 w)
 //   gain  t   mean of z becomes t u        S <- max(0, S + t u z - t^2/2 u^2)

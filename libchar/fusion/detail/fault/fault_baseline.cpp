@@ -151,8 +151,7 @@ constexpr InLanes<learn_all_lanes> learn_all;
 
 // A sum with the slope t is worth e^S of false alarms while E exp(t z - t^2/2) <= 1. A share p of samples beyond c adds
 // p exp(t c - t^2/2) to it, of the steepest row at most kTailPart. Short of tails that are heavier than Gauss's,
-// nothing
-// is cut: the steepest row answers a gross fault at once.
+// nothing is cut: the steepest row answers a gross fault at once.
 double clip_of(double tails, double of, double most) {
   constexpr double kSteepest = 2.8, kTailPart = 0.2, kLeast = 2.5;
   if (of < kFewestForTail) return kUntoldClip;

@@ -6,11 +6,10 @@
 //   S = s + B + G x^2 + D dx^2,  z = e / sqrt(S)      (B, G, D: how well b, g, d are known)
 //   k = B / S,  b <- b + k e,  B <- max(B (1 - k), s / N)      and so for g with x, d with dx
 //
-// Recursive least squares with the covariance kept diagonal (x is centred and dx nearly orthogonal to
-// it) and a memory of N samples, each sensor counting its own. z is white with deviation one while the
-// sensor stays as it was, though its gain be 1 % off and its clock half a sample: what alarms is a
-// change. Where z is not white all the same (motion that the others see differently), the long-run
-// variance of blocks says by how much:
+// Recursive least squares with the covariance kept diagonal (x is centred and dx nearly orthogonal to it) and a memory
+// of N samples, each sensor counting its own. z is white with deviation one while the sensor stays as it was, though
+// its gain be 1 % off and its clock half a sample: what alarms is a change. Where z is not white all the same (motion
+// that the others see differently), the long-run variance of blocks says by how much:
 //
 //   l_bias = mean (sum z)^2 / n,   l_gain = mean (sum x z)^2 / sum x^2,   l_noise = mean (sum z^2 - n)^2 / 2n
 //
@@ -156,9 +155,8 @@ struct FaultBaseline {
   /// An alarm was over at once: from here on no single sample of any sensor is worth one.
   void expect_outliers();
   bool expects_outliers() const { return long_run.most_clip < kMostDeviations; }
-  /// What was learnt of the long run while the means were still wrong is forgotten.
-  /// `trusted`: they are one until shown otherwise. Otherwise they are taken for large until shown otherwise:
-  /// only gross faults are judged at first.
+  /// What was learnt of the long run while the means were still wrong is forgotten. `trusted`: they are one until shown
+  /// otherwise. Otherwise they are taken for large until shown otherwise: only gross faults are judged at first.
   void forget_blocks(bool trusted);
 
  private:

@@ -4,10 +4,9 @@
 //
 //   C(F) = 1/2 min_x sum_{i not in F} w_i (a_i - h_i x)^2  (means)  + the same of slopes  + c |F|
 //
-// (-log likelihood and a prior of e^-c a fault). All F up to half of the sensors are tried; only
-// suspects with the most evidence against them where there are many. Sets whose cost is within
-// `kDoubt` of the best explain the window as well: who is in all of them is wrong for certain, and
-// when none is, the split is ambiguous (three against three).
+// (-log likelihood and a prior of e^-c a fault). All F up to half of the sensors are tried; only suspects with the most
+// evidence against them where there are many. Sets whose cost is within `kDoubt` of the best explain the window as
+// well: who is in all of them is wrong for certain, and when none is, the split is ambiguous (three against three).
 
 #include <Eigen/Core>
 #include <cstdint>

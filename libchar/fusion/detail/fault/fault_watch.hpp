@@ -1,9 +1,8 @@
 #pragma once
-// The fault rule of [RV 4.34], mended: a fast second moment about ZERO of each channel's residual
-// (a calibrated channel has zero mean, so a lasting bias stays visible), compared with what the
-// channel's own variance leaves in the residual (one threshold a channel, not 2 max v for all). The
-// worst channel is taken out first; it comes in again when its moment has been below the threshold
-// for the whole recovery time.
+// The fault rule of [RV 4.34], mended: a fast second moment about ZERO of each channel's residual (a calibrated channel
+// has zero mean, so a lasting bias stays visible), compared with what the channel's own variance leaves in the residual
+// (one threshold a channel, not 2 max v for all). The worst channel is taken out first; it comes in again when its
+// moment has been below the threshold for the whole recovery time.
 //
 //   m_i <- m_i + a (r_i^2 / (v_i - V) - m_i),  out when m_i > threshold,  V = 1 / sum 1/v
 //   while out:  m_i of (y_i - x)^2 / (v_i + V), in again when m_i < threshold for `recovery` instants

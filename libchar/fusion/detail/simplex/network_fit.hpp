@@ -4,7 +4,7 @@
 //
 //   out(z) = a_0 + a'z + s net(z)
 //
-// z are standardised inputs; first a by regularised least squares, then the tanh network (tanh_network.hpp) on
+// z are standardised inputs; first a by regularised least squares, then the tanh network (network_training.hpp) on
 // what is left of the target, by Levenberg-Marquardt. Of all iterations the one with the smallest error on the
 // held-out rows stays, the affine part alone among them.
 
@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libchar/fusion/detail/network/tanh_network.hpp"
+#include "libchar/fusion/detail/network/network_training.hpp"
 
 namespace libchar::fusion {
 

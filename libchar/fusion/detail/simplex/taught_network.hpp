@@ -4,11 +4,10 @@
 //   |x - baseline| <= a + 4 sqrt(V): V the baseline's variance, a the largest distance where the truth was known,
 //   the mean of s_i = y_i - r_i(x) over the last 128 instants stays within what it was there, for each sensor:
 //   r_i, a cubic, is what sensor i read at the true x, so s are the parity residuals of the network.
-// `Teaching` makes one in slices: fit, then judgement on rows that the fit has not seen, by these rules:
-// mean square error smaller than the baseline's by 6 %, by 2.5 standard errors of the difference over
-// blocks, not larger on the last instants of the learning window; and smaller with nine times what the
-// network would have aged since it learnt, sum a_i^2 m_i^2: m_i the mean of s_i on the held-out rows, a_i
-// what a lasting offset of sensor i does to x.
+// `Teaching` makes one in slices: fit, then judgement on rows that the fit has not seen, by these rules: mean square
+// error smaller than the baseline's by 6 %, by 2.5 standard errors of the difference over blocks, not larger on the
+// last instants of the learning window; and smaller with nine times what the network would have aged since it learnt,
+// sum a_i^2 m_i^2: m_i the mean of s_i on the held-out rows, a_i what a lasting offset of sensor i does to x.
 
 #include <vector>
 

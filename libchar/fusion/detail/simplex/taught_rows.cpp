@@ -1,7 +1,6 @@
 #include "libchar/fusion/detail/simplex/taught_rows.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "libchar/fusion/algorithm.hpp"

@@ -1,6 +1,5 @@
 #pragma once
-// What least squares does with the errors of corrected channels, e_i = c_i - x, before and beside
-// the free solution:
+// What least squares does with the errors of corrected channels, e_i = c_i - x, before and beside the free solution:
 //   copies      channels that are one channel twice share one weight
 //   shrinkage   S <- (1 - s) S + s diag(S), S = E'E, as rows of the problem: |sqrt(1 - s) E w|^2 +
 //               s sum |e_i|^2 w_i^2                                  (Schaefer & Strimmer 2005, target D)

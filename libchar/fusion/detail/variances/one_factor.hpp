@@ -1,8 +1,7 @@
 #pragma once
-// C = g g' + D of n channels that see one input: gains g (in units of the input's deviation) and noise
-// variances D on the diagonal, by alternating the leading eigenvector of D^-1/2 C D^-1/2 and D =
-// diag(C - g g') (principal factor analysis, Lawley & Maxwell 1971). In memory of its own: no trip to
-// the heap after construction.
+// C = g g' + D of n channels that see one input: gains g (in units of the input's deviation) and noise variances D on
+// the diagonal, by alternating the leading eigenvector of D^-1/2 C D^-1/2 and D = diag(C - g g') (principal factor
+// analysis, Lawley & Maxwell 1971). In memory of its own: no trip to the heap after construction.
 
 #include <Eigen/Core>
 

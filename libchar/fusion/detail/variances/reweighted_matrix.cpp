@@ -84,8 +84,7 @@ void ReweightedMatrix::improve() {
   for (int k = 0; k < m_; ++k)
     right_[k] = squares_[k] / (gathered_ * v_[static_cast<std::size_t>(index_[static_cast<std::size_t>(k)])]) -
                 (1 - gls_.leverage(k));
-  // The ridge of one instant, whatever is gathered: it bounds the spread of the result, not the
-  // step.
+  // The ridge of one instant, whatever is gathered: it bounds the spread of the result, not the step.
   solve_information(std::max(options_.damping * a / gathered_, 1e-12));
   apply(a);
 }

@@ -1,13 +1,11 @@
 #pragma once
-// Recursive re-weighted MINQUE for any observation matrix H (n x r): the method of
-// reweighted_variances.hpp with
+// Recursive re-weighted MINQUE for any observation matrix H (n x r): the method of reweighted_variances.hpp with
 //
 //   R^-1/2 H = Q U,  M = I - Q Q',  q_i = r_i^2 / v_i,  (M o M + lambda I) u = mean(q) - diag(M),
 //   v_i <- v_i (1 + a u_i)
 //
-// Residuals are gathered over n instants for each solution of the n x n system, so that an instant
-// costs O(n r + n^2). Factors stand until the variances change or another set of channels is in
-// use.
+// Residuals are gathered over n instants for each solution of the n x n system, so that an instant costs O(n r + n^2).
+// Factors stand until the variances change or another set of channels is in use.
 
 #include <Eigen/Core>
 #include <vector>
@@ -22,8 +20,7 @@ class ReweightedMatrix {
  public:
   ReweightedMatrix(const Eigen::MatrixXd& h, const ReweightingOptions& options);
 
-  /// As ReweightedVariances: any one of the inputs, NaN when these channels do not determine them
-  /// all.
+  /// As ReweightedVariances: any one of the inputs, NaN when these channels do not determine them all.
   double fuse(const double* y, const int* index, int m);
   void update();
   Estimate estimate() const;

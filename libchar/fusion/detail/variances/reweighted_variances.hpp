@@ -5,23 +5,20 @@
 //   p_i = (1/v_i) / sum_j 1/v_j,  x = sum p_i y_i,  r_i = y_i - x,  q_i = r_i^2 / v_i
 //   (diag(1 - 2p) + p p' + lambda I) u = q - (1 - p),     v_i <- v_i (1 + a u_i),     a = 1 - gamma
 //
-// One scoring step of restricted maximum likelihood (Patterson & Thompson 1971; Rao 1971 for
-// MINQUE) an instant: with equal p and lambda = 0 it is MINQUE with identity weights, at the true v
-// it is as efficient as the full-record REML, in O(n). The matrix is the Fisher information of ln
-// v; it is diagonal plus rank one, so it is solved by elimination, the channel with the largest p
-// first.
+// One scoring step of restricted maximum likelihood (Patterson & Thompson 1971; Rao 1971 for MINQUE) an instant: with
+// equal p and lambda = 0 it is MINQUE with identity weights, at the true v it is as efficient as the full-record REML,
+// in O(n). The matrix is the Fisher information of ln v; it is diagonal plus rank one, so it is solved by elimination,
+// the channel with the largest p first.
 //
 // With a long memory the variances hardly move in an instant. The squares r_i^2 are then gathered,
 // each with its gain a, and one step is taken for all of them when the gains sum to kRenewal (or
 // another set of channels is in use): between two steps weights stand, and an instant costs little
 // more than a weighted mean. At gamma <= 0.99 every instant is a step.
 //
-// lambda: where two channels carry all the weight, only the sum of their variances shows in the
-// data and the matrix is nearly singular. The ridge leaves the fixed point where it is (E u = 0 at
-// the true v) and makes the poorly seen directions slow instead of noisy: their relative standard
-// deviation stays below sqrt(a / lambda).
+// lambda: where two channels carry all the weight, only the sum of their variances shows in the data and the matrix is
+// nearly singular. The ridge leaves the fixed point where it is (E u = 0 at the true v) and makes the poorly seen
+// directions slow instead of noisy: their relative standard deviation stays below sqrt(a / lambda).
 
-#include <cmath>
 #include <limits>
 #include <vector>
 

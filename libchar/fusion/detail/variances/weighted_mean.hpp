@@ -1,6 +1,5 @@
 #pragma once
-// x = sum w_i y_i of the samples that are there, as y_1 + sum w_i (y_i - y_1): the input's offset
-// costs no digits.
+// x = sum w_i y_i of the samples that are there, as y_1 + sum w_i (y_i - y_1): the input's offset costs no digits.
 
 #include <Eigen/Core>
 #include <cmath>

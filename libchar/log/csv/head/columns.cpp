@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "libchar/core/text/utf8.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/calendar.hpp"

@@ -11,7 +11,6 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/core/text/utf8.hpp"
 #include "libchar/log/csv/head/first_lines.hpp"
 
 namespace libchar::csv {

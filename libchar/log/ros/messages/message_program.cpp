@@ -9,7 +9,7 @@
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/recording.hpp"
-#include "libchar/log/ros/messages/known_messages.hpp"
+#include "libchar/log/ros/messages/message_definition.hpp"
 
 namespace libchar {
 namespace {

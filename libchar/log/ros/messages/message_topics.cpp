@@ -9,7 +9,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/log/ros/messages/known_messages.hpp"
+#include "libchar/log/ros/messages/message_definition.hpp"
 
 namespace libchar {
 namespace {
@@ -155,8 +155,8 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
   }
   if (result == Decoded::other_length)
     warnings.add("array_length",
-                 "messages with a longer or shorter array than in the first one: elements beyond "
-                 "it are left out, those they lack are missing",
+                 "messages with a longer or shorter array than in the first one: elements beyond it are left out, "
+                 "those they lack are missing",
                  place(message));
   if (rounded > 0)
     warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded", place(message),

@@ -1,8 +1,7 @@
-// Q(s²) = sum_g sum_i (y_i - m_g)² / (v_i + s²), m_g the weighted mean of a group, is chi-square
-// with n - G degrees of freedom at the true square of the spread within, so that it is found as in
-// random_effects.cpp: Q(s²) = n - G, and an interval by the quantiles of Q. Groups' means differ
-// more than that by Fisher's F of the one-way analysis of variance (Fisher 1925), with these
-// weights
+// Q(s²) = sum_g sum_i (y_i - m_g)² / (v_i + s²), m_g the weighted mean of a group, is chi-square with n - G degrees of
+// freedom at the true square of the spread within, so that it is found as in random_effects.cpp: Q(s²) = n - G, and an
+// interval by the quantiles of Q. Groups' means differ more than that by Fisher's F of the one-way analysis of variance
+// (Fisher 1925), with these weights
 //   F = sum_g W_g (m_g - m)² / (G - 1) / max(1, Q(s²) / (n - G)),   W_g = sum_i 1 / (v_i + s²),
 // exact for equal variances. Spread between: random effects of the m_g with variances 1 / W_g.
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"

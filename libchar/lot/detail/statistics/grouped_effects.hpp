@@ -1,6 +1,5 @@
 #pragma once
-// Values in groups, each known to some accuracy: batches of a lot, or several recordings of each
-// device.
+// Values in groups, each known to some accuracy: batches of a lot, or several recordings of each device.
 //   y_i = mu + b_g(i) + d_i + e_i,   b_g ~ N(0, between²),   d_i ~ N(0, within²),   e_i ~ N(0, v_i) with v_i known
 
 #include <cmath>
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "libchar/core/not_known.hpp"
-#include "libchar/core/numeric/chi_square.hpp"
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/random_effects.hpp"
 
@@ -64,8 +63,7 @@ WithinSpread within_spread(Function&& q, double dof, std::span<const double> var
 std::vector<Outlier> find_device_outliers(std::span<const double> value, std::span<const double> variance,
                                           std::size_t channels, double probability);
 
-// Values in groups that lie on a straight line in each: recordings of devices at several
-// temperatures.
+// Values in groups that lie on a straight line in each: recordings of devices at several temperatures.
 //   y_i = a_g + c_g x_i + d_i + e_i,   d_i ~ N(0, within²),   e_i ~ N(0, v_i) with v_i known
 // A group without a slope is one at x = 0 as it stands anywhere: y_i = a_g + d_i + e_i.
 
@@ -73,12 +71,10 @@ struct GroupedLines {
   double within = 0;  ///< standard deviation of d, the same in all groups; NaN without a degree of freedom
   Interval within_ci95;
   double dof = 0;  ///< of the values about the lines, over all groups: `within` is known by as many
-  /// Of each group, from v and `within` (from v alone where that is NaN); NaN for one without
-  /// values.
+  /// Of each group, from v and `within` (from v alone where that is NaN); NaN for one without values.
   std::vector<double> at_zero, at_zero_variance;
   std::vector<double> slope, slope_variance;  ///< NaN for a group without a slope
-  /// The slope's where `within` stands at the ends of its interval: what its being estimated does
-  /// to them.
+  /// The slope's where `within` stands at the ends of its interval: what its being estimated does to them.
   std::vector<double> slope_variance_low, slope_variance_high;
   std::vector<double> residual_dof;  ///< values less those that line or mean take
 };

@@ -2,10 +2,9 @@
 // (Draper & Smith, Applied Regression Analysis, Wiley), about the group's own weighted mean of x,
 // in which the two columns are orthogonal:
 //   c = sum w (x - xm)(y - ym) / S,   S = sum w (x - xm)²,   var c = 1/S,   var(a at x) = 1/W + (x - xm)²/S
-// s² is pooled over the groups: Q(s²), the weighted sum of squares about all lines, is chi-square
-// with (values - 2 a line - 1 a mean) degrees of freedom at the true s² (grouped_effects.hpp).
-// So the error of a slope is what the values scatter by from one to the next, which two values of a
-// group do not show and those of all groups together do.
+// s² is pooled over the groups: Q(s²), the weighted sum of squares about all lines, is chi-square with (values - 2 a
+// line - 1 a mean) degrees of freedom at the true s² (grouped_effects.hpp). So the error of a slope is what the values
+// scatter by from one to the next, which two values of a group do not show and those of all groups together do.
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"

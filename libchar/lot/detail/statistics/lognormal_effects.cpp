@@ -1,17 +1,15 @@
-// What a fit finds for a square t is t itself, a gamma variable about it: a sum of chi-squares with
-// the weights of the fit, known by its first three moments (core/coefficient.hpp). As a function of
-// t, of records of about one length,
+// What a fit finds for a square t is t itself, a gamma variable about it: a sum of chi-squares with the weights of the
+// fit, known by its first three moments (core/coefficient.hpp). As a function of t, of records of about one length,
 //   sd²(t) = a + b t + c t²,   skewness(t) = 2 sd / (t + d(t)),   d = e + f t,   a … f >= 0
 // are lines through what the fits say at their own estimates, so that a record that was found too
 // large by chance is not believed less. Then
 //   q + d ~ gamma of mean t + d and variance sd²
 //   L(mean, spread) = prod_i integral N(u; mean, spread²) p(q_i | e^2u) du
-// with the integral as a sum over cells of u, each with the normal distribution's exact share, so
-// that nothing is lost where the spread is narrow. Whoever was detected or not does not enter.
-// Spread: the maximum of the likelihood with the mean integrated out to first order (Cox & Reid, J.
-// R. Stat. Soc. B 49 (1987) 1), interval by its fall of 1.92. Means: profiles over the spread, with
-// the fall n/2 ln(1 + t²/(n - 1)) that makes them Student's t where the values are known. Of what
-// many fits find: docs/theory/lots.md.
+// with the integral as a sum over cells of u, each with the normal distribution's exact share, so that nothing is lost
+// where the spread is narrow. Whoever was detected or not does not enter. Spread: the maximum of the likelihood with
+// the mean integrated out to first order (Cox & Reid, J. R. Stat. Soc. B 49 (1987) 1), interval by its fall of 1.92.
+// Means: profiles over the spread, with the fall n/2 ln(1 + t²/(n - 1)) that makes them Student's t where the values
+// are known. Of what many fits find: docs/theory/lots.md.
 #include <Eigen/Dense>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -55,8 +53,7 @@ std::map<long, Indices> by_length(std::span<const double> samples) {
   return out;
 }
 
-/// Least squares over x >= 0 for a few columns: the best of all sets of columns whose own solution
-/// is so.
+/// Least squares over x >= 0 for a few columns: the best of all sets of columns whose own solution is so.
 Eigen::VectorXd non_negative(const Eigen::MatrixXd& unscaled, const Eigen::VectorXd& target) {
   // Columns are powers of a square in any unit.
   const Eigen::VectorXd length = unscaled.colwise().norm();
@@ -222,8 +219,7 @@ std::pair<double, double> least(Function&& f, double low, double high) {
   return boost::math::tools::brent_find_minima(f, low, high, kBits);
 }
 
-/// Where `f`, least at `at`, has risen by `rise` in steps of this sign; infinite where it has not
-/// before `end`.
+/// Where `f`, least at `at`, has risen by `rise` in steps of this sign; infinite where it has not before `end`.
 template <class Function>
 double rises(Function&& f, double at, double step, double end, double rise) {
   const double value = f(at) + rise;
@@ -243,8 +239,7 @@ double rises(Function&& f, double at, double step, double end, double rise) {
   return std::copysign(kNoEnd, step);
 }
 
-/// The likelihood over the mean alone, or over ln E[c] = mean + spread²/2 (`half` = 1/2), its
-/// spread the best there.
+/// The likelihood over the mean alone, or over ln E[c] = mean + spread²/2 (`half` = 1/2), its spread the best there.
 struct Profile {
   const Likelihood& likelihood;
   double half = 0;

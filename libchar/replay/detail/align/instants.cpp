@@ -19,7 +19,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
-#include "libchar/replay/detail/align/slow_reference.hpp"
+#include "libchar/replay/detail/align/reference_track.hpp"
 #include "libchar/replay/detail/plan/common_unit.hpp"
 
 namespace libchar {
@@ -355,8 +355,8 @@ void Instants::refuse_apart(double length_s) const {
             duration_text(behind ? start_s - length_s : -end_s),
             behind ? "after the recording ends" : "before the recording begins")
       .hint(
-          "where one of them counts from its own start, lag_s: {} puts their first samples "
-          "together; from_s and to_s choose stretches",
+          "where one of them counts from its own start, lag_s: {} puts their first samples together; from_s and to_s "
+          "choose stretches",
           brief_text(scene_->reference->lag_s - start_s, 12));
 }
 

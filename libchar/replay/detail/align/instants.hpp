@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,8 +38,7 @@ class Instants {
   const InstantsInfo& info() const { return info_; }
   const SceneSource& source() const { return source_; }
 
-  /// Instants [from, to) in blocks of `size` columns, the last one shorter; aligned when there is an
-  /// alignment.
+  /// Instants [from, to) in blocks of `size` columns, the last one shorter; aligned when there is an alignment.
   void pass(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress, const InstantsBlock& block) const;
   /// The same as recorded; below the sensors the rows of their further axes, axis by axis.
   void pass_recorded(std::int64_t from, std::int64_t to, std::size_t size, Progress& progress,

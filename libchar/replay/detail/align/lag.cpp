@@ -1,11 +1,10 @@
 // The lag of the largest correlation coefficient (Knapp & Carter, IEEE Trans. ASSP 24 (1976)
 // 320–327, without weighting):
 //   r(l) = sum_k (s_{k+l} - ms)(x_k - mx) / sqrt(sum (s_{k+l} - ms)^2 sum (x_k - mx)^2)
-// over the k at which both samples are there, means over the same k. The correlation of sampled
-// band-limited signals is itself band-limited, so between its samples it is interpolated by a
-// windowed sinc (Lanczos, 8 each side), and the top of each of its maxima is found by golden
-// section; a parabola through three samples is off by up to a tenth of a sample. Long records are
-// searched on means over blocks first, then sample by sample around the best lag.
+// over the k at which both samples are there, means over the same k. The correlation of sampled band-limited signals is
+// itself band-limited, so between its samples it is interpolated by a windowed sinc (Lanczos, 8 each side), and the top
+// of each of its maxima is found by golden section; a parabola through three samples is off by up to a tenth of a
+// sample. Long records are searched on means over blocks first, then sample by sample around the best lag.
 #include "libchar/replay/detail/align/lag.hpp"
 
 #include <fmt/format.h>
@@ -52,8 +51,7 @@ Series centred(std::span<const double> values, std::size_t count) {
       out[k] = (values[k] - origin) - sum / seen;
       largest = std::max(largest, std::abs(out[k]));
     }
-  // Into +-1: squares of extreme values neither overflow nor vanish. What is left of a constant is
-  // rounding.
+  // Into +-1: squares of extreme values neither overflow nor vanish. What is left of a constant is rounding.
   if (largest <= 1e-14 * std::abs(origin)) largest = 0;
   for (double& v : out) v = largest > 0 ? v / largest : v * 0;
   return out;

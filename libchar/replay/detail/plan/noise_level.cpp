@@ -39,9 +39,8 @@ struct Chain {
   std::int64_t step;  // model samples an output sample
 };
 
-// Half the mean square difference of two output samples of a noise with this two-sided spectrum
-// (variance per cycle a sample), low-passed. Split at octaves: spectra and low-pass bend on a
-// logarithmic scale.
+// Half the mean square difference of two output samples of a noise with this two-sided spectrum (variance per cycle a
+// sample), low-passed. Split at octaves: spectra and low-pass bend on a logarithmic scale.
 double half_square_difference(const Chain& chain, const std::function<double(double)>& spectrum) {
   const double a = chain.pole;
   const auto integrand = [&](double nu) {

@@ -210,10 +210,9 @@ void place_windows(const Scene& scene, const ReplayOptions& options, const Insta
       plan.warnings.add("fault_after_end", "a fault begins after the end of the recording and changes nothing",
                         fmt::format("{} from {} s", scene.sensors[fault.sensor].name, brief_text(fault.from_s, 6)));
   if (plan.learn_to > plan.run_from && plan.learn_from < plan.run_to)
-    plan.warnings.add("learning_in_evaluation",
-                      "the evaluation holds instants of the learning window: methods that learn "
-                      "there look better than they are",
-                      "");
+    plan.warnings.add(
+        "learning_in_evaluation",
+        "the evaluation holds instants of the learning window: methods that learn there look better than they are", "");
 }
 
 std::string label_of(const SceneAlgorithm& algorithm, bool repeated) {
@@ -300,10 +299,10 @@ void keep_budget(const ReplayOptions& options, const fusion::Array& live, Replay
     if (a.runs() && !a.learns_before() && !a.learns_run()) {
       a.blind = blind_share(*a.entry, a.settings, live, plan.run_to - plan.run_from, plan.warm_up, options.budget_s);
       if (a.blind.whole || !a.asked || live.reference_throughout) continue;
-      plan.warnings.add("leave_one_out_budget",
-                        "leave-one-out that costs more than its budget ran on a part of the "
-                        "evaluation or was left out (`budget_s`)",
-                        blind_share_text(a));
+      plan.warnings.add(
+          "leave_one_out_budget",
+          "leave-one-out that costs more than its budget ran on a part of the evaluation or was left out (`budget_s`)",
+          blind_share_text(a));
     }
 }
 

@@ -92,9 +92,7 @@ std::string align(const SceneAlign& align) {
   }
   if (align.choose)
     return fmt::format(
-        "alignment: terms are tried one by one {}, and taken out of the sensors where they pay on "
-        "the "
-        "other half of it",
+        "alignment: terms are tried one by one {}, and taken out of the sensors where they pay on the other half of it",
         where);
   return fmt::format("alignment: learnt {}{}", where,
                      align.apply ? ", taken out of the sensors before they are fused"

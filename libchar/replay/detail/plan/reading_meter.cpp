@@ -319,8 +319,8 @@ void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std
                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
   for (const ReadingMeter::Change& change : changes)
     warnings.add("sensor_changed",
-                 "sensors read otherwise, relative to the others, than where this was learnt: "
-                 "weights and standard deviations of there do not fit",
+                 "sensors read otherwise, relative to the others, than where this was learnt: weights and standard "
+                 "deviations of there do not fit",
                  change_text(change, names, units, clock));
 }
 

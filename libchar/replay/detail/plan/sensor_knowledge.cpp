@@ -1,17 +1,66 @@
 // Offsets and noise levels of the sensors, before anything is fused. A level is taken from the
 // scene's own figure, else from the sensor's model, else from the stretch at rest. Behind a filter
 // the first two are multiplied by what it leaves of white noise, the third is measured there.
+
 #include "libchar/replay/detail/plan/sensor_knowledge.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/replay/detail/plan/noise_level.hpp"
-#include "libchar/replay/detail/plan/rest.hpp"
 
 namespace libchar {
+
+void RestMeter::push(const Eigen::MatrixXd& samples) {
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    Sums& s = sensors_[i];
+    for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+      const double y = samples(static_cast<Eigen::Index>(i), k);
+      if (!std::isfinite(y)) {
+        s.has_last = false;
+        continue;
+      }
+      if (s.samples == 0) s.origin = y;  // an offset must cost no digits
+      s.sum += y - s.origin;
+      s.squares += (y - s.origin) * (y - s.origin);
+      ++s.samples;
+      if (s.has_last) {
+        s.differences += (y - s.last) * (y - s.last);
+        ++s.pairs;
+      }
+      s.last = y;
+      s.has_last = true;
+    }
+  }
+}
+
+std::vector<double> RestMeter::means() const {
+  std::vector<double> out;
+  for (const Sums& s : sensors_) out.push_back(s.samples > 0 ? s.origin + s.sum / static_cast<double>(s.samples) : 0);
+  return out;
+}
+
+std::vector<double> RestMeter::noise_variances() const {
+  std::vector<double> out;
+  for (const Sums& s : sensors_)
+    out.push_back(s.pairs > 0 ? s.differences / (2 * static_cast<double>(s.pairs))
+                              : std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
+std::vector<double> RestMeter::variances() const {
+  std::vector<double> out;
+  for (const Sums& s : sensors_) {
+    const auto n = static_cast<double>(s.samples);
+    out.push_back(n > 1 ? std::max(0.0, (s.squares - s.sum * s.sum / n) / (n - 1))
+                        : std::numeric_limits<double>::quiet_NaN());
+  }
+  return out;
+}
+
 namespace {
 
 constexpr std::size_t kRestBlock = 4096;
@@ -76,6 +125,60 @@ SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progr
     if (!(out.noise_variances[i] > 0)) out.noise_sources[i].clear();
   }
   return out;
+}
+
+namespace {
+
+constexpr double kFloat = 0x1p-23;
+constexpr std::uint64_t kLeastInstants = 100;
+/// Candidates a sensor: hundreds of sensors that are all alike must not cost their square.
+constexpr std::size_t kMostOriginals = 8;
+
+bool agree(double a, double b) { return std::abs(a - b) <= kFloat * std::max(std::abs(a), std::abs(b)); }
+
+/// Instants in which both have a sample; none when one of them differs.
+std::optional<std::uint64_t> in_common(const Eigen::MatrixXd& samples, Eigen::Index i, Eigen::Index j) {
+  std::uint64_t common = 0;
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    const double a = samples(i, k), b = samples(j, k);
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    if (!agree(a, b)) return std::nullopt;
+    ++common;
+  }
+  return common;
+}
+
+}  // namespace
+
+void CopiedSensors::find_pairs(const Eigen::MatrixXd& samples) {
+  for (Eigen::Index copy = 1; copy < samples.rows(); ++copy) {
+    std::size_t found = 0;
+    for (Eigen::Index original = 0; original < copy && found < kMostOriginals; ++original)
+      if (const auto common = in_common(samples, copy, original)) {
+        pairs_.push_back({copy, original, *common});
+        ++found;
+      }
+  }
+}
+
+void CopiedSensors::push(const Eigen::MatrixXd& samples) {
+  if (!begun_) {
+    begun_ = true;
+    find_pairs(samples);
+    return;
+  }
+  std::erase_if(pairs_, [&](Pair& pair) {
+    const auto common = in_common(samples, pair.copy, pair.original);
+    pair.instants += common.value_or(0);
+    return !common;
+  });
+}
+
+std::optional<std::size_t> CopiedSensors::original_of(std::size_t sensor) const {
+  for (const Pair& pair : pairs_)
+    if (static_cast<std::size_t>(pair.copy) == sensor && pair.instants >= kLeastInstants)
+      return static_cast<std::size_t>(pair.original);
+  return std::nullopt;
 }
 
 }  // namespace libchar

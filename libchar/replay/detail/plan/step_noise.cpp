@@ -126,15 +126,15 @@ void warn_of_noise(const std::vector<std::string>& names, const std::vector<std:
   const auto times = [](double log_ratio) { return brief_text(std::exp(log_ratio), 2); };
   if (compared > 1 && changes.size() == compared && high - low < std::log(kWorthSaying)) {
     warnings.add("noise_changed_of_all",
-                 "all sensors scatter from sample to sample as they did not where this was "
-                 "learnt: weights of there fit, standard deviations do not",
+                 "all sensors scatter from sample to sample as they did not where this was learnt: weights of there "
+                 "fit, standard deviations do not",
                  fmt::format("{} times", times(0.5 * (low + high))));
     return;
   }
   for (const auto& [i, change] : changes)
     warnings.add("noise_changed",
-                 "sensors scatter from sample to sample as they did not where this was learnt: weights "
-                 "and standard deviations of there may not fit",
+                 "sensors scatter from sample to sample as they did not where this was learnt: weights and standard "
+                 "deviations of there may not fit",
                  fmt::format("{} is {} times as noisy", printable(names[i], 40), times(change)));
 }
 

@@ -91,12 +91,11 @@ void TiltCheck::tell(Findings& warnings) const {
     warnings.add("tilt_contradicts", sentence).severity = severity;
   };
   if (r < -kSure)
-    say("the gyroscope turns the other way than gravity does: the sign of the gyroscope or of an "
-        "accelerometer is wrong, or the two accelerometer axes are exchanged",
+    say("the gyroscope turns the other way than gravity does: the sign of the gyroscope or of an accelerometer is "
+        "wrong, or the two accelerometer axes are exchanged",
         Severity::bad);
   else if (r > kSure && (ratio > kScale || ratio < 1 / kScale))
-    say(fmt::format("the gyroscope reads {} times the rate at which gravity turns: its unit or scale "
-                    "is wrong",
+    say(fmt::format("the gyroscope reads {} times the rate at which gravity turns: its unit or scale is wrong",
                     brief_text(ratio, 3)),
         Severity::bad);
   else if (const double delay = delay_s(); r > kSure && delay != 0)

@@ -1,8 +1,7 @@
 #pragma once
-// Do the gyroscope and the accelerometers of a tilt see one rotation? Over windows of a second, with
-// G the mean of the integrated rate and A the direction of the mean acceleration, the changes dG and
-// dA from window to window are the same, whatever the angle does within them, but for noise and an
-// offset of the rate:
+// Do the gyroscope and the accelerometers of a tilt see one rotation? Over windows of a second, with G the mean of the
+// integrated rate and A the direction of the mean acceleration, the changes dG and dA from window to window are the
+// same, whatever the angle does within them, but for noise and an offset of the rate:
 //   correlation r of dA and dG, and the ratio sd(dG) / sd(dA) of their sizes.
 // Accelerations that are not gravity lower r; they neither turn its sign nor make the rate larger. Those of a lever arm
 // l follow the angle, l w^2 / g of it (15 % at 0.15 m and half a hertz): a gain of an accelerometer that is off by less

@@ -54,9 +54,8 @@ struct CloseUpPlace {
   std::optional<std::size_t> fault;
 };
 
-/// Around the start of the first faults, and where scoring begins; without faults in the middle too.
-/// They do not overlap. `starts`: instants of the run at which the faults begin; `series`: that are
-/// kept of each.
+/// Around the start of the first faults, and where scoring begins; without faults in the middle too. They do not
+/// overlap. `starts`: instants of the run at which the faults begin; `series`: that are kept of each.
 std::vector<CloseUpPlace> close_up_places(std::int64_t instants, std::int64_t scored_from,
                                           const std::vector<std::int64_t>& starts, std::size_t series);
 
@@ -105,5 +104,13 @@ class RunTracker {
   Eigen::VectorXd h_;
   bool referenced_ = false;
 };
+
+// Timelines made small enough for a page; no extreme is lost.
+
+/// Every `divisor` neighbouring bins become one: the smallest low, the largest high.
+Timeline merged_bins(const Timeline& timeline, std::size_t divisor);
+
+/// The smallest divisor that keeps the tracks of all algorithms together within what a page of 3 MB can hold.
+std::size_t track_divisor(const ReplayResult& result);
 
 }  // namespace libchar

@@ -233,8 +233,8 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
       field<&L::lead>("lead", {.meaning = "network, retrained, past"}),
       field<&L::from_s>("from_s"),
       field<&L::to_s>("to_s"),
-      field<&L::ended>("ended", {.meaning = "why: missing, outside, apart, inconsistent, no_gain; "
-                                            "right: another network led"}),
+      field<&L::ended>("ended",
+                       {.meaning = "why: missing, outside, apart, inconsistent, no_gain; right: another network led"}),
   });
   static const Fields<T> description = always(Fields<T>{
       field<&T::title>("title"),

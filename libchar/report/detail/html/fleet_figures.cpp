@@ -171,20 +171,16 @@ std::string range_text(const Interval& range_c) {
 /// How a temperature coefficient was found.
 std::string coefficient_sentence(const QuantityLot& q) {
   if (!q.temperatures)
-    return "Found inside single recordings that have a thermometer, at the mean temperature of "
-           "each.";
+    return "Found inside single recordings that have a thermometer, at the mean temperature of each.";
   const TemperatureRuns& t = *q.temperatures;
   std::string out = fmt::format(
-      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias "
-      "differs by each time a device is switched on, {} (sd, {} degrees of freedom), not the "
-      "noise of one recording.",
+      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias differs by each time a "
+      "device is switched on, {} (sd, {} degrees of freedom), not the noise of one recording.",
       plural(t.devices, "device"), plural(t.recordings, "recording"), range_text(t.range_c),
       spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)), t.dof);
   if (t.in_one_recording > 0)
-    out += fmt::format(
-        " Of {} it was found inside a recording as well: fewer than have a slope, and not mixed "
-        "in.",
-        plural(t.in_one_recording, "device"));
+    out += fmt::format(" Of {} it was found inside a recording as well: fewer than have a slope, and not mixed in.",
+                       plural(t.in_one_recording, "device"));
   return out;
 }
 
@@ -192,8 +188,8 @@ std::string coefficient_sentence(const QuantityLot& q) {
 std::string reference_sentence(const QuantityLot& q) {
   const TemperatureRuns& t = *q.temperatures;
   std::string out = fmt::format(
-      "{} recorded at {}: their bias is given at {} °C by a line over temperature of "
-      "each, which is taken out of how it repeats.",
+      "{} recorded at {}: their bias is given at {} °C by a line over temperature of each, which is taken out of how "
+      "it repeats.",
       t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were", range_text(t.range_c),
       celsius(t.reference_c));
   if (t.elsewhere > 0)
@@ -201,8 +197,8 @@ std::string reference_sentence(const QuantityLot& q) {
                        t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
   if (t.dof < 1)
     out +=
-        " No device shows how its bias repeats (three recordings, or two at one temperature), "
-        "so that no temperature coefficient can be given with an error.";
+        " No device shows how its bias repeats (three recordings, or two at one temperature), so that no temperature "
+        "coefficient can be given with an error.";
   return out;
 }
 
@@ -225,23 +221,20 @@ std::string left_out_sentence(const QuantityLot& q) {
   const std::string of_all =
       fmt::format("[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
   if (!in_logarithm(q.quantity))
-    return what + fmt::format(
-                      "They are about zero: the mean of all may be up to {} % nearer to "
-                      "zero, in {}.",
-                      number_text(100 * left.share, 2), of_all);
+    return what + fmt::format("They are about zero: the mean of all may be up to {} % nearer to zero, in {}.",
+                              number_text(100 * left.share, 2), of_all);
   return what + fmt::format(
-                    "If those are the smallest, the mean is too large by up to {} %: that of "
-                    "all is in {}, and their spread is at most {} %. Ppk is of those that "
-                    "count.",
+                    "If those are the smallest, the mean is too large by up to {} %: that of all is in {}, and their "
+                    "spread is at most {} %. Ppk is of those that count.",
                     number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
 }
 
 /// Whom the mean is of where not all have a value.
 std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
-      "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by "
-      "what their records show of the square, as values of a lognormal distribution. Not counted: "
-      "{}. Histogram, comparison of batches, chart and outliers are of the {} that count.",
+      "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by what their records "
+      "show of the square, as values of a lognormal distribution. Not counted: {}. Histogram, comparison of batches, "
+      "chart and outliers are of the {} that count.",
       count_text(q.effects->count), count_text(q.counts.members), not_counted(q.counts), count_text(q.counts.counted));
 }
 

@@ -1,5 +1,4 @@
-// The figures of one channel's section: titles, axes, captions that say what is drawn. page.js
-// draws into them.
+// The figures of one channel's section: titles, axes, captions that say what is drawn. page.js draws into them.
 
 #include <fmt/format.h>
 
@@ -59,11 +58,9 @@ std::string window_title(Window window) {
 // What is drawn, in full: two programs agree only when these do.
 std::string spectrum_caption(const Spectrum& s) {
   return fmt::format(
-      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width "
-      "on the "
-      "logarithmic axis, with the 95 % interval; the lowest bins are low where each segment's mean "
-      "was removed. "
-      "Line: fitted model. Dashed: its terms. Grey: left out of the fit, described only.",
+      "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width on the logarithmic "
+      "axis, with the 95 % interval; the lowest bins are low where each segment's mean was removed. Line: fitted "
+      "model. Dashed: its terms. Grey: left out of the fit, described only.",
       count_text(s.segments), s.segments == 1 ? "" : "s", count_text(s.segment),
       duration_text(static_cast<double>(s.segment) / s.rate_hz), window_title(s.window));
 }
@@ -75,8 +72,8 @@ std::string plot_figure(const char* kind, const std::vector<std::size_t>& indice
   std::string all;
   for (const std::size_t index : indices) all += (all.empty() ? "" : ",") + std::to_string(index);
   return fmt::format(
-      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-channels=\"{2}\" "
-      "data-axis=\"{3}\" data-unit=\"{4}\">\n<h3>{5}</h3>\n"
+      "<figure class=\"plot {0}\" data-kind=\"{0}\" data-channel=\"{1}\" data-channels=\"{2}\" data-axis=\"{3}\" "
+      "data-unit=\"{4}\">\n<h3>{5}</h3>\n"
       "<div class=\"canvas\"><canvas role=\"img\" aria-label=\"{6} of "
       "{7}\"></canvas></div>\n<figcaption>{8}</figcaption>\n</figure>\n",
       kind, indices.front(), all, html_attribute(text.axis), html_attribute(text.unit), html_text(text.title),
@@ -93,13 +90,11 @@ std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo
   const std::string what =
       c.trace.block == 1
           ? "Every sample; the line is their running mean."
-          : fmt::format(
-                "Least and largest value of every {} samples{}; the line is "
-                "the running mean of their middle.",
-                count_text(c.trace.block),
-                log.rate_hz_of(c.channel) > 0
-                    ? " (" + duration_text(static_cast<double>(c.trace.block) / log.rate_hz_of(c.channel)) + ")"
-                    : "");
+          : fmt::format("Least and largest value of every {} samples{}; the line is the running mean of their middle.",
+                        count_text(c.trace.block),
+                        log.rate_hz_of(c.channel) > 0
+                            ? " (" + duration_text(static_cast<double>(c.trace.block) / log.rate_hz_of(c.channel)) + ")"
+                            : "");
   const std::string marked = view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
   return plot_figure("trace", index, {c.channel.name, "", view.trace_unit, what + marked}, c.channel.name);
 }
@@ -120,17 +115,15 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
   if (drawn.empty()) return "";
   const DeviationType type = view.channels[drawn[0]].result->allan.type;
   std::string caption = drawn.size() <= kShadedChannels
-                            ? "Points: measured, hollow where unreliable; shaded: 95 % intervals; "
-                              "lines: fitted models."
+                            ? "Points: measured, hollow where unreliable; shaded: 95 % intervals; lines: fitted models."
                             : "Lines: measured. A click on a name hides its curve.";
   if (!taken_out.empty())
     caption += fmt::format(" Taken out before the fit, and so in what was measured but not in the models: {}.",
                            fmt::join(taken_out, "; "));
   if (shaped)
     caption +=
-        " Grey on the left, a shade for each channel: averaging times at which a filter or what "
-        "lies "
-        "outside the band shapes its curve too.";
+        " Grey on the left, a shade for each channel: averaging times at which a filter or what lies outside the band "
+        "shapes its curve too.";
   return plot_figure(
       "group", drawn,
       {std::string(deviation_row(type).title), std::string(name_of(type)), shown_unit(group.unit), caption},
@@ -145,10 +138,9 @@ std::string curve_plots(const ChannelView& view, std::size_t index) {
     out += plot_figure(
         "allan", index,
         {std::string(deviation_row(c.allan.type).title), std::string(name_of(c.allan.type)), view.shown_unit,
-         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where "
-         "fewer than 5 degrees of freedom make them unreliable. Line: fitted model. "
-         "Dashed: its terms; marked: where each coefficient is read off. "
-         "Grey: outside the band in which the terms were fitted."},
+         "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer than 5 degrees of freedom make "
+         "them unreliable. Line: fitted model. Dashed: its terms; marked: where each coefficient is read off. Grey: "
+         "outside the band in which the terms were fitted."},
         name);
   if (view.draws_spectrum)
     out += plot_figure("spectrum", index,

@@ -195,19 +195,16 @@ std::string policy_hash(std::string_view content) {
 
 std::string head(const PageParts& parts, const std::string& script) {
   const std::string policy = fmt::format(
-      "default-src 'none'; script-src {} {}; style-src {}; img-src data:; base-uri 'none'; "
-      "form-action 'none'",
+      "default-src 'none'; script-src {} {}; style-src {}; img-src data:; base-uri 'none'; form-action 'none'",
       policy_hash(chart_js()), policy_hash(script), policy_hash(parts.style));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
-      "name=\"referrer\" content=\"no-referrer\">\n"
-      "<meta name=\"generator\" content=\"sensorchar {}\">\n<title>{}: "
-      "{}</title>\n<style>{}</style>\n"
-      "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and "
-      "@kurkle/color bundled in it, (c) Jukka Kurkela.\nThe licence of both "
-      "follows.\n\n{}-->\n</head>\n",
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"referrer\" "
+      "content=\"no-referrer\">\n"
+      "<meta name=\"generator\" content=\"sensorchar {}\">\n<title>{}: {}</title>\n<style>{}</style>\n"
+      "<!--\nThe plots of this page are drawn by Chart.js, (c) Chart.js Contributors, and @kurkle/color bundled in it, "
+      "(c) Jukka Kurkela.\nThe licence of both follows.\n\n{}-->\n</head>\n",
       policy, version(), html_text(parts.title), html_text(parts.subject), parts.style,
       html_comment(chart_js_licence()));
 }

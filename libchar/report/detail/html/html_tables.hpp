@@ -22,24 +22,21 @@
 #include "libchar/report/detail/tables/coefficients.hpp"
 
 namespace libchar {
-// Untrusted text (channel names, file names, cells) on its way into a page or a table: one function
-// for each context.
+// Untrusted text (channel names, file names, cells) on its way into a page or a table: one function for each context.
 
 /// For text between tags: & < > " ' become entities; control, bidirectional and zero-width
 /// characters and bytes that are not UTF-8 become visible escapes.
 std::string html_text(std::string_view text);
 
-/// For a value inside double quotes of a tag: as html_text, and nothing else may stand there
-/// unquoted.
+/// For a value inside double quotes of a tag: as html_text, and nothing else may stand there unquoted.
 std::string html_attribute(std::string_view text);
 
 /// A folder or file relative to the page, for an address inside double quotes of a tag: what is no letter, digit or one of -._~ becomes %HH, so
 /// that no part of a name is a scheme, a host, a query or a fragment.
 std::string html_address(std::string_view path);
 
-/// A document for the inside of <script type="application/json">: '<', '>' and '&' as \u003c…, so
-/// that neither "</script>" nor "<!--" can end or change the element, and everything beyond ASCII
-/// escaped.
+/// A document for the inside of <script type="application/json">: '<', '>' and '&' as \u003c…, so that neither
+/// "</script>" nor "<!--" can end or change the element, and everything beyond ASCII escaped.
 std::string json_in_script(const Json& document);
 
 /// For the inside of an HTML comment: "--" cannot occur, so the comment ends where we end it.
@@ -76,8 +73,7 @@ std::string findings_list(const std::vector<Finding>& findings);
 /// "<ul>…": nothing when there is no item.
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class);
 
-// The frame of every page: one file that carries its data, scripts and styles, and asks for nothing
-// from anywhere.
+// The frame of every page: one file that carries its data, scripts and styles, and asks for nothing from anywhere.
 //
 // The content security policy names each script and the style by its SHA-256, so that nothing else
 // can run even if an escape were forgotten.

@@ -86,10 +86,9 @@ std::string limits_section(const LimitReport& report) {
          (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
          html_text(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
          html_text(report.file) +
-         ". A term passes or fails when its whole 95 % interval is within or above the "
-         "limit; one that stands at the limit does either by chance in at most 2.5 % of "
-         "recordings, "
-         "and passes in 5 % where only an upper limit is known.</p>\n</section>\n";
+         ". A term passes or fails when its whole 95 % interval is within or above the limit; one that stands at the "
+         "limit does either by chance in at most 2.5 % of recordings, and passes in 5 % where only an upper limit is "
+         "known.</p>\n</section>\n";
 }
 
 std::string limits_text(const LimitReport& report, const TextLook& look) {
@@ -130,10 +129,9 @@ std::string alignment_html(const ReplayView& view) {
   for (const std::string& sentence : words.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
   return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" + html_table(words.learnt) +
          html_table(words.budget) +
-         "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, "
-         "with "
-         "95 % intervals; last row: what the fused error would lose. Jitter: the part of what "
-         "alignment leaves that follows the square of the input’s slope.</p>\n</section>\n";
+         "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, with 95 % intervals; "
+         "last row: what the fused error would lose. Jitter: the part of what alignment leaves that follows the square "
+         "of the input’s slope.</p>\n</section>\n";
 }
 
 }  // namespace libchar

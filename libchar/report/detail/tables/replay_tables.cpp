@@ -65,8 +65,7 @@ Cell share_cell(double share) { return Cell::shown(percent_text(share, 4), share
 // The scores, then what each costs; what seldom decides is folded at first.
 Table algorithm_columns(const ReplayView& view) {
   const bool reference = view.result->has_reference;
-  Table out(reference ? "algorithm||regret|× best method|bias|maximum|converged|available|a sample|"
-                        "memory|learning"
+  Table out(reference ? "algorithm||regret|× best method|bias|maximum|converged|available|a sample|memory|learning"
                       : "algorithm||× best method|split-array RMS|available|a sample|memory|learning");
   out.columns[1] = score_column(reference, score_unit(*view.result));
   for (Table::Column& column : out.columns) {
@@ -112,8 +111,7 @@ Table algorithms_table(const ReplayView& view) {
   if (out.rows.size() == methods) return out;
   // Their own body, so that sorting keeps them apart from what one could use.
   out.rows.insert(out.rows.begin() + static_cast<std::ptrdiff_t>(methods),
-                  Table::Row{{"Bounds: they look at the reference of the run itself, and nobody could "
-                              "use them"},
+                  Table::Row{{"Bounds: they look at the reference of the run itself, and nobody could use them"},
                              Table::Kind::part});
   return out;
 }
@@ -208,9 +206,8 @@ Table weights_table(const ReplayView& view) {
   add_sensors(out, *view.result);
   out.columns.push_back({"distance"});
   out.note =
-      "Distance: of weights, root mean square over the run of their Euclidean distance from the "
-      "optimal fixed weights; of standard deviations, root mean square of ln(variance / the "
-      "sensor's mean square error).";
+      "Distance: of weights, root mean square over the run of their Euclidean distance from the optimal fixed weights; "
+      "of standard deviations, root mean square of ln(variance / the sensor's mean square error).";
   for (const FinalRow& final : view.final_rows) {
     std::vector<Cell> row = {final.label};
     for (const double value : final.values) row.push_back(Cell::number(value));

@@ -13,8 +13,8 @@ namespace libchar {
 Table algorithms_table(const ReplayView& view);
 /// What stands behind names in a text.
 inline constexpr const char* kStarNote =
-    "* the best method, and those whose difference from it is not resolved; bounds look at the "
-    "reference of the run itself.";
+    "* the best method, and those whose difference from it is not resolved; bounds look at the reference of the run "
+    "itself.";
 /// Facts of every algorithm, with the sentence of those that did not run.
 Table needs_table(const ReplayView& view);
 /// Scores for each input; none for one input.
@@ -25,8 +25,7 @@ Table sensors_table(const ReplayView& view);
 Table blind_table(const ReplayView& view);
 /// Final weights and variances; without rows when no algorithm has any.
 Table weights_table(const ReplayView& view);
-/// Faults that the scene knows against what each algorithm found; without rows where there is
-/// neither.
+/// Faults that the scene knows against what each algorithm found; without rows where there is neither.
 Table faults_table(const ReplayView& view);
 /// What one false alarm more often buys.
 Table detection_table(const ReplayView& view);
