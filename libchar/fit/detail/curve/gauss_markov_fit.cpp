@@ -247,7 +247,7 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
   const double with_slow = AtTau(bins, band, rate_hz, terms).without().half_deviance;
   if (!cut && 2 * (no_slow - with_slow) < kSlowNoise) return std::nullopt;
 
-  // A process that white noise does not take over before the band ends, or a faster one, is white noise behind a filter.
+  // A process that white noise does not take over before the band ends, or a faster one, is noise behind a filter.
   const auto filters = [&](const Band& in, const Peak& peak) {
     return peak.tau_s < 1.01 * kFewestSamples / rate_hz ||
            (in.top_hz < 0.99 * rate_hz / 2 && peak.at.theta[0] < kSteep * process_at(peak, in.top_hz));
