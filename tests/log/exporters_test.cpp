@@ -650,6 +650,13 @@ std::vector<Export> microcontroller_exports() {
                  kNoStart,
                  {0, 0},
                  ""});
+  out.push_back({"a phone on for two weeks, or seconds of 2010",
+                 "timestamp,x\n" + lines(24, [](int k) { return fmt::format("{},{}\n", 1279034942 + 2 * k, k % 7); }),
+                 "x[]",
+                 0.5,
+                 1279034942 * kSecond,
+                 {0},
+                 "time_unit_guessed"});
   out.push_back({"the newest row first",
                  "time,x\n" + lines(24, [](int k) { return fmt::format("2024-05-01 12:{:02d}:00,{}\n", 59 - k, k); }),
                  "",

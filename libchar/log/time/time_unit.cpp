@@ -113,7 +113,8 @@ std::vector<std::int64_t> usual_units(double step) {
   return out;
 }
 
-bool says_a_date(const FirstValues& first) { return first.values.empty() || std::fabs(first.values[0]) >= 6.3e8; }
+/// Seconds from before 2015 are as well milliseconds of a device that has been on for two weeks.
+bool says_a_date(const FirstValues& first) { return first.values.empty() || std::fabs(first.values[0]) >= 1.42e9; }
 
 /// Whole numbers that follow each other by ones, and by none and by twos.
 bool uneven_ones(const FirstValues& first) {
