@@ -492,6 +492,14 @@ std::vector<Export> bench_exports() {
                  0,
                  {0},
                  "count the rows"});
+  out.push_back(
+      {"R write.csv",
+       "\"t\",\"x, left\"\n" + lines(12, [](int k) { return fmt::format("\"{}\",{},{}\n", k + 1, 0.5 * k, k); }),
+       "x, left[]",
+       2,
+       0,
+       {0},
+       "count the rows"});
   out.push_back({"PicoScope",
                  "Time,Channel A,Channel B\r\n(ms),(V),(mV)\r\n\r\n" +
                      lines(12, [](int k) { return fmt::format("{:.5f},0.01,{}\r\n", -5.0 + 0.1 * k, k); }),
