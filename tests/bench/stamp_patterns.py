@@ -1,10 +1,13 @@
 """Rates and missing samples that the program finds in stamps of known truth: jitter, delays, pauses, gaps, packets (of
 one stamp, near stamps, random sizes), turns and coarse clocks in seven units and rates; then packets of which some are
-lost. Prints each that is wrong: a rate off by a thousandth, missing samples off by more than a few.
+lost. Prints each that is wrong: a rate off by a thousandth, missing samples off by more than a few. The rows hold white
+noise, each time another one: prints how often the 95 % interval of N holds the truth, and each N that is further away
+than three times its interval.
 
 usage: stamp_patterns.py PROGRAM    (needs NumPy)
 """
 import datetime
+import json
 import pathlib
 import re
 import subprocess
@@ -29,14 +32,30 @@ def texts(times, unit):
     return [str(zero + int(round(float(t) * scale))) for t in times]
 
 
-def found(times, unit):
-    """Rate and missing samples that inspect prints; None where it refuses."""
-    noise = np.random.default_rng(1).normal(0.2, 0.01, len(times))
+SIGMA = 0.01  # of the noise
+
+
+def written(times, unit, seed):
+    noise = np.random.default_rng(seed).normal(0.2, SIGMA, len(times))
     log.write_text(HEADS[unit] + ",w [deg/s]\n" +
                    "".join(f"{t},{v:.5f}\n" for t, v in zip(texts(times, unit), noise)))
+
+
+def found():
+    """Rate and missing samples that inspect prints; None where it refuses."""
     out = subprocess.run([program, "inspect", log], capture_output=True, text=True).stdout
     said = re.search(r", ([0-9.e+-]+) (k?Hz)[^,]*, [^,]*, \d+ gaps?(?: \((\d+) missing)?", out)
     return (float(said[1]) * (1000 if said[2] == "kHz" else 1), int(said[3] or 0)) if said else None
+
+
+def miss_of_noise(rate):
+    """How far the true N is from the middle of its interval, in half widths; None where there is none."""
+    out = subprocess.run([program, "fit", log, "--json"], capture_output=True, text=True).stdout
+    term = json.loads(out)["channels"][0]["white_noise"] if out else {}
+    if not term.get("ci95"):
+        return None
+    low, high = np.log(term["ci95"])
+    return abs(np.log(SIGMA / np.sqrt(rate)) - (low + high) / 2) / ((high - low) / 2)
 
 
 def causes(draw, rate, n):
@@ -77,12 +96,18 @@ def lost_packets(draw, rate, n, rows, jitter, share):
 
 
 wrong = tried = 0
+misses = []
 
 
 def judge(what, times, unit, rate, missing, margin):
     global wrong, tried
     tried += 1
-    answer = found(times, unit)
+    written(times, unit, tried)
+    answer = found()
+    if answer:
+        misses.append(miss_of_noise(rate))
+        if misses[-1] is None or misses[-1] > 3:
+            print(f"{what}, {rate} Hz in {unit}: N is {misses[-1]} half intervals away")
     if answer and abs(answer[0] / rate - 1) < 1e-3 and (missing is None or abs(answer[1] - missing) <= margin):
         return
     wrong += 1
@@ -100,4 +125,5 @@ for rows in (3, 5, 8, 10, 16, 32):
                 times, missing = lost_packets(draw, 104.0, 20000, rows, jitter, share)
                 what = f"packets of {rows}, {jitter} late, {share} lost"
                 judge(what, times, unit, 104.0, missing, max(6, 0.1 * missing))
-print(f"{tried} patterns, {wrong} wrong")
+held = sum(miss is not None and miss <= 1 for miss in misses)
+print(f"{tried} patterns, {wrong} wrong; N inside its interval in {held} of {len(misses)}")

@@ -133,6 +133,10 @@ TEST_CASE("what does not go together is refused in a sentence") {
   const FigureSource mixed =
       test::figure_source_of({test::figure_curve("gyro", "deg/s"), test::figure_curve("accel", "g")});
   CHECK_THROWS_WITH(chart_of(mixed, "allan"), Contains("E0976") && Contains("gyro in deg/s") && Contains("accel in g"));
+  const FigureSource joined =
+      test::figure_source_of({test::figure_curve("IMU 0/GyrX", "deg/s"), test::figure_curve("IMU 0/AccX", "g")});
+  CHECK_THROWS_WITH(chart_of(joined, "allan", {"IMU*"}), Contains("`channels` ('*/Gyr*')"));
+  CHECK(chart_of(joined, "allan", {"*/Gyr*"}).series.size() == 1);
   CHECK_THROWS_WITH(chart_of(mixed, "allan", {"gyroo"}), Contains("E0977") && Contains("gyro"));
   CHECK_THROWS_WITH(chart_of(mixed, "psd"), Contains("E0978") && Contains("no spectrum"));
   CHECK_THROWS_WITH(chart_of(mixed, "alan"), Contains("E0978") && Contains("allan"));

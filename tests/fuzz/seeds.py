@@ -57,6 +57,60 @@ def stamps():
         yield ("t[ns],a\n" + "".join(f"{-2**63 + i * step},{i}\n" for i in range(4))).encode()
 
 
+TABLE_FORMATS = ["jsonl", "csv", "wav", "xlsx", "tables", "auto"]  # as in tables_fuzz.cpp
+
+
+def printed_rows():
+    """(format, text) of what becomes a table of text."""
+    def rows(line):
+        return "".join(line(k) for k in range(12))
+    yield "jsonl", rows(lambda k: f'{{"t": {k / 100}, "imu": {{"gyro": [{k}, -{k}.5, null]}}, "s": "a\\u00e9"}}\n')
+    yield "jsonl", "[" + rows(lambda k: f'{{"t":{k},"x":1e{k}}},\n') + "{}]"
+    yield "csv", rows(lambda k: f'header: \n  seq: {k}\n  stamp: \n    secs: 15\n    nsecs: {k}0000000\n'
+                                f'angular_velocity: \n  x: {k}.5\nframe: "imu"\nc: [{k}, 1.0]\n---\n')
+    yield "csv", rows(lambda k: f"header:\n  stamp:\n    sec: 15\n    nanosec: {k}\nposition:\n- {k}.5\n- 2\n"
+                                "s:\n- name: a\n  v: 1\n---\n")
+    yield "csv", rows(lambda k: f"$VNGYR,+00.{k},-0.2,+3.5*5D\r\n")
+    yield "csv", rows(lambda k: f"#RAWIMUSXA,COM1,0,0,FINE,2000,{k}.5;0,0,2000,{k}.5,00000077,1,2,3,4,5,6*0a0b0c0d\n")
+    yield "csv", ("LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tOne\n***End_of_Header***\t\n\t\nChannels\t1\n"
+                  "Delta_X\t0.01\n***End_of_Header***\t\nX_Value\tA\tComment\n" + rows(lambda k: f"{k / 100}\t{k}\n"))
+    yield "csv", rows(lambda k: f"2021-12-19 05:00:{k + 14} PPS 1 4.417 0.067 1.094e-06 N 1 3.957e-07 -9.719e-12 "
+                                "1.000e-09 8.640e-06 2.516e-05\n")
+    yield "csv", rows(lambda k: f"61016 {8 * k}.878 0.000001853 -33.344 0.000003510 0.002074 3\n")
+    yield "csv", rows(lambda k: f"10,000,000.000,{k:03},5 Hz\n")
+
+
+def sounds():
+    for kind, bits in ((1, 8), (1, 16), (1, 24), (3, 32)):
+        form = struct.pack("<HHIIHH", kind, 2, 1000, 2000 * bits // 8, 2 * bits // 8, bits)
+        chunk = lambda name, data: name + struct.pack("<I", len(data)) + data
+        body = b"WAVE" + chunk(b"fmt ", form) + chunk(b"data", bytes(range(48)))
+        yield chunk(b"RIFF", body)
+
+
+def text_tables():
+    """Inputs of tables_fuzz: JSON lines, printed messages, lines of units, sound, workbooks, archives."""
+    def choice(name, bits=0):
+        mask = 128 + 64
+        return bytes([16, next(b for b in range(256) if TABLE_FORMATS[b % 6] == name and b & mask == bits)])
+    for name, text in printed_rows():
+        yield choice(name) + text.encode()
+        yield choice("auto") + text.encode()
+    for data in sounds():
+        yield choice("wav") + data
+    cells = "".join(f'<row r="{k}"><c r="A{k}" s="1"><v>{45000 + k / 86400}</v></c><c r="B{k}"><v>{k}</v></c></row>'
+                    for k in range(2, 14))
+    book = ['<workbook><sheets><sheet name="a" r:id="1"/></sheets></workbook>',
+            '<Relationships><Relationship Id="1" Target="worksheets/sheet1.xml"/></Relationships>',
+            '<styleSheet><cellXfs><xf numFmtId="0"/><xf numFmtId="22"/></cellXfs></styleSheet>',
+            "<sst><si><t>time</t></si><si><t>x [V]</t></si></sst>",
+            '<sheetData><row r="1"><c t="s"><v>0</v></c><c t="s"><v>1</v></c></row>' + cells + "</sheetData>"]
+    yield choice("xlsx", 128) + "\0".join(book).encode()
+    phone = "time,seconds_elapsed,z,y,x\n" + "".join(f"{10**18 + k * 10**7},{k / 100},{k},1,2.5\n" for k in range(12))
+    for bits in (128, 128 + 64):
+        yield choice("tables", bits) + (phone + "\0" + phone).encode()
+
+
 def ros_files():
     """(target, bytes) of small logs of ROS messages: every way to pack a chunk, with and without an index."""
     text = lambda t: struct.pack("<I", len(t)) + t
@@ -290,6 +344,9 @@ def seeds(program):
     for target, data in ros_files():
         for piece in cut(data, generator):
             yield target, bytes([generator.randrange(256)]) + piece
+    for data in text_tables():
+        for piece in cut(data, generator, 2):
+            yield "tables", piece
     for path in files(ROOT / "fixtures" / "ros", ".mcap", ".bag"):
         yield path.suffix[1:], b"\3" + path.read_bytes()[:LARGEST]
     if program:

@@ -37,6 +37,7 @@ std::string outcome(const std::string& bytes, const char* format, std::size_t bl
   options.block_bytes = block_bytes;
   options.hash = false;
   options.time_column = format == std::string("csv") ? "t" : "c0";
+  options.channels = {format == std::string("csv") ? "a" : "c1"};  // text alone may be of several kinds
   options.time_unit = "ns";
   Seen seen;
   std::string end;

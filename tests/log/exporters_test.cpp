@@ -60,8 +60,8 @@ std::vector<Export> robot_exports() {
                      lines(12,
                            [](int k) {
                              return fmt::format("{},{},{},imu_link,{},9.81\n",
-                                                1700000000000000000 + 10000000LL * k + (k * 7919) % 900000, 100 + k,
-                                                1700000000000000000 + 10000000LL * k, 0.25 + k);
+                                                1700000000000000000 + 10000000LL * k + (k * k * 79190) % 900000,
+                                                100 + k, 1700000000000000000 + 10000000LL * k, 0.25 + k);
                            }),
                  "time[] field.header.seq[] field.angular_velocity.x[] field.linear_acceleration.z[]",
                  100,
@@ -140,11 +140,11 @@ std::vector<Export> robot_exports() {
                                                                        "1700000000.{:06d},{},0,0.001,{},-9.8,41.5\n",
                                                                        40000 * k, 254633000 + 40000 * k, k);
                                                                  }),
-                 "TimeUS[] I[] GyrX[] GyrY[] AccZ[] T[]",
+                 "I[] GyrX[] GyrY[] AccZ[] T[]",
                  25,
                  1700000000000000000,
-                 {254633000, 0, 0.001, 0, -9.8, 41.5},
-                 "time column: timestamp, not TimeUS"});
+                 {0, 0.001, 0, -9.8, 41.5},
+                 "left out columns that repeat the clock: TimeUS"});
   out.push_back({"Betaflight blackbox_decode",
                  "loopIteration, time (us), gyroADC[0], gyroADC[1], accSmooth[2], flightModeFlags (flags), "
                  "failsafePhase (flags)\n" +
@@ -208,11 +208,11 @@ std::vector<Export> phone_exports() {
                                                                              1714564800123000000 + 10000000LL * k,
                                                                              0.0853 + 0.01 * k, k);
                                                         }),
-                 "seconds_elapsed[] z[] y[] x[]",
+                 "z[] y[] x[]",
                  100,
                  1714564800123000000,
-                 {0.0853, 0.01, 0, 0.03},
-                 "time column: time, not seconds_elapsed"});
+                 {0.01, 0, 0.03},
+                 "left out columns that repeat the clock: seconds_elapsed"});
   out.push_back({"AndroSensor",
                  "sep=;\nACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Time since start in ms ;YYYY-MO-DD HH-MI-SS_SSS\n" +
                      lines(12,
@@ -263,10 +263,10 @@ std::vector<Export> phone_exports() {
                                                 1714564800000000000 + 10000000LL * (k / 2) + 3100000 * (k % 2),
                                                 0.01 * (k / 2), k);
                            }),
-                 "seconds_elapsed[] x[] y[] z[]",
+                 "x[] y[] z[]",
                  100,
                  1714564800003100000,
-                 {0, 1, 0.2, 0.3},
+                 {1, 0.2, 0.3},
                  "time column: time",
                  false,
                  [](ReadOptions& o) { o.kinds.where = {"sensor=Gyroscope"}; }});
@@ -488,6 +488,14 @@ std::vector<Export> bench_exports() {
                  0,
                  {0},
                  "count the rows"});
+  out.push_back(
+      {"R write.csv",
+       "\"t\",\"x, left\"\n" + lines(12, [](int k) { return fmt::format("\"{}\",{},{}\n", k + 1, 0.5 * k, k); }),
+       "x, left[]",
+       2,
+       0,
+       {0},
+       "count the rows"});
   out.push_back({"PicoScope",
                  "Time,Channel A,Channel B\r\n(ms),(V),(mV)\r\n\r\n" +
                      lines(12, [](int k) { return fmt::format("{:.5f},0.01,{}\r\n", -5.0 + 0.1 * k, k); }),
@@ -589,6 +597,237 @@ std::vector<Export> bench_exports() {
   return out;
 }
 
+std::vector<Export> microcontroller_exports() {
+  std::vector<Export> out;
+  constexpr std::int64_t kSecond = 1000000000;
+  out.push_back({"VMU931 without a header: the name of the sensor, its clock, its values",
+                 lines(24, [](int k) { return fmt::format("acceleration,{},0.01,{}\n", 411480 + 5 * k, k % 7); }),
+                 "c1[] c2[]",
+                 200,
+                 411480 * std::int64_t{1000000},
+                 {0.01, 0},
+                 "time column: c1, because it rises evenly"});
+  out.push_back(
+      {"milliseconds since 1970 with a pause, without a header",
+       lines(40, [](int k) { return fmt::format("{},{},0.5,\n", 1723696181000 + 10 * k + (k > 5 ? 3000 : 0), k % 7); }),
+       "c0[] c1[]",
+       100,
+       1723696181 * kSecond,
+       {0, 0.5},
+       "because it counts the time since 1970"});
+  out.push_back({"a logger of five minutes, seconds since 1970, without a header",
+                 lines(24, [](int k) { return fmt::format("{},12.9{},32\n", 1594113901 + 300 * k, k % 10); }),
+                 "c0[] c1[]",
+                 1.0 / 300,
+                 1594113901 * kSecond,
+                 {12.9, 32},
+                 "time unit: s"});
+  out.push_back({"cells between bars",
+                 lines(24, [](int k) { return fmt::format("2024-12-02T11:{:02d}:49-05:00 | {} | up\n", k, 200 + k); }),
+                 "c0[]",
+                 1.0 / 60,
+                 1733155249 * kSecond,
+                 {200},
+                 "delimiter: |"});
+  out.push_back({"WitMotion",
+                 "\xEF\xBB\xBFStartTime: 2021-08-11 14:08:06.000\r\naddress\tTime(s)\tax(g)\tT(°)\r\n" +
+                     lines(24, [](int k) { return fmt::format("0x50\t 14:08:{:02d}.500\t0.5\t{}\r\n", k, k); }),
+                 "ax[g] T[°]",
+                 1,
+                 (14 * 3600 + 8 * 60) * kSecond + kSecond / 2,
+                 {0.5, 0},
+                 "left out columns of words: address"});
+  out.push_back(
+      {"a relative time, and a count of frames that steps by twos",
+       "frame,relative_time,x\n" + lines(24, [](int k) { return fmt::format("{},{},{}\n", 2 * k, 20 * k, k % 7); }),
+       "frame[] x[]",
+       50,
+       0,
+       {0, 0},
+       "taken as ms"});
+  out.push_back({"a count of frames alone",
+                 "frame,x\n" + lines(24, [](int k) { return fmt::format("{},{}\n", 2 * k, k % 7); }),
+                 "frame[] x[]",
+                 0,
+                 kNoStart,
+                 {0, 0},
+                 ""});
+  out.push_back({"a phone on for two weeks, or seconds of 2010",
+                 "timestamp,x\n" + lines(24, [](int k) { return fmt::format("{},{}\n", 1279034942 + 2 * k, k % 7); }),
+                 "x[]",
+                 0.5,
+                 1279034942 * kSecond,
+                 {0},
+                 "time_unit_guessed"});
+  out.push_back({"the newest row first",
+                 "time,x\n" + lines(24, [](int k) { return fmt::format("2024-05-01 12:{:02d}:00,{}\n", 59 - k, k); }),
+                 "",
+                 0,
+                 kNoStart,
+                 {},
+                 "turn the rows round (tac)",
+                 true});
+  return out;
+}
+
+std::string chrony_tracking(int rows) {
+  const std::string rule(131, '=');
+  return lines(rows, [&](int k) {
+    const std::string banner =
+        k % 32 > 0
+            ? ""
+            : rule +
+                  "\n   Date (UTC) Time     IP Address   St   Freq ppm   Skew ppm     Offset L Co  Offset sd Rem. "
+                  "corr. Root delay Root disp. Max. error\n" +
+                  rule + "\n";
+    return banner + fmt::format(
+                        "2023-04-01 04:{:02d}:{:02d} 203.0.113.15     2     21.770      0.016 {: .3e} N  1  5.378e-07 "
+                        "-7.400e-09  1.534e-02  3.472e-04  8.304e-03\n",
+                        16 * k / 60, 16 * k % 60, 1e-6 * (k - 3));
+  });
+}
+
+std::vector<Export> clock_exports() {
+  constexpr std::int64_t kDay = std::int64_t{86400} * 1000000000,
+                         kStart = (std::int64_t{1680307200} + 14400) * 1000000000;
+  std::vector<Export> out;
+  out.push_back({"chrony, tracking.log",
+                 chrony_tracking(80),
+                 "stratum[] frequency[ppm] skew[ppm] offset[s] sources[] offset_sd[s] remaining[s] root_delay[s] "
+                 "root_dispersion[s] max_error[s]",
+                 1.0 / 16,
+                 kStart,
+                 {2, 21.77, 0.016, -3e-6, 1, 5.378e-07, -7.4e-09, 1.534e-02, 3.472e-04, 8.304e-03},
+                 "names and units of chrony's tracking log"});
+  out.push_back({"chrony, measurements.log without its header",
+                 lines(24,
+                       [](int k) {
+                         return fmt::format(
+                             "2023-04-01 04:{:02d}:30 203.0.113.15    N  2 111 111 1111   6  6 0.00 -4.966e-03  "
+                             "2.296e-01  1.577e-05  1.615e-01  7.446e-03 4E49535{} 4B D K\n",
+                             k, k % 10);
+                       }),
+                 "stratum[] tests_1[] tests_2[] tests_3[] poll[] remote_poll[] score[] offset[s] peer_delay[s] "
+                 "peer_dispersion[s] root_delay[s] root_dispersion[s]",
+                 1.0 / 60,
+                 kStart + std::int64_t{30} * 1000000000,
+                 {2, 111, 111, 1111, 6, 6, 0, -4.966e-03, 2.296e-01, 1.577e-05, 1.615e-01, 7.446e-03},
+                 "left out columns of words: source, leap, refid"});
+  out.push_back({"chrony, refclocks.log",
+                 lines(24,
+                       [](int k) {
+                         return fmt::format(
+                             "2023-04-01 04:00:{:02d}.000000 PPS2    {} N 1  4.900000e-07 {} 1.000e-06\n", k, k % 8,
+                             k % 8 == 7 ? "-" : "-6.741777e-07");
+                       }),
+                 "sample[] pps[] raw_offset[s] offset[s] dispersion[s]",
+                 1,
+                 kStart,
+                 {0, 1, 4.9e-07, -6.741777e-07, 1e-06},
+                 "reference clocks"});
+  out.push_back({"ntpd, loopstats",
+                 lines(24,
+                       [](int k) {
+                         return fmt::format("61016 {}.878 0.00000{}853 -33.344 0.000003510 0.002074 3\n", 2 + 8 * k,
+                                            k % 10);
+                       }),
+                 "offset[s] frequency[ppm] jitter[s] wander[ppm] time_constant[]",
+                 0.125,
+                 (61016 - 40587) * kDay + std::int64_t{2878} * 1000000,
+                 {8.53e-7, -33.344, 3.51e-6, .002074, 3},
+                 "names and units of loopstats"});
+  out.push_back({"ntpd, peerstats of one peer",
+                 lines(24,
+                       [](int k) {
+                         return fmt::format("61016 {}.650 192.0.2.1 961a 0.00260{}876 0.010 0.001424877 0.000958674\n",
+                                            10847 + 64 * k, k % 10);
+                       }),
+                 "offset[s] delay[s] dispersion[s] jitter[s]",
+                 1.0 / 64,
+                 (61016 - 40587) * kDay + std::int64_t{10847650} * 1000000,
+                 {.002600876, .010, .001424877, .000958674},
+                 "peerstats"});
+  const auto at_1_hz = [](ReadOptions& o) { o.rate_hz = 1; };
+  out.push_back({"a counter that groups its digits",
+                 lines(24, [](int k) { return fmt::format("10,000,000.001,{:03d},{} Hz\r\n", k, k % 10); }),
+                 "c0[Hz]",
+                 1,
+                 kNoStart,
+                 {10000000.001},
+                 "thousands are separated by ,",
+                 false,
+                 at_1_hz});
+  out.push_back({"a counter of times without a unit",
+                 lines(24, [](int k) { return fmt::format("0.000,001,{:03d}\n", k); }),
+                 "c0[]",
+                 1,
+                 kNoStart,
+                 {0.000001},
+                 "thousands are separated by ,",
+                 false,
+                 at_1_hz});
+  out.push_back({"three columns that look like digits in groups",
+                 lines(24, [](int k) { return fmt::format("{},101.325,{}\n", 100 + k, 512 + k % 7); }),
+                 "c0[] c1[] c2[]",
+                 1,
+                 kNoStart,
+                 {100, 101.325, 512},
+                 "",
+                 false,
+                 at_1_hz});
+  return out;
+}
+
+std::vector<Export> printed_messages() {
+  std::vector<Export> out;
+  const auto ros1 = [](int k) {
+    return fmt::format(
+        "header: \n  seq: {}\n  stamp: \n    secs: 1700000000\n    nsecs: {:>9}\n  frame_id: \"imu, "
+        "left\"\norientation: \n"
+        "  w: 1.0\nangular_velocity: \n  x: {}\n  y: -1e-05\ncovariance: [{}.5, 0.0]\n---\n",
+        k, 5000000 * k, 0.5 + k, k);
+  };
+  out.push_back(
+      {"rostopic echo",
+       lines(20, ros1) + "header: \n  seq: 20\n",
+       "header.seq[] orientation.w[] angular_velocity.x[] angular_velocity.y[] covariance[0][] covariance[1][]",
+       200,
+       1700000000000000000,
+       {0, 1, 0.5, -1e-5, 0.5, 0},
+       "messages that ROS printed"});
+  out.push_back({"ros2 topic echo",
+                 lines(20,
+                       [](int k) {
+                         return fmt::format(
+                             "header:\n  stamp:\n    sec: 1700000000\n    nanosec: {}\n  frame_id: base\nname:\n- a\n- "
+                             "b\nposition:\n- {}.25\n- 2.0\npoints:\n- x: 1.0\n  y: {}\n- x: 3.0\n  y: 4.0\n---\n",
+                             10000000 * k, k, k);
+                       }),
+                 "position[0][] position[1][] points[0].x[] points[0].y[] points[1].x[] points[1].y[]",
+                 100,
+                 1700000000000000000,
+                 {0.25, 2, 1, 0, 3, 4},
+                 "left out columns of words: header.frame_id, name[0], name[1]"});
+  out.push_back({"ros2 topic echo of numbers without stamps",
+                 lines(20, [](int k) { return fmt::format("data: {}.5\n---\n", k); }),
+                 "data[]",
+                 10,
+                 kNoStart,
+                 {0.5},
+                 "",
+                 false,
+                 [](ReadOptions& o) { o.rate_hz = 10; }});
+  out.push_back({"rostopic echo with a message that is broken",
+                 lines(9, ros1) + "WARNING: lost\n---\n" + lines(9, ros1),
+                 "",
+                 0,
+                 kNoStart,
+                 {},
+                 "(message 10)",
+                 true});
+  return out;
+}
+
 void check_export(const Export& e) {
   ReadOptions options;
   if (e.with) e.with(options);
@@ -622,6 +861,18 @@ void check_export(const Export& e) {
 
 TEST_CASE("robots: files of their exporters are read right at the first try") {
   for (const Export& e : robot_exports()) check_export(e);
+}
+
+TEST_CASE("clocks: logs of daemons and counters are read right at the first try") {
+  for (const Export& e : clock_exports()) check_export(e);
+}
+
+TEST_CASE("microcontrollers and their loggers: files are read right at the first try") {
+  for (const Export& e : microcontroller_exports()) check_export(e);
+}
+
+TEST_CASE("messages that ROS printed are read right at the first try") {
+  for (const Export& e : printed_messages()) check_export(e);
 }
 
 TEST_CASE("phones: files of their exporters are read right at the first try") {

@@ -67,14 +67,36 @@ TEST_CASE("matlab: structs are groups, rows of stamps are stamps, classes are ke
   CHECK(acc.samples.size() == 20);  // 3 × 20 and nothing beside it says otherwise
 }
 
-TEST_CASE("matlab: version 4 and what is no MATLAB file are refused with what to do") {
-  CHECK_THAT(array_fault("log_v4.mat"), Catch::Contains("E0464") && Catch::Contains("-v7"));
+TEST_CASE("matlab: version 4, of either byte order, and what it cannot hold") {
+  const Recording log = array_log("log_v4.mat");
+  test::check_common_log(log);
+  CHECK_THAT(test::joined(log.info.dialect), Catch::Contains("MATLAB 4") && Catch::Contains("label is text"));
+  const auto matrix = [](std::uint32_t type, const std::string& name, const std::vector<std::int16_t>& values) {
+    std::string out;
+    for (const std::uint32_t head :
+         {type, static_cast<std::uint32_t>(values.size()), 1U, 0U, static_cast<std::uint32_t>(name.size() + 1)})
+      for (const unsigned shift : {24U, 16U, 8U, 0U}) out += static_cast<char>(head >> shift & 0xFFU);
+    out += name + '\0';
+    for (const std::int16_t value : values)
+      out += {static_cast<char>(static_cast<std::uint16_t>(value) >> 8U), static_cast<char>(value & 0xFF)};
+    return out;
+  };
+  const std::string big = matrix(1030, "time_ms", {0, 10, 20, 30}) + matrix(1030, "gx", {-300, 5, 6, 7});
+  Recording swapped;
+  CHECK(with_bytes("a.mat", big, &swapped).empty());
+  CHECK(swapped.info.time.rate_hz == Approx(100));
+  CHECK(swapped.samples == std::vector<std::vector<double>>{{-300, 5, 6, 7}});
+  for (const std::size_t cut : {big.size() - 1, big.size() / 2, std::size_t{15}})
+    CHECK_THAT(with_bytes("a.mat", big.substr(0, cut)), Catch::Contains("E0464"));
+}
+
+TEST_CASE("matlab: what is no MATLAB file is refused with what to do") {
   CHECK_THAT(with_bytes("a.mat", "t,x\n0,1\n"), Catch::Contains("E0464"));
 }
 
 TEST_CASE("matlab: a file cut anywhere is refused in one sentence, or has fewer arrays") {
   NEEDS_LIBRARY(ZLIB);
-  for (const char* name : {"log_v5.mat", "log_v5_compressed.mat", "struct_v5.mat"}) {
+  for (const char* name : {"log_v5.mat", "log_v5_compressed.mat", "struct_v5.mat", "log_v4.mat"}) {
     const std::string bytes = test::slurp(test::fixture(std::string("arrays/") + name));
     std::size_t refused = 0;
     for (std::size_t cut = 0; cut < bytes.size(); ++cut) {

@@ -133,6 +133,16 @@ const std::vector<Cause> kCauses = {
     {"packets of 11", [](const Rules& r) { return in_packets(r, 11, 0.7345); }, "packets"},
     {"packets of 5", [](const Rules& r) { return in_packets(r, 5, 0.02); }, "packets"},
     {"packets of equal stamps", [](const Rules& r) { return in_packets(r, 4, 0); }, "coarse_stamps"},
+    {"a clock of one interval",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       std::mt19937_64 random(5);
+       std::normal_distribution<double> late(0, 0.4);
+       double last = 0;
+       for (double& t : out.instants) t = last = std::max(last, std::round(t * r.rate_hz + late(random)) / r.rate_hz);
+       return out;
+     },
+     "coarse_stamps"},
     {"messages in turns",
      [](const Rules& r) {
        return in_turns(r, {0.56, 1.44});

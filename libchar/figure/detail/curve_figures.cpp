@@ -97,6 +97,13 @@ void name_by_statistic(std::vector<ChosenCurve>& chosen) {
     one.name = names.size() == 1 ? one.curve->statistic : one.name + ", " + one.curve->statistic;
 }
 
+/// A pattern for channels like this one: "gyr*" for gyro_x, "*/Gyr*" for "IMU 0/GyrX".
+std::string pattern_like(const std::string& channel) {
+  const std::size_t slash = channel.rfind('/');
+  const bool topic = slash != std::string::npos;
+  return (topic ? "*/" : "") + channel.substr(topic ? slash + 1 : 0, 3) + "*";
+}
+
 void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   const ChosenCurve& first = chosen[0];
   for (const ChosenCurve& other : chosen) {
@@ -105,7 +112,7 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
           .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.name,
                 first.curve->unit.empty() ? "1" : first.curve->unit, other.name,
                 other.curve->unit.empty() ? "1" : other.curve->unit)
-          .hint("choose some with `channels` ('{}*'), a figure for each unit", first.curve->channel.substr(0, 3));
+          .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(first.curve->channel));
     if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
         other.curve->is_allan)
       throw input_error("E0976")
@@ -380,7 +387,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
       throw input_error("E0976")
           .says("records in unlike units do not share an axis: {} in {}, {} in {}", chosen[0].second,
                 chosen[0].first->unit, name, trace->unit)
-          .hint("choose some with `channels`, a figure for each unit");
+          .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(chosen[0].second));
     FigureSeries series;
     series.name = chosen.size() > 1 ? name : "";
     for (std::size_t i = 0; i < trace->low.size(); ++i)

@@ -1,4 +1,5 @@
-// MATLAB files: version 5 (with and without compression) and version 7.3, which is HDF5 behind 512 bytes of text.
+// MATLAB files: version 4, version 5 (with and without compression) and version 7.3, which is HDF5 behind 512 bytes of
+// text.
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/array_tables.hpp"
 #include "libchar/log/arrays/log_array.hpp"
+#include "libchar/log/arrays/matlab4.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
 #include "libchar/log/binary/file.hpp"
 #include "libchar/log/detail/format.hpp"
@@ -218,7 +220,7 @@ class Matlab5File final : public ArrayContainer {
           .hint("copy it again");
     if (head.substr(126) != "IM" && head.substr(126) != "MI")
       throw input_error("E0464", file_.path())
-          .says("does not begin like a MATLAB file of version 5 or later")
+          .says("does not begin like a MATLAB file")
           .hint("save it by MATLAB's -v7, SciPy or Octave's -mat7-binary");
     big_endian_ = head.substr(126) == "MI";
     Source top(file_, {0, file_.size(), file_.size(), Packing::stored}, big_endian_);
@@ -353,8 +355,9 @@ bool certain_matlab(std::string_view first_bytes) {
 }
 
 std::unique_ptr<TopicReader> open_matlab(const std::string& path, const ReadOptions&) {
-  const bool hdf5 = is_matlab_73(BinaryFile(path).head(32));
-  return array_tables(hdf5 ? open_hdf5_file(path, "MATLAB 7.3") : open_matlab5_file(path), path);
+  const std::string head = BinaryFile(path).head(32);
+  if (is_matlab4(head)) return array_tables(open_matlab4_file(path), path);
+  return array_tables(is_matlab_73(head) ? open_hdf5_file(path, "MATLAB 7.3") : open_matlab5_file(path), path);
 }
 
 }  // namespace

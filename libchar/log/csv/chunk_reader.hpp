@@ -60,6 +60,7 @@ class ChunkReader {
   bool packed() const { return unpacker_ != nullptr; }
   bool made() const { return packed() && unpacker_->made(); }
   bool headed() const { return packed() && unpacker_->headed(); }
+  std::string_view row_name() const { return unpacker_->row_name(); }
   std::string_view format() const { return packed() ? unpacker_->format() : "csv"; }
   void finish(Findings& findings) const {
     if (packed()) unpacker_->finish(findings);

@@ -188,9 +188,10 @@ class CsvSource final : public RowSource {
   }
 
   std::string place(const RowBlock& block, std::size_t i, std::uint64_t) const override {
-    return place_name(line_of(block, i), 1);
+    return spot_name(line_of(block, i), 1);
   }
   std::string where(const RowBlock& block, std::size_t i, std::uint64_t) const override {
+    if (chunks_.made()) return fmt::format("{} ({})", info_.file, spot_name(line_of(block, i), 1));
     return dialect_.time.column <= 0 ? fmt::format("{}:{}:1", info_.file, line_of(block, i))
                                      : fmt::format("{}:{}", info_.file, line_of(block, i));
   }
@@ -228,7 +229,7 @@ class CsvSource final : public RowSource {
     pending_ = std::exchange(info_.warnings, {});
     info_.rows = expected_rows(head);
     chunks_.start(dialect_);
-    next_line_ = dialect_.first_data_line;
+    next_line_ = dialect_.first_data_line - (chunks_.headed() ? 1 : 0);
     info_.bytes = chunks_.size();
     if (chunks_.packed()) info_.dialect.emplace_back(chunks_.packing());
     info_.first_line = next_line_;
@@ -320,9 +321,13 @@ class CsvSource final : public RowSource {
       throw std::logic_error("CSV reader: the account of bytes and cells does not balance");
   }
 
-  static void add(Findings& warnings, std::string_view code, std::string_view message, const Tally& tally) {
-    for (const Spot& spot : tally.spots) warnings.add(code, message, place_name(spot.line, spot.column), 1);
+  void add(Findings& warnings, std::string_view code, std::string_view message, const Tally& tally) const {
+    for (const Spot& spot : tally.spots) warnings.add(code, message, spot_name(spot.line, spot.column), 1);
     if (tally.count > tally.spots.size()) warnings.add(code, message, "", tally.count - tally.spots.size());
+  }
+
+  std::string spot_name(std::uint64_t line, std::uint64_t column) const {
+    return chunks_.made() ? fmt::format("{} {}", chunks_.row_name(), line) : place_name(line, column);
   }
 
   // From lines of the chunk to lines of the file.
@@ -381,8 +386,10 @@ class CsvSource final : public RowSource {
 
   void prepare_problem() {
     problem_ = current_.problem->problem;
-    problem_->where = at(info_.file, chunk_line_ + current_.problem->spot.line, current_.problem->spot.column,
-                         current_offset_ + current_.problem->byte);
+    const std::uint64_t line = chunk_line_ + current_.problem->spot.line;
+    problem_->where =
+        chunks_.made() ? fmt::format("{} ({} {})", info_.file, chunks_.row_name(), line)
+                       : at(info_.file, line, current_.problem->spot.column, current_offset_ + current_.problem->byte);
   }
 
   bool take(ParsedChunk& chunk) { return pipeline_ ? pipeline_->next(chunk, current_offset_) : take_inline(chunk); }

@@ -3,32 +3,25 @@
 #include "libchar/log/csv/json_rows.hpp"
 
 #include <algorithm>
-#include <deque>
-#include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/head/other_content.hpp"
-#include "libchar/log/csv/made_text.hpp"
+#include "libchar/log/csv/object_rows.hpp"
 
 namespace libchar::csv {
 namespace {
 
-constexpr std::size_t kHead = std::size_t{1} << 18U, kDeepest = 32;
+constexpr std::size_t kDeepest = 32;
 
 /// Walks one object, whose brackets are known to close.
 class ObjectCells {
  public:
-  struct Cell {
-    std::string path, text;
-    bool quoted = false;
-  };
   ObjectCells(std::string_view text, std::string at) : text_(text), where_(std::move(at)) {}
 
-  std::vector<Cell> cells() && {
+  std::vector<ObjectCell> cells() && {
     value("", 0);
     blanks();
     if (at_ != text_.size()) refuse();
@@ -134,98 +127,33 @@ class ObjectCells {
   std::string_view text_;
   std::string where_;
   std::size_t at_ = 0;
-  std::vector<Cell> cells_;
+  std::vector<ObjectCell> cells_;
 };
 
-class JsonRows final : public MadeText {
+class JsonRows final : public ObjectRows {
  public:
-  JsonRows(std::function<std::size_t(char*, std::size_t)> stored, std::string file)
-      : from_{std::move(stored)}, file_(std::move(file)) {}
+  using ObjectRows::ObjectRows;
   std::string_view what() const override { return "objects of JSON, a row each"; }
   std::string_view format() const override { return "jsonl"; }
-  void finish(Findings& findings) const override {
-    if (late_ > 0)
-      findings.add("late_key", "keys of JSON that the first objects do not have: left out", first_late_, late_);
-  }
+  std::string_view row_name() const override { return "object"; }
 
  protected:
-  bool more(std::string& text) override {
-    if (columns_.empty()) {
-      learn(text);
-      if (columns_.empty()) return false;
-    }
-    if (!head_.empty()) {
-      row(head_.front(), text);
-      head_.pop_front();
-      return true;
-    }
-    const auto object = next_object();
-    if (object) row(*object, text);
-    return object.has_value();
+  std::optional<MadeObject> next() override {
+    MadeObject object;
+    if (!next_object(object)) return std::nullopt;
+    if (!object.broken) object.cells = ObjectCells(object.text, place()).cells();
+    return object;
   }
+  void alone(const MadeObject& document) const override { refuse_other_content(document.text, file_); }
 
  private:
-  /// The columns are the keys of the first objects.
-  void learn(std::string& text) {
-    std::size_t bytes = 0;
-    while (bytes < kHead) {
-      auto object = next_object();
-      if (!object) break;
-      bytes += object->size();
-      if (!object->starts_with('{')) {
-        head_.push_back(std::move(*object));
-        continue;
-      }
-      for (const auto& cell : ObjectCells(*object, place()).cells()) {
-        if (!columns_.emplace(cell.path, columns_.size()).second) continue;
-        if (columns_.size() > kMaxColumns) throw input_error("E0337", place()).says("more than {} keys", kMaxColumns);
-        if (columns_.size() > 1) text += ',';
-        add_quoted(text, cell.path);
-      }
-      head_.push_back(std::move(*object));
-    }
-    text += '\n';
-    if (head_.size() == 1 && from_.ended) refuse_other_content(head_.front(), file_);  // a document
-  }
-
-  void row(const std::string& object, std::string& text) {
-    if (!object.starts_with('{')) {
-      // A row that cannot be read, as any broken line of a table: its beginning is its only cell.
-      constexpr std::size_t kShown = 40;
-      add_quoted(text, "broken object:" + object.substr(0, kShown));
-      text += '\n';
-      return;
-    }
-    std::vector<std::string> cells(columns_.size());
-    for (const auto& cell : ObjectCells(object, place()).cells()) {
-      const auto column = columns_.find(cell.path);
-      if (column == columns_.end()) {
-        if (late_++ == 0) first_late_ = cell.path;
-        continue;
-      }
-      std::string& to = cells[column->second];
-      to.clear();
-      if (cell.quoted)
-        add_quoted(to, cell.text);
-      else
-        to = cell.text;
-    }
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      if (c > 0) text += ',';
-      text += cells[c];
-    }
-    text += '\n';
-  }
-
-  std::string place() const { return file_ + " (object " + std::to_string(objects_) + ")"; }
-
   /// From its first bracket to the one that closes it; what stands between objects is '[', ',' and ']'.
-  std::optional<std::string> next_object() {
+  bool next_object(MadeObject& object) {
     static constexpr std::string_view kBetween = " \t\r\n,[]";
     for (;;) {
       from_.at = std::min(from_.raw.find_first_not_of(kBetween, from_.at), from_.raw.size());
       if (from_.at < from_.raw.size()) break;
-      if (!from_.more()) return std::nullopt;
+      if (!from_.more()) return false;
     }
     ++objects_;
     std::size_t depth = 0, length = 0;
@@ -235,14 +163,14 @@ class JsonRows final : public MadeText {
         if (length > kMaxLine) refuse_long();
         if (!from_.more()) {
           end_is_cut();
-          return std::nullopt;
+          return false;
         }
       }
       const char c = from_.raw[from_.at + length];
       const bool line = length == 0 && c != '{';
       // An object at the begin of a line, inside of another: that one is broken.
       const bool next = c == '{' && length > 0 && from_.raw[from_.at + length - 1] == '\n';
-      if (line || next) return broken(length);
+      if (line || next) return broken(length, object);
       if (escaped) {
         escaped = false;
       } else if (quoted) {
@@ -253,32 +181,25 @@ class JsonRows final : public MadeText {
       } else if (c == '{' || c == '[') {
         ++depth;
       } else if ((c == '}' || c == ']') && --depth == 0) {
-        std::string object = from_.raw.substr(from_.at, length + 1);
+        object.text = from_.raw.substr(from_.at, length + 1);
         from_.at += length + 1;
-        return object;
+        return true;
       }
     }
   }
-  /// What is no object, to the end of its line, marked so that it does not begin like one.
-  std::string broken(std::size_t length) {
+  /// What is no object, to the end of its line.
+  bool broken(std::size_t length, MadeObject& object) {
     std::size_t end = from_.raw.find('\n', from_.at + length);
     while (length == 0 && end == std::string::npos && from_.raw.size() - from_.at < kMaxLine && from_.more())
       end = from_.raw.find('\n', from_.at);
     if (length == 0) length = std::min(end, from_.raw.size()) - from_.at;
-    std::string text = " " + from_.raw.substr(from_.at, length);
+    object.text = from_.raw.substr(from_.at, length);
     from_.at += length;
-    return text;
+    return object.broken = true;
   }
   [[noreturn]] void refuse_long() const {
     throw input_error("E0337", place()).says("an object of more than {} bytes", kMaxLine);
   }
-
-  Feed from_;
-  std::string file_;
-  std::uint64_t objects_ = 0, late_ = 0;
-  std::string first_late_;
-  std::deque<std::string> head_;
-  std::unordered_map<std::string, std::size_t> columns_;
 };
 
 }  // namespace

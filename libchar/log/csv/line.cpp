@@ -12,7 +12,7 @@ namespace {
 bool padding(char c) { return c == ' ' || c == '\t'; }
 
 bool separates(char c, char delimiter) {
-  if (delimiter == 0) return c == ',' || c == ';' || padding(c);
+  if (delimiter == 0) return c == ',' || c == ';' || c == '|' || padding(c);
   return c == delimiter || (delimiter == ' ' && c == '\t');
 }
 
@@ -78,6 +78,8 @@ std::string at(const std::string& file, std::uint64_t line, std::uint64_t column
 
 bool is_comment(std::string_view line, bool semicolons) {
   line = trimmed(line);
+  static constexpr std::string_view kChrony[] = {"=====", "Date (UTC) Time     "};  // every 32 rows
+  if (line.starts_with(kChrony[0]) || line.starts_with(kChrony[1])) return true;
   return !line.empty() &&
          (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" || (semicolons && line[0] == ';'));
 }

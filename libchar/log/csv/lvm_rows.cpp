@@ -156,18 +156,10 @@ class LvmRows final : public MadeText {
   }
 
   bool next(Cells& cells) {
-    std::size_t end = from_.raw.find('\n', from_.at);
-    while (end == std::string::npos && !from_.ended) {
-      if (from_.raw.size() - from_.at > kMaxLine) refuse("a line of more than a MiB");
-      const std::size_t before = from_.raw.size() - from_.at;
-      from_.more();
-      end = from_.raw.find('\n', before);
-    }
-    if (end == std::string::npos && from_.at >= from_.raw.size()) return false;
-    std::string_view line = std::string_view(from_.raw).substr(from_.at, std::min(end, from_.raw.size()) - from_.at);
-    from_.at = std::min(end, from_.raw.size() - 1) + 1;
+    std::string line;
+    if (!from_.line(line, kMaxLine)) return false;
     ++line_;
-    while (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.size() > kMaxLine) refuse("a line of more than a MiB");
     cells.clear();
     for (std::size_t from = 0; from <= line.size();) {
       const std::size_t to = std::min(line.find(separator_, from), line.size());

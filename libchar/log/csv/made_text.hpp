@@ -2,6 +2,7 @@
 // Tables that are made of something else (JSON lines, sheets of workbooks, printed messages): text with one header line
 // and commas between the cells, which then goes the way of every CSV file.
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -29,6 +30,16 @@ struct Feed {
     raw.resize(before + got);
     ended = got == 0;
     return !ended;
+  }
+  /// The next line without its end, at most about `most` bytes of it; false at the end.
+  bool line(std::string& text, std::size_t most) {
+    std::size_t end = raw.find('\n', at);
+    while (end == std::string::npos && raw.size() - at <= most && more()) end = raw.find('\n', at);
+    if (at == raw.size()) return false;
+    text = raw.substr(at, std::min(end, raw.size()) - at);
+    at = std::min(end, raw.size() - 1) + 1;
+    while (text.ends_with('\r')) text.pop_back();
+    return true;
   }
 };
 

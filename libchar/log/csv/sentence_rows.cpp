@@ -46,7 +46,7 @@ class SentenceRows final : public MadeText {
 
  protected:
   bool more(std::string& text) override {
-    for (std::string line; next(line);) {
+    for (std::string line; from_.line(line, kMaxLine);) {
       const Kind* const kind = kind_of(line);
       if (kind == nullptr || (kind_ != nullptr && kind != kind_)) {
         if (others_++ == 0) first_other_ = line.substr(0, line.find(','));
@@ -89,24 +89,6 @@ class SentenceRows final : public MadeText {
     const std::string_view first = body.substr(0, body.find(','));
     body.remove_prefix(std::min(first.size() + 1, body.size()));
     return first;
-  }
-
-  bool next(std::string& line) {
-    for (;;) {
-      const std::size_t end = from_.raw.find('\n', from_.at);
-      if (end != std::string::npos || from_.raw.size() - from_.at > kMaxLine) {
-        line = from_.raw.substr(from_.at, end - from_.at);
-        from_.at = end == std::string::npos ? from_.raw.size() : end + 1;
-        break;
-      }
-      if (from_.more()) continue;
-      if (from_.at == from_.raw.size()) return false;
-      line = from_.raw.substr(from_.at);
-      from_.at = from_.raw.size();
-      break;
-    }
-    while (line.ends_with('\r')) line.pop_back();
-    return true;
   }
 
   Feed from_;

@@ -10,6 +10,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/json_rows.hpp"
 #include "libchar/log/csv/lvm_rows.hpp"
+#include "libchar/log/csv/object_rows.hpp"
 #include "libchar/log/csv/sentence_rows.hpp"
 #include "libchar_have.hpp"
 
@@ -242,6 +243,7 @@ Packing packing_of(std::string_view first_bytes) {
   }
   if (is_lvm(first_bytes)) return Packing::lvm;
   if (is_sentences(first_bytes)) return Packing::sentences;
+  if (is_echo(first_bytes)) return Packing::echo;
   return is_json_rows(first_bytes) ? Packing::json : Packing::none;
 }
 
@@ -258,6 +260,8 @@ std::unique_ptr<Unpacker> make_unpacker(Packing packing,
       return open_json_rows(std::move(stored), file);
     case Packing::sentences:
       return open_sentence_rows(std::move(stored), file);
+    case Packing::echo:
+      return open_echo_rows(std::move(stored), file);
     case Packing::lvm:
       return open_lvm_rows(std::move(stored), file);
     case Packing::gzip:

@@ -14,7 +14,7 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
@@ -31,6 +31,8 @@ class Unpacker {
   /// Is the text made by this program, with commas, points and, if so, a header?
   virtual bool made() const { return false; }
   virtual bool headed() const { return made(); }
+  /// What a row of such a text was in the file.
+  virtual std::string_view row_name() const { return "row"; }
   /// In the table of formats.
   virtual std::string_view format() const { return "csv"; }
   virtual void finish(Findings& findings) const { static_cast<void>(findings); }

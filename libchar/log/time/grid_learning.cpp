@@ -75,9 +75,13 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
     item = &pending_[1];
     row = 0;
   }
-  const bool equal = std::all_of(stamps.begin(), stamps.end(), [&](std::int64_t s) { return s == stamps[0]; });
-  fail(*item, row, "E0315", equal ? "no time axis: all stamps are equal" : "no time axis: the stamps never rise",
-       "`time_column` none and `rate_hz` HZ ignore the stamps");
+  const bool fall = std::is_sorted(stamps.rbegin(), stamps.rend()), equal = stamps.front() == stamps.back();
+  fail(*item, row, "E0315",
+       fall && equal ? "no time axis: all stamps are equal"
+       : fall        ? "the stamps fall from row to row: the newest row is the first"
+                     : "no time axis: the stamps never rise",
+       std::string(fall && !equal ? "turn the rows round (tac) below the header; " : "") +
+           "`time_column` none and `rate_hz` HZ ignore the stamps");
 }
 
 // Rows at another rate than those of the longer rest stand in front of the window.

@@ -82,15 +82,15 @@ FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
 struct CommonStep {
   double ns = 0, deviation = 0, spread = 0;  ///< spread: of those within a tenth, in steps
   bool tidy = false;                         ///< half of the steps lie within a tenth of it
-  bool equal = false;                        ///< a quarter of the stamps do not rise
+  bool equal = false;                        ///< a quarter of the stamps do not rise, or longer steps make up for those
   double longest(double interval) const {
     return std::max(1.5 * interval, deviation > 0.45 * interval ? interval + 3 * deviation : 0);
   }
 };
 
-CommonStep common_step(const FirstSteps& steps) {
+CommonStep common_step(const FirstSteps& steps, bool equal_are_samples) {
   CommonStep result;
-  result.equal = steps.line.size() > 8 && steps.equal * 4 > steps.line.size();
+  result.equal = equal_are_samples || (steps.line.size() > 8 && steps.equal * 4 > steps.line.size());
   result.ns = middle_of(steps.rising);
   std::vector<double> scatter;
   for (const double step : steps.rising) scatter.push_back(std::fabs(step - result.ns));
@@ -236,6 +236,13 @@ bool keeps_to_a_line(const FirstSteps& steps) {
   return spread_of_pieces(steps.line, n / 4) < 1.55 * spread_of_pieces(steps.line, n / 16);
 }
 
+/// Stamps that do not rise are those of samples, not of doubles, where longer steps make up for them.
+bool equal_are_samples(const FirstSteps& steps) {
+  constexpr double kFewest = 0.02;
+  const double share = static_cast<double>(steps.equal) / static_cast<double>(steps.line.size());
+  return share > kFewest && steps.mean > middle_of(steps.rising) * (1 - share / 2) && keeps_to_a_line(steps);
+}
+
 bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) {
   const double tick = tick_of(steps.rising);
   std::size_t odd = steps.equal;
@@ -334,6 +341,23 @@ double packet_interval(const FirstSteps& steps, const std::vector<std::size_t>& 
   return middle_of(std::move(slopes));
 }
 
+/// The same of packets of so many rows: from each to the next, the packets between them that are missing counted.
+double interval_of_alike(const FirstSteps& steps, const std::vector<std::size_t>& starts, std::size_t rows, double ns) {
+  constexpr double kMostMissing = 20;
+  for (int round = 0; round < 3; ++round) {
+    double time = 0, packets = 0;
+    for (std::size_t i = 1; i < starts.size(); ++i) {
+      const double apart = steps.line[starts[i]] - steps.line[starts[i - 1]];
+      const double multiple = std::round(apart / (ns * static_cast<double>(rows)));
+      if (starts[i] - starts[i - 1] != rows || multiple < 1 || multiple > kMostMissing) continue;
+      time += apart;
+      packets += multiple;
+    }
+    if (packets > 0) ns = time / (packets * static_cast<double>(rows));
+  }
+  return ns;
+}
+
 /// What rows behind the first of a packet are late by, the median over the packets.
 double usual_lag(const FirstSteps& steps, const std::vector<std::size_t>& starts, double ns) {
   std::vector<double> all;
@@ -353,6 +377,7 @@ StampModel in_packets(const FirstSteps& steps, StampModel model) {
   if (const double interval = packet_interval(steps, starts); interval > 0) model.ns = interval;
   model.packet = rows_of_packets(starts);
   if (model.packet > 0) {
+    model.ns = interval_of_alike(steps, starts, model.packet, model.ns);
     model.longest_step = kNewPacket * static_cast<double>(model.packet) * model.ns;
     return model;
   }
@@ -384,7 +409,7 @@ StampModel evenly(const FirstSteps& steps, const CommonStep& common, StampPatter
 
 StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const FirstSteps& steps,
                              std::optional<double> rate_hz) {
-  const CommonStep common = common_step(steps);
+  const CommonStep common = common_step(steps, equal_are_samples(steps));
   StampModel out{common.ns, common.longest(common.ns), common.equal ? StampPattern::equal : StampPattern::steps,
                  common.ns, steps.mean};
   Walk found;

@@ -32,25 +32,21 @@ constexpr std::array kTimeNames = {KnownName{"time"},
                                    KnownName{"times"},
                                    KnownName{"elapsed"},
                                    KnownName{"elapsed time"},
-                                   KnownName{"elapsed_time"},
                                    KnownName{"time elapsed"},
-                                   KnownName{"time_elapsed"},
                                    KnownName{"time since start"},
                                    KnownName{"relative time"},
                                    KnownName{"uptime"},
-                                   KnownName{"time_stamp"},
-                                   KnownName{"host_time"},
-                                   KnownName{"sample_time"},
                                    KnownName{"sampletime"},
                                    KnownName{"datetime"},
                                    KnownName{"date time"},
                                    KnownName{"date/time"},
-                                   KnownName{"date_time"},
-                                   KnownName{"gps_time"},
-                                   KnownName{"unix_time"},
+                                   KnownName{"unix time"},
                                    KnownName{"unixtime"},
+                                   KnownName{"gps time"},
+                                   KnownName{"host time"},
+                                   KnownName{"sample time"},
                                    KnownName{"epoch"},
-                                   KnownName{"epoch_time"},
+                                   KnownName{"epoch time"},
                                    KnownName{"zeit"},
                                    KnownName{"zeitstempel"},
                                    KnownName{"datum/zeit"},
@@ -67,11 +63,11 @@ constexpr std::array kTimeNames = {KnownName{"time"},
                                    KnownName{"timems", 1000000},
                                    KnownName{"utime", 1000},
                                    KnownName{"seconds", 1000000000},
-                                   KnownName{"seconds_elapsed", 1000000000},
-                                   KnownName{"elapsed_seconds", 1000000000},
+                                   KnownName{"seconds elapsed", 1000000000},
+                                   KnownName{"elapsed seconds", 1000000000},
                                    KnownName{"sec", 1000000000},
                                    KnownName{"secs", 1000000000},
-                                   KnownName{"x_value", 1000000000},  // LabVIEW measurement files
+                                   KnownName{"x value", 1000000000},  // LabVIEW measurement files
                                    KnownName{"millis", 1000000},
                                    KnownName{"milliseconds", 1000000},
                                    KnownName{"micros", 1000},
@@ -99,6 +95,11 @@ constexpr std::array kClockNames = {KnownName{"ms", 1000000},
 // Time only where the values are dates or clock times.
 constexpr std::array<std::string_view, 8> kDateNames = {"date",    "datum", "fecha", "data",
                                                         "uhrzeit", "heure", "hora",  "clock"};
+
+// They count what was taken, and are no clocks however steadily they rise.
+constexpr std::array<std::string_view, 18> kCounters = {
+    "frame",   "frames", "frame id", "frame number",  "index",  "idx",     "seq",    "sequence", "count",
+    "counter", "packet", "record",   "packetcounter", "sample", "samples", "number", "row",      "id"};
 
 constexpr std::array<std::string_view, 14> kDevices = {"device", "dev",    "sensor",    "imu",   "hardware",
                                                        "hw",     "sample", "acc",       "accel", "accelerometer",
@@ -143,8 +144,10 @@ std::optional<TimeName> time_name(std::string_view stem) {
     out.clock = Clock::device;
   else if (time_of(name, kHosts))
     out.clock = Clock::host;
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
   for (const KnownName& known : kTimeNames)
-    if (known.name == name) {
+    if (known.name == words) {
       out.unit_ns = known.unit_ns;
       return out;
     }
@@ -275,15 +278,16 @@ bool wanders(const TableFront& table, std::size_t column) {
 // a guess. A rate that is known leaves it a channel.
 std::optional<std::size_t> column_like_a_clock(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   static constexpr std::array<std::string_view, 8> kWords = {"time",  "stamp", "clock", "tick",
-                                                             "epoch", "utc",   "tow",   "_ts"};
+                                                             "epoch", "utc",   "tow",   " ts"};
   if (options.rate_hz || table.stated_rate_hz || info.time.rate_hz > 0 || table.columns.size() < 2) return std::nullopt;
   std::optional<std::size_t> found;
   bool named = false;
   for (std::size_t c = 0; c < table.columns.size() && !named; ++c) {
     const ColumnLabel& column = table.columns[c];
-    const std::string name = ascii_lower(stem_of(column));
-    if (column.text || unit_of_another_quantity(column) || name.find("temp") != std::string::npos || name == "t" ||
-        (has_unit(column) && !unit_of_time(column)))
+    std::string name = ascii_lower(stem_of(column));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (column.text || among(kCounters, name) || unit_of_another_quantity(column) ||
+        name.find("temp") != std::string::npos || name == "t" || (has_unit(column) && !unit_of_time(column)))
       continue;
     named = std::any_of(kWords.begin(), kWords.end(),
                         [&](std::string_view word) { return name.find(word) != std::string::npos; });
@@ -361,23 +365,38 @@ std::optional<std::size_t> column_called_time(const TableFront& table, const Rea
   return best.column;
 }
 
-// Without names: a first column that rises evenly.
+// Whole numbers that never fall and are dates since 2008, in any unit.
+bool counts_since_1970(const FirstValues& first) {
+  const std::vector<double>& values = first.values;
+  if (!first.integers || values.size() < 3 || !std::is_sorted(values.begin(), values.end())) return false;
+  for (const double unit : {1.0, 1e3, 1e6, 1e9})
+    if (values.front() >= 1.2e9 * unit && values.back() < 2.2e9 * unit) return values.back() > values.front();
+  return false;
+}
+
+// Without names: a first column, behind words, that rises evenly or holds dates.
 std::optional<std::size_t> column_that_rises(const TableFront& table, const ReadOptions& options, LogInfo& info) {
-  if (table.columns.size() < 2 || table.columns[0].text) return std::nullopt;
+  std::size_t c = 0;
+  while (c < table.columns.size() && table.columns[c].text) ++c;
+  if (c + 1 >= table.columns.size()) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
-  const std::vector<double> values = table.first_values(0).values;
-  if (!near_uniform_and_rising(values)) return std::nullopt;
+  const FirstValues first = table.first_values(c);
+  const std::vector<double>& values = first.values;
+  const bool dates = table.text && counts_since_1970(first);
+  if (!dates && !near_uniform_and_rising(values) && !(table.text && steady_clock(values))) return std::nullopt;
   const bool counter =
-      usual_step(values) == 1 && values.back() - values.front() == static_cast<double>(values.size() - 1);
+      !dates && usual_step(values) == 1 && values.back() - values.front() == static_cast<double>(values.size() - 1);
+  const std::string name = fmt::format("c{}", c);
   if (counter || !table.text) {
-    if (!counter) info.time.candidate = "c0";
-    info.guesses.push_back(fmt::format("first column: {}, kept as a channel (`time_column` c0 takes it as time)",
-                                       counter ? "counts the rows by ones" : "rises evenly"));
+    if (!counter) info.time.candidate = name;
+    info.guesses.push_back(fmt::format("first column: {}, kept as a channel (`time_column` {} takes it as time)",
+                                       counter ? "counts the rows by ones" : "rises evenly", name));
     return std::nullopt;
   }
-  info.guesses.emplace_back(
-      "time column: the first, because it rises evenly (`time_column` none keeps it as a channel)");
-  return 0;
+  info.guesses.push_back(fmt::format("time column: {}, because it {} (`time_column` none keeps it as a channel)",
+                                     c == 0 ? "the first" : name,
+                                     dates ? "counts the time since 1970" : "rises evenly"));
+  return c;
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ void TimeGrid::refuse_backward() const {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   const std::string how_far = duration_text(seconds(last_.stamp - backward_.first));
   std::string hint = fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
-                                 shortest(rounded(1e9 / step_.ns, 6)));
+                                 step_.ns > 0 ? shortest(rounded(1e9 / step_.ns, 6)) : "HZ");
   if (backward_.restarted() && last_.stamp > last_.first)
     hint = fmt::format("`to_s` {} reads what stands before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
   if (!log.topics.empty() && options_.time_source != "log")

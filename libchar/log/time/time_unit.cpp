@@ -113,14 +113,23 @@ std::vector<std::int64_t> usual_units(double step) {
   return out;
 }
 
-bool says_a_date(const FirstValues& first) { return first.values.empty() || std::fabs(first.values[0]) >= 6.3e8; }
+/// Seconds from before 2015 are as well milliseconds of a device that has been on for two weeks.
+bool says_a_date(const FirstValues& first) { return first.values.empty() || std::fabs(first.values[0]) >= 1.42e9; }
 
-// Time since 1970 betrays its unit by its size, where that is a date from 1990 to 2100; a time
+/// Whole numbers that follow each other by ones, and by none and by twos.
+bool uneven_ones(const FirstValues& first) {
+  const std::vector<double>& values = first.values;
+  bool even = true;
+  for (std::size_t i = 1; i < values.size(); ++i) even = even && values[i] - values[i - 1] == 1;
+  return first.integers && usual_step(values) == 1 && !even;
+}
+
+// Time since 1970 betrays its unit by its size, where that is a date from 2001 to 2100; a time
 // since power-on by its step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an
 // hour counts as many nanoseconds as a date has milliseconds: then the step decides, unless all are
 // whole seconds.
 std::int64_t guess_unit(const FirstValues& first) {
-  constexpr double kFirstDate = 6.3e8, kLastDate = 4.1e9;  // in seconds
+  constexpr double kFirstDate = 1e9, kLastDate = 4.1e9;  // in seconds
   const std::vector<double>& values = first.values;
   const double size = values.empty() ? 0 : std::fabs(values[0]);
   const double step = usual_step(values);
@@ -133,6 +142,11 @@ std::int64_t guess_unit(const FirstValues& first) {
   if (size >= 1e9 && size < 1e10 && !first.integers) return 1000000000;
   // Whole seconds since 1970 every few seconds; milliseconds would be three weeks since power-on.
   if (size >= 1.2e9 && size < 2.2e9 && step < 200) return 1000000000;
+  // Minutes and hours between dates since 2015; microseconds would be from the 24th to the 32nd minute since power-on.
+  constexpr double kHours = 1e5;
+  if (first.integers && size >= 1.42e9 && size < 1.9e9 && step < kHours) return 1000000000;
+  constexpr double kLongOn = 1e4;  // three hours in s, ten seconds in ms
+  if (uneven_ones(first) && size >= kLongOn) return 1000000;
   const std::int64_t by_step = unit_by_step(step);
   if (!first.integers || says_a_date(first)) return by_step;
   const std::vector<std::int64_t> usual = usual_units(step);
@@ -143,6 +157,7 @@ std::int64_t guess_unit(const FirstValues& first) {
 bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
+  if (uneven_ones(first)) units = {kStampUnits[0], kStampUnits[1]};
   if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
   if (units.size() == 1 && unit == kStampUnits[0]) return false;
   Finding& guess = info.warnings.add(

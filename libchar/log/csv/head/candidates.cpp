@@ -114,6 +114,28 @@ void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal
   if (decimal != '.') out.push_back({delimiter, ',', columns, rounded(shape * worth.comma)});
 }
 
+// "10,000,000.000,012,3 Hz": counters write groups of three digits on both sides of the point. Columns of whole
+// numbers are not meant: those have no unit behind the last and no zeros in front.
+bool counter_lines(const std::vector<Line>& lines) {
+  std::size_t grouped = 0;
+  bool unit = false, zeros = false;
+  for (const Line& line : lines) {
+    const std::string_view text = trimmed(line.text);
+    const std::size_t end = std::min(text.find_first_not_of("+-0123456789.,"), text.size());
+    const std::string_view number = text.substr(0, end);
+    const std::string plain = without_thousands(number, {'.', ','});
+    const std::size_t point = number.find('.');
+    if (point == std::string_view::npos || number.find(',', point) == std::string_view::npos ||
+        read_cell(plain, '.').kind != Cell::value)
+      continue;
+    ++grouped;
+    unit = unit || number_and_unit(text);
+    for (std::size_t at = number.find(",0"); at != std::string_view::npos; at = number.find(",0", at + 1))
+      zeros = zeros || (at + 2 < number.size() && is_digit(number[at + 2]));
+  }
+  return grouped > 2 && 4 * grouped >= 3 * lines.size() && (unit || zeros);
+}
+
 bool occurs(const std::vector<Line>& lines, char delimiter) {
   return std::any_of(lines.begin(), lines.end(),
                      [&](const Line& line) { return line.text.find(delimiter) != std::string_view::npos; });
@@ -123,8 +145,9 @@ bool occurs(const std::vector<Line>& lines, char delimiter) {
 
 std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter, char decimal) {
   std::vector<Candidate> out;
+  if (delimiter == 0 && decimal != ',' && counter_lines(lines)) return {{';', '.', 1, kOneColumn}};
   bool whole = false;  // lines of one cell are looked at once
-  for (const char one : {',', ';', '\t', ' '}) {
+  for (const char one : {',', ';', '\t', ' ', '|'}) {
     if (delimiter != 0 && one != ',') break;
     const char by = delimiter != 0 ? delimiter : one;
     if (delimiter == 0 && !occurs(lines, by) && std::exchange(whole, true)) continue;
@@ -150,8 +173,10 @@ char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal
       if (cell_kind(field, {decimal}) == CellKind::number) continue;
       for (const char group : {',', '.', '\'', ' '}) {
         if (group == decimal || (group == ' ' && delimiter == ' ')) continue;
-        const std::string plain = without_thousands(field.text, {decimal, group});
-        const bool grouped = plain != field.text && read_cell(plain, decimal).kind == Cell::value;
+        const auto measured = number_and_unit(field.text);
+        const std::string_view number = measured ? measured->number : field.text;
+        const std::string plain = without_thousands(number, {decimal, group});
+        const bool grouped = plain != number && read_cell(plain, decimal).kind == Cell::value;
         if (grouped && ++found[group] == kEnough) return group;
       }
     }

@@ -27,6 +27,7 @@ bool like_words(std::string_view text) {
   const auto outside = static_cast<unsigned char>(text[0]);
   const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
   if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset)) return true;
+  if (text.starts_with("0x") || std::count(text.begin(), text.end(), '.') == 3) return true;  // addresses
   return std::count_if(text.begin(), text.end(), letter) > 1 || text.find(':') != std::string_view::npos;
 }
 
@@ -59,22 +60,31 @@ ColumnKind kind_of(const KindCounts& counts) {
 
 std::string without_thousands(std::string_view text, NumberStyle style) {
   if (style.thousands == 0) return std::string(text);
-  std::string out;
   std::size_t i = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
-  out = text.substr(0, i);
+  std::string out(text.substr(0, i));
   std::size_t group = 0, groups = 0;
-  for (; i < text.size() && (is_digit(text[i]) || text[i] == style.thousands); ++i) {
-    if (is_digit(text[i])) {
-      out += text[i];
-      ++group;
-      continue;
-    }
-    if (groups == 0 ? group < 1 || group > 3 : group != 3) return std::string(text);
-    ++groups;
+  const auto digits = [&](std::size_t first_group) {  // false where groups are not of three
     group = 0;
+    for (std::size_t here = 0; i < text.size() && (is_digit(text[i]) || text[i] == style.thousands); ++i) {
+      if (is_digit(text[i])) {
+        out += text[i];
+        ++group;
+        continue;
+      }
+      if (here++ == 0 ? group < 1 || group > 3 || group < first_group : group != 3) return false;
+      ++groups;
+      group = 0;
+    }
+    return true;
+  };
+  if (!digits(1) || (groups > 0 && group != 3)) return std::string(text);
+  if (i < text.size() && text[i] != style.decimal) return std::string(text);
+  const std::size_t whole = groups;
+  if (i < text.size()) {  // counters group the digits behind the mark, too
+    out += text[i++];
+    if (!digits(3) || (groups > whole && (group < 1 || group > 3))) return std::string(text);
   }
-  if (groups == 0 || group != 3 || (i < text.size() && text[i] != style.decimal)) return std::string(text);
-  return out + std::string(text.substr(i));
+  return groups == 0 ? std::string(text) : out + std::string(text.substr(i));
 }
 
 std::size_t label_length(std::string_view text) {

@@ -149,7 +149,8 @@ void choose_cells(Study& study, char separator) {
   study.columns = best.columns + (study.dialect.lead.empty() ? 0 : 1);
   study.dialect.decimal = best.decimal;
   study.dialect.delimiter = best.delimiter;
-  if (best.columns < 2 && given == 0) study.dialect.delimiter = best.decimal == ',' ? ';' : ',';
+  if (best.columns < 2 && given == 0)
+    study.dialect.delimiter = best.decimal == ',' || best.delimiter == ';' ? ';' : ',';
   study.dialect.thousands = thousands_mark(lines, study.dialect.delimiter, best.decimal);
   say_cells(study, all, given != 0);
   refuse_wrong_delimiter(study, lines);
@@ -172,6 +173,7 @@ void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
     throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
+  if (option == "auto" && named_by_daemon(study)) return;
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -203,7 +205,7 @@ bool counts_rows(const Study& study, std::size_t column) {
   return study.rows.size() > 2;
 }
 
-enum class LeftOut { none, chosen, words, dates, counts };
+enum class LeftOut { none, chosen, words, dates, clocks, counts };
 
 // Words, dates that are not the time, counts of the rows and columns with nothing in them are no channels.
 LeftOut why_left_out(const Study& study, std::size_t c) {
@@ -217,6 +219,7 @@ LeftOut why_left_out(const Study& study, std::size_t c) {
   if (index == dialect.time.column || index == dialect.more_time.column) return LeftOut::none;
   if (kind == ColumnKind::text) return LeftOut::words;
   if (kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock) return LeftOut::dates;
+  if (column.clock) return LeftOut::clocks;
   const bool unnamed =
       dialect.has_header && (column.text.empty() || column.text == "#" || column.text.starts_with("Unnamed: "));
   const bool counts = kind == ColumnKind::empty || (c == 0 && counts_rows(study, c));
@@ -237,6 +240,7 @@ void leave_out(Study& study) {
   }
   for (const auto& [why, what] :
        {std::pair(LeftOut::words, "columns of words"), std::pair(LeftOut::dates, "columns of dates"),
+        std::pair(LeftOut::clocks, "columns that repeat the clock"),
         std::pair(LeftOut::counts, "columns without a name that count the rows or hold nothing")})
     if (!names[why].empty())
       study.info.dialect.push_back(fmt::format("left out {}: {}", what, first_names(names[why])));
@@ -297,6 +301,8 @@ void find_kinds(Study& study) {
     if (!later.empty()) later.push_back({Field{}});
     study.kinds[c] = column_kinds(later, 1, study.style())[0];
   }
+  for (std::size_t c = 0; c < study.kinds.size(); ++c)
+    if (study.dialect.columns[c].words) study.kinds[c] = ColumnKind::text;
   if (!study.kinds.empty() &&
       std::all_of(study.kinds.begin(), study.kinds.end(), [](ColumnKind kind) { return kind == ColumnKind::text; }))
     throw refusal(study, study.sample[0], 0, "E0326")

@@ -26,6 +26,8 @@ struct Column {
   std::string unit_below;  ///< in a second header line
   std::string cell_unit;   ///< behind every number, as in the file: "sec" of "0.005 sec"
   bool unnamed = false;    ///< the header has an empty cell
+  bool words = false;      ///< known to hold words, whatever they look like
+  bool clock = false;      ///< the stamps once more, from another zero or in another unit
   bool left_out = false;   ///< words, or a count of the rows: no channel unless it is asked for
   std::string text;        ///< header cell as written
   std::uint64_t line = 0;  ///< place of the header cell, 1-based; 0 without header

@@ -19,6 +19,9 @@ void read_units(Study& study, const Line& line);
 /// comment before it, by labels in front of the values, or none.
 void do_without_names(Study& study);
 
+/// The columns and the begin of a log of chrony or ntpd, by its first rows.
+bool named_by_daemon(Study& study);
+
 /// Units behind the numbers of the rows ("0.005 sec"), and of counts whose scale the preamble states.
 void find_other_units(Study& study);
 

@@ -68,12 +68,6 @@ bool is_utf16(std::string_view head) {
           head[0] == head[2 * (head[0] == 0)]);
 }
 
-/// Messages as `rostopic echo` and `ros2 topic echo` print them.
-bool is_echo(std::string_view head) {
-  return head.starts_with("header:") && head.find("stamp:") != std::string_view::npos &&
-         head.find("frame_id:") != std::string_view::npos;
-}
-
 Refusal refusal(const std::string& file, const std::string& what) {
   return input_error("E0301", at(file, 1, 1, 0)).says("content is " + what);
 }
@@ -120,11 +114,6 @@ void refuse_other_content(std::string_view head, const std::string& file) {
   refuse_binary(head, file);
   const std::size_t front = head.find_first_not_of(" \t\r\n");
   if (front == std::string_view::npos) return;
-  if (is_echo(head.substr(front)))
-    throw refusal(file, "messages as `rostopic echo` prints them, not CSV")
-        .hint(
-            "a bag is read as it is; else print rows: rostopic echo -p TOPIC > log.csv; ros2 topic "
-            "echo has a form in CSV too");
   if (head[front] == '<')
     throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
   if (head[front] == '{') throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");

@@ -20,7 +20,9 @@ void fit_names(const Study& study, std::string_view text, Cells& fields) {
       std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; }) &&
       cells_in(study.dialect, study.sample[1].text)[0].quoted)
     fields.insert(fields.begin(), Field{"", 0, true});
-  const auto joined = [&](const Field& field) { return &field != fields.data() && text[field.offset - 1] == ' '; };
+  const auto joined = [&](const Field& field) {
+    return &field != fields.data() && field.offset > 0 && text[field.offset - 1] == ' ';
+  };
   const auto count = std::count_if(fields.begin(), fields.end(), joined);
   if (study.dialect.delimiter != ',' || fields.size() < columns ||
       columns + static_cast<std::size_t>(count) != fields.size())

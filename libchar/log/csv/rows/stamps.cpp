@@ -288,6 +288,24 @@ TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::
   return table;
 }
 
+/// "seconds_elapsed" beside "time": columns called time that are the stamps once more.
+void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialect) {
+  const std::vector<double> stamps = table.first_values(index).values;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const ColumnLabel& column = table.columns[c];
+    const auto name = time_name(name_and_unit(column.name).first);
+    if (c == index || column.text || column.calendar || !name || name->letter || name->date) continue;
+    const std::vector<double> values = table.first_values(c).values;
+    if (values.size() != stamps.size() || values.size() < 3) continue;
+    const double scale = (values.back() - values.front()) / (stamps.back() - stamps.front());
+    const double most = 1e-3 * std::fabs(usual_step(values));
+    bool same = most > 0;
+    for (std::size_t i = 0; i < values.size() && same; ++i)
+      same = std::fabs(values[i] - values[0] - scale * (stamps[i] - stamps[0])) <= most;
+    dialect.columns[c].clock = same;
+  }
+}
+
 }  // namespace
 
 StampDefect read_part(std::string_view text, const StampPart& part, const Dialect& dialect, std::int64_t& out,
@@ -347,6 +365,7 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
   if (pair && *index == pair->second) index = pair->first;
   dialect.time = part_of(*index);
   dialect.more_time = partner_of(*index);
+  if (table.named) find_same_clock(table, *index, dialect);
   const std::string& name = dialect.columns[*index].name;
   info.time.column = name.empty() ? fmt::format("c{}", *index) : name;
   if (dialect.time.calendar) {
