@@ -77,8 +77,8 @@ class StillSearch final : public BlockSink {
   [[noreturn]] static void refuse_untested(const LogInfo& log) {
     throw numeric_error("E0705", log.file)
         .says(
-            "no channel can be searched for a still stretch: they are short (2048 samples are "
-            "needed), have many missing samples, or mostly repeat their values")
+            "no channel can be searched for a still stretch: they are short (2048 samples are needed), have many "
+            "missing samples, or mostly repeat their values")
         .hint("name the stretch with `still` FROM..TO");
   }
   /// On the clock of the stretch.
@@ -118,8 +118,7 @@ bool any_restless(std::span<const ChannelResult> channels) {
 /// "Only the stretch from 38.6 to 186 s was analysed, the longest in which nothing moves."
 std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResult> channels) {
   if (stretch.whole)
-    return any_restless(channels) ? "No part of the recording is loud enough to be left out: "
-                                    "all of it was analysed."
+    return any_restless(channels) ? "No part of the recording is loud enough to be left out: all of it was analysed."
                                   : "Nothing moves in the recording: all of it was analysed.";
   std::string text =
       fmt::format("Only the stretch from {} to {} s was analysed, {}", brief_text(stretch.from_s, 6),
@@ -137,8 +136,8 @@ std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResu
 /// Nothing that is said of the channel in the table's grid is about the sensor.
 void doubt(const Channel& channel, bool alone, ChannelResult& result) {
   Finding slow = finding("slow_channel",
-                         fmt::format("The channel has a value in one of {} rows: in the grid of the "
-                                     "table most of its samples are missing, and its rate is wrong.",
+                         fmt::format("The channel has a value in one of {} rows: in the grid of the table most of its "
+                                     "samples are missing, and its rate is wrong.",
                                      brief_text(channel.every, 3)),
                          "in a table of faster rows it has no rate of its own");
   slow.severity = Severity::bad;

@@ -95,8 +95,7 @@ struct CharacterizeOptions {
   /// Runs of so many equal values and longer are missing; so are the samples inside of straight lines of so many
   /// samples and longer. 0: they count.
   std::uint64_t frozen = 0, interpolated = 0;
-  /// name of the channel that is the temperature: what it does to the others is taken out before
-  /// their noise is fitted
+  /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
   std::string temperature;
   AllanOptions allan;
   std::vector<DeviationType> more_types;  ///< in addition to `allan.type`, of the same samples
@@ -113,8 +112,7 @@ struct CharacterizeOptions {
   /// several times, and what needs all samples of a longer one (a deviation other than oadev at
   /// octaves, a temperature) is refused beyond. Changes no result.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30U;
-  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade
-  /// besides, for plots
+  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade besides, for plots
   bool ten_a_decade = false;
   bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };
@@ -180,8 +178,7 @@ Characterization characterize(const RecordingView& recording, const Characterize
 Characterization characterize(const Recording& recording, const CharacterizeOptions& options = {},
                               Progress& progress = no_progress());
 
-/// What of these options needs every sample of a log of more than a leaf ("the deviation mdev");
-/// empty: nothing does.
+/// What of these options needs every sample of a log of more than a leaf ("the deviation mdev"); empty: nothing does.
 std::string what_needs_all_samples(const CharacterizeOptions& options);
 
 /// Which channel `wanted` (a name that it has in the end, a place c0, c1…, a pattern) makes the

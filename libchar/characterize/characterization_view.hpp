@@ -1,7 +1,6 @@
 #pragma once
-// A characterization as its report shows it, computed once: verdict, what was found, what asks for a
-// look, the curves of the fitted model, where its coefficients are read off, which number goes where.
-// HTML, JSON and CSV only print it.
+// A characterization as its report shows it, computed once: verdict, what was found, what asks for a look, the curves
+// of the fitted model, where its coefficients are read off, which number goes where. HTML, JSON and CSV only print it.
 
 #include <optional>
 #include <string>

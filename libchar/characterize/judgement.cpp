@@ -80,8 +80,7 @@ struct Judge {
     if (const std::string letters = letters_with(fit, Status::undetermined);
         !letters.empty() && !has(fit.findings, "undetermined")) {
       add("undetermined",
-          fmt::format("Undetermined: {}. Another term could explain the same part of the record, "
-                      "or its Allan curve "
+          fmt::format("Undetermined: {}. Another term could explain the same part of the record, or its Allan curve "
                       "speaks against it.",
                       letters),
           letters + " undetermined: not told from another term, or contradicted by the Allan curve");

@@ -21,9 +21,9 @@ std::string reason_of(const LimitJudgement& j) {
     case Status::undetermined:
       return "the recording cannot tell the term from another, or contradicts it";
     case Status::not_detected:
-      return j.status == LimitStatus::pass ? "not detected, and its upper limit is within"
-                                           : "not detected, and its upper limit is above: a longer "
-                                             "recording can decide";
+      return j.status == LimitStatus::pass
+                 ? "not detected, and its upper limit is within"
+                 : "not detected, and its upper limit is above: a longer recording can decide";
     case Status::detected:
     case Status::given:
       break;

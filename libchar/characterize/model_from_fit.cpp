@@ -8,8 +8,7 @@
 namespace libchar {
 namespace {
 
-// The recording reached an end of its range when runs of samples stand there; which end, its
-// extremes say.
+// The recording reached an end of its range when runs of samples stand there; which end, its extremes say.
 void set_saturation(SensorModel& model, const ChannelQuality& quality) {
   if (quality.saturated == 0 || quality.samples == 0) return;
   model.saturation_low = quality.minimum;

@@ -71,8 +71,7 @@ const Fields<FitOptions>& fit_settings() {
   return rows;
 }
 
-// Six whatever they are, all others of the table where they were set: two runs that differ have two
-// configurations.
+// Six whatever they are, all others of the table where they were set: two runs that differ have two configurations.
 const Fields<ReadOptions>& reading_settings() {
   static const Fields<ReadOptions> rows = [] {
     Fields<ReadOptions> all = selected(

@@ -1,10 +1,9 @@
 #pragma once
 // One long log characterized by many machines, and merged exactly (docs/theory/stretches.md).
 //
-// A log is divided in leaves of 2^20 samples (the last may be short); a stretch is a range
-// of whole leaves. Leaves are taken one by one and joined in a tree that depends on their numbers
-// only, so that the result has the same bits however the log was divided in stretches, and in
-// whatever order their states arrive.
+// A log is divided in leaves of 2^20 samples (the last may be short); a stretch is a range of whole leaves. Leaves are
+// taken one by one and joined in a tree that depends on their numbers only, so that the result has the same bits
+// however the log was divided in stretches, and in whatever order their states arrive.
 //
 //   const LogInfo head = read_log_head(path, options.reading);              // channel_names.hpp; head.rows: samples
 //   if (const auto why = why_not_divided(head, options); !why.empty()) …    // why
@@ -39,12 +38,11 @@ std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& optio
 /// Takes the partial states of a stretch, a channel each in their order, as bytes for a file.
 using StateSink = std::function<void(const std::string& bytes)>;
 
-/// The partial states of all channels over some leaves. Nothing in front of them is read, and
-/// nothing of the whole log is: `identity` (its digest, or whatever tells it from others) goes into
-/// the states as it is. Three channels are taken in one pass over the rows. Memory: that of three,
-/// each 8 MB and some 1 MB for each of up to 2 log2(leaves) nodes of the tree. Throws Error(usage)
-/// where the log or the options cannot be divided (E0726) or the range is none of the log's
-/// (E0727), Error(input) as read_log.
+/// The partial states of all channels over some leaves. Nothing in front of them is read, and nothing of the whole log
+/// is: `identity` (its digest, or whatever tells it from others) goes into the states as it is. Three channels are
+/// taken in one pass over the rows. Memory: that of three, each 8 MB and some 1 MB for each of up to 2 log2(leaves)
+/// nodes of the tree. Throws Error(usage) where the log or the options cannot be divided (E0726) or the range is none
+/// of the log's (E0727), Error(input) as read_log.
 void characterize_stretch(const std::string& path, const CharacterizeOptions& options, StretchRange range,
                           const std::string& identity, const StateSink& sink, Progress& progress = no_progress());
 
@@ -66,19 +64,17 @@ struct StretchHead {
   std::uint64_t channel = 0, channels = 0;  ///< which one it is of, from 0; and of how many
 };
 
-/// Reads and checks a whole state. Throws Error(input) by name: not a state, damaged, cut, of
-/// another version (E0723).
+/// Reads and checks a whole state. Throws Error(input) by name: not a state, damaged, cut, of another version (E0723).
 StretchHead stretch_head(const NamedState& state);
 
 /// Digest of the options that a state depends on, and of the program's version. Threads, memory and
 /// the like are not among them.
 std::string settings_digest(const CharacterizeOptions& options);
 
-/// Joins the states of all channels, in any order, to what one machine would have found, one
-/// channel at a time. Throws Error(input) by name for a state that is damaged or no state (E0723),
-/// of another log or of other settings (E0724), for one that covers what another does, and for
-/// leaves that none has (E0725); Error(numeric) where no channel has a finite value. `log.sha256`
-/// of the result is empty: the caller knows the log.
+/// Joins the states of all channels, in any order, to what one machine would have found, one channel at a time. Throws
+/// Error(input) by name for a state that is damaged or no state (E0723), of another log or of other settings (E0724),
+/// for one that covers what another does, and for leaves that none has (E0725); Error(numeric) where no channel has a
+/// finite value. `log.sha256` of the result is empty: the caller knows the log.
 Characterization characterize_from_stretches(std::span<const NamedState> states, const CharacterizeOptions& options,
                                              Progress& progress = no_progress());
 

@@ -23,10 +23,8 @@ std::string finding(const NoiseFit& fit, Term term, const std::string& unit) {
     case Status::detected:
       return fmt::format("{} = {}, known to {}.", name, value, percent_text(c.relative_sd));
     case Status::undetermined:
-      return fmt::format(
-          "{} = {}, but undetermined: the record cannot tell it from another term, or contradicts "
-          "it.",
-          name, value);
+      return fmt::format("{} = {}, but undetermined: the record cannot tell it from another term, or contradicts it.",
+                         name, value);
     case Status::misfit:
       return fmt::format("{} = {}, but the noise terms do not describe the recording.", name, value);
     case Status::not_detected:
@@ -126,8 +124,7 @@ std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::s
   if (fit.temperature && fit.temperature->order > 0) out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
     out.push_back(
-        fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part "
-                    "of the model.",
+        fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part of the model.",
                     brief_text(*fit.bandwidth_hz)));
   }
   return out;

@@ -1,6 +1,5 @@
-// libchar._libchar: the front door of the library for Python. It takes and gives NumPy arrays and
-// plain dictionaries; names, defaults, dataclasses and documentation are Python's
-// (libchar/functions.py).
+// libchar._libchar: the front door of the library for Python. It takes and gives NumPy arrays and plain dictionaries;
+// names, defaults, dataclasses and documentation are Python's (libchar/functions.py).
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

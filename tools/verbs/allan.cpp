@@ -130,9 +130,8 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   options.add_flag("--force", verb->force, "overwrite the output file");
   const Option json = options.add_flag("--json", verb->json, "one JSON document instead of CSV");
   const Option hat = options.add_flag("--hat", verb->hat,
-                                      "single devices from the differences of three or more "
-                                      "channels that measure the same at once: "
-                                      "the three-cornered hat, or any number of corners");
+                                      "single devices from the differences of three or more channels that measure the "
+                                      "same at once: the three-cornered hat, or any number of corners");
   Option pairs =
       options.add_flag("--hat-pairs", verb->hat_of_differences,
                        "the same where three channels are differences a - b, b - c, c - a, each measured by itself");

@@ -368,9 +368,7 @@ void refuse_unlike(const std::vector<ReportedCharacterization>& sides, const std
   }
   throw input_error("E0976")
       .says("no two channels measure the same: {}", fmt::join(measured, ", "))
-      .hint(
-          "two recordings of one quantity and axis at least; `units` says the unit where a log "
-          "does not");
+      .hint("two recordings of one quantity and axis at least; `units` says the unit where a log does not");
 }
 
 void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {

@@ -191,8 +191,7 @@ struct ChannelPairs {
 /// By its own name or the usual one; nothing wanted: all are.
 bool is_chosen(const ReportedChannel& channel, const std::vector<std::string>& wanted);
 
-/// Groups of the channels that `wanted` chooses, in the order of their first channels; also those of one channel
-/// only.
+/// Groups of the channels that `wanted` chooses, in the order of their first channels; also those of one channel only.
 std::vector<ChannelPairs> paired_channels(const std::vector<ReportedCharacterization>& sides,
                                           const std::vector<std::string>& wanted);
 

@@ -91,9 +91,7 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
   const std::string format = format_of(document);
   if (!is_known(format) && format != "allan")
     throw input_error("E0771", file)
-        .says(
-            "expected the report of a characterization (format characterization, pooled-runs or "
-            "noise-fit)")
+        .says("expected the report of a characterization (format characterization, pooled-runs or noise-fit)")
         .got(format)
         .hint("the report.json of a characterization is one");
   check_format(document, file, format, 1);

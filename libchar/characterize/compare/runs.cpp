@@ -238,9 +238,8 @@ std::string bias_sentence(const PooledChannel& c) {
                        number_text(b.spread, 3), unit, number_text(b.spread_ci95.low, 3),
                        number_text(b.spread_ci95.high, 3), number_text(b.mean), unit);
   return fmt::format(
-      "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be "
-      "seen in a run included, lets expect ({}); its "
-      "spread is at most {} {} (97.5 %).",
+      "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be seen in a run "
+      "included, lets expect ({}); its spread is at most {} {} (97.5 %).",
       probability_text(b.p), number_text(b.spread_ci95.high, 3), unit);
 }
 

@@ -3,10 +3,9 @@
 // Med. 27 (2008) 1693),
 //   ln r -+ ...,   r = b / a:  lower  ln r - sqrt((ln b - ln l_b)² + (ln u_a - ln a)²),
 //                              upper  ln r + sqrt((ln u_b - ln b)² + (ln a - ln l_a)²),
-// and p from the distance to the end that faces r = 1, as if it were 1.96 standard deviations. An interval that
-// reaches zero makes that distance infinite, and p 1: nothing is claimed. A value against an upper limit differs
-// when the whole interval is above the limit. The mean of n squares V_i with intervals l_i..u_i has by the same
-// method the interval
+// and p from the distance to the end that faces r = 1, as if it were 1.96 standard deviations. An interval that reaches
+// zero makes that distance infinite, and p 1: nothing is claimed. A value against an upper limit differs when the whole
+// interval is above the limit. The mean of n squares V_i with intervals l_i..u_i has by the same method the interval
 //   V - sqrt(sum (V_i - l_i)²) / n  ..  V + sqrt(sum (u_i - V_i)²) / n.
 #include <algorithm>
 #include <cmath>

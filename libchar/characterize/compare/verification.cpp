@@ -1,6 +1,5 @@
-// Per term: z = ln(simulated / model) / sd(ln simulated), the model being the truth of the
-// simulation. Per averaging time: AVAR_recorded / AVAR_simulated against the F distribution with
-// the equivalent degrees of freedom of both.
+// Per term: z = ln(simulated / model) / sd(ln simulated), the model being the truth of the simulation. Per averaging
+// time: AVAR_recorded / AVAR_simulated against the F distribution with the equivalent degrees of freedom of both.
 #include "libchar/characterize/compare/verification.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +31,7 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   return model;
 }
 
-// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured
-// curve has them.
+// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured curve has them.
 class MeansAdded {
  public:
   MeansAdded(const NoiseFit& fit, const ArraySimulation& simulation) {
@@ -138,10 +136,9 @@ std::vector<std::string> point_sentences(const std::vector<PointVerification>& p
     const std::string where = end == i + 1 ? "at τ = " + duration_text(points[i].tau_s)
                                            : fmt::format("from τ = {} to {}", duration_text(points[i].tau_s),
                                                          duration_text(points[end - 1].tau_s));
-    out.push_back(
-        fmt::format("{} the recording's Allan deviation is {} % {} than the simulated one: the "
-                    "model does not hold there",
-                    where, number_text(100 * std::abs(worst - 1), 2), worst > 1 ? "higher" : "lower"));
+    out.push_back(fmt::format(
+        "{} the recording's Allan deviation is {} % {} than the simulated one: the model does not hold there", where,
+        number_text(100 * std::abs(worst - 1), 2), worst > 1 ? "higher" : "lower"));
     i = end;
   }
   return out;
@@ -149,9 +146,8 @@ std::vector<std::string> point_sentences(const std::vector<PointVerification>& p
 
 bool has_process(const NoiseFit& fit) { return fit.gauss_markov && fit.gauss_markov->in_model; }
 
-// Of a Gauss-Markov process: empty when model and simulation agree. Where the simulated record does
-// without it (or asks for one that the model has not), its flicker and walk stand for the same slow
-// noise, and the curves alone compare it.
+// Of a Gauss-Markov process: empty when model and simulation agree. Where the simulated record does without it (or asks
+// for one that the model has not), its flicker and walk stand for the same slow noise, and the curves alone compare it.
 std::string process_disagreement(const NoiseFit& model, const NoiseFit& simulated, const VerifyOptions& how) {
   if (!has_process(model) || !has_process(simulated)) return "";
   const auto differs = [&how](const Coefficient& a, const Coefficient& b) {
@@ -160,10 +156,9 @@ std::string process_disagreement(const NoiseFit& model, const NoiseFit& simulate
   };
   const GaussMarkovFit &a = *model.gauss_markov, &b = *simulated.gauss_markov;
   if (!differs(a.sigma, b.sigma) && !differs(a.tau_s, b.tau_s)) return "";
-  return fmt::format(
-      "Gauss–Markov process: the model says σ = {}, τ = {}, the simulated record gives σ = {}, τ = "
-      "{}",
-      value_text(a.sigma), duration_text(*a.tau_s.value), value_text(b.sigma), duration_text(*b.tau_s.value));
+  return fmt::format("Gauss–Markov process: the model says σ = {}, τ = {}, the simulated record gives σ = {}, τ = {}",
+                     value_text(a.sigma), duration_text(*a.tau_s.value), value_text(b.sigma),
+                     duration_text(*b.tau_s.value));
 }
 
 bool compares(Term term, const NoiseFit& model, const NoiseFit& simulated) {
@@ -209,10 +204,10 @@ ChannelVerification compared(const ChannelResult& recorded, ChannelResult simula
   if (recorded.fit->term[0].status == Status::misfit && out.agrees)
     out.sentences.front() += " That is no proof of its coefficients, which are a misfit.";
   if (!disagreements.empty() && !recorded.lines.empty())
-    disagreements.push_back(recorded.lines.size() == 1 ? "The model does not hold the recording's spectral line."
-                                                       : fmt::format("The model holds none of the {} spectral lines of "
-                                                                     "the recording.",
-                                                                     recorded.lines.size()));
+    disagreements.push_back(
+        recorded.lines.size() == 1
+            ? "The model does not hold the recording's spectral line."
+            : fmt::format("The model holds none of the {} spectral lines of the recording.", recorded.lines.size()));
   if (!disagreements.empty())
     if (const Remedy* spikes = find_remedy(*recorded.fit, "spikes"))
       disagreements.push_back(fmt::format("The recording's curve holds {} that {} left out of the fit.",

@@ -61,8 +61,7 @@ struct DerivedNumbers {
   double plain_from_s = 0;
 };
 
-/// A record in blocks, with what was found in it; `low` and `high` with the digits that a picture
-/// needs.
+/// A record in blocks, with what was found in it; `low` and `high` with the digits that a picture needs.
 struct TraceOfChannel {
   std::string name, unit;
   Trace trace;
@@ -84,8 +83,7 @@ SpectrumOfChannel spectrum_of_channel(const Channel& channel, const Spectrum& sp
                                       const std::vector<std::optional<Interval>>& ci95,
                                       const ModelCurve* model = nullptr);
 
-/// Reads what these rows wrote. Throws Error(input) with the place, also where lists do not go
-/// together.
+/// Reads what these rows wrote. Throws Error(input) with the place, also where lists do not go together.
 AllanDocument read_allan(const MapReader& document);
 SpectrumDocument read_spectra(const MapReader& document);
 

@@ -121,8 +121,7 @@ std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curv
   const double q2 = theta_of(fit, Term::white), b2 = theta_of(fit, Term::flicker), k2 = theta_of(fit, Term::walk);
   if (q2 > 0) points.push_back({Term::white, 1, std::sqrt(q2), "N at τ = 1 s"});
   if (b2 > 0) {
-    // On the floor line, where the other two asymptotes cross (or at the curve's minimum): there
-    // the floor shows best.
+    // On the floor line, where the other two asymptotes cross (or at the curve's minimum): there the floor shows best.
     const AllanPoint* lowest = allan_minimum(curve);
     double tau_s = lowest != nullptr ? lowest->tau_s : 1;
     if (q2 > 0 && k2 > 0) tau_s = std::sqrt(3 * q2 / k2);

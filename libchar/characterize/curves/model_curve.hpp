@@ -1,6 +1,5 @@
 #pragma once
-// What a fitted mixture predicts for the curves of the report, and the points at which its
-// coefficients are read off.
+// What a fitted mixture predicts for the curves of the report, and the points at which its coefficients are read off.
 
 #include <array>
 #include <optional>
@@ -15,9 +14,8 @@
 
 namespace libchar {
 
-/// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing
-/// for types other than the (overlapping) Allan deviation, whose curves are the only ones we have
-/// in exact form.
+/// Deviation that the fit predicts at averaging factor m, with its low-pass if it has one; nothing for types other than
+/// the (overlapping) Allan deviation, whose curves are the only ones we have in exact form.
 std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
 /// Where the deviation of another stretch of the record, or of another recording of the sensor, is expected to lie (95 %, beside what
@@ -25,8 +23,7 @@ std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, d
 /// differs between stretches of the record (fit/stationarity.hpp). Nothing where `model_deviation` gives nothing.
 std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
-/// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for
-/// a vanishing model.
+/// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for a vanishing model.
 std::optional<double> model_spectrum(const NoiseFit& fit, const Spectrum& spectrum, double frequency_hz);
 
 /// A two-sided density in the sides and scaling of `spectrum`.
@@ -41,8 +38,7 @@ struct ReadOff {
 };
 std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curve);
 
-/// A term's asymptote on logarithmic axes: a straight line between two points, a decade beyond the
-/// curve on both sides.
+/// A term's asymptote on logarithmic axes: a straight line between two points, a decade beyond the curve on both sides.
 struct Asymptote {
   Term term = Term::white;
   std::array<double, 2> x{}, y{};

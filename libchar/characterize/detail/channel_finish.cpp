@@ -1,7 +1,6 @@
-// A record that fits into a leaf is kept and looked at as a whole; a longer one is finished from
-// the sums over its leaves. Which of both depends on its length only. What still needs the samples
-// of a longer one (`what_needs_all_samples`) changes no coefficient but by a temperature, which is
-// taken out of the samples.
+// A record that fits into a leaf is kept and looked at as a whole; a longer one is finished from the sums over its
+// leaves. Which of both depends on its length only. What still needs the samples of a longer one
+// (`what_needs_all_samples`) changes no coefficient but by a temperature, which is taken out of the samples.
 #include <fmt/format.h>
 
 #include <bit>
@@ -30,8 +29,7 @@ namespace {
 constexpr std::size_t kFewestForMotion = 2048;
 constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
 
-// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging
-// time.
+// For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
 Mixture white_alone(const AllanCurve& curve) {
   Mixture theta{};
   if (!curve.points.empty()) theta[0] = curve.points[0].deviation * curve.points[0].deviation * curve.points[0].tau_s;
@@ -333,9 +331,8 @@ void Finish::add_spectrum(ChannelResult& result, double rate_hz) {
   });
 }
 
-// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits
-// for it begins no other channel, whose memory would come on top. A spectrum that uses the samples
-// up comes last.
+// A thread that has no channel of its own left takes a part of another's. Isolated: one that waits for it begins no
+// other channel, whose memory would come on top. A spectrum that uses the samples up comes last.
 void Finish::finish(ChannelResult& result, double rate_hz) {
   ChannelResult curve, spectrum;
   const std::size_t before = result.findings.size();
@@ -369,12 +366,12 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   if (options_.data == SampleKind::rate || found_.samples == 0) return;
   const double nominal = options_.nominal_frequency;
   if (nominal == 0 && found_.standard_deviation < kLeastScatter * std::abs(found_.mean)) {
-    Finding whole = finding(
-        "frequency_mean",
-        fmt::format("The values scatter by {} of their mean, {}: they look like frequencies or "
-                    "periods themselves, not like {}.",
-                    number_text(found_.standard_deviation / std::abs(found_.mean), 2), number_text(found_.mean, 6),
-                    options_.data == SampleKind::phase ? "a phase" : "fractions of them"));
+    Finding whole =
+        finding("frequency_mean", fmt::format("The values scatter by {} of their mean, {}: they look like frequencies "
+                                              "or periods themselves, not like {}.",
+                                              number_text(found_.standard_deviation / std::abs(found_.mean), 2),
+                                              number_text(found_.mean, 6),
+                                              options_.data == SampleKind::phase ? "a phase" : "fractions of them"));
     Finding::Help& help = whole.help.emplace_back(Finding::Help{"Take them as fractions of their mean."});
     if (options_.data == SampleKind::phase) help.options.push_back({"data", "frequency"});
     help.options.push_back({"nominal_frequency", shortest(rounded(found_.mean, 9))});
@@ -384,12 +381,12 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   if (options_.data != SampleKind::frequency) return;
   const double off = nominal == 0 ? found_.mean : found_.mean / nominal - 1;
   if (std::abs(off) <= kMostOff) return;
-  result.findings.push_back(finding(
-      "frequency_mean", nominal == 0 ? fmt::format("The mean is {}: without `nominal_frequency` values are taken "
-                                                   "for fractional frequencies, which are small.",
-                                                   number_text(found_.mean, 6))
-                                     : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
-                                                   number_text(found_.mean, 6), number_text(nominal, 6))));
+  result.findings.push_back(
+      finding("frequency_mean", nominal == 0 ? fmt::format("The mean is {}: without `nominal_frequency` values are "
+                                                           "taken for fractional frequencies, which are small.",
+                                                           number_text(found_.mean, 6))
+                                             : fmt::format("The mean, {}, is far from the nominal frequency of {}.",
+                                                           number_text(found_.mean, 6), number_text(nominal, 6))));
 }
 
 // The integral of a rate's white noise is a random walk; the rate of a sensor has white noise on top, at the latest
@@ -414,8 +411,7 @@ std::string Finish::unit_of_rate(const std::string& unit) const {
   return options_.data == SampleKind::frequency && options_.nominal_frequency != 0 ? "1" : unit;
 }
 
-// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are
-// those of no rate.
+// The quality in the unit of the rate: what a model is made of. A phase's resolution and range are those of no rate.
 ChannelQuality Finish::quality_of_rate() const {
   ChannelQuality quality = found_;
   if (options_.data == SampleKind::phase) {

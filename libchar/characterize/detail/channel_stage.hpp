@@ -1,6 +1,5 @@
 #pragma once
-// One channel on its way through: leaf by leaf, and all of its samples besides where something
-// needs them.
+// One channel on its way through: leaf by leaf, and all of its samples besides where something needs them.
 
 #include <memory>
 #include <optional>
@@ -36,8 +35,7 @@ struct ReadChannel {
   std::shared_ptr<const TemperatureRecord> temperature;  ///< of the log; null: none was asked for
 };
 
-/// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says
-/// why.
+/// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
 ChannelResult finish_channel(ReadChannel read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace,
                              const Channel& channel, double rate_hz);
 
@@ -48,8 +46,7 @@ class ChannelStage {
 
   /// Takes samples as the log has them.
   void push(std::span<const double> samples);
-  /// Room for a record of up to this length, so that growing neither copies nor takes twice the
-  /// memory.
+  /// Room for a record of up to this length, so that growing neither copies nor takes twice the memory.
   void reserve(std::size_t samples);
   /// Lets go of everything; nothing is computed any more.
   void drop();
@@ -82,8 +79,7 @@ class ChannelStage {
 /// A pass over a log: some of its channels side by side, each through a stage of its own.
 class ChannelStages final : public BlockSink {
  public:
-  /// Of the channels from `first` on as many as memory allows, or all. The workspace must live as
-  /// long.
+  /// Of the channels from `first` on as many as memory allows, or all. The workspace must live as long.
   ChannelStages(const CharacterizeOptions& options, CharacterizeWorkspace& workspace, std::size_t first, bool all);
 
   void begin(const LogInfo& so_far) override;

@@ -12,16 +12,14 @@
 namespace libchar {
 namespace {
 
-// What the leaves of a channel take: the one that is filled, what is made of it, and the nodes of
-// the tree.
+// What the leaves of a channel take: the one that is filled, what is made of it, and the nodes of the tree.
 constexpr std::uint64_t kChannelBytes = std::uint64_t{24} << 20U;
 constexpr std::uint64_t kSpectrumBytes = std::uint64_t{14} << 20U;  // where nothing else is made
 constexpr std::uint64_t kMostOfPass = std::uint64_t{192} << 20U;
 
 constexpr std::size_t kFittedAtOnce = 2;
 
-/// Curves, fit and their part of the reports take up to .6 MB a channel, which all stand in memory
-/// in the end.
+/// Curves, fit and their part of the reports take up to .6 MB a channel, which all stand in memory in the end.
 constexpr std::size_t kMostFitted = 5000;
 
 void refuse_too_many(const LogInfo& log) {

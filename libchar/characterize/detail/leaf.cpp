@@ -72,8 +72,7 @@ WelchOptions streamed_spectrum(WelchOptions options) {
 
 std::string streamed_segment_note() {
   return fmt::format(
-      "segments of {} samples: a quarter of a record of more than {} is taken where `segment` asks "
-      "for N/4",
+      "segments of {} samples: a quarter of a record of more than {} is taken where `segment` asks for N/4",
       kStreamedSegment, kLeafSamples);
 }
 

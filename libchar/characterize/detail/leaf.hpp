@@ -65,8 +65,7 @@ class LeafStage {
   ChannelSums take(std::span<const double> samples, bool last, SampleMeters meters);
   /// The same where nobody has metered them.
   ChannelSums take(std::span<const double> samples, bool last);
-  /// Samples as a rate: what is no measurement is missing, a frequency about its nominal one,
-  /// differences of a phase.
+  /// Samples as a rate: what is no measurement is missing, a frequency about its nominal one, differences of a phase.
   void make_rate(std::vector<double>& samples) const;
 
   void join(ChannelSums& sums, ChannelSums later);

@@ -1,6 +1,5 @@
 #pragma once
-// The bytes of a channel over a stretch: what they are of, what the log says of itself, and the
-// nodes of the leaves.
+// The bytes of a channel over a stretch: what they are of, what the log says of itself, and the nodes of the leaves.
 
 #include <string>
 #include <string_view>

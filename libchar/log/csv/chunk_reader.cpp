@@ -20,8 +20,7 @@ namespace {
 /// How long a named pipe may take until its writer writes; files and other pipes are ready at once.
 constexpr int kPatience_ms = 1000;
 
-// End of the last whole line in text[from..size), 0 when there is none. A '\r' at the very end may
-// be half of "\r\n".
+// End of the last whole line in text[from..size), 0 when there is none. A '\r' at the very end may be half of "\r\n".
 std::size_t last_line_end(const char* text, std::size_t from, std::size_t size) {
   for (std::size_t i = size; i > from; --i) {
     if (text[i - 1] == '\n') return i;
@@ -199,8 +198,7 @@ bool ChunkReader::next(RawChunk& chunk) {
   return chunk.size > 0 || !done_;
 }
 
-// A log cut by a power failure ends in NUL bytes: they are counted, and with them the line they cut
-// off.
+// A log cut by a power failure ends in NUL bytes: they are counted, and with them the line they cut off.
 void ChunkReader::drop_nul_tail(RawChunk& chunk) {
   std::size_t kept = chunk.size;
   while (kept > 0 && chunk.bytes[kept - 1] == '\0') --kept;

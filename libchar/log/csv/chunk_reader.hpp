@@ -16,8 +16,7 @@
 
 namespace libchar::csv {
 
-/// A run of whole lines with kPadding readable bytes behind it, and the part of `bytes` that was
-/// fresh from the file.
+/// A run of whole lines with kPadding readable bytes behind it, and the part of `bytes` that was fresh from the file.
 struct RawChunk {
   std::vector<char> bytes;
   std::size_t size = 0;      ///< of the lines

@@ -1,6 +1,5 @@
-// CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller
-// (chunk_pipeline.hpp) or, with one thread, inside next(); here they become rows with warnings, and
-// every byte and cell is accounted for.
+// CSV as a source of rows: chunks of whole lines, parsed side by side ahead of the caller (chunk_pipeline.hpp) or, with
+// one thread, inside next(); here they become rows with warnings, and every byte and cell is accounted for.
 
 #include <fmt/format.h>
 
@@ -309,12 +308,10 @@ class CsvSource final : public RowSource {
     throw input_error("E0335", fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line))
         .says("{} of {} rows cannot be read, more than one in ten", odd_.bad.count, rows_ + odd_.bad.count)
         .hint(
-            "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how "
-            "the cells are written");
+            "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how the cells are written");
   }
 
-  // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of
-  // this reader.
+  // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of this reader.
   void check_account() const {
     const std::uint64_t bytes = dialect_.data_offset + total_.bytes + chunks_.nul_tail() + chunks_.cut_bytes();
     if (!total_.balanced() || bytes != chunks_.bytes_read() || total_.cells != rows_ * plan_.target.size())

@@ -13,9 +13,8 @@ std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dia
 /// stamped apart. Throws Error(input) when they come one after the other.
 void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, Dialect& dialect, LogInfo& info);
 
-/// Throws Error(input) where a column tells rows of several kinds apart and no option chooses:
-/// their stamps go together only by kind. A column that names kinds and holds one only so far has
-/// to keep it.
+/// Throws Error(input) where a column tells rows of several kinds apart and no option chooses: their stamps go together
+/// only by kind. A column that names kinds and holds one only so far has to keep it.
 void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnKind>& kinds, const ReadOptions& options,
                        Dialect& dialect, const LogInfo& info);
 

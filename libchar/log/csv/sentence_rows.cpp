@@ -21,8 +21,7 @@ struct Kind {
 };
 constexpr std::array kKinds = {Kind{"$VNIMU", 0,
                                     "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss],acc_x [m/s^2],acc_y [m/s^2],acc_z "
-                                    "[m/s^2],gyro_x [rad/s],gyro_y "
-                                    "[rad/s],gyro_z [rad/s],temp [degC],pressure [kPa]"},
+                                    "[m/s^2],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],temp [degC],pressure [kPa]"},
                                Kind{"$VNGYR", 0, "gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s]"},
                                Kind{"$VNACC", 0, "acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2]"},
                                Kind{"$VNMAG", 0, "mag_x [Gauss],mag_y [Gauss],mag_z [Gauss]"},

@@ -1,8 +1,7 @@
 #pragma once
-// Text that is not stored as UTF-8, made so as a stream in constant memory: compressed by gzip (RFC
-// 1952, several members), Zstandard (RFC 8878, several frames) or xz, or written in UTF-16 behind
-// its mark (Excel's "Unicode Text"). The libraries are zlib, libzstd and liblzma; a build without
-// one of them says so.
+// Text that is not stored as UTF-8, made so as a stream in constant memory: compressed by gzip (RFC 1952, several
+// members), Zstandard (RFC 8878, several frames) or xz, or written in UTF-16 behind its mark (Excel's "Unicode Text").
+// The libraries are zlib, libzstd and liblzma; a build without one of them says so.
 
 #include <cstddef>
 #include <functional>

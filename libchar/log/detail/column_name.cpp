@@ -10,8 +10,7 @@
 namespace libchar {
 namespace {
 
-// A unit behind '_': one letter alone is a unit only where it has no other use (gyro_x keeps
-// its x, o3_1 its 1).
+// A unit behind '_': one letter alone is a unit only where it has no other use (gyro_x keeps its x, o3_1 its 1).
 std::optional<std::string> unit_suffix(std::string_view name, std::string_view suffix) {
   if (suffix.empty() || (suffix[0] >= '0' && suffix[0] <= '9') || suffix == "-") return std::nullopt;
   if (suffix.size() == 1 && suffix != "g" && suffix != "s" && suffix != "V" && suffix != "K") {

@@ -32,9 +32,8 @@ class RowSource {
   virtual const LogInfo& info() const = 0;
   /// The next rows, false at the end. Findings found on the way are added to `warnings`.
   virtual bool next(RowBlock& block, Findings& warnings) = 0;
-  /// Before the first `next`: only rows first … end-1 are to come, and nothing in front of them is
-  /// read; columns of other channels are there and hold any numbers. False: rows of this format
-  /// have no fixed places.
+  /// Before the first `next`: only rows first … end-1 are to come, and nothing in front of them is read; columns of
+  /// other channels are there and hold any numbers. False: rows of this format have no fixed places.
   virtual bool restrict_rows(std::uint64_t first, std::uint64_t end, ChannelRange channels) {
     static_cast<void>(first);
     static_cast<void>(end);

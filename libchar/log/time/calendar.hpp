@@ -1,7 +1,6 @@
 #pragma once
-// Dates and clock times as they are written in logs, to whole nanoseconds: ISO 8601 and what
-// spreadsheets, data loggers and terminals write. Days are those of the Gregorian calendar, counted
-// from 1970-01-01.
+// Dates and clock times as they are written in logs, to whole nanoseconds: ISO 8601 and what spreadsheets, data loggers
+// and terminals write. Days are those of the Gregorian calendar, counted from 1970-01-01.
 
 #include <cstdint>
 #include <optional>

@@ -113,9 +113,8 @@ void TimeGrid::process(bool end) {
   }
 }
 
-// Rows whose stamps all follow each other as they should are taken together; a run of them goes to
-// the sink without being copied. Says how many rows it took: not all where the window begins among
-// them.
+// Rows whose stamps all follow each other as they should are taken together; a run of them goes to the sink without
+// being copied. Says how many rows it took: not all where the window begins among them.
 std::size_t TimeGrid::process_rows(Pending& front, std::size_t count) {
   const std::size_t begin = front.done, stop = begin + count;
   std::size_t run = begin, end = stop;
@@ -240,9 +239,8 @@ double TimeGrid::even_interval() {
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
   if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, 2.0 * static_cast<double>(step_.longest)))
     return usual;
-  warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} "
-                                               "Hz, which is used: the sampling is uneven, and times on the axes are "
-                                               "off by that",
+  warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} Hz, which "
+                                               "is used: the sampling is uneven, and times on the axes are off by that",
                                                brief_text(1e9 / usual, 5), brief_text(1e9 / spanned, 5)));
   return spanned;
 }
@@ -270,10 +268,8 @@ void TimeGrid::judge_rate_change() {
   if (asks) {
     const std::string at = shortest(std::round(at_ns * 1e-6) / 1e3);
     throw input_error("E0334", source_.info().file)
-        .says(
-            "the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds "
-            "both",
-            at, brief_text(before, 5), brief_text(after, 5))
+        .says("the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds both", at,
+              brief_text(before, 5), brief_text(after, 5))
         .hint("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at);
   }
   if (odd.rows > 0)
@@ -313,12 +309,12 @@ void TimeGrid::finish(LogInfo& info) {
   time.jitter_s = deviation.robust * 1e-9;
   time.max_deviation_s = deviation.largest * 1e-9;
   if (interval > 0 && deviation.robust > 0.1 * interval)
-    warnings_.add("jitter", fmt::format("stamps scatter by {} of the sampling interval: the samples "
-                                        "are treated as evenly spaced",
-                                        percent_text(deviation.robust / interval)));
+    warnings_.add("jitter",
+                  fmt::format("stamps scatter by {} of the sampling interval: the samples are treated as evenly spaced",
+                              percent_text(deviation.robust / interval)));
   if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
-    warnings_.add("rate_ignored", fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not "
-                                              "used (`time_column` none ignores the stamps)",
+    warnings_.add("rate_ignored", fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not used "
+                                              "(`time_column` none ignores the stamps)",
                                               brief_text(1e9 / interval, 6), brief_text(*options_.rate_hz, 6)));
 }
 

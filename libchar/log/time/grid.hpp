@@ -1,7 +1,6 @@
 #pragma once
-// From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN
-// (never interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and
-// everything is counted.
+// From rows with stamps to samples on a uniform grid, streaming: missing samples are put in as NaN (never
+// interpolated), doubled and backward rows are dropped, rollovers are unwrapped, and everything is counted.
 // The interval comes from stamp_model.hpp, the rate from stamp_sketch.hpp; what becomes of a
 // stamp that does not fit is decided in time_repairs.cpp.
 
@@ -98,8 +97,7 @@ class TimeGrid {
  public:
   TimeGrid(const RowSource& source, const ReadOptions& options, BlockSink& sink, Findings& warnings);
 
-  /// Takes the block's rows (its buffers come back for reuse). Returns false when the window's end
-  /// has been reached.
+  /// Takes the block's rows (its buffers come back for reuse). Returns false when the window's end has been reached.
   bool push(RowBlock& block);
   /// The rest, and what is now known of the time base.
   void finish(LogInfo& info);

@@ -26,8 +26,7 @@ void TimeGrid::leave_out_blank(Pending& item) {
   counts_.dropped += blank;
   if (blank > 0)
     warnings_.add("own_rows",
-                  "rows without a value of the channels that are read are left out: these have a "
-                  "clock of their own",
+                  "rows without a value of the channels that are read are left out: these have a clock of their own",
                   "", blank);
 }
 
@@ -93,15 +92,14 @@ void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
   if (from <= window_.from_ns) return;
   window_.from_ns = from;
   const double seconds = std::round(static_cast<double>(from) * 1e-6) / 1e3;
-  warnings_.add("rate_change",
-                fmt::format("the sampling rate changes from {} to {} Hz: the first {} s are left out "
-                            "(`to_s` {} reads these)",
-                            brief_text(1e9 / change->before_ns, 5), brief_text(1e9 / change->after_ns, 5),
-                            shortest(seconds), shortest(seconds)));
+  warnings_.add(
+      "rate_change",
+      fmt::format("the sampling rate changes from {} to {} Hz: the first {} s are left out (`to_s` {} reads these)",
+                  brief_text(1e9 / change->before_ns, 5), brief_text(1e9 / change->after_ns, 5), shortest(seconds),
+                  shortest(seconds)));
 }
 
-// At the first row, and at the first one of a window that begins later: in front of it the rate may
-// be another.
+// At the first row, and at the first one of a window that begins later: in front of it the rate may be another.
 void TimeGrid::learn() {
   learned_ = true;
   if (!last_.any) drop_wild_start(first_stamps());
@@ -130,19 +128,17 @@ void TimeGrid::say_pattern(const StampModel& found) {
       return;
     case StampPattern::equal:
       warnings_.add("coarse_stamps",
-                    "the clock is too coarse to tell rows apart (many equal stamps): rows are kept "
-                    "and spaced evenly");
+                    "the clock is too coarse to tell rows apart (many equal stamps): rows are kept and spaced evenly");
       return;
     case StampPattern::coarse:
-      warnings_.add("coarse_stamps", fmt::format("the stamps are rounded to a coarse clock and keep to one line at "
-                                                 "{} Hz: rows are spaced evenly (`rate_hz` {} takes the "
-                                                 "longer steps as gaps)",
-                                                 brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
+      warnings_.add("coarse_stamps",
+                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at {} Hz: rows are "
+                                "spaced evenly (`rate_hz` {} takes the longer steps as gaps)",
+                                brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::packets:
-      warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at "
-                                           "{} Hz, rows over time (`rate_hz` {}, the rate inside a "
-                                           "packet, takes the rest as gaps)",
+      warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at {} Hz, rows "
+                                           "over time (`rate_hz` {}, the rate inside a packet, takes the rest as gaps)",
                                            brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::uneven:
@@ -152,8 +148,8 @@ void TimeGrid::say_pattern(const StampModel& found) {
       return;
     case StampPattern::disputed:
       fail(pending_.front(), 0, "E0324",
-           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over "
-                       "time give {} Hz, and gaps do not explain it",
+           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over time give {} Hz, and "
+                       "gaps do not explain it",
                        brief_text(step_hz, 5), brief_text(span_hz, 5)),
            fmt::format("`rate_hz` {} or `rate_hz` {} decides", shortest(rounded(step_hz, 5)),
                        shortest(rounded(span_hz, 5))));

@@ -4,8 +4,7 @@
 //   stamp = instant of a clock (one interval, now and then a missing row or a pause)
 //         + what the way to the log adds (jitter, a delay, a coarse step, a packet)
 //
-// What it says decides which longer step is a gap. Steps back (rollovers, restarts) are the matter of
-// clock_breaks.hpp.
+// What it says decides which longer step is a gap. Steps back (rollovers, restarts) are the matter of clock_breaks.hpp.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,10 +1,9 @@
 #pragma once
 // The sampling interval behind a series of time stamps, in bounded memory.
 //
-// The rate that is reported is the median of long-baseline slopes (Theil 1950, in the half-length
-// form) over a thinned set of (grid index, stamp) pairs. A pause is left out: how many samples it
-// lacks follows from the rate, so it says nothing of it. What tells a gap from a step is decided
-// before, by stamp_model.hpp.
+// The rate that is reported is the median of long-baseline slopes (Theil 1950, in the half-length form) over a thinned
+// set of (grid index, stamp) pairs. A pause is left out: how many samples it lacks follows from the rate, so it says
+// nothing of it. What tells a gap from a step is decided before, by stamp_model.hpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,8 +14,7 @@
 
 namespace libchar {
 
-/// A bounded, evenly thinned set of (grid index, stamp) pairs that also keeps the most deviating
-/// pair of every stretch.
+/// A bounded, evenly thinned set of (grid index, stamp) pairs that also keeps the most deviating pair of every stretch.
 class StampSketch {
  public:
   void add(std::int64_t index, std::int64_t stamp) {

@@ -298,8 +298,7 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
   }
   if (found)
     info.guesses.push_back(
-        fmt::format("time column: {}, because it is a steady clock (`time_column` none keeps it as "
-                    "a channel)",
+        fmt::format("time column: {}, because it is a steady clock (`time_column` none keeps it as a channel)",
                     printable(table.columns[*found].name)));
   return found;
 }

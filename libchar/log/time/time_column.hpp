@@ -1,8 +1,7 @@
 #pragma once
-// Which column of a table is the time, and in which unit: one rule for all formats. A name says
-// time ("t", "elapsed", "time_us"), a unit stands in brackets, behind '_' or apart; what neither
-// says is guessed from the size and the step of the first stamps, and every guess is put down as
-// one.
+// Which column of a table is the time, and in which unit: one rule for all formats. A name says time ("t", "elapsed",
+// "time_us"), a unit stands in brackets, behind '_' or apart; what neither says is guessed from the size and the step
+// of the first stamps, and every guess is put down as one.
 
 #include <cstddef>
 #include <cstdint>
@@ -61,11 +60,10 @@ struct TableFront {
 /// Does a column of this name hold stamps ("t", "time_us", "Time (s)")?
 bool called_time(const std::string& name);
 
-/// The column that options.time_column names (by name or position c0, c1… among all columns), or
-/// that says time by its name, its unit or its dates or, without names, by how it rises. Of several
-/// those that rise, a device's clock before others, the steadier before others; the choice is a
-/// guess that names them all. Nothing when there is none. Throws Error(usage) for a name that is
-/// not there.
+/// The column that options.time_column names (by name or position c0, c1… among all columns), or that says time by its
+/// name, its unit or its dates or, without names, by how it rises. Of several those that rise, a device's clock before
+/// others, the steadier before others; the choice is a guess that names them all. Nothing when there is none. Throws
+/// Error(usage) for a name that is not there.
 std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info);
 
 /// The usual distance of two values, 0 for fewer.

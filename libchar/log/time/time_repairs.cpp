@@ -68,8 +68,7 @@ void RateWatch::end() {
   run_ = {};
 }
 
-// The steps are those of another rate where so many of them lie so near to the usual one, and near to
-// those before.
+// The steps are those of another rate where so many of them lie so near to the usual one, and near to those before.
 void RateWatch::count(double near, double share) {
   if (steps_.empty()) return;
   const auto odd = static_cast<double>(steps_.size());
@@ -126,8 +125,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     if (step_.coarse) return Verdict::keep;
     if (rows_go_on(front, row, ahead)) {
       warnings_.add("held_stamp",
-                    "rows with the stamp of the row before, and those behind them in time: they "
-                    "keep their place",
+                    "rows with the stamp of the row before, and those behind them in time: they keep their place",
                     place(front, row));
       return Verdict::keep;
     }
@@ -174,9 +172,7 @@ TimeGrid::Verdict TimeGrid::pass_gap(const Pending& front, std::size_t row, std:
     fail(front, row, "E0316",
          fmt::format("wild time stamp: {} s after the row before ({} missing samples)",
                      shortest(static_cast<double>(step) * 1e-9), gap),
-         "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` "
-         "HZ ignore "
-         "the stamps");
+         "remove the row, `from_s` and `to_s` choose a stretch, `time_column` none and `rate_hz` HZ ignore the stamps");
   const GridStretch inside =
       gap_in_window(gap, static_cast<double>(last_.stamp - last_.first), step_.ns, window_.from_ns, window_.to_ns);
   if (inside.count() > 0)
@@ -228,8 +224,8 @@ void TimeGrid::refuse_backward() const {
                               log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
                                   ? "parts of a second without leading zeros, or two logs in one file"
                                   : "two logs in one file, or a device that restarted")
-                : fmt::format("the time steps back here by {}, and {} rows in no order do not "
-                              "catch up: rows of several sources, or a wild stamp before",
+                : fmt::format("the time steps back here by {}, and {} rows in no order do not catch up: rows of "
+                              "several sources, or a wild stamp before",
                               how_far, kBackward))
       .hint(hint);
 }

@@ -62,8 +62,7 @@ constexpr std::array kDayCounts = {DayCount{"days since 1858-11-17 (MJD)", "mjd"
 
 bool few_digits(double step) { return std::fabs(step - rounded(step, 3)) <= 1e-6 * step; }
 
-/// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as
-/// seconds.
+/// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as seconds.
 const DayCount* day_count(const std::string& stem, const FirstValues& first) {
   constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // 1990, 2100
   const std::string name = ascii_lower(stem);
@@ -124,10 +123,9 @@ bool uneven_ones(const FirstValues& first) {
   return first.integers && usual_step(values) == 1 && !even;
 }
 
-// Time since 1970 betrays its unit by its size, where that is a date from 2001 to 2100; a time
-// since power-on by its step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an
-// hour counts as many nanoseconds as a date has milliseconds: then the step decides, unless all are
-// whole seconds.
+// Time since 1970 betrays its unit by its size, where that is a date from 2001 to 2100; a time since power-on by its
+// step, as sensors run at 0.5 Hz to 50 kHz. A phone that has run for half an hour counts as many nanoseconds as a date
+// has milliseconds: then the step decides, unless all are whole seconds.
 std::int64_t guess_unit(const FirstValues& first) {
   constexpr double kFirstDate = 1e9, kLastDate = 4.1e9;  // in seconds
   const std::vector<double>& values = first.values;
@@ -198,13 +196,9 @@ std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, con
        {std::int64_t{1}, std::int64_t{1000}, std::int64_t{100000}, std::int64_t{1000000}, std::int64_t{1000000000}})
     if (rates_agree(rate_in(step, unit), stated_hz)) return unit;
   throw input_error("E0325", info.file)
-      .says(
-          "the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no "
-          "unit",
-          shortest(stated_hz), brief_text(step, 6), brief_text(rate_in(step, guess), 6), unit_name(guess))
-      .hint(
-          "`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the "
-          "stated rate");
+      .says("the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no unit",
+            shortest(stated_hz), brief_text(step, 6), brief_text(rate_in(step, guess), 6), unit_name(guess))
+      .hint("`time_unit` s|ms|us|ns believes the stamps, `time_column` none with `rate_hz` the stated rate");
 }
 
 void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit, LogInfo& info) {

@@ -18,9 +18,8 @@ constexpr double kOddNames = 0.6;    // and so is one whose names are more or fe
 constexpr double kTabsToo = 0.5;
 constexpr double kWord = 0.5;
 
-// What a cell is worth to a table under a decimal mark: one, where it is a number, a date or blank.
-// Any cell may be a word; "1,013" is a thousand under a point, and less likely so than a number
-// under a comma.
+// What a cell is worth to a table under a decimal mark: one, where it is a number, a date or blank. Any cell may be a
+// word; "1,013" is a thousand under a point, and less likely so than a number under a comma.
 double worth_of(const Field& field, char decimal) {
   constexpr double kGrouped = 0.95;
   const std::string& text = field.text;

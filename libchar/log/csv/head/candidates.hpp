@@ -1,7 +1,6 @@
 #pragma once
-// What separates the cells of a CSV file and which mark its decimals have: one question, as DuckDB
-// and CleverCSV ask it. Every answer reads the first lines, and is worth what share of them has one
-// width times what its cells look like.
+// What separates the cells of a CSV file and which mark its decimals have: one question, as DuckDB and CleverCSV ask
+// it. Every answer reads the first lines, and is worth what share of them has one width times what its cells look like.
 
 #include <string>
 #include <vector>

@@ -16,16 +16,15 @@ struct ClockLog {
 };
 
 constexpr std::array kClockLogs = {
-    ClockLog{
-        "DTWNNNELNEEEEE", "chrony's tracking log",
-        "date,clock,reference,stratum,frequency [ppm],skew [ppm],offset [s],leap,sources,offset_sd [s],remaining [s],"
-        "root_delay [s],root_dispersion [s],max_error [s]"},
+    ClockLog{"DTWNNNELNEEEEE", "chrony's tracking log",
+             "date,clock,reference,stratum,frequency [ppm],skew [ppm],offset [s],leap,sources,offset_sd [s],remaining "
+             "[s],root_delay [s],root_dispersion [s],max_error [s]"},
     ClockLog{"DTWLNNNNNNNEEEEE", "chrony's log of measurements",
-             "date,clock,source,leap,stratum,tests_1,tests_2,tests_3,poll,remote_poll,score,offset [s],peer_delay [s],"
-             "peer_dispersion [s],root_delay [s],root_dispersion [s],refid,mode,tx,rx"},
+             "date,clock,source,leap,stratum,tests_1,tests_2,tests_3,poll,remote_poll,score,offset [s],peer_delay "
+             "[s],peer_dispersion [s],root_delay [s],root_dispersion [s],refid,mode,tx,rx"},
     ClockLog{"DTWEEEEEENNN", "chrony's log of statistics",
-             "date,clock,source,sd [s],offset [s],offset_sd [s],frequency_difference,skew,stress,samples,first,runs,"
-             "asymmetry"},
+             "date,clock,source,sd [s],offset [s],offset_sd "
+             "[s],frequency_difference,skew,stress,samples,first,runs,asymmetry"},
     ClockLog{"DTWNLNEEE", "chrony's log of reference clocks",
              "date,clock,source,sample,leap,pps,raw_offset [s],offset [s],dispersion [s]"},
     ClockLog{"MSNNNNI", "loopstats of ntpd",

@@ -82,9 +82,8 @@ struct Dialect {
   std::uint64_t first_data_line = 1;  ///< its physical line number
 };
 
-/// Studies `head` (all of the file when `whole`) and fills channels, guesses, dialect, warnings and
-/// what is known of the time base into `info`. Throws Error with a place when the head cannot be a
-/// log.
+/// Studies `head` (all of the file when `whole`) and fills channels, guesses, dialect, warnings and what is known of
+/// the time base into `info`. Throws Error with a place when the head cannot be a log.
 Dialect understand(std::string_view head, bool whole, const ReadOptions& options, LogInfo& info);
 
 }  // namespace libchar::csv

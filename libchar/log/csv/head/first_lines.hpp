@@ -14,9 +14,8 @@ namespace libchar::csv {
 
 // What the lines around a table say of its sampling.
 
-/// "// Update Rate: 100.0Hz", "OutputRate:,60Hz", "Sample Rate;1000", "Sample Interval,1.6e-09",
-/// "Delta_X<tab>0.001": the sampling rate in Hz that a line states; nothing when it states none
-/// that can be.
+/// "// Update Rate: 100.0Hz", "OutputRate:,60Hz", "Sample Rate;1000", "Sample Interval,1.6e-09", "Delta_X<tab>0.001":
+/// the sampling rate in Hz that a line states; nothing when it states none that can be.
 std::optional<double> stated_rate_hz(std::string_view line);
 
 /// What one count is: "tscale,0.001" (s), "gscale,0.00122" (rad/s) and "ascale,0.00049" (g) of Gyroflow's .gcsv.

@@ -252,10 +252,10 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       column.name = std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
     }
     if (std::string_view("=+-@\t\r").find(column.name[0]) != std::string_view::npos)
-      info.warnings.add("formula_name",
-                        "channel names that a spreadsheet would run as a formula: kept, and "
-                        "prefixed with ' in CSV that is written",
-                        place_name(column.line, column.position));
+      info.warnings.add(
+          "formula_name",
+          "channel names that a spreadsheet would run as a formula: kept, and prefixed with ' in CSV that is written",
+          place_name(column.line, column.position));
     if (printable(column.name).find("\\u{") != std::string::npos ||
         printable(column.name).find("\\x") != std::string::npos)
       info.warnings.add("control_in_name",

@@ -25,8 +25,7 @@ bool named_by_daemon(Study& study);
 /// Units behind the numbers of the rows ("0.005 sec"), and of counts whose scale the preamble states.
 void find_other_units(Study& study);
 
-/// Fills names and units of dialect.columns from their header texts; duplicates are an error,
-/// strange names a warning.
+/// Fills names and units of dialect.columns from their header texts; duplicates are an error, strange names a warning.
 void name_columns(Dialect& dialect, LogInfo& info);
 
 /// "line 412", "line 412, column 6": a place in the form Findings use.

@@ -6,9 +6,8 @@
 
 namespace libchar::csv {
 
-/// The channels to read, in file order, into info.channels, and what to do with each column. Names
-/// the columns that have no name. The plan points at `dialect`. Throws Error(usage) for a channel
-/// that is not there.
+/// The channels to read, in file order, into info.channels, and what to do with each column. Names the columns that
+/// have no name. The plan points at `dialect`. Throws Error(usage) for a channel that is not there.
 Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info);
 
 }  // namespace libchar::csv

@@ -88,8 +88,7 @@ Cell explain(std::string_view text, char point) {
   return cell;
 }
 
-// Is |number| < 1? Decides between overflow and underflow; the text is a well-formed number other
-// than zero.
+// Is |number| < 1? Decides between overflow and underflow; the text is a well-formed number other than zero.
 bool below_one(std::string_view text) {
   const std::size_t e = text.find_first_of("eE");
   const std::string_view digits = text.substr(0, e);

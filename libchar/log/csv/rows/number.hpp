@@ -3,11 +3,10 @@
 // of number parsing, one number at a time. The other tier takes whole columns by AVX2
 // (vector_rows.hpp) and leaves to this one what it does not know.
 //
-// The reference is read_cell, by std::from_chars. In rows of nothing but numbers quick_number
-// stands before it and returns nullptr for what it leaves to read_cell: with std::from_chars in its
-// place, files with decimal commas or with missing cells are read at half the speed
-// (docs/dev/speed.md). Both round to nearest, ties to even, so the bits are the same
-// (csv_number_test).
+// The reference is read_cell, by std::from_chars. In rows of nothing but numbers quick_number stands before it and
+// returns nullptr for what it leaves to read_cell: with std::from_chars in its place, files with decimal commas or with
+// missing cells are read at half the speed (docs/dev/speed.md). Both round to nearest, ties to even, so the bits are
+// the same (csv_number_test).
 
 #include <array>
 #include <bit>
@@ -40,8 +39,7 @@ constexpr Reciprocal reciprocal_of_power_of_five(int n) {
   std::uint64_t divisor = 1;
   for (int i = 0; i < n; ++i) divisor *= 5;  // 5^27 < 2^63
   const int width = 64 - std::countl_zero(divisor);
-  // 2^(127 + width) / divisor lies in [2^127, 2^128] because 2^(width-1) <= divisor < 2^width; n =
-  // 0 is not used.
+  // 2^(127 + width) / divisor lies in [2^127, 2^128] because 2^(width-1) <= divisor < 2^width; n = 0 is not used.
   Uint128 remainder = 0;
   Reciprocal r;
   r.shift = width - (n == 0 ? 1 : 0);
@@ -143,9 +141,8 @@ inline std::uint64_t value_of_eight(std::uint64_t digits) {
 
 inline constexpr std::array<std::uint64_t, 8> kShift = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000};
 
-/// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past
-/// its end. Eight bytes are looked at together; how many of them are digits decides a shift, not a
-/// branch.
+/// Appends the digits at p to w and returns the end of them. The text must be readable 8 bytes past its end. Eight
+/// bytes are looked at together; how many of them are digits decides a shift, not a branch.
 inline const char* read_digits(const char* p, std::uint64_t& w) {
   for (;;) {
     const std::uint64_t digits = load8(p) ^ 0x3030303030303030U;
@@ -162,9 +159,8 @@ inline const char* read_digits(const char* p, std::uint64_t& w) {
   }
 }
 
-/// The number at p, with `point` as decimal mark. Returns its end and sets `value`, or returns
-/// nullptr when read_cell has to look at it: signs '+', words, more than 19 digits, extreme exponents, no
-/// number at all.
+/// The number at p, with `point` as decimal mark. Returns its end and sets `value`, or returns nullptr when read_cell
+/// has to look at it: signs '+', words, more than 19 digits, extreme exponents, no number at all.
 inline const char* quick_number(const char* p, char point, double& value, bool& integer) {
   const bool negative = *p == '-';
   p += negative;
@@ -182,8 +178,7 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
     digits += p - fraction;
   }
   if (*first == '0' && !integer) {
-    // Leading zeros are no significant digits: up to eight of them behind the mark are taken off in
-    // one go.
+    // Leading zeros are no significant digits: up to eight of them behind the mark are taken off in one go.
     const std::uint64_t zeros = load8(first + 2) ^ 0x3030303030303030U;
     if (first[1] == point) digits -= 1 + (zeros == 0 ? 8 : std::countr_zero(zeros) / 8);
     digits = digits < 1 ? 1 : digits;
@@ -208,8 +203,7 @@ inline const char* quick_number(const char* p, char point, double& value, bool& 
   return p;
 }
 
-/// The same for a time stamp in a unit of 10^unit_digits ns: whole nanoseconds, or nullptr for
-/// read_stamp.
+/// The same for a time stamp in a unit of 10^unit_digits ns: whole nanoseconds, or nullptr for read_stamp.
 inline const char* quick_stamp(const char* p, char point, int unit_digits, std::int64_t& stamp) {
   const bool negative = *p == '-';
   p += negative;

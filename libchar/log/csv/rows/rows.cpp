@@ -504,8 +504,8 @@ class CarefulLines {
     const std::size_t count = to_.plan.target.size();
     if (to_.dialect.trailing_delimiter && fields == count + 1)
       return fmt::format(
-          "the lines before end with '{}' and nothing behind it, which makes no column: name the "
-          "columns in a header line{}",
+          "the lines before end with '{}' and nothing behind it, which makes no column: name the columns in a header "
+          "line{}",
           to_.dialect.delimiter, to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')
       return "are these decimal commas? write the file with another delimiter, such as ;";
@@ -623,9 +623,7 @@ class CarefulLines {
     if (!word) return "";
     const auto column = std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
     return fmt::format(
-        "`drop_bad_rows` leaves such rows out, `channels` '!{}' the column; `skip_rows`, if the "
-        "table "
-        "starts later",
+        "`drop_bad_rows` leaves such rows out, `channels` '!{}' the column; `skip_rows`, if the table starts later",
         to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name);
   }
 

@@ -81,9 +81,8 @@ struct ParsedChunk : RowNotes {
   Tally blank, comment, repeated, mixed_end, bad;
 };
 
-/// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file).
-/// `text` must be readable for kPadding bytes past its end. After a problem the rows before it are
-/// kept and the rest is not looked at.
+/// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file). `text` must be
+/// readable for kPadding bytes past its end. After a problem the rows before it are kept and the rest is not looked at.
 void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out);
 
 }  // namespace libchar::csv

@@ -7,9 +7,8 @@
 
 namespace libchar::vector_parsing {
 
-// What to divide by, by the distance from the point (or the end, when there is none) to the end:
-// 10^(distance - 1); nothing good when the point stands last. From 32 on with a sign, which the
-// quotient takes over.
+// What to divide by, by the distance from the point (or the end, when there is none) to the end: 10^(distance - 1);
+// nothing good when the point stands last. From 32 on with a sign, which the quotient takes over.
 inline constexpr auto kDivisors = [] {
   std::array<double, 64> table{};
   for (std::size_t distance = 0; distance < 32; ++distance) {

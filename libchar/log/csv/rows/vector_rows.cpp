@@ -37,8 +37,7 @@ __attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text,
     if (at + 64 > text.size()) mask &= (std::uint64_t{1} << (text.size() - at)) - 1;
     const auto found = static_cast<std::size_t>(_mm_popcnt_u64(mask));
     std::uint32_t* out = positions.data() + count;
-    // Eight at a time without asking: positions beyond `found` are overwritten by the next 64
-    // bytes.
+    // Eight at a time without asking: positions beyond `found` are overwritten by the next 64 bytes.
     for (std::size_t done = 0; done < found || done == 0; done += 8)
       for (std::size_t k = 0; k < 8; ++k) {
         out[done + k] = static_cast<std::uint32_t>(at + _tzcnt_u64(mask));
@@ -49,8 +48,7 @@ __attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text,
   return count;
 }
 
-// What the slow parsers give back by value: an address of a local would keep the fast path's
-// variables in memory.
+// What the slow parsers give back by value: an address of a local would keep the fast path's variables in memory.
 template <class T>
 struct Slow {
   T value{};
@@ -58,9 +56,8 @@ struct Slow {
   bool integer = false;  // written with digits only
 };
 
-// Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the
-// field, and finite". Very long fields and numbers beyond 2^53 (integers there may not be exact)
-// are for the general parser to judge.
+// Exponents, 17 digits and more: the library's parser, with the rule "ended at the end of the field, and finite". Very
+// long fields and numbers beyond 2^53 (integers there may not be exact) are for the general parser to judge.
 __attribute__((noinline)) Slow<double> read_value_slowly(const char* begin, const char* end) {
   Slow<double> out;
   if (begin == end || end - begin > 64) return out;
