@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/packed_array.hpp"
@@ -69,7 +70,7 @@ class Matlab4File final : public ArrayContainer {
   /// Where the next one begins.
   std::uint64_t add_matrix(std::uint64_t at) {
     PackedBytes bytes(file_, {at, file_.size() - at, file_.size() - at, Packing::stored}, "matrix");
-    std::string front(std::min<std::uint64_t>(kHead4Bytes, file_.size() - at), '\0');
+    std::string front(detail::in_memory(std::min<std::uint64_t>(kHead4Bytes, file_.size() - at)), '\0');
     bytes.read(std::as_writable_bytes(std::span(front)));
     const auto head = head4_of(front);
     if (!head) refuse(at, "holds no matrix of MATLAB 4 here: it is cut or damaged");
