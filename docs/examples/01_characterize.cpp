@@ -8,7 +8,7 @@ int main() {
   options.reading.channels = {"gyro_z"};  // all channels when empty
   const auto result = libchar::characterize("fixtures/imu_at_rest.csv", options);
   for (const libchar::ChannelResult& c : result.channels) {
-    if (!c.fit) continue;  // c.problems says why
+    if (!c.fit) continue;  // c.findings says why
     const libchar::Coefficient& n = (*c.fit)[libchar::Term::white];
     std::printf("%s: N %.3g %s·√s, 95 %% from %.3g to %.3g\n", c.channel.name.c_str(), *n.value, c.channel.unit.c_str(),
                 n.ci95.low, n.ci95.high);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
@@ -20,22 +21,37 @@ namespace {
 
 constexpr const char* kToFill = "______________________________";
 
+/// Null where the document, which somebody may have changed, has no such place.
+const Json& found(const Json& in, const char* pointer) {
+  static const Json none;
+  const Json::json_pointer place(pointer);
+  return in.contains(place) ? in.at(place) : none;
+}
+std::string text_at(const Json& in, const char* pointer) {
+  const Json& value = found(in, pointer);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+double number_at(const Json& in, const char* pointer) {
+  const Json& value = found(in, pointer);
+  return value.is_number() ? value.get<double>() : 0;
+}
+
 std::string part(int number, const char* head, const std::string& body) {
   return fmt::format("<section class=\"form\">\n<h2>{}. {}</h2>\n{}</section>\n", number, head, body);
 }
 
 std::string facts(const Table& table) { return html_table(table, {.css = "facts"}); }
 
-Table conditions(const Json& recording, const ReportedCharacterization& report) {
+Table conditions(const Json& document, const ReportedCharacterization& report) {
   Table out("|");
-  out.add({"Recording", recording.value("file", "")});
-  out.add({"SHA-256", recording.value("sha256", "")});
-  const double rate_hz = recording.value("rate_hz", 0.0);
-  const auto samples = recording.value("samples", std::uint64_t{0});
+  out.add({"Recording", text_at(document, "/recording/file")});
+  out.add({"SHA-256", text_at(document, "/recording/sha256")});
+  const double rate_hz = number_at(document, "/recording/rate_hz"), samples = number_at(document, "/recording/samples");
   if (rate_hz > 0)
-    out.add({"Duration", fmt::format("{}: {} samples at {} Hz, {} missing",
-                                     duration_text(static_cast<double>(samples) / rate_hz), count_text(samples),
-                                     brief_text(rate_hz, 9), count_text(recording.value("missing_samples", 0ULL)))});
+    out.add({"Duration",
+             fmt::format("{}: {} samples at {} Hz, {} missing", duration_text(samples / rate_hz),
+                         count_text(clamped_whole<std::uint64_t>(samples)), brief_text(rate_hz, 9),
+                         count_text(clamped_whole<std::uint64_t>(number_at(document, "/recording/missing_samples"))))});
   for (const ReportedChannel& c : report.channels)
     if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});
   for (const char* asked : {"Temperature", "Supply, warm-up time", "Mounting, orientation", "Equipment"})
@@ -44,36 +60,34 @@ Table conditions(const Json& recording, const ReportedCharacterization& report) 
 }
 
 Table method(const Json& document) {
-  std::vector<std::string> fits, terms;
-  for (const Json& channel : document.at("fit").at("channels"))
-    fits.push_back(channel.value("name", "") + ": " + channel.value("method", ""));
-  const Json& config = document.at("config");
-  for (const Json& term : config.at("fit").at("terms")) terms.push_back(term.get<std::string>());
+  std::vector<std::string> fits, terms, words;
+  for (const Json& channel : found(document, "/fit/channels"))
+    if (const std::string how = text_at(channel, "/method"); !how.empty())
+      fits.push_back(text_at(channel, "/name") + ": " + how);
+  for (const Json& term : found(document, "/config/fit/terms")) terms.push_back(text_at(term, ""));
+  for (const Json& word : found(document, "/command")) words.push_back(text_at(word, ""));
   Table out("|");
   out.add({"Coefficients", fmt::format("{}", fmt::join(fits, "; "))});
-  out.add({"Offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
-  out.add({"Allan curve", config.at("allan").value("type", "") + ", 95 % intervals"});
-  std::vector<std::string> words;
-  for (const Json& word : document.value("command", Json::array())) words.push_back(word.get<std::string>());
+  if (!terms.empty()) out.add({"Offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
+  out.add({"Allan curve", text_at(document, "/allan/type") + ", 95 % intervals"});
   add_program(out, words);
   return out;
 }
 
 std::string limits(const Json& document) {
   if (!document.contains("limits")) return "<p>None were given.</p>\n";
-  const Json& found = document["limits"];
   Table out("channel|term|limit|judgement|");
-  for (const Json& term : found.at("terms")) {
-    const auto word = term.value("judgement", "");
-    auto name = term.value("term", "");
+  for (const Json& term : found(document, "/limits/terms")) {
+    const std::string word = text_at(term, "/judgement");
+    std::string name = text_at(term, "/term");
     std::replace(name.begin(), name.end(), '_', ' ');
-    out.add({term.value("channel", ""), name, term.value("limit_as_given", ""),
+    out.add({text_at(term, "/channel"), name, text_at(term, "/limit_as_given"),
              Cell::word(word, word == "pass"   ? Tint::good
                               : word == "fail" ? Tint::bad
                                                : Tint::doubtful),
-             term.value("sentence", "")});
+             text_at(term, "/sentence")});
   }
-  return "<p>" + html_text(found.value("verdict", "")) + "</p>\n" + html_table(out);
+  return "<p>" + html_text(text_at(document, "/limits/verdict")) + "</p>\n" + html_table(out);
 }
 
 std::string signatures() {
@@ -108,8 +122,7 @@ constexpr const char* kStyle =
 
 std::string detail::test_form_html(const ReportedCharacterization& report, const Json& document,
                                    const FigureSource& source, const std::vector<std::string>& channels) {
-  const Json& recording = document.at("recording");
-  const std::string sensor = document.contains("limits") ? document["limits"].value("sensor", "") : "";
+  const std::string sensor = text_at(document, "/limits/sensor");
   std::vector<std::string> names;
   for (const ReportedChannel* c : detail::chosen_channels(report, channels))
     names.push_back(c->unit.empty() ? c->name : c->name + " [" + c->unit + "]");
@@ -117,14 +130,14 @@ std::string detail::test_form_html(const ReportedCharacterization& report, const
   object.add({"Sensor", sensor.empty() ? kToFill : sensor});
   object.add({"Type, serial number", kToFill});
   object.add({"Channels", fmt::format("{}", fmt::join(names, ", "))});
-  std::string known = "<p>" + html_text(document.value("verdict", "")) + "</p>\n" + findings_list(report.findings);
+  std::string known = "<p>" + html_text(text_at(document, "/verdict")) + "</p>\n" + findings_list(report.findings);
   const std::string body =
-      part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(recording, report))) +
+      part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(document, report))) +
       part(3, "Method", facts(method(document))) +
       part(4, "Results", html_table(detail::coefficient_rows(report, channels)) + figures(report, source, channels)) +
       part(5, "Limits", limits(document)) + part(6, "To be known", known) + part(7, "Signatures", signatures());
-  return html_page({"Test report: sensor noise", recording.value("file", ""), "reportPage.start({}, () => 320);\n",
-                    std::string(page_css()) + kStyle, false},
+  return html_page({"Test report: sensor noise", text_at(document, "/recording/file"),
+                    "reportPage.start({}, () => 320);\n", std::string(page_css()) + kStyle, false},
                    body, "{}");
 }
 
