@@ -213,6 +213,7 @@ std::vector<Kind> kinds() {
   out.push_back({"dead band 0.5 sd", kLong, dead_band(0.5), white});
   out.push_back({"pole 0.003", kLong, one_pole(0.003), white});
   out.push_back({"Gauss-Markov 0.2 s", kLong, gauss_markov({{1, 0.2}}), white});
+  out.push_back({"Gauss-Markov 0.1 s and 5 s", kLong, gauss_markov({{1, 0.1}, {1, 5}}), white});
   out.push_back({"Gauss-Markov 0.5 s and 20 s", kLong, gauss_markov({{1, 0.5}, {1, 20}}), white});
   return out;
 }

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -146,6 +147,14 @@ TEST_CASE("report --form is a test report to sign") {
   CHECK_THAT(form.out, !Contains("accel_z [g]"));
   CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string(), "--form"}).code == 0);
   CHECK(test::run({"report", plotted_report(), plotted_report(), "--form"}).code == 2);
+  const test::TemporaryFolder marked;
+  const std::string log = (marked / "log.csv").string();
+  {
+    std::ofstream out(log);
+    out << "t[s],gx[deg/s]\n";
+    for (int k = 0; k < 4000; ++k) out << k * 0.01 << ',' << (k % 200 < 3 ? -999 : std::sin(k * k * 0.7)) << '\n';
+  }
+  CHECK_THAT(test::run({"report", log, "--form"}).out, Contains("<li>gx: "));
   CHECK(test::run({"report", plotted_report(), "--form", "--csv"}).code == 2);
   // A report that somebody changed ends in a page or in a sentence.
   const test::TemporaryFolder folder;

@@ -116,7 +116,8 @@ std::string figures(const ReportedCharacterization& report, const FigureSource& 
 
 constexpr const char* kStyle =
     "\n.form h2 { font-size: 1.05rem; margin: 14px 0 2px; }\n.form figure { max-width: 620px; }\n"
-    "@media print { @page { size: A4; margin: 14mm; } .form figure { max-width: 11cm; } }\n";
+    "@media print { @page { size: A4; margin: 14mm; } .form figure { max-width: 9cm; }\n"
+    "  .form ul.cautions li { font-size: 7.5pt; line-height: 1.2; margin: 1px 0; padding: 1px 6px; } }\n";
 
 }  // namespace
 
@@ -130,7 +131,16 @@ std::string detail::test_form_html(const ReportedCharacterization& report, const
   object.add({"Sensor", sensor.empty() ? kToFill : sensor});
   object.add({"Type, serial number", kToFill});
   object.add({"Channels", fmt::format("{}", fmt::join(names, ", "))});
-  std::string known = "<p>" + html_text(text_at(document, "/verdict")) + "</p>\n" + findings_list(report.findings);
+  // On paper nothing can be unfolded: all of them, each with its channel.
+  std::vector<std::string> findings;
+  const auto chosen = detail::chosen_channels(report, channels);
+  for (const Finding& one : report.findings) {
+    const ReportedChannel* const of = report.find(one.subject);
+    if (of == nullptr || std::find(chosen.begin(), chosen.end(), of) != chosen.end())
+      findings.push_back(one.subject + ": " + one.sentence);
+  }
+  const std::string known =
+      "<p>" + html_text(text_at(document, "/verdict")) + "</p>\n" + bullet_list(findings, "cautions");
   const std::string body =
       part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(document, report))) +
       part(3, "Method", facts(method(document))) +

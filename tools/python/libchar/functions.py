@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import json
 import os
 import pathlib
@@ -443,7 +444,8 @@ def cornered_hat(source: Source, rate_hz: Optional[float] = None, *, pairs: bool
 
 
 def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options: Any) -> Recording:
-    """A log fused by what a replay learnt (`sensorchar fuse`): the estimate, its deviation, a flag per sensor.
+    """A log fused by what a replay learnt (`sensorchar fuse`): the estimate, its deviation, a flag per sensor; what is
+    known of the log and its sensors in `warnings`.
 
     learnt   ReplayResult, or the folder of a replay, or its fusion.yaml
     rate_hz  sampling rate in Hz, of arrays; times are in s
@@ -454,8 +456,8 @@ def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options
             (place / "fusion.yaml").write_text(learnt.fusion_yaml())
             learnt = place / "fusion.yaml"
         words = [log, f"--with={os.fspath(learnt)}", *program.words_of(options), f"--output={place / 'fused.f64'}"]
-        program.run("fuse", words)
-        return read(place / "fused.f64")
+        findings = program.document("fuse", words)["findings"]
+        return dataclasses.replace(read(place / "fused.f64"), warnings=[one["sentence"] for one in findings])
 
 
 def bench(**options: Any) -> Document:

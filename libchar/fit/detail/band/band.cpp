@@ -271,12 +271,14 @@ struct Search {
     band.named = *shape;
     band.orders = static_cast<int>(unknowns_of(family));
     std::optional<Trial> trial = at(band);
-    if (trial && shape->zero_hz > 0 && !shows_white_below(*trial)) return std::nullopt;
+    const bool rises = shape->zero_hz > 0 && shape->pole_hz > shape->zero_hz;
+    if (trial && rises && !shows_white_below(*trial)) return std::nullopt;
     return trial;
   }
 
-  /// N is white noise below the zero and the pole: where slow noise is above it there, they are a departure of the
-  /// slow noise from its terms (another exponent, processes), and N would be read off an extrapolation.
+  /// N is white noise below the zero and the pole: where slow noise is above it there, a rise is a departure of the
+  /// slow noise from its terms (another exponent, processes), and N would be read off an extrapolation. Of a fall both
+  /// levels are said.
   bool shows_white_below(const Trial& trial) const {
     const NamedShape& shape = trial.band.named;
     const double corner_hz = std::min(shape.pole_hz, shape.zero_hz);

@@ -197,7 +197,7 @@ double process_at(const Peak& peak, double frequency_hz) {
   return 2 * peak.at.theta[kLent] * peak.tau_s / (1 + turns * turns);
 }
 
-/// A fall from a plateau, the highest of the slow noise at its corner, to white noise.
+/// A fall from a plateau that flicker and walk do not hide at its corner to white noise.
 bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
   const double plateau = process_at(peak, 0), corner_hz = 1 / (2 * std::numbers::pi * peak.tau_s);
   const double white = peak.at.theta[0];
