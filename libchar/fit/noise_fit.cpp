@@ -74,6 +74,7 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   if (out.band.bottom_hz > 0) out.options.terms = {true, false, false, false, false};
   if (out.band.quantized) out.options.terms[kQuantization] = true;
   if (out.band.tau_s) out.options.terms[kRamp] = true;
+  if (out.band.faster_s) out.options.terms[kQuantization] = true;
   const BinProblem problem = problem_of(bins, out.band, rate_hz);
   require_enough(static_cast<std::size_t>(problem.size()), out.options.terms);
   const Decision decision = decide(problem, out.options.terms, options.threshold);

@@ -214,6 +214,9 @@ std::vector<Kind> kinds() {
   out.push_back({"pole 0.003", kLong, one_pole(0.003), white});
   out.push_back({"Gauss-Markov 0.2 s", kLong, gauss_markov({{1, 0.2}}), white});
   out.push_back({"Gauss-Markov 0.1 s and 5 s", kLong, gauss_markov({{1, 0.1}, {1, 5}}), white});
+  out.push_back({"Gauss-Markov 0.5 s and 5 s", kLong, gauss_markov({{1, 0.5}, {1, 5}}), white});
+  out.push_back({"Gauss-Markov 0.03 s and 3 s", kLong, gauss_markov({{1, 0.03}, {1, 3}}), white});
+  out.push_back({"Gauss-Markov 1 s and 10 s", kLong, gauss_markov({{1, 1}, {1, 10}}), white});
   out.push_back({"Gauss-Markov 0.5 s and 20 s", kLong, gauss_markov({{1, 0.5}, {1, 20}}), white});
   return out;
 }

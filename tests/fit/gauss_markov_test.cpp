@@ -157,6 +157,33 @@ TEST_CASE("a fast Gauss-Markov process is no filter, and white noise behind a lo
   CHECK(behind[Term::white].value.value_or(0) == Approx(white).epsilon(0.06));
 }
 
+TEST_CASE("of two Gauss-Markov processes the slower has its intervals and the faster is in the shape") {
+  constexpr std::size_t n = 200000;
+  constexpr double rate = 100, white = 5e-3, sd = white * 10, fast_s = 0.1, slow_s = 5;
+  test::Gaussian gauss(5);
+  std::vector<double> y(n);
+  const double a = std::exp(-1 / (rate * fast_s)), b = std::exp(-1 / (rate * slow_s));
+  double fast = 0, slow = 0;
+  for (double& value : y) {
+    fast = a * fast + sd * std::sqrt(1 - a * a) * gauss();
+    slow = b * slow + sd * std::sqrt(1 - b * b) * gauss();
+    value = sd * gauss() + fast + slow;
+  }
+  const NoiseFit fit = fit_of(y, rate);
+  REQUIRE(in_model(fit));
+  CHECK(fit[Term::white].value.value_or(0) == Approx(white).epsilon(0.01));
+  CHECK(!fit[Term::quantization].value);
+  CHECK(fit.gauss_markov->tau_s.ci95.low < slow_s);
+  CHECK(fit.gauss_markov->tau_s.ci95.high > slow_s);
+  CHECK(std::count_if(fit.findings.begin(), fit.findings.end(),
+                      [](const Finding& found) { return found.code == "gauss_markov"; }) == 2);
+  for (const double f : {0.3, 1.0, 5.0, 40.0}) {
+    const double expected = white * white + sd * sd * (gauss_markov_spectrum(fast_s, f, 1 / rate) +
+                                                       gauss_markov_spectrum(slow_s, f, 1 / rate));
+    CHECK(shaped_density(fit, f, 1 / rate) == Approx(expected).epsilon(0.1));
+  }
+}
+
 TEST_CASE("flicker and walk are not taken for a Gauss-Markov process") {
   int found = 0, of = 0;
   const std::vector<Mixture> kinds = {{5e-3, 5e-3, 1.5e-3, 0, 0},

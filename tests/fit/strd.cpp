@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "libchar/core/process/silent_glog.hpp"
-#include "libchar/fit/detail/curve/polish.hpp"
+#include "libchar/fit/detail/curve/ceres_options.hpp"
 
 namespace test {
 namespace {

@@ -110,6 +110,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
   if (trial.index.size() < kFewestBins) return std::nullopt;
   if (band.quantized) terms[kQuantizationTerm] = true;
   if (band.tau_s) terms[kLentTerm] = true;
+  if (band.faster_s) terms[kQuantizationTerm] = true;
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
   const BinProblem problem = band_problem(bins, band, rate_hz);
   const ScoringResult best = score(problem, terms, start, 1e-6);
@@ -264,10 +265,11 @@ struct Search {
         shape->pole_hz < kPeriods * 4 * slowest_hz() ||
         shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz))
       return std::nullopt;
-    // A shelf that is higher is an edge of something else.
-    constexpr double kHighest = 4;
-    const double rise = shape->zero_hz > 0 ? std::abs(std::log(shape->pole_hz / shape->zero_hz)) : 0;
-    if (family == NamedShape::Family::shelf && rise > std::log(kHighest)) return std::nullopt;
+    // A shelf that is higher is an edge of something else; one that falls further may be a process above white noise.
+    constexpr double kHighest = 4, kFurthest = 32;
+    const double rise = shape->zero_hz > 0 ? std::log(shape->pole_hz / shape->zero_hz) : 0;
+    if (family == NamedShape::Family::shelf && (rise > std::log(kHighest) || rise < -std::log(kFurthest)))
+      return std::nullopt;
     band.named = *shape;
     band.orders = static_cast<int>(unknowns_of(family));
     std::optional<Trial> trial = at(band);
@@ -451,6 +453,8 @@ std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& ban
     if (band.inside[j] != 0) inside.push_back(bins[j]);
   if (band.tau_s)
     for (PowerBin& bin : inside) bin.unit[kLentTerm] = gauss_markov_unit(bin, *band.tau_s, rate_hz);
+  if (band.faster_s)
+    for (PowerBin& bin : inside) bin.unit[kQuantizationTerm] = gauss_markov_unit(bin, *band.faster_s, rate_hz);
   inside = filtered(std::move(inside), band.filter, rate_hz);
   for (PowerBin& bin : inside) {
     const double gain = std::exp(band_log_gain(band, bin, rate_hz));
@@ -576,6 +580,23 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   if (!trial || !trial->band.passes || slow_end_of(search, *trial) > kFalls) return std::nullopt;
   return trial->band;
 }
+
+}  // namespace
+
+std::optional<Band> judged(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const Band& band) {
+  const auto trial = tried(bins, rate_hz, terms, band, {});
+  return trial ? std::optional(trial->band) : std::nullopt;
+}
+
+std::optional<Band> with_shelf(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
+                               const Band& band, const NamedShape& start) {
+  const BandOptions options;
+  const Search search{bins, rate_hz, terms, options, std::nullopt};
+  const auto trial = search.named_in(band, NamedShape::Family::shelf, start, std::numeric_limits<double>::infinity());
+  return trial ? std::optional(trial->band) : std::nullopt;
+}
+
+namespace {
 
 double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, trial.band.top.p); }
 

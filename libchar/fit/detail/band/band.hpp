@@ -25,6 +25,7 @@ struct Band {
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
   std::optional<double> tau_s;
+  std::optional<double> faster_s;  ///< the same of a second, faster one, in the column of quantization noise
   SmallShape small;    ///< of the top, too small for the tests; where nothing else shapes it freely
   bool passes = true;  ///< the residuals are those of noise, or too few to judge
   Goodness goodness;   ///< of the band, its slowest coefficients left out
@@ -52,6 +53,13 @@ Band whole_band(const std::vector<PowerBin>& bins, double rate_hz);
 /// polynomial, plus one. Broad peaks are left out where that widens it.
 Band find_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
                const BandOptions& options = {});
+
+/// A band with the judgement of its residuals; nothing where it has too few bins.
+std::optional<Band> judged(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const Band& band);
+
+/// A band with the shelf that `start` leads to, judged.
+std::optional<Band> with_shelf(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
+                               const Band& band, const NamedShape& start);
 
 /// The bins of a band, expectations times its filter.
 std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& band, double rate_hz);

@@ -68,6 +68,12 @@ NoiseShape measured_shape(std::vector<ShapePoint> points) {
   return shape;
 }
 
+double expected(const PowerBin& bin, const Mixture& theta) {
+  double sum = 0;
+  for (std::size_t i = 0; i < kTerms; ++i) sum += theta[i] * bin.unit[i];
+  return sum;
+}
+
 }  // namespace
 
 void describe_band(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
@@ -80,7 +86,10 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
   everywhere.inside.assign(bins.size(), 1);
   const std::vector<PowerBin> all = bins_of(bins, everywhere, rate_hz);
   const Eigen::ArrayXd gain = shape_of(problem, best.shape);
-  fit.residuals = residuals_of(all, best.theta, rate_hz);
+  // A second process is a shape of the rest.
+  Mixture rest = best.theta;
+  if (band.faster_s) rest[static_cast<std::size_t>(Term::quantization)] = 0;
+  fit.residuals = residuals_of(all, rest, rate_hz);
   Band shown = band;
   if (!shown.small.seen) shown.small = {};
   std::vector<ShapePoint> points;
@@ -90,7 +99,7 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
     residual.inside = band.inside[j] != 0;
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
-      const double ratio = gain[inside++];
+      const double ratio = gain[inside++] * expected(all[j], best.theta) / expected(all[j], rest);
       const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
       points.push_back({residual.frequency_hz, ratio * known, residual.dof});
       residual.model *= ratio;

@@ -13,7 +13,7 @@
 #include "libchar/core/process/silent_glog.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/curve/polish.hpp"
+#include "libchar/fit/detail/curve/ceres_options.hpp"
 
 namespace libchar {
 namespace {

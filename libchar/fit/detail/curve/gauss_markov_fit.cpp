@@ -22,6 +22,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
+#include "libchar/fit/detail/curve/power_law.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 
@@ -41,6 +42,7 @@ constexpr double kLongest = 0.5;  ///< of the record
 constexpr double kWidth = 1.9;    ///< of the other band that is worth the process
 constexpr double kBadlyKnown = 0.30;
 constexpr auto kLent = static_cast<std::size_t>(Term::ramp);
+constexpr auto kFaster = static_cast<std::size_t>(Term::quantization);
 constexpr auto kColumn = static_cast<Eigen::Index>(Term::ramp);
 
 /// The likelihood of a band's bins as a function of the correlation time.
@@ -49,7 +51,8 @@ class AtTau {
   AtTau(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, TermSet terms)
       : rate_hz_(rate_hz), terms_(terms) {
     terms_[kLent] = true;
-    if (band.quantized) terms_[static_cast<std::size_t>(Term::quantization)] = true;
+    terms_[kFaster] = terms_[kFaster] || band.quantized || band.faster_s;
+    faster_s_ = band.faster_s;
     Band without = band;
     without.tau_s = std::nullopt;
     for (std::size_t j = 0; j < bins.size(); ++j)
@@ -57,6 +60,12 @@ class AtTau {
     const std::vector<PowerBin> filtered = bins_of(bins, without, rate_hz);
     problem_ = band_problem(bins, without, rate_hz);
     for (std::size_t j = 0; j < inside_.size(); ++j) gain_.push_back(filtered[j].unit[0] / inside_[j].unit[0]);
+  }
+
+  /// A second, faster process, in the column of quantization noise.
+  void offer_faster(double tau_s) {
+    terms_[kFaster] = true;
+    problem_.unit.col(static_cast<Eigen::Index>(kFaster)) = column(tau_s);
   }
 
   const ScoringResult& operator()(double tau_s) {
@@ -89,6 +98,7 @@ class AtTau {
 
   double rate_hz_;
   TermSet terms_;
+  std::optional<double> faster_s_;
   std::vector<PowerBin> inside_;
   std::vector<double> gain_;
   BinProblem problem_;
@@ -104,13 +114,16 @@ AtTau::Spread AtTau::spread_at(const ModelPoint& at, double tau_s) {
   for (std::size_t i = 0; i < kTerms; ++i)
     if (at.theta[i] > 0) in.push_back(i);
   const auto n = static_cast<Eigen::Index>(in.size());
-  Eigen::MatrixXd relative(problem_.size(), n + 1);
+  Eigen::MatrixXd relative(problem_.size(), n + 1 + (faster_s_ ? 1 : 0));
   for (Eigen::Index i = 0; i < n; ++i)
     relative.col(i) = (weight * at.theta[in[static_cast<std::size_t>(i)]] *
                        problem_.unit.col(static_cast<Eigen::Index>(in[static_cast<std::size_t>(i)])))
                           .matrix();
-  relative.col(n) =
-      (weight * at.theta[kLent] * (column(tau_s * (1 + kStep)) - column(tau_s * (1 - kStep))) / (2 * kStep)).matrix();
+  const auto slope = [&](double theta, double time_s) {
+    return (weight * theta * (column(time_s * (1 + kStep)) - column(time_s * (1 - kStep))) / (2 * kStep)).matrix();
+  };
+  relative.col(n) = slope(at.theta[kLent], tau_s);
+  if (faster_s_) relative.col(n + 1) = slope(at.theta[kFaster], *faster_s_);
   if (problem_.shapes() > 0) relative = without_columns_of(whitened_shape(problem_), relative);
   const Eigen::MatrixXd information = relative.transpose() * relative;
   const Eigen::MatrixXd joint = cholesky_inverse(information);
@@ -128,17 +141,19 @@ AtTau::Spread AtTau::spread_at(const ModelPoint& at, double tau_s) {
 struct Peak {
   double tau_s = 0, half_deviance = std::numeric_limits<double>::infinity();
   ModelPoint at;
+  double slower_s = 0;  ///< of two processes, the correlation time of the other
 };
 
-/// The correlation time of the greatest likelihood between two.
-Peak most_likely(AtTau& likelihood, double low_s, double high_s) {
+/// The correlation time of the greatest likelihood between two; `likelihood` of one is a Peak.
+template <typename Likelihood>
+Peak most_likely(Likelihood&& likelihood, double low_s, double high_s) {
   std::vector<double> x, value;
   Peak best;
   std::size_t at = 0;
   const auto look = [&](double log_tau) {
-    const ScoringResult& result = likelihood(std::exp(log_tau));
-    if (result.half_deviance < best.half_deviance) best = {std::exp(log_tau), result.half_deviance, result.at};
-    return result.half_deviance;
+    const Peak found = likelihood(std::exp(log_tau));
+    if (found.half_deviance < best.half_deviance) best = found;
+    return found.half_deviance;
   };
   const double first = std::log(low_s), last = std::log(high_s);
   const int steps = std::max(2, clamped_whole<int>(std::ceil((last - first) / std::log(2.0))));
@@ -170,6 +185,14 @@ Peak most_likely(AtTau& likelihood, double low_s, double high_s) {
   return best;
 }
 
+Peak most_likely(AtTau& likelihood, double low_s, double high_s) {
+  const auto at = [&](double tau_s) {
+    const ScoringResult& result = likelihood(tau_s);
+    return Peak{tau_s, result.half_deviance, result.at};
+  };
+  return most_likely(at, low_s, high_s);
+}
+
 TermSet without_slow(TermSet terms) {
   terms[static_cast<std::size_t>(Term::flicker)] = false;
   terms[static_cast<std::size_t>(Term::walk)] = false;
@@ -192,9 +215,13 @@ TauSearch search_tau(const std::vector<PowerBin>& bins, const Band& band, double
   return out;
 }
 
+double process_at(double variance, double tau_s, double frequency_hz) {
+  const double turns = 2 * std::numbers::pi * frequency_hz * tau_s;
+  return 2 * variance * tau_s / (1 + turns * turns);
+}
+
 double process_at(const Peak& peak, double frequency_hz) {
-  const double turns = 2 * std::numbers::pi * frequency_hz * peak.tau_s;
-  return 2 * peak.at.theta[kLent] * peak.tau_s / (1 + turns * turns);
+  return process_at(peak.at.theta[kLent], peak.tau_s, frequency_hz);
 }
 
 /// A fall from a plateau that flicker and walk do not hide at its corner to white noise.
@@ -209,6 +236,13 @@ bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
   return white > kFloor * plateau && plateau > kSteep * white && plateau > kBeside * slow;
 }
 
+/// The whole spectrum with a process has no rival that is as wide: chance may speak against it as it does once in a thousand.
+std::optional<Band> describing(std::optional<Band> whole) {
+  if (!whole || std::min(whole->goodness.p, whole->top.p) < BandOptions{}.misfit) return std::nullopt;
+  whole->passes = true;
+  return whole;
+}
+
 /// The whole band without a shape, where the terms with a process describe it: the fall to white noise that shapes and
 /// a cut band had in its place.
 std::optional<Band> unshaped_band(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
@@ -217,22 +251,63 @@ std::optional<Band> unshaped_band(const std::vector<PowerBin>& bins, double rate
   if (!falls_to_white(bins, peak)) return std::nullopt;
   BandOptions options;
   options.tau_s = peak.tau_s;
+  Band whole = whole_band(bins, rate_hz);
+  whole.tau_s = peak.tau_s;
+  if (auto described = describing(judged(bins, rate_hz, terms, whole))) return described;
   Band band = find_band(bins, rate_hz, terms, options);
   if (!band.passes || band.orders > 0 || band.top_hz < 0.99 * rate_hz / 2 || band.low_pass) return std::nullopt;
   return band;
 }
 
-/// A band that the terms with the process describe: found with the process at its most likely correlation time under any shape.
+/// Two processes, the faster above white noise: the whole spectrum, where they describe it. A faster one of few samples
+/// may be a filter: it is a shelf that falls, which has the same spectrum.
+std::optional<Band> band_of_two(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
+                                const TermSet& terms) {
+  constexpr double kFewest = 2, kApart = 4;  ///< samples of the faster correlation time, and the other over it
+  constexpr double kOverLaw = 6;             ///< of ln L: a power law has four unknowns less
+  if (terms[kFaster]) return std::nullopt;
+  Band band = whole_band(bins, rate_hz);
+  AtTau both(bins, band, rate_hz, terms);
+  const auto at = [&](double faster_s) {
+    both.offer_faster(faster_s);
+    const Peak slower = most_likely(both, kApart * faster_s, kLongest * duration_s);
+    return Peak{faster_s, slower.half_deviance, slower.at, slower.tau_s};
+  };
+  const Peak faster = most_likely(at, kFewest / rate_hz, kLongest / kApart * duration_s);
+  const double white = faster.at.theta[0], plateau = process_at(faster.at.theta[kFaster], faster.tau_s, 0);
+  if (!(white > kFloor * plateau && plateau > kSteep * white)) return std::nullopt;
+  const auto law = choose_power_law(bins, band, rate_hz, terms);
+  if (law && law->half_deviance < faster.half_deviance + kOverLaw) return std::nullopt;
+  band.tau_s = faster.slower_s;
+  std::optional<Band> two;
+  if (faster.tau_s > kFastest / rate_hz) {
+    band.faster_s = faster.tau_s;
+    two = judged(bins, rate_hz, terms, band);
+  } else {
+    NamedShape start;
+    start.family = NamedShape::Family::shelf;
+    start.pole_hz = 1 / (2 * std::numbers::pi * faster.tau_s);
+    start.zero_hz = start.pole_hz * std::sqrt(1 + plateau / white);
+    two = with_shelf(bins, rate_hz, terms, band, start);
+  }
+  return describing(std::move(two));
+}
+
+/// A band that the terms with the process describe: found with the process at its most likely correlation time under any
+/// shape, or at that of the cut band.
 std::optional<Band> other_band(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, double duration_s,
-                               const TermSet& terms) {
+                               const TermSet& terms, double tau_in_band_s) {
   BandOptions options;
   Band shaped = whole_band(bins, rate_hz);
   shaped.orders = options.most_orders;
-  options.tau_s = search_tau(bins, shaped, rate_hz, duration_s, terms).peak.tau_s;
-  Band other = find_band(bins, rate_hz, terms, options);
-  if (!other.passes) return std::nullopt;
-  if (band.passes && other.top_hz < kWidth * band.top_hz) return std::nullopt;
-  return other;
+  std::optional<Band> best;
+  for (const double tau_s : {search_tau(bins, shaped, rate_hz, duration_s, terms).peak.tau_s, tau_in_band_s}) {
+    options.tau_s = tau_s;
+    Band other = find_band(bins, rate_hz, terms, options);
+    if (!other.passes || (band.passes && other.top_hz < kWidth * band.top_hz)) continue;
+    if (!best || other.top_hz > 1.01 * best->top_hz) best = std::move(other);
+  }
+  return best;
 }
 
 }  // namespace
@@ -240,12 +315,13 @@ std::optional<Band> other_band(const std::vector<PowerBin>& bins, const Band& ba
 std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>& bins, const Band& band,
                                                      double rate_hz, double duration_s, const TermSet& terms) {
   const bool cut = !band.passes || band.top_hz < 0.99 * rate_hz / 2;
+  const bool shaped = band.orders > 0 && band.named.family != NamedShape::Family::high_pass;
   if (terms[kLent] || duration_s * rate_hz * kLongest < 4 * kFewestSamples) return std::nullopt;
   if (!terms[0] || !terms[static_cast<std::size_t>(Term::walk)]) return std::nullopt;
   AtTau rival(bins, band, rate_hz, without_slow(terms));
   const double no_slow = rival.without().half_deviance;
   const double with_slow = AtTau(bins, band, rate_hz, terms).without().half_deviance;
-  if (!cut && 2 * (no_slow - with_slow) < kSlowNoise) return std::nullopt;
+  if (!cut && !shaped && 2 * (no_slow - with_slow) < kSlowNoise) return std::nullopt;
 
   // A process that white noise does not take over before the band ends, or a faster one, is noise behind a filter.
   const auto filters = [&](const Band& in, const Peak& peak) {
@@ -254,14 +330,25 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
   };
   TauSearch here = search_tau(bins, band, rate_hz, duration_s, terms);
   GaussMarkovChoice choice{band, here.peak.tau_s, here.ratio, here.ratio > kNeeded && !filters(band, here.peak), 0};
-  if (cut || (band.orders > 0 && band.named.family != NamedShape::Family::high_pass)) {
-    const auto unshaped = unshaped_band(bins, rate_hz, duration_s, terms);
-    const auto other = unshaped || !cut ? unshaped : other_band(bins, band, rate_hz, duration_s, terms);
-    if (other) {
-      here = search_tau(bins, *other, rate_hz, duration_s, terms, unshaped ? kFastest : kFewestSamples);
-      if (here.ratio > kNeeded && (unshaped || !filters(*other, here.peak)))
-        choice = {*other, here.peak.tau_s, here.ratio, true, 0};
-    }
+  const bool doubtful = cut || shaped;
+  std::optional<Band> other = doubtful ? unshaped_band(bins, rate_hz, duration_s, terms) : std::nullopt;
+  bool free = other.has_value();  // of a filter's affair
+  if (doubtful || choice.needed) {
+    const auto deviance = [&](const Band& of) {
+      return search_tau(bins, of, rate_hz, duration_s, terms, kFastest).peak.half_deviance;
+    };
+    const double one = other      ? deviance(*other)
+                       : doubtful ? std::numeric_limits<double>::infinity()
+                                  : here.peak.half_deviance;
+    const auto two = band_of_two(bins, rate_hz, duration_s, terms);
+    free = free || two;
+    if (two && deviance(*two) + kNeeded / 2 < one) other = two;
+  }
+  if (!other && cut) other = other_band(bins, band, rate_hz, duration_s, terms, here.peak.tau_s);
+  if (other) {
+    here = search_tau(bins, *other, rate_hz, duration_s, terms, free ? kFastest : kFewestSamples);
+    if (here.ratio > kNeeded && (free || !filters(*other, here.peak)))
+      choice = {*other, here.peak.tau_s, here.ratio, true, 0};
   }
   if (choice.needed) {
     choice.band.tau_s = choice.tau_s;
@@ -342,21 +429,34 @@ TermSet kept_or_doubtful(const NoiseFit& fit) {
   return terms;
 }
 
-/// The ramp's place in the fit is empty again.
-void empty_lent_column(NoiseFit& fit) {
-  fit.term[kLent] = {};
-  fit.theta[kLent] = 0;
-  for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][kLent] = fit.covariance[kLent][i] = 0;
+/// A term's place in the fit is empty again.
+void empty_column(std::size_t lent, NoiseFit& fit) {
+  fit.term[lent] = {};
+  fit.theta[lent] = 0;
+  for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][lent] = fit.covariance[lent][i] = 0;
 }
 
 std::string process_text(double sigma, double tau_s) {
   return fmt::format("standard deviation {}, correlation time {}", brief_text(sigma), duration_text(tau_s));
 }
 
+/// The second process is part of the shape (band_report.cpp).
+void settle_faster(double tau_s, NoiseFit& fit) {
+  const double sigma = fit.term[kFaster].value.value_or(0);
+  empty_column(kFaster, fit);
+  if (!(sigma > 0)) return;
+  fit.findings.push_back(finding(
+      "gauss_markov",
+      fmt::format("A second, faster Gauss-Markov process ({}) stands above the white noise: it is in the shape of the "
+                  "spectrum.",
+                  process_text(sigma, tau_s))));
+}
+
 }  // namespace
 
 void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovChoice& choice, NoiseFit& fit) {
-  if (!(fit.theta[kLent] > 0)) return empty_lent_column(fit);
+  if (choice.band.faster_s) settle_faster(*choice.band.faster_s, fit);
+  if (!(fit.theta[kLent] > 0)) return empty_column(kLent, fit);
   AtTau likelihood(bins, choice.band, fit.rate_hz, kept_or_doubtful(fit));
   const Peak peak = most_likely(likelihood, choice.tau_s / 2, choice.tau_s * 2);
   const AtTau::Spread spread = likelihood.spread_at(peak.at, peak.tau_s);
@@ -372,6 +472,10 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovCho
   process.tau_s.likelihood_ratio = choice.likelihood_ratio;
   process.tau_s.ci95 = {profile_end(likelihood, peak, spread.log_tau, -1, 1e3),
                         profile_end(likelihood, peak, spread.log_tau, 1, 1e3)};
+  if (choice.band.faster_s) {  // the profile holds the other's correlation time
+    process.tau_s.ci95.low = std::min(process.tau_s.ci95.low, choice.tau_s * std::exp(-kNormal95 * spread.log_tau));
+    process.tau_s.ci95.high = std::max(process.tau_s.ci95.high, choice.tau_s * std::exp(kNormal95 * spread.log_tau));
+  }
   // The peak beside terms that were dropped but may be there is elsewhere.
   process.tau_s.ci95.low = std::min(process.tau_s.ci95.low, choice.tau_s);
   process.tau_s.ci95.high = std::max(process.tau_s.ci95.high, choice.tau_s);
@@ -386,7 +490,7 @@ void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovCho
       fmt::format("Part of the slow noise is a first-order Gauss-Markov process ({}): white noise, flicker and random "
                   "walk alone do not describe the record (2 ln L {:.0f}, above {:.0f} in 1 % of records that they do).",
                   process_text(process.sigma.value.value_or(0), choice.tau_s), choice.likelihood_ratio, kNeeded)));
-  empty_lent_column(fit);
+  empty_column(kLent, fit);
   fit.gauss_markov = process;
 }
 

@@ -14,6 +14,7 @@
 
 #include "libchar/core/process/silent_glog.hpp"
 #include "libchar/core/process/work.hpp"
+#include "libchar/fit/detail/curve/ceres_options.hpp"
 
 namespace libchar {
 

@@ -1,25 +1,9 @@
 #pragma once
 // The last digits of the maximum, and its covariance, by Ceres.
 
-#include <ceres/covariance.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
-
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
-
-// How Ceres is asked to solve a small problem, in one place.
-
-/// Levenberg-Marquardt by QR on one thread, until nothing moves any more: all three tolerances at the machine's epsilon. Ceres' own (1e-6,
-/// 1e-10, 1e-8) get 19 of NIST's 54 nonlinear problems to four digits, these 53 (tests/fit/strd_nonlinear_test.cpp).
-ceres::Solver::Options exact_solver_options(int most_iterations);
-
-/// Of a covariance at the solution, with directions that the data do not determine left out.
-ceres::Covariance::Options exact_covariance_options();
-
-/// Can the covariance be asked for at all: has the solver a solution, and the problem a cost where it stands?
-bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem);
 
 struct Polished {
   ModelPoint at;

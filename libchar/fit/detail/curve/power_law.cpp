@@ -86,6 +86,7 @@ std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins
       kLeastExponent + step * (static_cast<double>(least) + 0.5 * (value[least - 1] - value[least + 1]) / bend);
   out.exponent_sd = step / std::sqrt(bend);
   const ScoringResult best = law(out.exponent);
+  out.half_deviance = best.half_deviance;
   out.likelihood_ratio = 2 * (terms_alone - best.half_deviance);
   if (!(out.likelihood_ratio > kLawNeeded) || !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
     return std::nullopt;

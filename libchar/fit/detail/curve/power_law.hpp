@@ -11,6 +11,7 @@ namespace libchar {
 
 struct PowerLawChoice {
   double exponent = 1, exponent_sd = 0;
+  double half_deviance = 0;
   double likelihood_ratio = 0;         ///< 2 (lnL of white noise and the law - lnL of all offered terms)
   double white = 0, white_log_sd = 0;  ///< Q, and the sd of ln Q² with h and alpha unknown
 };
