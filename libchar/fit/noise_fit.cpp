@@ -292,6 +292,22 @@ void settle_flicker_phase(NoiseFit& fit) {
   for (std::size_t i = 0; i < kTerms; ++i) fit.covariance[i][kRamp] = fit.covariance[kRamp][i] = 0;
 }
 
+/// A law takes the place of the terms that stand in for it: they would bend with the shapes.
+void average_over_shapes(Attempt& now) {
+  const SlowLaw* law = now.band.law ? &*now.band.law : nullptr;
+  const std::vector<PowerBin> bins = law != nullptr ? with_law(*now.bins, *law) : *now.bins;
+  average_over_small_shapes(bins, now.band, problem_of(bins, now.band, now.fit.rate_hz),
+                            law != nullptr ? ModelPoint{law->theta(), {}} : now.best, now.fit);
+}
+
+/// The process has two parameters where the law has none beside its exponent; a law that needs no shape stands before a
+/// process that does.
+bool is_likelier(const GaussMarkovChoice& process, const PowerLawChoice& law) {
+  if (process.band.inside == law.band.inside && process.band.orders == law.band.orders)
+    return process.half_deviance + kProcessWorth / 2 < law.half_deviance;
+  return law.band.orders > 0 && process.likelihood_ratio > law.likelihood_ratio + kProcessWorth;
+}
+
 NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
                      const FitOptions& options, FitWorkspace* workspace) {
   Band band;
@@ -308,9 +324,9 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     process = choose_gauss_markov(bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   std::optional<PowerLawChoice> law;
   if (process) law = choose_power_law(bins, band, rate_hz, options.terms);
-  // The process has two parameters where the law has none beside its exponent.
-  if (law && process->needed && process->likelihood_ratio > law->likelihood_ratio + kProcessWorth) law.reset();
+  if (law && process->needed && is_likelier(*process, *law)) law.reset();
   if (law) process.reset();
+  if (law) band = law->band;
   if (process && process->needed) band = process->band;
   Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
   if (now.band.tau_s) {  // once more at the best correlation time of the terms that stay
@@ -320,11 +336,10 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
   if (options.remedies) {
     report_band(now.band, bins, now.fit);
     if (hump) answer_hump(bins, now.band.bottom_hz, options.terms, now.fit);
-    answer_low_frequencies(now);
+    if (!now.band.law) answer_low_frequencies(now);
     report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
-    if (band_options.small_shapes && now.band.passes)
-      average_over_small_shapes(bins, now.band, problem_of(bins, now.band, rate_hz), now.best, now.fit);
+    if (band_options.small_shapes && now.band.passes) average_over_shapes(now);
   }
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);

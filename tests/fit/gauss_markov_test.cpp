@@ -12,6 +12,7 @@
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
+#include "libchar/spectrum/fft.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -34,6 +35,22 @@ std::vector<double> terms_record(std::uint64_t seed, std::size_t n, double rate,
   std::vector<double> y(n, 0.0);
   generator.add(y, {});
   return y;
+}
+
+/// Density `level` f^-exponent, part of a longer record, so that its ends do not meet.
+std::vector<double> law_record(std::size_t n, double rate, double exponent, double level, test::Gaussian& gauss) {
+  constexpr std::size_t kSize = 1 << 20;
+  RealFft fft(kSize);
+  const double step_hz = rate / static_cast<double>(kSize);
+  const auto c = fft.coefficients();
+  c[0] = 0;
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    const double sd = std::sqrt(level * std::pow(static_cast<double>(k) * step_hz, -exponent) * step_hz / 2);
+    const double real = sd * gauss(), imaginary = sd * gauss();
+    c[k] = {real, imaginary};
+  }
+  const auto y = fft.inverse();
+  return {y.begin() + static_cast<std::ptrdiff_t>(n), y.begin() + static_cast<std::ptrdiff_t>(2 * n)};
 }
 
 NoiseFit fit_of(const std::vector<double>& y, double rate) {
@@ -173,15 +190,41 @@ TEST_CASE("of two Gauss-Markov processes the slower has its intervals and the fa
   REQUIRE(in_model(fit));
   CHECK(fit[Term::white].value.value_or(0) == Approx(white).epsilon(0.01));
   CHECK(!fit[Term::quantization].value);
-  CHECK(fit.gauss_markov->tau_s.ci95.low < slow_s);
-  CHECK(fit.gauss_markov->tau_s.ci95.high > slow_s);
+  const Coefficient& tau = fit.gauss_markov->tau_s;
+  CHECK(std::abs(std::log(tau.value.value_or(0) / slow_s)) < 3 * tau.relative_sd);
+  CHECK(tau.relative_sd < 0.2);
   CHECK(std::count_if(fit.findings.begin(), fit.findings.end(),
                       [](const Finding& found) { return found.code == "gauss_markov"; }) == 2);
   for (const double f : {0.3, 1.0, 5.0, 40.0}) {
-    const double expected = white * white + sd * sd * (gauss_markov_spectrum(fast_s, f, 1 / rate) +
-                                                       gauss_markov_spectrum(slow_s, f, 1 / rate));
+    const double expected =
+        white * white +
+        sd * sd * (gauss_markov_spectrum(fast_s, f, 1 / rate) + gauss_markov_spectrum(slow_s, f, 1 / rate));
     CHECK(shaped_density(fit, f, 1 / rate) == Approx(expected).epsilon(0.1));
   }
+}
+
+TEST_CASE("slow noise of another exponent is a law over the whole spectrum, and no shape, band or process") {
+  constexpr std::size_t n = 200000;
+  constexpr double rate = 100, white = 5e-3;
+  int found = 0;
+  for (const double exponent : {0.7, 1.3, 1.6})
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      test::Gaussian gauss(seed);
+      std::vector<double> y = law_record(n, rate, exponent, white * white * 1.75, gauss);
+      for (double& value : y) value += white * std::sqrt(rate) * gauss();
+      const NoiseFit fit = fit_of(y, rate);
+      const auto said = std::find_if(fit.findings.begin(), fit.findings.end(),
+                                     [](const Finding& finding) { return finding.code == "power_law"; });
+      if (said == fit.findings.end()) continue;
+      ++found;
+      CHECK(fit.band.whole);
+      CHECK(fit[Term::white].value.value_or(0) == Approx(white).epsilon(exponent < 1 ? 0.04 : 0.015));
+      CHECK(!in_model(fit));
+      for (const double f : {0.01, 0.1, 1.0, 10.0})
+        CHECK(shaped_density(fit, f, 1 / rate) ==
+              Approx(white * white * (1 + 1.75 * std::pow(f, -exponent))).epsilon(f < 0.1 ? 0.3 : 0.1));
+    }
+  CHECK(found >= 8);
 }
 
 TEST_CASE("flicker and walk are not taken for a Gauss-Markov process") {

@@ -13,6 +13,13 @@
 
 namespace libchar {
 
+/// White noise and slow noise of one exponent, in units of `with_law`.
+struct SlowLaw {
+  double exponent = 1;
+  double white = 0, level = 0;
+  Mixture theta() const { return {white, 0, 0, 0, level}; }
+};
+
 /// Bins, the shape that multiplies their expectations, and how well that describes them.
 struct Band {
   double top_hz = 0;                   ///< bins end here; half the rate where nothing is left out
@@ -26,10 +33,11 @@ struct Band {
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
   std::optional<double> tau_s;
   std::optional<double> faster_s;  ///< the same of a second, faster one, in the column of quantization noise
-  SmallShape small;    ///< of the top, too small for the tests; where nothing else shapes it freely
-  bool passes = true;  ///< the residuals are those of noise, or too few to judge
-  Goodness goodness;   ///< of the band, its slowest coefficients left out
-  Goodness top;        ///< of its top octave and a half
+  std::optional<SlowLaw> law;      ///< what the terms stand in for
+  SmallShape small;                ///< of the top, too small for the tests; where nothing else shapes it freely
+  bool passes = true;              ///< the residuals are those of noise, or too few to judge
+  Goodness goodness;               ///< of the band, its slowest coefficients left out
+  Goodness top;                    ///< of its top octave and a half
 };
 
 struct BandOptions {
@@ -66,6 +74,9 @@ std::vector<PowerBin> bins_of(const std::vector<PowerBin>& bins, const Band& ban
 
 /// Their likelihood, with the polynomial or, around its maximum, the unknowns of the named shape free.
 BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, double rate_hz);
+
+/// The bins with the law in the column of the ramp.
+std::vector<PowerBin> with_law(std::vector<PowerBin> bins, const SlowLaw& law);
 
 /// ln of what the named and the small shape of a band make of a bin.
 double band_log_gain(const Band& band, const PowerBin& bin, double rate_hz);

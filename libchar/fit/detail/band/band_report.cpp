@@ -86,9 +86,13 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
   everywhere.inside.assign(bins.size(), 1);
   const std::vector<PowerBin> all = bins_of(bins, everywhere, rate_hz);
   const Eigen::ArrayXd gain = shape_of(problem, best.shape);
-  // A second process is a shape of the rest.
+  // A second process is a shape of the rest, and so is what a power law differs by from the terms.
   Mixture rest = best.theta;
   if (band.faster_s) rest[static_cast<std::size_t>(Term::quantization)] = 0;
+  std::vector<double> described;
+  for (const PowerBin& bin : band.law ? with_law(all, *band.law) : all)
+    described.push_back(expected(bin, band.law ? band.law->theta() : best.theta));
+  if (band.law) rest[0] = band.law->white;
   fit.residuals = residuals_of(all, rest, rate_hz);
   Band shown = band;
   if (!shown.small.seen) shown.small = {};
@@ -99,7 +103,7 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
     residual.inside = band.inside[j] != 0;
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
-      const double ratio = gain[inside++] * expected(all[j], best.theta) / expected(all[j], rest);
+      const double ratio = gain[inside++] * described[j] / expected(all[j], rest);
       const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
       points.push_back({residual.frequency_hz, ratio * known, residual.dof});
       residual.model *= ratio;

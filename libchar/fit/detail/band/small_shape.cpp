@@ -217,6 +217,7 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& ba
   shift += mean;
   for (Eigen::Index a = 0; a < n; ++a) {
     const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
+    if (!(fit.theta[i] > 0)) continue;  // lent to a law
     for (Eigen::Index b = 0; b < n; ++b) fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
     fit.theta[i] *= std::exp(shift[a]);
     if (fit.term[i].value) move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);

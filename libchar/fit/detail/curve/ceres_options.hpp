@@ -1,5 +1,6 @@
 #pragma once
-// How Ceres is asked to solve a small problem, in one place. Apart from what tests include: glog, which Ceres brings, has a CHECK too.
+// How Ceres is asked to solve a small problem, in one place. Apart from what tests include: glog, which Ceres brings,
+// has a CHECK too.
 
 #include <ceres/covariance.h>
 #include <ceres/problem.h>
@@ -7,8 +8,9 @@
 
 namespace libchar {
 
-/// Levenberg-Marquardt by QR on one thread, until nothing moves any more: all three tolerances at the machine's epsilon. Ceres' own (1e-6,
-/// 1e-10, 1e-8) get 19 of NIST's 54 nonlinear problems to four digits, these 53 (tests/fit/strd_nonlinear_test.cpp).
+/// Levenberg-Marquardt by QR on one thread, until nothing moves any more: all three tolerances at the machine's
+/// epsilon. Ceres' own (1e-6, 1e-10, 1e-8) get 19 of NIST's 54 nonlinear problems to four digits, these 53
+/// (tests/fit/strd_nonlinear_test.cpp).
 ceres::Solver::Options exact_solver_options(int most_iterations);
 
 /// Of a covariance at the solution, with directions that the data do not determine left out.

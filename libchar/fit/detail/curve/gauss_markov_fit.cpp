@@ -1,12 +1,17 @@
-// S(f) = 2 sigma² tau / (1 + (2 pi f tau)²), sampled (model/sensor_model.hpp). For a given tau its expected squared coefficients are one
-// column more of the linear model, so that the likelihood's maximum over the other unknowns is a function of ln tau alone: a scan by
-// octaves, then a parabola through its three lowest points, again and again. The column is lent by the ramp, which is a mean and is
-// offered elsewhere (events.hpp).
-//   needed:   2 (lnL(terms + process) - lnL(terms)) > kNeeded, with all offered terms in both, so that the terms alone are a special
-//             case (sigma = 0, and walk as tau -> infinity): passed by at most 1 % of records of their kind (docs/theory/fit.md)
-//   rival:    not needed, but white noise and the process alone are more likely than all offered terms by kRival: passed by 5 % of walks
-// Flicker and walk then stay or go by the same elimination as ever (coefficients.cpp). Intervals: tau by profile likelihood; sigma by the
-// union, over the taus in that interval, of its own intervals given tau, each as wide as the likelihood has left.
+// S(f) = 2 sigma² tau / (1 + (2 pi f tau)²), sampled (model/sensor_model.hpp). For a given tau its expected squared
+// coefficients are one column more of the linear model, so that the likelihood's maximum over the other unknowns is a
+// function of ln tau alone: a scan by octaves, then a parabola through its three lowest points, again and again. The
+// column is lent by the ramp, which is a mean and is offered elsewhere (events.hpp).
+//   needed:   2 (lnL(terms + process) - lnL(terms)) > kNeeded, with all offered terms in both, so that the terms alone
+//             are a special case (sigma = 0, and walk as tau -> infinity): passed by at most 1 % of records of their
+//             kind (docs/theory/fit.md)
+//   rival:    not needed, but white noise and the process alone are more likely than all offered terms by kRival:
+//             passed by 5 % of walks
+//   two:      where one is needed or the terms do not describe the whole spectrum, the same scan of a second, faster
+//             one around that of the first, in the column of quantization noise; its power is a shape of the rest
+// Flicker and walk then stay or go by the same elimination as ever (coefficients.cpp). Intervals: tau by profile
+// likelihood; sigma by the union, over the taus in that interval, of its own intervals given tau, each as wide as the
+// likelihood has left.
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
 
 #include <fmt/format.h>
@@ -236,7 +241,8 @@ bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
   return white > kFloor * plateau && plateau > kSteep * white && plateau > kBeside * slow;
 }
 
-/// The whole spectrum with a process has no rival that is as wide: chance may speak against it as it does once in a thousand.
+/// The whole spectrum with a process has no rival that is as wide: chance may speak against it as it does once in a
+/// thousand.
 std::optional<Band> describing(std::optional<Band> whole) {
   if (!whole || std::min(whole->goodness.p, whole->top.p) < BandOptions{}.misfit) return std::nullopt;
   whole->passes = true;
@@ -329,7 +335,8 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
            (in.top_hz < 0.99 * rate_hz / 2 && peak.at.theta[0] < kSteep * process_at(peak, in.top_hz));
   };
   TauSearch here = search_tau(bins, band, rate_hz, duration_s, terms);
-  GaussMarkovChoice choice{band, here.peak.tau_s, here.ratio, here.ratio > kNeeded && !filters(band, here.peak), 0};
+  GaussMarkovChoice choice{band, here.peak.tau_s,        here.ratio, here.ratio > kNeeded && !filters(band, here.peak),
+                           0,    here.peak.half_deviance};
   const bool doubtful = cut || shaped;
   std::optional<Band> other = doubtful ? unshaped_band(bins, rate_hz, duration_s, terms) : std::nullopt;
   bool free = other.has_value();  // of a filter's affair
@@ -348,7 +355,7 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
   if (other) {
     here = search_tau(bins, *other, rate_hz, duration_s, terms, free ? kFastest : kFewestSamples);
     if (here.ratio > kNeeded && (free || !filters(*other, here.peak)))
-      choice = {*other, here.peak.tau_s, here.ratio, true, 0};
+      choice = {*other, here.peak.tau_s, here.ratio, true, 0, here.peak.half_deviance};
   }
   if (choice.needed) {
     choice.band.tau_s = choice.tau_s;
@@ -447,7 +454,7 @@ void settle_faster(double tau_s, NoiseFit& fit) {
   if (!(sigma > 0)) return;
   fit.findings.push_back(finding(
       "gauss_markov",
-      fmt::format("A second, faster Gauss-Markov process ({}) stands above the white noise: it is in the shape of the "
+      fmt::format("The noise holds a second, faster Gauss-Markov process ({}). The model has it in the shape of the "
                   "spectrum.",
                   process_text(sigma, tau_s))));
 }

@@ -17,6 +17,7 @@ struct GaussMarkovChoice {
   bool needed = false;          ///< the terms alone are rejected (1 % of records of their kind)
   /// Not needed, but with white noise alone it is more likely than all offered terms: standard deviation (0: not so).
   double rival_sigma = 0;
+  double half_deviance = 0;  ///< with the process
 };
 
 /// Looks for one; nothing where the record has no slow noise at all. `band` is that of the terms alone.

@@ -20,11 +20,11 @@ constexpr auto kFlickerColumn = static_cast<Eigen::Index>(Term::flicker);
 constexpr auto kWalkColumn = static_cast<Eigen::Index>(Term::walk);
 constexpr auto kQuantizationColumn = static_cast<Eigen::Index>(Term::quantization);
 constexpr auto kLawColumn = static_cast<Eigen::Index>(Term::ramp);
-constexpr double kLawNeeded = 8;                             ///< of 2 lnL
-constexpr double kLeastExponent = 0.5, kMostExponent = 1.9;  ///< of the exponent
+constexpr double kLawNeeded = 8, kLawNeededBehind = 16;      ///< of 2 lnL, and the same with a free shape
+constexpr double kLeastExponent = 0.3, kMostExponent = 1.9;  ///< of the exponent
 constexpr double kFromTerms = 3;                             ///< standard deviations from 1 and from 2
 
-Eigen::ArrayXd column(const BinProblem& problem, double exponent) {
+Eigen::ArrayXd law_column(const BinProblem& problem, double exponent) {
   const Eigen::ArrayXd flicker = problem.unit.col(kFlickerColumn).log();
   if (exponent < 1) return ((1 - exponent) * problem.unit.col(kWhiteColumn).log() + exponent * flicker).exp();
   return ((2 - exponent) * flicker + (exponent - 1) * problem.unit.col(kWalkColumn).log()).exp();
@@ -36,7 +36,7 @@ class AtExponent {
     terms_[kWhiteColumn] = terms_[kLawColumn] = true;
   }
   ScoringResult operator()(double exponent) {
-    problem_.unit.col(kLawColumn) = column(problem_, exponent);
+    problem_.unit.col(kLawColumn) = law_column(problem_, exponent);
     return score(problem_, terms_, nullptr, 1e-6);
   }
   /// sd of ln Q² at a point, h and alpha unknown.
@@ -45,9 +45,9 @@ class AtExponent {
     const Eigen::ArrayXd weight = (problem_.dof / 2).sqrt() / mixture_of(problem_, at.theta);
     Eigen::MatrixXd slopes(problem_.size(), 3);
     slopes.col(0) = (weight * at.theta[kWhiteColumn] * problem_.unit.col(kWhiteColumn)).matrix();
-    slopes.col(1) = (weight * at.theta[kLawColumn] * column(problem_, exponent)).matrix();
+    slopes.col(1) = (weight * at.theta[kLawColumn] * law_column(problem_, exponent)).matrix();
     slopes.col(2) = (weight * at.theta[kLawColumn] *
-                     (column(problem_, exponent + kStep) - column(problem_, exponent - kStep)) / (2 * kStep))
+                     (law_column(problem_, exponent + kStep) - law_column(problem_, exponent - kStep)) / (2 * kStep))
                         .matrix();
     if (problem_.shapes() > 0) slopes = without_columns_of(whitened_shape(problem_), slopes);
     return std::sqrt(cholesky_inverse(slopes.transpose() * slopes)(0, 0));
@@ -60,11 +60,17 @@ class AtExponent {
 
 }  // namespace
 
-std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
-                                               const TermSet& terms) {
+namespace {
+
+/// The band's law describes the whole spectrum.
+bool describes(const Band& whole, const std::vector<PowerBin>& bins, double rate_hz) {
+  const auto judgement = judged(with_law(bins, *whole.law), rate_hz, {true, false, false, false, true}, whole);
+  return judgement && std::min(judgement->goodness.p, judgement->top.p) > BandOptions{}.misfit;
+}
+
+std::optional<PowerLawChoice> law_in(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
+                                     const TermSet& terms) {
   constexpr int kSteps = 8;
-  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn] || !band.passes)
-    return std::nullopt;
   // Quantization noise bends the terms towards another exponent, so that it is among what the law must beat.
   TermSet offered = terms;
   offered[kQuantizationColumn] = offered[kQuantizationColumn] || band.quantized;
@@ -88,13 +94,34 @@ std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins
   const ScoringResult best = law(out.exponent);
   out.half_deviance = best.half_deviance;
   out.likelihood_ratio = 2 * (terms_alone - best.half_deviance);
-  if (!(out.likelihood_ratio > kLawNeeded) || !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
+  if (!(out.likelihood_ratio > (band.orders > 0 ? kLawNeededBehind : kLawNeeded)) ||
+      !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
     return std::nullopt;
   for (const double whole : {1.0, 2.0})
     if (std::abs(out.exponent - whole) < kFromTerms * out.exponent_sd) return std::nullopt;
+  out.band = band;
+  if (band.orders == 0) out.band.law = {out.exponent, best.at.theta[kWhiteColumn], best.at.theta[kLawColumn]};
   out.white = std::sqrt(best.at.theta[kWhiteColumn]);
   out.white_log_sd = law.white_log_sd(best.at, out.exponent);
   return out;
+}
+
+}  // namespace
+
+std::vector<PowerBin> with_law(std::vector<PowerBin> bins, const SlowLaw& law) {
+  const Eigen::ArrayXd units = law_column(bin_problem(bins), law.exponent);
+  for (std::size_t j = 0; j < bins.size(); ++j) bins[j].unit[kLawColumn] = units[static_cast<Eigen::Index>(j)];
+  return bins;
+}
+
+std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
+                                               const TermSet& terms) {
+  if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn]) return std::nullopt;
+  if (band.orders > 0 || band.low_pass || band.quantized || band.top_hz < 0.99 * rate_hz / 2) {
+    const auto law = law_in(bins, whole_band(bins, rate_hz), rate_hz, terms);
+    if (law && describes(law->band, bins, rate_hz)) return law;
+  }
+  return band.passes ? law_in(bins, band, rate_hz, terms) : std::nullopt;
 }
 
 void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
@@ -105,6 +132,7 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
     const double spread = std::exp(kNormal95 * white.relative_sd);
     white.ci95 = {law.white / spread, law.white * spread};
   }
+  if (law.band.law && fit.theta[0] > 0) fit.theta[0] = law.band.law->white;
   for (const auto slow : {kFlickerColumn, kWalkColumn, kQuantizationColumn})
     if (fit.term[static_cast<std::size_t>(slow)].value)
       fit.term[static_cast<std::size_t>(slow)].status = Status::misfit;

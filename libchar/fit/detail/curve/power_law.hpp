@@ -10,14 +10,16 @@
 namespace libchar {
 
 struct PowerLawChoice {
+  Band band;  ///< in which it was found; its `law` is set where that describes it without a shape
   double exponent = 1, exponent_sd = 0;
   double half_deviance = 0;
   double likelihood_ratio = 0;         ///< 2 (lnL of white noise and the law - lnL of all offered terms)
   double white = 0, white_log_sd = 0;  ///< Q, and the sd of ln Q² with h and alpha unknown
 };
 
-/// The law where it beats all offered terms, which have one parameter more, by more than they do in
-/// 1 % of the records that they describe, and is neither of them.
+/// The law where it beats all offered terms, which have one parameter more, by more than they do in 1 % of the records
+/// that they describe, and is neither of them: over the whole spectrum where it describes that and `band`, of the terms,
+/// is cut or has a shape; else in `band`.
 std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms);
 
