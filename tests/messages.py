@@ -12,6 +12,7 @@ import sys
 # Words in backquotes for which there is nothing to type on the command line.
 NO_FLAGS = {
     "frequency_hz": "key of a sensor model",
+    "level_sd": "key of fusion.yaml",
     "name": "key of a document",
     "none": "word of a scene",
     "options": "part of a fusion algorithm, in a message of the compiler",

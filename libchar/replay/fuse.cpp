@@ -425,6 +425,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = x_(j, at);
       double sd = stated(j) * std::sqrt(variance_(j, at));
+      if (const auto level = learnt_.inputs[static_cast<std::size_t>(j)].level_sd) sd = std::hypot(sd, *level);
       if (doubt != nullptr && (*doubt)[k] > 0) sd = std::hypot(sd, output_scale_ * std::sqrt((*doubt)[k]));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] = std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;

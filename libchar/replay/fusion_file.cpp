@@ -24,6 +24,9 @@ const Fields<LearntInput> kLearntInputFields = {
     field<&LearntInput::unit>("unit", {.meaning = "of the estimate", .otherwise = "not known"}),
     field<&LearntInput::reference_offset>("reference_offset",
                                           {.meaning = "subtracted from the reference", .otherwise = "0"}),
+    field<&LearntInput::level_sd>("level_sd", {.range = kNotNegative,
+                                               .meaning = "deviation of the mean of the sensors' means",
+                                               .otherwise = "offsets are not taken out"}),
 };
 
 const Fields<LearntFrom> kLearntFromFields = {
@@ -222,7 +225,8 @@ const Fields<LearntFusion> kFusionInstants = {
 const Fields<LearntFusion> kFusionContent = {
     list_of<&LearntFusion::inputs>(
         "inputs", kLearntInputFields,
-        {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference",
+        {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference, "
+                    "`level_sd`: deviation of the level, the mean of the sensors' means",
          .required = true,
          .form = Entry::Form::flow}),
     field<&LearntFusion::interpolation>(

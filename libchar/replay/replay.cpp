@@ -61,6 +61,7 @@ class Replay {
 
   ReplayResult run() {
     if (scene_.align) align();
+    level();
     prepare();
     if (plan_.learning_pass) learn_before_run();
     if (plan_.run_learning_pass || plan_.looking_pass) learn_on_run();
@@ -126,6 +127,25 @@ class Replay {
     passes_ += 2;
     if (scene_.align->apply) instants_.set_alignment(&*alignment_);
   }
+
+  // Where nothing says which sensor is right, what they read on average and what they do about it are two questions.
+  // The first is answered by the mean of their means, and no score sees the second through their offsets.
+  void level() {
+    if (instants_.info().has_reference || scene_.align || scene_.rest) return;
+    PassProgress passing(progress_, "comparing the means");
+    std::optional<detail::ReadingMeter> meter;
+    ++passes_;
+    instants_.pass(plan_.run_from, plan_.run_to, kLearningBlock, passing,
+                   [&](const InstantBlock& b) { push_reading(b.samples, plan_.run_from, meter); });
+    const auto found = meter ? meter->level() : std::nullopt;
+    if (!found) return;
+    knowledge_.level_sd = found->sd;
+    for (std::size_t k = 0; k < found->offsets.size(); ++k) knowledge_.offsets[live(k)] = found->offsets[k];
+    instants_.set_offsets(knowledge_.offsets);
+  }
+
+  // Place of a sensor that is not left out.
+  std::size_t live(std::size_t k) const { return plan_.live.empty() ? k : static_cast<std::size_t>(plan_.live[k]); }
 
   void prepare() {
     frame_.array = &plan_.array;
@@ -230,11 +250,14 @@ class Replay {
     watch_readings(samples);
   }
 
-  void watch_readings(const Eigen::MatrixXd& samples) {
+  void watch_readings(const Eigen::MatrixXd& samples) { push_reading(samples, watched_from(), watch_.readings); }
+
+  void push_reading(const Eigen::MatrixXd& samples, std::int64_t from,
+                    std::optional<detail::ReadingMeter>& meter) const {
     const fusion::Array live = subset(plan_.array, plan_.live);
-    if (!watch_.readings && !scene_.tilt && live.one_common_input() && live.channels >= 3)
-      watch_.readings.emplace(live.channels, plan_.run_to - watched_from());
-    if (watch_.readings) with_live(samples, [this](const auto& rows) { watch_.readings->push(rows); });
+    if (!meter && !scene_.tilt && live.one_common_input() && live.channels >= 3)
+      meter.emplace(live.channels, plan_.run_to - from);
+    if (meter) with_live(samples, [&](const auto& rows) { meter->push(rows); });
   }
 
   template <class Work>
@@ -458,6 +481,7 @@ void Replay::add_facts(ReplayResult& out) const {
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
   out.alignment = aligned_;
+  out.level_sd = knowledge_.level_sd;
 }
 
 void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
@@ -587,15 +611,19 @@ void add_doubts_of_chosen(ReplayResult& out) {
 void Replay::tell_readings(ReplayResult& out) const {
   if (!out.faults.empty()) return;
   std::vector<std::string> names, units;
-  for (std::size_t k = 0; k < out.sensors.size(); ++k) {
-    if (!plan_.live.empty() &&
-        std::find(plan_.live.begin(), plan_.live.end(), static_cast<Eigen::Index>(k)) == plan_.live.end())
-      continue;
-    names.push_back(out.sensors[k].name);
-    units.push_back(out.sensors[k].unit);
+  std::vector<detail::TakenOut> taken_out;
+  const std::size_t sensors = plan_.live.empty() ? out.sensors.size() : plan_.live.size();
+  for (std::size_t k = 0; k < sensors; ++k) {
+    const SensorResult& sensor = out.sensors[live(k)];
+    names.push_back(sensor.name);
+    units.push_back(sensor.unit);
+    taken_out.push_back({knowledge_.level_sd ? sensor.offset : 0, 0});
+    if (!alignment_ || !scene_.align->apply) continue;
+    const fusion::ChannelAlignment& aligned = alignment_->alignment.channels[live(k)];
+    taken_out.back() = {aligned.bias, aligned.gain};
   }
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
-  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, out.warnings);
+  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, taken_out, out.warnings);
 }
 
 ReplayResult Replay::collect() {

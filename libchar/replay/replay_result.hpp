@@ -208,6 +208,8 @@ struct ReplayFacts {
   std::string best_fusion;
   /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
+  /// without a reference, offsets from the mean of the sensors' means are taken out; the deviation of that level
+  std::optional<double> level_sd;
   /// without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
   /// the best method is not that of the smallest error but one that a failing sensor does not lead

@@ -289,6 +289,26 @@ TEST_CASE("simplex: an input beyond what was learnt is the baseline's") {
   CHECK(run.rms(3000) <= 1.01 * run_behind_learning(scene, *minque).rms(3000));
 }
 
+TEST_CASE("simplex: an input that moves otherwise than what was learnt goes to the baseline, its error is stated") {
+  // Slow while it learns, so that the network smooths; ten times as fast, within the same range, behind that.
+  test::Gaussian gauss(5);
+  SimplexScene scene{Eigen::MatrixXd(4, 26000), Eigen::MatrixXd(1, 26000), test::array(4)};
+  scene.array.learning_samples = 6000;
+  for (Eigen::Index k = 0; k < 26000; ++k) {
+    const double t = static_cast<double>(k) * (k < 6000 ? 1 : 10);
+    scene.truth(0, k) = 0.8 * std::sin(0.011 * t) + 0.4 * std::sin(0.0271 * t + 1);
+    for (Eigen::Index i = 0; i < 4; ++i) scene.y(i, k) = scene.truth(0, k) + 0.2 * gauss();
+  }
+  const auto simplex = taught(scene), minque = taught(scene, "minque");
+  Eigen::MatrixXd x(1, 20000), variance(1, 20000);
+  simplex->run(scene.y.rightCols(20000), x, variance);
+  const Eigen::ArrayXd error = (x - scene.truth.rightCols(20000)).row(0).transpose().array();
+  const double baseline = run_behind_learning(scene, *minque).rms(2000);
+  CHECK(std::sqrt(error.tail(18000).square().mean()) <= 1.02 * baseline);
+  const Eigen::ArrayXd sd = variance.row(0).transpose().array().sqrt();
+  CHECK((error.abs() <= 1.96 * sd).tail(18000).cast<double>().mean() > 0.92);
+}
+
 TEST_CASE("simplex: a sensor that fails hands over at once, the network learns again without it") {
   SimplexScene scene = simplex_scene(true, 60000, 6000);
   for (Eigen::Index k = 16000; k < 60000; ++k) scene.y(1, k) = 0.9;  // stuck

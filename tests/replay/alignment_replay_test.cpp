@@ -65,7 +65,9 @@ TEST_CASE("align: taught by the reference, the mean of the sensors is as good as
   CHECK(recorded.algorithms[0].rmse > 0.1);
   CHECK(aligned.alignment->budget.before == Approx(recorded.algorithms[0].rmse).epsilon(0.02));
   CHECK(aligned.alignment->budget.after == Approx(aligned.algorithms[0].rmse).epsilon(0.02));
-  CHECK(aligned.warnings.empty());
+  REQUIRE(aligned.warnings.list().size() == 1);
+  CHECK(aligned.warnings.list()[0].code == "sensor_apart");
+  CHECK(aligned.warnings.list()[0].where.rows.at(0) == "c: offset 0.5 deg/s");
 }
 
 TEST_CASE("align: the same bits for any size of block, with and without skipping") {

@@ -130,7 +130,8 @@ TEST_CASE("replay: keeps the run of the best method and of the best single senso
 TEST_CASE("replay: without a reference the distance of each sensor from the median is kept") {
   const test::SceneBench bench;
   bench.put("three.csv", log_of(3000, false));
-  const ReplayResult r = replay(bench.read(scene_of("algorithms: [mean, median]\n")));
+  const ReplayResult r =
+      replay(bench.read(scene_of("align: {learn: run, apply: false}\nalgorithms: [mean, median]\n")));
   REQUIRE(r.tracks.whole.deviations.low.size() == 3);
   CHECK(r.tracks.whole.inputs[0].reference.empty());
   CHECK(r.tracks.whole.inputs[0].error.empty());

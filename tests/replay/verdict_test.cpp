@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/replay/fusion_file.hpp"
 #include "libchar/replay/replay.hpp"
 #include "libchar/replay/view/ranking.hpp"
 #include "tests/replay/replay_numbers.hpp"
@@ -21,6 +22,7 @@ struct Sensor {
   double noise = 1, offset = 0, gain = 1;
   double jump = 0;      ///< of the offset, from six tenths of the log on
   double outliers = 0;  ///< share of samples that are 30 times the noise off
+  double louder = 1;    ///< the noise is so many times that, from four tenths of the log on
 };
 
 // A recording of sensors that see one slow signal, beside the signal itself.
@@ -35,8 +37,9 @@ std::string array_log(const std::vector<Sensor>& sensors, std::size_t rows, std:
     char cell[32];
     for (const Sensor& sensor : sensors) {
       const double offset = sensor.offset + (10 * k < 6 * rows ? 0 : sensor.jump);
+      const double noise = sensor.noise * (10 * k < 4 * rows ? 1 : sensor.louder);
       std::snprintf(cell, sizeof cell, ",%.9g",
-                    sensor.gain * x + offset + sensor.noise * gauss() * (gauss.uniform() < sensor.outliers ? 30 : 1));
+                    sensor.gain * x + offset + noise * gauss() * (gauss.uniform() < sensor.outliers ? 30 : 1));
       out += cell;
     }
     std::snprintf(cell, sizeof cell, ",%.9g\n", x);
@@ -82,9 +85,9 @@ TEST_CASE("verdict: without a reference the method is chosen that is best with o
   }
 }
 
-TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
+TEST_CASE("verdict: offsets that a short log cannot take out are asked for, not compared") {
   const test::SceneBench bench;
-  bench.put("array.csv", array_log({{1, -1000}, {1, 300}, {1, 900}, {1, 0}}, 4000, 3));
+  bench.put("array.csv", array_log({{1, -1000}, {1, 300}, {1, 900}, {1, 0}}, 400, 3));
   ReplayResult result = replay(bench.read(scene_of(4, "algorithms: [mean, median]\n")));
   CHECK(result.offsets_decide);
   CHECK(result.chosen_as_robust);
@@ -95,9 +98,52 @@ TEST_CASE("verdict: offsets between the sensors are asked for, not compared") {
   result = replay(bench.read(scene_of(4, "algorithms: [mean]\n")));
   CHECK_FALSE(result.best);
   CHECK_THAT(test::verdict_of(result, false), StartsWith("No method is recommended") && Contains("a stretch at rest"));
-  result = replay(bench.read(scene_of(4, "rest: [0, 10]\nalgorithms: [mean, median]\n")));
+  result = replay(bench.read(scene_of(4, "rest: [0, 1]\nalgorithms: [mean, median]\n")));
   CHECK_FALSE(result.offsets_decide);
   CHECK(result.best);
+}
+
+TEST_CASE("verdict: without a reference offsets are taken out, and the level is stated") {
+  const test::SceneBench bench;
+  const std::vector<Sensor> sensors = {{0.05, -1}, {0.3, 0.3}, {0.3, 0.9}, {0.3, 0.1}, {0.3, 0.2, 1, 0, 0}, {0.3, 40}};
+  bench.put("array.csv", array_log(sensors, 8000, 3));
+  const ReplayResult result = replay(bench.read(scene_of(6, "algorithms: [mean, median, minque]\n")));
+  REQUIRE(result.level_sd);
+  CHECK(*result.level_sd < 0.6);
+  CHECK_FALSE(result.offsets_decide);
+  REQUIRE(result.best);
+  CHECK(result.algorithms[*result.best].label == "minque");
+  double level = 0;  // of the five that do not stand apart
+  for (std::size_t i = 0; i < 5; ++i) level += sensors[i].offset / 5;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    CHECK(result.sensors[i].offset == Approx(sensors[i].offset - level).margin(0.02));
+  CHECK_THAT(test::verdict_of(result, false), Contains("The means of the sensors differ") && Contains("s6: offset 4"));
+  REQUIRE(result.learnt.inputs.at(0).level_sd);
+  CHECK(parse_fusion_file(fusion_yaml(result.learnt), "fusion.yaml").inputs.at(0).level_sd == result.level_sd);
+  bench.put("array.csv", array_log({{1, 0.1}, {1, -0.1}, {1, 0.2}, {1, 5}}, 8000, 3));  // one is a fault
+  CHECK_FALSE(replay(bench.read(scene_of(4, "algorithms: [mean, median]\n"))).level_sd);
+}
+
+TEST_CASE("verdict: a sensor that is louder for most of the log is named") {
+  for (const std::size_t n : {3U, 4U, 6U}) {
+    std::vector<Sensor> sensors(n, Sensor{0.1});
+    sensors[1].louder = 10;
+    const test::SceneBench bench;
+    bench.put("array.csv", array_log(sensors, 20000, n));
+    const ReplayResult result = replay(bench.read(scene_of(n, "algorithms: [mean, median]\n")));
+    const Finding* failing = result.warnings.find("sensor_failing");
+    REQUIRE(failing != nullptr);
+    CHECK(failing->count == 1);
+    CHECK_THAT(failing->where.rows.at(0), StartsWith("s2") && Contains("from the start to 79.4 s"));
+  }
+}
+
+TEST_CASE("verdict: a sensor in another unit is named where the alignment takes its gain out") {
+  const test::SceneBench bench;
+  bench.put("array.csv", array_log({{0.1}, {0.1}, {5.7, 0, 57}, {0.1}}, 8000, 3));
+  const ReplayResult result = replay(bench.read(scene_of(4, "reference: truth\n")));
+  REQUIRE(result.alignment);
+  CHECK_THAT(test::verdict_of(result, false), Contains("s3: gain 57"));
 }
 
 TEST_CASE("verdict: of three sensors the method that withstands a failing one is chosen, and the one is named") {

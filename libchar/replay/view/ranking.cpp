@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -260,6 +261,14 @@ std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   return out;
 }
 
+std::string level_sentence(const ReplayResult& r) {
+  if (!r.level_sd) return "";
+  return fmt::format(
+      "The means of the sensors differ: the level is their mean without those far from the others (± {} "
+      "with 95 %), offsets from it are taken out, and the method is chosen for the variation.",
+      error_text(kNormal95 * *r.level_sd, r.inputs[0].unit));
+}
+
 // Sensors that fail or stand apart, as found.
 std::string doubtful_sensors(const ReplayResult& r) {
   std::string out;
@@ -302,6 +311,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
     out.insert(out.begin(), std::move(single.text));
   else
     add(single.text);
+  add(level_sentence(r));
   add(alone_sentence(r, best));
   add(doubtful_sensors(r));
   for (const Finding& one : best.remarks.list())

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kTerms = 4;             // of a cubic
 constexpr double kParityMemory = 128;         // instants
+constexpr double kAwayMemory = 1024;          // instants
 constexpr double kMargin = 0.15;              // of the range of an input, on either side
 constexpr double kLevelMargin = 0.05;         // of that of the level
 constexpr double kSigmas = 4;                 // of the baseline
@@ -38,7 +39,8 @@ TaughtNetwork::TaughtNetwork(std::size_t sensors, std::size_t lags, const TanhNe
 void TaughtNetwork::start_over() {
   std::fill(mean_.begin(), mean_.end(), 0);
   calm_ = kCalm;
-  drifts_ = false;
+  away_ = limits.away;
+  drifts_ = worse_ = false;
 }
 
 double TaughtNetwork::estimate(const double* past, double* z) const {
@@ -76,6 +78,12 @@ bool TaughtNetwork::consistent(const double* y) {
   return !drifts_;
 }
 
+bool TaughtNetwork::still_better(double baseline) {
+  away_ += ((x_ - baseline) * (x_ - baseline) - away_) / kAwayMemory;
+  worse_ = away_ - limits.away > (worse_ ? kCalmAgain : 1) * limits.gain;
+  return !worse_;
+}
+
 int TaughtNetwork::worst(const std::vector<char>& apart_from) const {
   int out = -1;
   double furthest = 0;
@@ -109,7 +117,8 @@ bool TaughtNetwork::judge(const RecentPast& past, const double* y, const Baselin
   const double variance = baseline.variance > 0 ? baseline.variance : 0;
   if (!good(HandOverReason::apart, std::abs(x_ - baseline.x) <= limits.apart + kSigmas * std::sqrt(variance)))
     return false;
-  if (!good(HandOverReason::inconsistent, consistent(y))) return false;
+  const bool better = still_better(baseline.x);
+  if (!good(HandOverReason::inconsistent, consistent(y)) || !good(HandOverReason::apart, better)) return false;
   if (calm_ < kCalm) ++calm_;
   if (calm_ == kCalm) reason_ = HandOverReason::right;
   return calm_ == kCalm;
@@ -128,6 +137,8 @@ void TaughtNetwork::exchange(LearntExchange& with) {
   with.numbers("low", limits.low);
   with.numbers("high", limits.high);
   with.number("apart", limits.apart);
+  with.number("away", limits.away);
+  with.number("gain", limits.gain);
   with.number("centre", limits.centre);
   with.number("unit", limits.unit);
   with.numbers("reading", limits.reading);
@@ -244,12 +255,13 @@ void Teaching::next(Phase phase) {
       std::fill(part->begin(), part->end(), 0);
   }
   if (phase == Phase::held_out) {
-    held_.network = held_.baseline = held_.weighted = 0;
+    held_.network = held_.baseline = held_.weighted = held_.away = 0;
     std::fill(held_.gain.begin(), held_.gain.end(), 0);
     std::fill(held_.gain_weighted.begin(), held_.gain_weighted.end(), 0);
   }
   if (phase == Phase::tail) {
     tail_.network = tail_.baseline = tail_.apart = 0;
+    tail_.away = made_.limits.away = held_.away;
     tail_.count = 0;
     std::fill(tail_.mean.begin(), tail_.mean.end(), 0);
     std::fill(tail_.largest.begin(), tail_.largest.end(), 0);
@@ -310,6 +322,7 @@ void Teaching::add_held_out(std::size_t k) {
   if (!whole() || !std::isfinite(baseline)) baseline = weighted_error;
   held_.network += network;
   held_.baseline += baseline * baseline;
+  held_.away += (x - truth - baseline) * (x - truth - baseline) / static_cast<double>(rows_.held_out());
   held_.weighted += weighted_error * weighted_error;
   const std::size_t block = k * kBlocks / rows_.held_out();
   held_.gain[block] += baseline * baseline - network;
@@ -335,6 +348,8 @@ void Teaching::add_tail(std::size_t k) {
   tail_.network += (x - truth) * (x - truth);
   tail_.baseline += (baseline - truth) * (baseline - truth);
   tail_.apart = std::max(tail_.apart, std::abs(x - baseline));
+  tail_.away += ((x - baseline) * (x - baseline) - tail_.away) / kAwayMemory;
+  made_.limits.away = std::max(made_.limits.away, tail_.away);
   made_.parity(x, row, made_.s_.data());
   for (std::size_t i = 0; i < n; ++i) {
     tail_.mean[i] += (made_.s_[i] - tail_.mean[i]) / kParityMemory;
@@ -398,6 +413,8 @@ void Teaching::conclude() {
   for (const double g : gain) mean += g / kBlocks;
   for (const double g : gain) square += (g - mean) * (g - mean) / (kBlocks - 1);
   made_.limits.apart = kApart * tail_.apart;
+  made_.away_ = made_.limits.away;
+  made_.limits.gain = held_.baseline - held_.network;
   for (std::size_t i = 0; i < tail_.largest.size(); ++i)
     made_.limits.drift[i] = kDrift * tail_.largest[i] + kChance / std::sqrt(2 * kParityMemory);
   made_.net.held_out_square = held_.network;

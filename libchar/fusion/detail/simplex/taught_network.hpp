@@ -3,12 +3,16 @@
 //   its inputs lie within the range that it learnt,
 //   |x - baseline| <= a + 4 sqrt(V): V the baseline's variance, a the largest distance where the truth was known,
 //   the mean of s_i = y_i - r_i(x) over the last 128 instants stays within what it was there, for each sensor:
-//   r_i, a cubic, is what sensor i read at the true x, so s are the parity residuals of the network.
+//   r_i, a cubic, is what sensor i read at the true x, so s are the parity residuals of the network,
+//   D, the mean of (x - baseline)^2 over the last 1024, is beyond the largest where the truth was known by less than
+//   the network was better there: an input that the network has not learnt adds its error to D, and to its variance.
 // `Teaching` makes one in slices: fit, then judgement on rows that the fit has not seen, by these rules: mean square
 // error smaller than the baseline's by 6 %, by 2.5 standard errors of the difference over blocks, not larger on the
 // last instants of the learning window; and smaller with nine times what the network would have aged since it learnt,
 // sum a_i^2 m_i^2: m_i the mean of s_i on the held-out rows, a_i what a lasting offset of sensor i does to x.
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "libchar/fusion/detail/simplex/network_fit.hpp"
@@ -27,10 +31,12 @@ struct BaselineView {
 struct NetworkLimits {
   std::vector<double> low, high;  ///< of the inputs
   double apart = 0;
-  double centre = 0, unit = 1;    ///< u = (x - centre) / unit
-  std::vector<double> reading;    ///< r_i = sum of four terms u^p, a row a sensor
-  std::vector<double> deviation;  ///< of s_i
-  std::vector<double> drift;      ///< largest mean of s_i / deviation
+  double away = 0;                                        ///< the largest D
+  double gain = std::numeric_limits<double>::infinity();  ///< mean square error of the baseline less its own
+  double centre = 0, unit = 1;                            ///< u = (x - centre) / unit
+  std::vector<double> reading;                            ///< r_i = sum of four terms u^p, a row a sensor
+  std::vector<double> deviation;                          ///< of s_i
+  std::vector<double> drift;                              ///< largest mean of s_i / deviation
 };
 
 class TaughtNetwork {
@@ -40,7 +46,7 @@ class TaughtNetwork {
   /// Its estimate of an instant; false: not to be given out, `reason()` says why.
   bool judge(const RecentPast& past, const double* y, const BaselineView& baseline);
   double x() const { return x_; }
-  double variance() const { return net.held_out_square; }
+  double variance() const { return net.held_out_square + std::max(0.0, away_ - limits.away); }
   HandOverReason reason() const { return reason_; }
   /// The sensor furthest beyond its limit; -1: none.
   int worst(const std::vector<char>& apart_from) const;
@@ -61,12 +67,13 @@ class TaughtNetwork {
   bool good(HandOverReason reason, bool passed);
   bool within(const double* z) const;
   bool consistent(const double* y);
+  bool still_better(double baseline);
 
   std::vector<double> past_, z_, s_, mean_;
   mutable std::vector<double> scratch_;
-  double x_ = 0;
+  double x_ = 0, away_ = 0;
   int calm_ = 0;
-  bool drifts_ = false;
+  bool drifts_ = false, worse_ = false;
   HandOverReason reason_ = HandOverReason::right;
 
   friend class Teaching;
@@ -120,12 +127,12 @@ class Teaching {
     std::vector<double> power, side, squares, means;  // of u; of each sensor times u^p; of s
   } readings_;
   struct {
-    double network = 0, baseline = 0, weighted = 0;
+    double network = 0, baseline = 0, weighted = 0, away = 0;
     std::vector<double> gain,
         gain_weighted;  // of each block: squares of the baseline less those of the network
   } held_;
   struct {
-    double network = 0, baseline = 0, apart = 0;
+    double network = 0, baseline = 0, apart = 0, away = 0;
     std::vector<double> mean, largest;  // of s / deviation
     std::size_t count = 0;
   } tail_;

@@ -5,7 +5,8 @@
 // than the correlation, and falls slower where it never ends: g(m) = a (m/n)^-1 + b (m/n)^-1/4, a
 // and b >= 0, fitted to V_256 … V_8, each a gamma variable of k - 1 degrees of freedom. What is
 // wanted is g(n) = a + b: no batch has seen it, where b > 0. The second term is left out where the
-// batches do not ask for it, first without the shortest, which are correlated soonest.
+// batches do not ask for it, first without the shortest, which are correlated soonest; and it is that of a
+// correlation that ends, exp(-t/T) with T of a ninetieth of the record or less, where that is clearly likelier.
 #include "libchar/replay/detail/judge/mean_uncertainty.hpp"
 
 #include <algorithm>
@@ -23,6 +24,8 @@ namespace {
 constexpr std::array<std::size_t, 6> kBatches = {256, 128, 64, 32, 16, 8};
 constexpr double kSlow = 0.25;  ///< exponent of the second term
 constexpr double kAsked = 0.5;  ///< in deviance: rather a wide interval than a false one
+constexpr std::array kEndingTimes = {1. / 512, 1. / 362, 1. / 256, 1. / 181, 1. / 128, 1. / 90};  ///< T over the record
+constexpr double kLikelier = 1.5;                                                                 ///< in deviance
 constexpr int kRounds = 6;
 
 std::vector<double> batch_means(std::span<const double> series, std::size_t batches) {
@@ -44,8 +47,8 @@ double variance_of(const std::vector<double>& values) {
 
 /// What the scatter of batches of one length says.
 struct BatchVariance {
-  double variance = 0, freedom = 0;
-  std::array<double, 2> unit{};  ///< of the two terms
+  double variance = 0, freedom = 0, share = 0;  ///< of the record, in a batch
+  std::array<double, 2> unit{};                 ///< of the two terms
 };
 
 struct Plot {
@@ -101,6 +104,12 @@ MeanUncertainty answer(const Plot& plot, double freedom, double level) {
   return out;
 }
 
+/// Variance of the mean of a share of the record, of a correlation exp(-t/T).
+double of_ending(double share, double time) {
+  const double q = time / share;
+  return 2 * q * (1 - q * (1 - std::exp(-1 / q)));
+}
+
 }  // namespace
 
 MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
@@ -111,7 +120,7 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
     const double share = static_cast<double>(whole) / static_cast<double>(series.size());
     const double variance = variance_of(batch_means(series, count));
     if (!(variance > 0)) return {0, 0, false};
-    batches.push_back({variance, static_cast<double>(count - 1), {1 / share - 1, std::pow(share, -kSlow) - 1}});
+    batches.push_back({variance, static_cast<double>(count - 1), share, {1 / share - 1, std::pow(share, -kSlow) - 1}});
   }
   if (batches.empty()) return {kNone, kNone, false};
   constexpr std::size_t kFewest = 4;  // lengths, to tell two terms apart
@@ -121,7 +130,18 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
     const Plot one = fitted(rest, false);
     if (one.deviance - fitted(rest, true).deviance < kAsked) return answer(one, (rest[0].freedom + 1) / 4, level);
   }
-  return answer(fitted(all, true), kBatches.back() - 1, level);
+  const Plot slow = fitted(all, true);
+  MeanUncertainty out = answer(slow, kBatches.back() - 1, level);
+  double least = slow.deviance - kLikelier;
+  for (const double time : kEndingTimes) {
+    for (BatchVariance& batch : batches) batch.unit[1] = of_ending(batch.share, time) / of_ending(1, time) - 1;
+    const Plot ending = fitted(batches, true);
+    if (ending.deviance >= least) continue;
+    least = ending.deviance;
+    out = answer(ending, 1 / (8 * time), level);
+    out.long_memory = false;
+  }
+  return out;
 }
 
 double slow_slope(std::span<const double> series) {

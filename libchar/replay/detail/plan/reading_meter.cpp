@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -32,6 +33,9 @@ constexpr double kLeastGain = 0.05;
 constexpr double kLeastLouder = 1;  // of the logarithm of the noise
 // Scatter of sound sensors of one kind.
 constexpr double kUsualGain = 0.03, kUsualLevel = 0.3;
+constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
+constexpr double kOfNormal = 1.4826;   // deviation over the median distance
+constexpr double kNear = 3;            // such deviations from the median: they make the level
 constexpr double kFalseAlarm = 0.003;  // of each of the three in a sound array
 
 double quantile(std::vector<double> values, double share) {
@@ -50,6 +54,9 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
   return 0;
 }
 
+/// Of two scatters over the usual one that which is further from it.
+double less_usual(double a, double b) { return std::max(b, 1 / b) > std::max(a, 1 / a) ? b : a; }
+
 /// One sensor that is far off moves the median by as much as the others scatter: what moves no further than
 /// that is its doing.
 std::vector<ReadingMeter::Change> own_changes(std::vector<ReadingMeter::Change> changes,
@@ -62,7 +69,8 @@ std::vector<ReadingMeter::Change> own_changes(std::vector<ReadingMeter::Change> 
   double furthest = 0;
   for (const auto& change : changes) furthest = std::max(furthest, std::abs(change.offset));
   std::erase_if(changes, [&](const ReadingMeter::Change& change) {
-    return change.scatter <= kLouder && std::abs(change.offset) < furthest && std::abs(change.offset) <= usual;
+    return change.scatter <= kLouder && change.scatter * kLouder >= 1 && std::abs(change.offset) < furthest &&
+           std::abs(change.offset) <= usual;
   });
   return changes;
 }
@@ -148,14 +156,43 @@ ReadingMeter::Readings ReadingMeter::result() const { return readings(kUsual, 1,
 
 ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHalf, kOfHalfRms); }
 
-bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual) {
+std::optional<ReadingMeter::Level> ReadingMeter::level() const {
+  Level out;
+  std::vector<double> scatter, away;
+  for (std::size_t i = 0; i < n_; ++i) {
+    std::vector<double> means, rms;
+    for (const auto& block : blocks_)
+      if (block[i].n >= kLeastInBlock) means.push_back(fit(block[i], 0, 0).mean);
+    if (means.size() < kLeastBlocks) return std::nullopt;
+    out.offsets.push_back(median_in_place(means));
+    for (const auto& block : blocks_)
+      if (block[i].n >= kLeastInBlock) rms.push_back(fit(block[i], out.offsets[i], 0).rms);
+    scatter.push_back(median_in_place(rms));
+  }
+  std::vector<double> middle = out.offsets, near;
+  const double median = median_in_place(middle);
+  for (const double offset : out.offsets) away.push_back(std::abs(offset - median));
+  const double away_all = median_in_place(away), noise = median_in_place(scatter);
+  if (!(away_all * away_all > kOffsetsCount * (away_all * away_all + noise * noise))) return std::nullopt;
+  for (const double offset : out.offsets)
+    if (std::abs(offset - median) <= kNear * kOfNormal * away_all) near.push_back(offset);
+  const auto n = static_cast<double>(near.size());
+  double mean = 0, squares = 0;
+  for (const double offset : near) mean += offset / n;
+  for (const double offset : near) squares += (offset - mean) * (offset - mean);
+  for (double& offset : out.offsets) offset -= mean;
+  out.sd = std::sqrt(squares / (n * (n - 1))) * student_quantile(0.975, n - 1) / kNormal95;
+  return out;
+}
+
+bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual, bool quieter) {
   return std::abs(block.mean) > std::max(kBeyondUsual * usual.usual_mean, kBeyondNoise * usual.usual_rms) ||
-         block.rms > kLouder * usual.usual_rms;
+         block.rms > kLouder * usual.usual_rms || (quieter && block.rms * kLouder < usual.usual_rms);
 }
 
 // Outliers put single blocks of any sensor beyond: so many in a row are more than those of the middle sensor do by
 // chance, in all sensors together.
-std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
+std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, bool quieter) const {
   constexpr double kByChance = 1e-3;
   std::vector<double> begun;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
@@ -164,7 +201,7 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
     bool before = false;
     for (const auto& block : blocks_) {
       const Sums& s = block[i];
-      const bool now = s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i]);
+      const bool now = s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i], quieter);
       times += now && !before ? 1 : 0;
       before = now;
     }
@@ -177,8 +214,8 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt) const {
   return std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(row)));
 }
 
-std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) const {
-  const std::int64_t least = least_in_a_row(learnt);
+std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, bool quieter) const {
+  const std::int64_t least = least_in_a_row(learnt, quieter);
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
@@ -189,19 +226,19 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt) 
       const Sums& s = blocks_[k][i];
       if (s.n < kLeastInBlock) continue;
       const Fit here = fit(s, usual.offset, usual.gain);
-      if (!beyond(here, usual)) {
+      if (!beyond(here, usual, quieter)) {
         in_a_row = 0;
         continue;
       }
       if (in_a_row++ == 0) row = {i, 0, 1, static_cast<std::int64_t>(k), 0, false};
       if (std::abs(here.mean) > std::abs(row.offset)) row.offset = here.mean;
-      if (usual.usual_rms > 0) row.scatter = std::max(row.scatter, here.rms / usual.usual_rms);
+      if (usual.usual_rms > 0) row.scatter = less_usual(row.scatter, here.rms / usual.usual_rms);
       if (in_a_row < least) continue;
       if (first < 0) first = row.from;
       last = static_cast<std::int64_t>(k);
       ++changed;
       if (std::abs(row.offset) > std::abs(one.offset)) one.offset = row.offset;
-      one.scatter = std::max(one.scatter, row.scatter);
+      one.scatter = less_usual(one.scatter, row.scatter);
     }
     if (changed == 0) continue;
     one.from = first * block_ * stride_;
@@ -244,7 +281,7 @@ double apart_from(std::vector<double> others, double value, double usual_sd) {
   if (others.size() < kMany) return by_sd;
   const double middle = median_in_place(others);
   for (double& other : others) other = std::abs(other - middle);
-  const double by_median = (value - middle) / (kOfMedian * 1.4826 * median_in_place(others));
+  const double by_median = (value - middle) / (kOfMedian * kOfNormal * median_in_place(others));
   return std::abs(by_median) > std::abs(by_sd) ? by_median : by_sd;
 }
 
@@ -304,14 +341,20 @@ void warn_of_apart(const ReadingMeter::Readings& steady, const std::vector<std::
 }  // namespace
 
 void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
-                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
-  const ReadingMeter::Readings steady = meter.steady();
-  std::vector<ReadingMeter::Change> changes = meter.changes(steady);
+                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
+                      Findings& warnings) {
+  ReadingMeter::Readings steady = meter.steady();
+  std::vector<ReadingMeter::Change> changes = meter.changes(steady, true);
   // Where most change it is what they see that does: motion, and how the sensors differ in it.
   if (2 * changes.size() > steady.size()) changes.clear();
   for (const ReadingMeter::Change& change : changes)
     warnings.add("sensor_failing", "sensors read otherwise, relative to the others, than for most of the run",
                  change_text(change, names, units, clock));
+  for (std::size_t i = 0; i < steady.size(); ++i)
+    if (steady[i]) {
+      steady[i]->offset += taken_out[i].offset;
+      steady[i]->gain += taken_out[i].gain;
+    }
   warn_of_apart(steady, names, units, warnings);
 }
 

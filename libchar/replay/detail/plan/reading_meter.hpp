@@ -33,16 +33,25 @@ class ReadingMeter {
   /// half of the log are not in it.
   Readings steady() const;
 
+  /// Where offsets are a fifth of the mean square of what the sensors differ by, or more: of each sensor its middle
+  /// distance from the median of all, less the level, the mean of these distances without those that stand apart.
+  struct Level {
+    std::vector<double> offsets;
+    double sd = 0;  ///< of the level; 1.96 of it hold 95 %
+  };
+  std::optional<Level> level() const;
+
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other, and in more than
   /// outliers of all sensors explain.
   struct Change {
     std::size_t sensor = 0;
     double offset = 0;              ///< largest mean beyond what was learnt
-    double scatter = 1;             ///< largest rms over the learnt one
+    double scatter = 1;             ///< rms over the learnt one, the furthest from 1
     std::int64_t from = 0, to = 0;  ///< instants
     bool to_end = false;
   };
-  std::vector<Change> changes(const Readings& learnt) const;
+  /// `quieter`: also where it scatters less, as one does that fails for most of the log.
+  std::vector<Change> changes(const Readings& learnt, bool quieter = false) const;
 
  private:
   struct Sums {
@@ -53,8 +62,8 @@ class ReadingMeter {
     double mean = 0, rms = 0;
   };
   static Fit fit(const Sums& sums, double a, double b);
-  static bool beyond(const Fit& block, const LearntSensor::Reading& usual);
-  std::int64_t least_in_a_row(const Readings& learnt) const;
+  static bool beyond(const Fit& block, const LearntSensor::Reading& usual, bool quieter);
+  std::int64_t least_in_a_row(const Readings& learnt, bool quieter) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
 
@@ -70,10 +79,17 @@ struct Clock {
   double start_s = 0, rate_hz = 1;
 };
 
+/// Of a sensor, before it was fused.
+struct TakenOut {
+  double offset = 0, gain = 0;
+};
+
 /// Sensors that read otherwise than they do for most of the log they are judged by, or than all
-/// others throughout: offset, gain and noise of one that stand apart from those of the rest.
+/// others throughout: offset, gain and noise of one that stand apart from those of the rest. `taken_out`: what the
+/// meter did not see.
 void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
-                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
+                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
+                      Findings& warnings);
 
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
