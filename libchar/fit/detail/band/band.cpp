@@ -548,7 +548,7 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
-  double least = unshaped.half_deviance - .1;
+  double least = unshaped.half_deviance - kNeeded / 2;
   for (const NamedShape& start : high_pass_starts(search.rate_hz, duration_s)) {
     band.named = start;
     const BinProblem problem = bin_problem(bins_of(search.bins, band, search.rate_hz));
@@ -557,7 +557,6 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
     least = value;
     best = start;
   }
-  fprintf(stderr, "DBG gain %g\n", 2 * (unshaped.half_deviance - least));
   if (best.family == NamedShape::Family::none) return std::nullopt;
   const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz), search.rate_hz, search.terms,
                                      NamedShape::Family::high_pass, best);
@@ -570,15 +569,14 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   process.tau_s = 1 / (2 * std::numbers::pi * shape->pole_hz);
   TermSet offered = search.terms;
   offered[kLentTerm] = offered[kQuantizationTerm] = true;
-  if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance < least + kAsGood) { fprintf(stderr, "DBG process as good\n");
-    return std::nullopt; }
+  if (score(bin_problem(bins_of(search.bins, process, search.rate_hz)), offered).half_deviance < least + kAsGood)
+    return std::nullopt;
   // Below, the two ends of the record hold more power than what the high-pass lets through.
   const double corner = shape->pole_hz;
   const double ends_hz = 2 * corner / std::sqrt(2 * std::numbers::pi * corner * duration_s);
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
   const std::optional<Trial> trial = search.at(band);
-  if (trial) fprintf(stderr, "DBG passes %d slow end %g\n", trial->band.passes, slow_end_of(search, *trial));
   if (!trial || !trial->band.passes || slow_end_of(search, *trial) > kFalls) return std::nullopt;
   return trial->band;
 }
@@ -616,7 +614,6 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   if (!unshaped) return whole;
   const double slowest_hz = search.slowest_hz();
   const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};
-  fprintf(stderr, "DBG rising %g\n", shelf.rising);
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
