@@ -542,9 +542,9 @@ double slow_end_of(const Search& search, const Trial& trial) {
 
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
 std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
-  constexpr double kNeeded = 16;  ///< of 2 lnL
+  constexpr double kNeeded = 10;  ///< of 2 lnL
   constexpr double kPeriods = 4;  ///< of the corner in the record: below, a drift looks like that
-  constexpr double kFalls = 0.5;  ///< at the slow end, of the largest
+  constexpr double kFalls = 2;  ///< at the slow end, of the largest
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
@@ -564,7 +564,7 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   band.named = *shape;
   band.orders = 1;
   // A walk behind a high-pass is a Gauss-Markov process, and quantization noise rises: they have their own searches.
-  constexpr double kAsGood = 3;  ///< of ln L
+  constexpr double kAsGood = 4;  ///< of ln L
   Band process = unshaped.band;
   process.tau_s = 1 / (2 * std::numbers::pi * shape->pole_hz);
   TermSet offered = search.terms;
