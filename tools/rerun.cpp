@@ -10,6 +10,7 @@
 
 #include "libchar/core/document/result_check.hpp"
 #include "libchar/core/file/file_text.hpp"
+#include "libchar/core/file/log_files.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -49,11 +50,13 @@ std::vector<std::string> words_in(const Json& command) {
   return words;
 }
 
-bool is_below(const fs::path& folder, const fs::path& file) {
-  std::error_code ignored;
-  const fs::path outer = fs::weakly_canonical(folder, ignored);
-  const fs::path inner = fs::weakly_canonical(file, ignored);
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+/// What else is opened with a name: sidecars, of a folder all that lies in it. Each may be a link.
+std::vector<fs::path> opened_with(const fs::path& file) {
+  std::vector<fs::path> out;
+  for (const char* suffix : {".json", ".yaml", ".yml"}) out.push_back(fs::path(file) += suffix);
+  std::error_code none;
+  for (fs::directory_iterator at(file, none), end; !none && at != end; at.increment(none)) out.push_back(at->path());
+  return out;
 }
 
 /// A document is data: what its command reads lies where one stands (or --in), or beside the folder of the
@@ -65,8 +68,15 @@ void refuse_reading(const RerunOptions& options, const std::vector<ParsedWord>& 
   for (const ParsedWord& word : words) {
     if (word.flag == "--allow-outside") outside.push_back(word.flag);
     if (word.writes || word.file.empty() || word.file == "-") continue;
+    const auto is_near = [&](const fs::path& file) {
+      return detail::is_beneath(file, here) || (beside.has_relative_path() && detail::is_beneath(file, beside));
+    };
     const fs::path file = fs::absolute(here) / word.file;
-    if (!is_below(here, file) && !is_below(beside, file)) outside.push_back(printable(word.file));
+    if (is_near(file)) {
+      const std::vector<fs::path> opened = opened_with(file);
+      if (std::all_of(opened.begin(), opened.end(), is_near)) continue;
+    }
+    outside.push_back(printable(word.file));
   }
   if (outside.empty() || options.allow_read) return;
   throw usage_error("E0523", options.document)

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
@@ -27,11 +28,6 @@ struct Named {
 };
 
 bool leaves(const fs::path& relative) { return !relative.empty() && *relative.begin() == ".."; }
-
-// Is `file` in `folder` or below? Both without links.
-bool is_beneath(const fs::path& file, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
-}
 
 fs::path folder_of(const std::string& scene) {
   const fs::path folder = fs::path(scene).parent_path();
@@ -99,13 +95,12 @@ std::string resolve_scene_file(const std::string& text, const SceneFolder& folde
   if (problem || root_problem)
     throw named.refusal("E0732").says("cannot look at {}: {}", printable(whole.string()),
                                       (problem ? problem : root_problem).message());
-  if (!folder.allow_outside && !is_beneath(real, real_root))
+  if (!folder.allow_outside && !detail::is_beneath(real, real_root))
     throw named.refusal("E0731")
         .says("a link leads out of the scene's folder, to {}", printable(real.string()))
         .hint(kOutside);
-  // Some of what the kernel shows there calls itself a regular file and has no end.
-  for (const char* system : {"/proc", "/sys"})
-    if (is_beneath(real, system)) throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
+  if (detail::is_of_the_kernel(real))
+    throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
   if (fs::equivalent(whole, folder.scene, problem)) throw named.refusal("E0734").says("the scene names itself as data");
   return whole.string();
 }

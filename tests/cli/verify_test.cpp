@@ -66,6 +66,15 @@ TEST_CASE("verify: inputs that lie elsewhere are found from a folder") {
   CHECK(test::run({"verify", out, "--in", folder.path().string()}).code == 0);
 }
 
+TEST_CASE("verify: what the kernel shows as a file is not an input, since some of it does not end") {
+  const VerifyBench bench;
+  const files::path report = files::path(bench.out) / "report.json";
+  auto document = libchar::parse_json(test::slurp(report), "report");
+  document["input"][0]["path"] = "/proc/self/status";
+  std::ofstream(report) << document.dump();
+  CHECK_THAT(bench.verify().out, Contains("missing   /proc/self/status (input)"));
+}
+
 TEST_CASE("verify: a folder without a report, and documents of other kinds, are refused") {
   const test::TemporaryFolder folder;
   CHECK_THAT(test::run({"verify", folder.path().string()}).err, Contains("E0556"));

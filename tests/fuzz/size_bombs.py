@@ -8,6 +8,7 @@ code of docs/errors.md and at most one error within --seconds of processor time 
 import argparse
 import io
 import json
+import lzma
 import os
 import pathlib
 import resource
@@ -34,6 +35,8 @@ def csv_files():
                                + "1," * 49_999 + "1\n").encode() * 1
     yield "names of strange units", (",".join(f"a{k} [{'m' * (k % 90)}/s^{k}]" for k in range(50_000)) + "\n"
                                      + "1," * 49_999 + "1\n").encode()
+    yield "empty cells of many columns", (b"x," + b"," * 9000 + b"1\n") * 1000
+    yield "empty cells of two thousand columns", (b"," * 2000 + b"1\n") * 4500
     yield "quoted header of a million lines", b'"' + b"\n" * MILLION + b'",b\n1,2\n2,3\n'
     yield "quoted cells of many lines", b'a,b\n' + (b'"' + b"\n" * 1000 + b'",2\n') * 5000
     yield "one long name", b"a" * 9_000_000 + b",b\n1,2\n2,3\n"
@@ -200,6 +203,123 @@ def flight_files():
     yield "bin", "heads of messages only", form(200, b"A") + b"\xa3\x95\xc8" * 3_000_000
 
 
+def packed_files():
+    yield "csv.gz", "zeros", packed(lambda write: [write(bytes(MILLION)) for _ in range(300)])
+    yield "csv.gz", "rows again and again", packed(
+        lambda write: [write(b"a,b\n")] + [write(b"1,2\n" * 250_000) for _ in range(300)])
+    yield "csv.gz", "one long line", packed(lambda write: [write(b"1," * 500_000) for _ in range(300)])
+    yield "csv.gz", "empty members", zlib_gzip(b"") * 400_000
+    yield "csv.gz", "a head of a long name", b"\x1f\x8b\x08\x08" + bytes(6) + b"n" * 9_000_000
+    yield "csv.xz", "zeros", lzma.compress(bytes(60 * MILLION), preset=0)
+    yield "csv.xz", "rows again and again", lzma.compress(b"a,b\n" + b"1,2\n" * 25 * MILLION, preset=0)
+    yield "csv.xz", "a dictionary of 4 GB", b"\xfd7zXZ\0\0\1\x69\x22\xde\x36\2\0\x21\1\x28\0\0\0" + bytes(100)
+    yield "csv.xz", "empty streams", lzma.compress(b"") * 300_000
+    block = lambda size, kind, last, data: struct.pack("<I", size << 3 | kind << 1 | last)[:3] + data
+    head = lambda window: b"\x28\xb5\x2f\xfd\0" + bytes([window])
+    yield "csv.zst", "zeros", head(0x58) + block(131_072, 1, 0, b"\0") * 2_400_000
+    yield "csv.zst", "rows of one digit", (head(0x58) + block(8, 0, 0, b"a,b\n1,2\n")
+                                           + block(131_072, 1, 0, b"1") * 2_400_000)
+    yield "csv.zst", "line ends", head(0x58) + block(131_072, 1, 0, b"\n") * 2_400_000
+    yield "csv.zst", "a window of a terabyte", head(0xF8) + block(8, 0, 1, b"t,a\n1,2\n")
+    yield "csv.zst", "a window of 2 GB", head(0xA8) + block(131_072, 1, 0, b"1") * 2_400_000
+    yield "csv.zst", "frames to skip", struct.pack("<II", 0x184D2A50, 0) * 1_200_000
+    yield "csv.zst", "empty frames", (head(0x00) + block(0, 0, 1, b"")) * 1_000_000
+
+
+def packed(fill):
+    squeeze, out = zlib.compressobj(9, wbits=31), []
+    fill(lambda data: out.append(squeeze.compress(data)))
+    return b"".join(out) + squeeze.flush()
+
+
+def zlib_gzip(data):
+    return packed(lambda write: write(data))
+
+
+def zipped(members, method=zipfile.ZIP_DEFLATED):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", method, compresslevel=9) as file:
+        for name, pieces in members:
+            with file.open(name, "w", force_zip64=True) as member:
+                for piece, times in pieces:
+                    for _ in range(times):
+                        member.write(piece)
+    return out.getvalue()
+
+
+SHEET = b'<?xml version="1.0"?><worksheet><sheetData>'
+BOOK = ("xl/workbook.xml", [(b'<workbook xmlns:r="r"><sheets><sheet name="a" sheetId="1" r:id="rId1"/></sheets>'
+                             b'</workbook>', 1)])
+LINKS = ("xl/_rels/workbook.xml.rels", [(b'<Relationships><Relationship Id="rId1" Type="x/worksheet" '
+                                         b'Target="worksheets/sheet1.xml"/></Relationships>', 1)])
+
+
+def workbook(sheet, *more):
+    return zipped([BOOK, LINKS, ("xl/worksheets/sheet1.xml", [(SHEET, 1), *sheet]), *more])
+
+
+def table_files():
+    row = b'<row r="1"><c r="A1"><v>1</v></c></row>'
+    shared = b'<row r="1"><c r="A1" t="s"><v>4000000000</v></c></row>'
+    yield "xlsx", "rows again and again", workbook([(row * 25_000, 100)])
+    yield "xlsx", "a column far out", workbook([(b'<row r="1"><c r="XFD1"><v>1</v></c></row>' * 25_000, 80)])
+    yield "xlsx", "columns of many letters", workbook([
+        (b'<row r="1"><c r="' + b"Z" * 60_000 + b'1"><v>1</v></c></row>', 1000)])
+    yield "xlsx", "rows far down", workbook([(b'<row r="1"><c r="A1"><v>1</v></c></row><row r="999999999999">'
+                                              b'<c r="A999999999999"><v>1</v></c></row>', 1)])
+    yield "xlsx", "tags in tags", workbook([(b"<a>" * 250_000, 100)])
+    yield "xlsx", "one long text", workbook([
+        (b'<row r="1"><c r="A1" t="inlineStr"><is><t>', 1), (b"x" * MILLION, 200)])
+    yield "xlsx", "attributes", workbook([(b"<row ", 1), (b'a="b" ' * 200_000, 100)])
+    yield "xlsx", "shared texts", workbook([(shared, 1)], ("xl/sharedStrings.xml", [
+        (b"<sst>", 1), (b"<si><t>a</t></si>" * 50_000, 200)]))
+    yield "xlsx", "long shared texts", workbook([(b'<row r="1">', 1), (b'<c t="s"><v>0</v></c>' * 1000, 100)], (
+        "xl/sharedStrings.xml", [(b"<sst><si><t>", 1), (b"y" * 60_000, 1), (b"</t></si></sst>", 1)]))
+    yield "xlsx", "styles", workbook([(row, 1)], ("xl/styles.xml", [
+        (b"<styleSheet><cellXfs>", 1), (b'<xf numFmtId="14"/>' * 50_000, 200)]))
+    yield "xlsx", "sheets", zipped([("xl/workbook.xml", [(b"<workbook><sheets>", 1), (
+        b'<sheet name="a" sheetId="1" r:id="rId1"/>' * 25_000, 150)]), LINKS])
+    yield "xlsx", "entities", workbook([(b'<!DOCTYPE a [<!ENTITY b "cccccccccc">]><row r="1"><c r="A1"><v>', 1),
+                                        (b"&b;" * 300_000, 50)])
+    yield "zip", "rows again and again", zipped([("a.csv", [(b"a,b\n", 1), (b"1,2\n" * 250_000, 300)])])
+    yield "zip", "many tables", zipped([(f"{k}.csv", [(b"t,a\n1,2\n2,3\n", 1)]) for k in range(60_000)])
+    yield "zip", "many wide tables", zipped([
+        (f"{k}.csv", [(b"a,", 50_000), (b"b\n", 1), (b"1,", 50_000), (b"1\n", 1)]) for k in range(20)])
+    yield "zip", "folders in folders", zipped([("a/" * 30_000 + f"{k}.csv", [(b"t,a\n1,2\n", 1)]) for k in range(70)])
+    yield "zip", "zeros", zipped([(f"{k}.csv", [(bytes(MILLION), 40)]) for k in range(40)])
+    riff = lambda channels, bits, size, data: (b"RIFF" + struct.pack("<I", 0xFFFFFFFF) + b"WAVEfmt " + struct.pack(
+        "<IHHIIHH", 16, 1, channels, 48_000, 0xFFFFFFFF, channels * bits // 8 & 0xFFFF, bits) + b"data" + struct.pack(
+            "<I", size) + data)
+    yield "wav", "more than there is", riff(2, 16, 0xFFFFFFF0, bytes(9_000_000))
+    yield "wav", "as many channels as fit", riff(65_535, 8, 9_000_000, bytes(9_000_000))
+    yield "wav", "wide channels", riff(8191, 64, 9_000_000, bytes(9_000_000))
+    yield "wav", "empty chunks", b"RIFF" + struct.pack("<I", 0) + b"WAVE" + b"junk\0\0\0\0" * 1_200_000
+    four = lambda kind, rows, columns, name, data: struct.pack("<IIIII", kind, rows, columns, 0,
+                                                               len(name) + 1) + name + b"\0" + data
+    yield "mat", "version 4, more than there is", four(0, 2**31 - 1, 2**31 - 1, b"a", bytes(80))
+    yield "mat", "version 4, many variables", four(0, 1, 1, b"a", bytes(8)) * 290_000
+    yield "mat", "version 4, empty variables", four(0, 0, 2**31 - 1, b"a", b"") * 400_000
+    yield "mat", "version 4, bytes as columns", four(50, 1, 9_000_000, b"a", bytes(9_000_000))
+    yield "mat", "version 4, a long name", struct.pack("<IIIII", 0, 1, 1, 0, 2**31 - 1) + b"n" * 9_000_000
+    yield "jsonl", "many keys", (b"{" + b",".join(b'"k%d":1' % k for k in range(90_000)) + b"}\n") * 9
+    yield "jsonl", "other keys in every line", b"".join(b'{"t":%d,"k%d":1}\n' % (k, k) for k in range(400_000))
+    yield "jsonl", "deep", b'{"a":' * 1_900_000
+    yield "jsonl", "arrays", b'{"a":[' + b"1," * 4_900_000
+    yield "jsonl", "deep lines", (b'{"a":' * 60 + b"1" + b"}" * 60 + b"\n") * 23_000
+    yield "jsonl", "one long key", b'{"' + b"k" * 9_000_000 + b'":1}\n'
+    yield "jsonl", "escapes", b'{"a":"' + b"\\u0041" * 1_600_000 + b'"}\n'
+    yield "jsonl", "numbers of many digits", (b'{"a":' + b"9" * 100_000 + b"}\n") * 90
+    yield "txt", "sentences of other kinds", b"".join(
+        b"$GP%c%c%c,1,2*00\n" % (65 + k % 26, 65 + k // 26 % 26, 65 + k // 676 % 26) for k in range(600_000))
+    yield "txt", "echoed keys", b"".join(b"k%d: 1\n---\n" % k for k in range(600_000))
+    yield "txt", "echoed depth", b"".join(b" " * k + b"k:\n" for k in range(4000))
+    yield "csv", "groups", b"t,name,x\n" + b"".join(b"%d,n%d,1\n" % (k, k) for k in range(600_000))
+    yield "lvm", "segments", b"LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\n" * 150_000
+    yield "lvm", "channels", (b"LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\nChannels\t999999999\n"
+                              b"***End_of_Header***\n" + b"1\t" * 3_000_000)
+    yield "imu", "zeros", bytes(10_000_000)
+
+
 def document_files():
     head = "format: sensor-model\nversion: 1\nchannel: a\nunit: V\ndensity: two-sided\nrate_hz: 100\n"
     yield "sensor.yaml", "many keys", ["model"], (head + "".join(f"k{k}: 1\n" for k in range(500_000))).encode()
@@ -217,12 +337,15 @@ def document_files():
             b'"k%d":1' % k for k in range(700_000)) + b"}"), ("many files", b'{"format":"characterization","files":['
                                                               + b'"a",' * 2_000_000 + b'"b"]}')):
         yield "json", name, ["report"], content
+    said = b'{"tool":{},"files":[],"a":[%s]}'
+    for name, piece in (("objects", b'{},'), ("arrays", b"[],"), ("numbers", b"1,"), ("keys", b'{"a":1},')):
+        yield "json", f"results of {name}", ["verify"], said % (piece * (9_000_000 // len(piece)) + b"1")
 
 
 def all_files():
     for name, data in csv_files():
         yield "csv", name, ["inspect"], data
-    for suffix, name, data in (*array_files(), *topic_files(), *flight_files()):
+    for suffix, name, data in (*array_files(), *topic_files(), *flight_files(), *packed_files(), *table_files()):
         yield suffix, name, ["inspect"], data
     yield from document_files()
 

@@ -131,6 +131,19 @@ TEST_CASE("damaged compressed data are an error, two members are one log") {
   CHECK(read_recording(path, options).info.rows == 120);
 }
 
+TEST_CASE("a small file is not gigabytes of text") {
+  NEEDS_LIBRARY(ZSTD);
+  using namespace std::string_literals;
+  std::string frame = "\x28\xb5\x2f\xfd\0\x58"s + "\x40\0\0"s + "a,b\n1,2\n";
+  for (int k = 0; k < 300; ++k) frame += "\x02\0\x10\n"s;  // 131072 times the same byte
+  CHECK_THROWS_WITH(read_bytes(frame, ".zst", 1U << 21U), Catch::Contains("E0329") && Catch::Contains("100 times"));
+  std::string objects = "{";
+  for (int k = 0; k < 40000; ++k) objects += (k > 0 ? ",\"k" : "\"k") + std::to_string(k) + "\":1";
+  objects += "}\n";
+  for (int k = 0; k < 4000; ++k) objects += "{\"k0\":1}\n";
+  CHECK_THROWS_WITH(read_bytes(objects, ".jsonl", 1U << 21U), Catch::Contains("E0329") && Catch::Contains("32 times"));
+}
+
 TEST_CASE("only text is read compressed") {
   NEEDS_LIBRARY(ZLIB);
   NEEDS_LIBRARY(ZSTD);

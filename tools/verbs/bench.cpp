@@ -216,16 +216,14 @@ void run_bench(Session& session, BenchVerb& verb) {
     throw usage_error("E0205", "--parts")
         .says("nothing to do: models and logs are for characterization, scenes for fusion")
         .hint("other files, or other parts");
+  std::optional<BenchChanges> changes;
+  if (!verb.against.empty()) changes = bench_changes(older, report, verb.against);
   std::vector<std::string> removed;
   if (!verb.folder.empty())
     removed = write_outputs(bench_files(report, verb.folder), verb.folder, inputs_named, verb.force);
   Json document = document_of(bench_fields(), report);
   const double tolerance = verb.tolerance.value_or(5) / 100;
-  std::optional<BenchChanges> changes;
-  if (!verb.against.empty()) {
-    changes = bench_changes(older, report, verb.against);
-    document["against"] = changes_json(*changes, tolerance);
-  }
+  if (changes) document["against"] = changes_json(*changes, tolerance);
   if (verb.json) {
     print(dump_json(document));
   } else {

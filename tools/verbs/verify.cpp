@@ -104,15 +104,16 @@ void run_again(Session& session, const VerifyVerb& verb, const std::string& docu
 }
 
 void run_verify(Session& session, const VerifyVerb& verb) {
-  const std::vector<ResultCheck> checks = check_results(verb.results, verb.inputs_in);
   if (!verb.again.empty()) {
-    if (checks.size() != 1)
+    const std::vector<std::string> documents = detail::result_documents(verb.results);
+    if (documents.size() != 1)
       throw usage_error("E0205", "--rerun")
           .says("runs one document again, and here are several")
-          .got(std::to_string(checks.size()))
+          .got(std::to_string(documents.size()))
           .hint("name the document itself");
-    return run_again(session, verb, checks[0].document);
+    return run_again(session, verb, documents[0]);
   }
+  const std::vector<ResultCheck> checks = check_results(verb.results, verb.inputs_in);
   if (verb.json) {
     Json document = document_head(session, "result-check", {});
     document["documents"] = Json::array();

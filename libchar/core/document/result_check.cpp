@@ -33,7 +33,7 @@ std::string digest_of(const std::string& path) {
 
 FileState state_of(const std::string& path, const std::string& digest) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return FileState::missing;
+  if (!fs::is_regular_file(path, ignored) || detail::is_of_the_kernel(path)) return FileState::missing;
   if (digest.empty()) return FileState::there;
   const std::string now = digest_of(path);
   return now.empty() ? FileState::missing : now == digest ? FileState::same : FileState::changed;
@@ -103,7 +103,7 @@ bool ResultCheck::holds() const {
   });
 }
 
-std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in) {
+std::vector<std::string> detail::result_documents(const std::string& folder_or_document) {
   refuse_interrupted(folder_or_document);
   std::vector<fs::path> documents = {folder_or_document};
   std::error_code problem;
@@ -115,17 +115,23 @@ std::vector<ResultCheck> check_results(const std::string& folder_or_document, co
       if (entry->path().extension() == ".json") documents.push_back(entry->path());
     std::sort(documents.begin(), documents.end());
   }
-  std::vector<ResultCheck> out;
+  std::vector<std::string> out;
   for (const fs::path& path : documents) {
     const Json document = result_document(path.string());
-    if (document.is_object() && document.contains("files") && document.contains("tool"))
-      out.push_back(check_document(path, document, inputs_in));
+    if (document.is_object() && document.contains("files") && document.contains("tool")) out.push_back(path.string());
   }
   if (out.empty())
     throw input_error("E0556", folder_or_document)
         .says(folder ? "holds no document that names its files (report.json, runs.json, lot.json)"
                      : "is no document that names its files (report.json, runs.json, lot.json)")
         .hint("name a folder that characterize or replay has written");
+  return out;
+}
+
+std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in) {
+  std::vector<ResultCheck> out;
+  for (const std::string& path : detail::result_documents(folder_or_document))
+    out.push_back(check_document(path, result_document(path), inputs_in));
   return out;
 }
 

@@ -59,6 +59,15 @@ bool is_rosbag2(const std::string& file) {
   return front.find(kInformation) != std::string::npos;
 }
 
+bool detail::is_beneath(const fs::path& file, const fs::path& folder) {
+  std::error_code none;
+  const fs::path outer = fs::weakly_canonical(folder, none);
+  const fs::path inner = fs::weakly_canonical(file, none);
+  return !outer.empty() && std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+bool detail::is_of_the_kernel(const fs::path& file) { return is_beneath(file, "/proc") || is_beneath(file, "/sys"); }
+
 bool detail::is_folder_of_tables(const std::string& path) {
   std::error_code none;
   return fs::is_directory(path, none) && named_log_file(path) == path && !tables_in(path).empty();

@@ -2,6 +2,7 @@
 // The files that one log consists of: a recording of rosbag2 is a folder of parts, which its metadata.yaml lists in their order.
 // Readers read them, and whoever asks whether a log is still what it was takes the digest of them all.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ bool is_rosbag2(const std::string& file);
 namespace detail {
 /// Is this a folder with files of CSV (.csv, .tsv), as phones write one for each sensor?
 bool is_folder_of_tables(const std::string& path);
+
+/// Is this in the folder or below it, links followed?
+bool is_beneath(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+/// Is this below /proc or /sys? Some of what the kernel shows there calls itself a regular file and has no end.
+bool is_of_the_kernel(const std::filesystem::path& file);
 }  // namespace detail
 
 /// Of a folder of tables these in the order of their names; else the file itself and, of a metadata.yaml of rosbag2, the parts behind it in their order, all of its folder. Throws Error(input) for a

@@ -91,6 +91,7 @@ std::size_t ChunkReader::read_some(char* to, std::size_t n) {
     const std::size_t got = unpacker_->read(to + done, n - done);
     ended_ = got == 0;
     done += got;
+    refuse_bomb(read_ + done);
   }
   if (!packed()) {
     if (done < n) done += read_file(to + done, n - done);
@@ -98,6 +99,15 @@ std::size_t ChunkReader::read_some(char* to, std::size_t n) {
   }
   read_ += done;
   return done;
+}
+
+void ChunkReader::refuse_bomb(std::uint64_t text) const {
+  const std::uint64_t most = unpacker_->made() ? kMostMade : kMostPacked;
+  const std::uint64_t stored = std::max(stored_.load(), unpacker_->stored_bytes());
+  if (stored == 0 || !is_bomb(text, stored, most)) return;
+  throw input_error("E0329", path_ == "-" ? "standard input" : path_)
+      .says("its text is more than {} times as long as what is stored", most)
+      .hint("unpack it, or save it as CSV");
 }
 
 // The bytes of a compressed file, which are those that are hashed.

@@ -76,6 +76,7 @@ class ChunkReader {
   std::size_t read_file(char* to, std::size_t n);
   std::size_t read_stored(char* to, std::size_t n);
   void look_for_packing();
+  void refuse_bomb(std::uint64_t text) const;
   void drop_cut_line(RawChunk& chunk);
   void drop_nul_tail(RawChunk& chunk);
 

@@ -33,7 +33,8 @@ bool ObjectRows::more(std::string& text) {
 /// The columns are the keys of the first objects.
 void ObjectRows::learn(std::string& text) {
   constexpr std::size_t kHead = std::size_t{1} << 18U;
-  for (std::size_t bytes = 0; bytes < kHead;) {
+  std::size_t bytes = 0;
+  while (bytes < kHead) {
     auto object = next();
     if (!object) break;
     bytes += object->text.size();
@@ -45,6 +46,8 @@ void ObjectRows::learn(std::string& text) {
     }
     head_.push_back(std::move(*object));
   }
+  if (columns_.size() * head_.size() / kMostMade > std::max(bytes, kHead))
+    throw input_error("E0337", place()).says("{} keys in {} objects: most are in few", columns_.size(), head_.size());
   text += '\n';
   if (head_.size() == 1 && from_.ended) alone(head_.front());
 }

@@ -4,6 +4,7 @@
 // The libraries are zlib, libzstd and liblzma; a build without one of them says so.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -34,8 +35,18 @@ class Unpacker {
   virtual std::string_view row_name() const { return "row"; }
   /// In the table of formats.
   virtual std::string_view format() const { return "csv"; }
+  /// Bytes that the text is made of; 0: those that `stored` gave.
+  virtual std::uint64_t stored_bytes() const { return 0; }
   virtual void finish(Findings& findings) const { static_cast<void>(findings); }
 };
+
+/// Is text of so many bytes more than a file of measurements would be when packed into so few? Small ones are free.
+inline bool is_bomb(std::uint64_t text, std::uint64_t stored, std::uint64_t most) {
+  constexpr std::uint64_t kFree = std::uint64_t{32} << 20U;
+  return text > kFree && text / most > stored;
+}
+inline constexpr std::uint64_t kMostPacked = 100;  ///< times
+inline constexpr std::uint64_t kMostMade = 32;     ///< times, of text with empty cells for what is not there
 
 /// `stored` gives the file's bytes, 0 at its end. Throws Error(input) where this build lacks the library.
 std::unique_ptr<Unpacker> make_unpacker(Packing packing, std::function<std::size_t(char*, std::size_t)> stored,

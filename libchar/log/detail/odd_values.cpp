@@ -35,8 +35,8 @@ void say_apart(const std::vector<std::string>& names, const Turns& turns, Findin
                    fmt::format("{} {} {} {}", printable(names[k]), duration_text(std::fabs(behind)),
                                behind > 0 ? "behind" : "before", printable(names[0])));
   }
-  if (findings.find("stamps_apart") == nullptr) return;
   const double period = turns.period_s;
+  if (findings.find("stamps_apart") == nullptr || !(period > 0)) return;  // one row has no period
   const auto four_digits = [](double value) {
     const double unit = std::pow(10, 3 - std::floor(std::log10(value)));
     return shortest(std::round(value * unit) / unit);

@@ -7,6 +7,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/zip_directory.hpp"
+#include "libchar/log/csv/unpacker.hpp"
 
 namespace libchar {
 
@@ -19,6 +20,10 @@ class MemberText {
         left_(member.stretch.bytes),
         crc_(member.crc) {
     if (!member.why_not.empty()) throw input_error("E0462", where_).says(member.why_not);
+    if (csv::is_bomb(left_, member.stretch.packed_bytes, csv::kMostPacked))
+      throw input_error("E0462", where_)
+          .says("unpacks to more than {} times its size", csv::kMostPacked)
+          .hint("unpack it");
   }
   /// Up to n of them, 0 at the end, where the checksum has to be right.
   std::size_t read(char* to, std::size_t n) {

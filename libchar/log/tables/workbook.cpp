@@ -16,6 +16,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
+#include "libchar/log/csv/line.hpp"
 #include "libchar/log/csv/made_text.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/tables/member_text.hpp"
@@ -97,13 +98,15 @@ std::size_t column_of_cell(std::string_view place, std::size_t otherwise) {
 class SheetText final : public csv::MadeText {
  public:
   SheetText(const BinaryFile& file, const ZipMember& member, const Book& book)
-      : member_(file, member),
+      : xml_bytes_(member.stretch.bytes),
+        member_(file, member),
         xml_([this](char* to, std::size_t n) { return member_.read(to, n); },
              file.path() + ", " + printable(member.name)),
         book_(book) {}
   std::string_view what() const override { return "a sheet of a workbook"; }
   std::string_view format() const override { return "xlsx"; }
   bool headed() const override { return false; }
+  std::uint64_t stored_bytes() const override { return xml_bytes_; }
 
  protected:
   bool more(std::string& text) override {
@@ -111,6 +114,7 @@ class SheetText final : public csv::MadeText {
     for (Kind kind = xml_.next(); kind != Kind::end; kind = xml_.next()) {
       if (kind == Kind::open && xml_.name() == "row") {
         cells_.clear();
+        row_bytes_ = 0;
         measured_ = false;
       } else if (kind == Kind::open && xml_.name() == "c") {
         cell();
@@ -133,15 +137,16 @@ class SheetText final : public csv::MadeText {
     bool counts = false, phonetic = false;  // text inside <v> or <t>, not the reading aid beside it
     for (Kind kind = xml_.next(); kind != Kind::end; kind = xml_.next()) {
       const std::string& name = xml_.name();
-      if (kind == Kind::text && counts) value += xml_.text();
+      if (kind == Kind::text && counts && value.size() <= csv::kMaxField) value += xml_.text();
       if (kind == Kind::text) continue;
       if (kind == Kind::close && name == "c") break;
       if (name == "rPh") phonetic = kind == Kind::open;
       counts = kind == Kind::open && (name == "v" || name == "t") && !phonetic;
     }
-    if (value.empty() || type == "e") return;
+    if (value.empty() || type == "e" || row_bytes_ > csv::kMaxLine) return;  // such a row is refused
     if (cells_.size() <= column) cells_.resize(column + 1);
     cells_[column] = shown(value, type, style < book_.styles.size() ? book_.styles[style] : Style::number);
+    row_bytes_ += cells_[column].size();
   }
 
   std::string shown(const std::string& value, const std::string& type, Style style) {
@@ -175,11 +180,12 @@ class SheetText final : public csv::MadeText {
     text += '\n';
   }
 
+  std::uint64_t xml_bytes_;
   MemberText member_;
   XmlEvents xml_;
   const Book& book_;
   std::vector<std::string> cells_;
-  std::size_t width_ = 0;
+  std::size_t width_ = 0, row_bytes_ = 0;
   bool measured_ = false;  // the row holds a number
 };
 

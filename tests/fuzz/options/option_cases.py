@@ -64,6 +64,8 @@ CASES = [
     (3, "E0206", "characterize gap.csv --strict -o o"),
     (3, "E0206", "fit gap.csv --strict --models o"),
     (3, "E0206", "allan gap.csv --strict -o o.csv"),
+    (4, "stamps", "fit odd.csv --group-by c0 --no-remedies"),
+    (3, "E0968", "bench mx/a.sensor.yaml --quick --parts design -o o --against bn/bench.json"),
     (2, "E0205", "simulate mx/a.sensor.yaml --samples 5 -o q.csv --scene -"),
     (0, "scene-written", "replay arr.csv --sensors a,b --write-scene w.yaml --json"),
     (2, "E0205", "fuse arr.csv --with rr --map a=a,a=b -o f.csv"),

@@ -295,11 +295,13 @@ void gather_rows(Study& study) {
 void find_kinds(Study& study) {
   constexpr std::size_t kEnough = 8;
   study.kinds = column_kinds(study.rows, study.dialect.columns.size(), study.style());
-  for (std::size_t c = 0; c < study.kinds.size() && study.rows.size() >= kSample / 2; ++c) {
-    if (study.kinds[c] != ColumnKind::empty) continue;
-    std::vector<Cells> later = filled_cells(study, c, kEnough);
-    if (!later.empty()) later.push_back({Field{}});
-    study.kinds[c] = column_kinds(later, 1, study.style())[0];
+  std::vector<std::size_t> empty;
+  for (std::size_t c = 0; c < study.kinds.size() && study.rows.size() >= kSample / 2; ++c)
+    if (study.kinds[c] == ColumnKind::empty) empty.push_back(c);
+  std::vector<std::vector<Cells>> later = filled_cells(study, empty, kEnough);
+  for (std::size_t k = 0; k < empty.size(); ++k) {
+    if (!later[k].empty()) later[k].push_back({Field{}});
+    study.kinds[empty[k]] = column_kinds(later[k], 1, study.style())[0];
   }
   for (std::size_t c = 0; c < study.kinds.size(); ++c)
     if (study.dialect.columns[c].words) study.kinds[c] = ColumnKind::text;
@@ -333,7 +335,7 @@ void choose_time(Study& study) {
   LogInfo& info = study.info;
   const auto rate = stated_rate(study);
   const auto all_cells = [&study](std::size_t column) {
-    std::vector<Cells> all = filled_cells(study, column, std::numeric_limits<std::size_t>::max());
+    std::vector<Cells> all = filled_cells(study, {column}, std::numeric_limits<std::size_t>::max())[0];
     for (Cells& cells : cells_further_on(study, column)) all.push_back(std::move(cells));
     return all;
   };

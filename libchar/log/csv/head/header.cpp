@@ -184,7 +184,7 @@ void do_without_names(Study& study) {
   const Line& first = study.sample[0];
   // What looks like the end of the first rows may be a column that is filled further on.
   const Cells all = cells_in(study.dialect, first.text);
-  if (all.size() > table_cells(study, first.text).size() && !filled_cells(study, study.columns, 1).empty())
+  if (all.size() > table_cells(study, first.text).size() && !filled_cells(study, {study.columns}, 1)[0].empty())
     ++study.columns;
   const Cells fields = table_cells(study, first.text);
   for (const Field& field : fields) study.dialect.columns.emplace_back().position = field.offset + 1;

@@ -36,15 +36,25 @@ void fit_names(const Study& study, std::string_view text, Cells& fields) {
   fields = std::move(out);
 }
 
-void add_cells(const Dialect& dialect, std::string_view text, bool whole, std::size_t column, std::size_t most,
-               std::vector<Cells>& out) {
-  for (std::size_t offset = 0; offset < text.size() && out.size() < most;) {
+void add_cells(const Dialect& dialect, std::string_view text, bool whole, const std::vector<std::size_t>& columns,
+               std::size_t most, std::vector<std::vector<Cells>>& out) {
+  std::size_t full = 0;
+  const auto add = [&](std::size_t k, Field cell) {
+    if (out[k].size() == most || read_cell(cell.text, '.').kind == Cell::missing) return;
+    out[k].push_back({std::move(cell)});
+    if (out[k].size() == most) ++full;
+  };
+  for (std::size_t offset = 0; offset < text.size() && full < columns.size();) {
     const Line line = line_at(text, offset, 0);
     offset = line.after;
     if (offset == text.size() && !whole) return;  // may be cut
     if (is_comment(line.text, dialect.lines.semicolon_comments)) continue;
-    auto cell = cell_at(line.text, column, dialect.delimiter);
-    if (cell && read_cell(cell->text, '.').kind != Cell::missing) out.push_back({std::move(*cell)});
+    if (columns.size() == 1) {
+      if (auto cell = cell_at(line.text, columns[0], dialect.delimiter)) add(0, std::move(*cell));
+      continue;
+    }
+    Cells cells = split(line.text, dialect.delimiter);
+    for (std::size_t k = 0; k < columns.size() && columns[k] < cells.size(); ++k) add(k, std::move(cells[columns[k]]));
   }
 }
 
@@ -71,18 +81,19 @@ Cells table_cells(const Study& study, std::string_view text) {
   return out;
 }
 
-std::vector<Cells> filled_cells(const Study& study, std::size_t column, std::size_t most) {
-  std::vector<Cells> out;
+std::vector<std::vector<Cells>> filled_cells(const Study& study, const std::vector<std::size_t>& columns,
+                                             std::size_t most) {
+  std::vector<std::vector<Cells>> out(columns.size());
   const std::string_view body = study.head.substr(std::min(study.dialect.data_offset, study.head.size()));
-  if (study.dialect.lead.empty()) add_cells(study.dialect, body, study.whole, column, most, out);
+  if (study.dialect.lead.empty()) add_cells(study.dialect, body, study.whole, columns, most, out);
   return out;
 }
 
 std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
   constexpr std::size_t kPlaces = 64, kLook = 4096;
-  std::vector<Cells> out;
+  std::vector<std::vector<Cells>> out(1);
   std::error_code none;
-  if (study.whole || !std::filesystem::is_regular_file(study.info.file, none)) return out;
+  if (study.whole || !std::filesystem::is_regular_file(study.info.file, none)) return {};
   std::ifstream file(study.info.file, std::ios::binary);
   const std::uint64_t size = std::filesystem::file_size(study.info.file, none);
   std::string text(kLook, '\0');
@@ -90,14 +101,14 @@ std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
     file.seekg(static_cast<std::streamoff>(place));
     return static_cast<bool>(file.read(text.data(), static_cast<std::streamsize>(kLook)));
   };
-  if (!look_at(0) || !study.head.starts_with(text)) return out;  // compressed, or UTF-16
+  if (!look_at(0) || !study.head.starts_with(text)) return {};  // compressed, or UTF-16
   for (std::size_t k = 1; k <= kPlaces; ++k) {
     if (!look_at(size / kPlaces * k - std::min<std::uint64_t>(kLook, size / kPlaces))) break;
     const std::size_t row = std::min(text.find('\n'), kLook - 1) + 1;
-    add_cells(study.dialect, std::string_view(text).substr(row), false, column, std::numeric_limits<std::size_t>::max(),
-              out);
+    add_cells(study.dialect, std::string_view(text).substr(row), false, {column},
+              std::numeric_limits<std::size_t>::max(), out);
   }
-  return out;
+  return std::move(out[0]);
 }
 
 }  // namespace libchar::csv

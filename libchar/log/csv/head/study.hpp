@@ -35,8 +35,10 @@ Cells cells_in(const Dialect& dialect, std::string_view text, bool* open = nullp
 /// names as many as the table has columns, where it is known why they are not.
 Cells table_cells(const Study& study, std::string_view text);
 
-/// The cells of a column with something in them, as far as the head goes: rows of one cell, `most` of them.
-std::vector<Cells> filled_cells(const Study& study, std::size_t column, std::size_t most);
+/// The cells of each of these columns with something in them, as far as the head goes: rows of one cell, `most` of
+/// them.
+std::vector<std::vector<Cells>> filled_cells(const Study& study, const std::vector<std::size_t>& columns,
+                                             std::size_t most);
 
 /// The same at places all over the file, where it is longer than the head and its bytes are its text.
 std::vector<Cells> cells_further_on(const Study& study, std::size_t column);
