@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
@@ -68,6 +69,19 @@ bool describes(const Band& whole, const std::vector<PowerBin>& bins, double rate
   return judgement && std::min(judgement->goodness.p, judgement->top.p) > BandOptions{}.misfit;
 }
 
+/// The terms are those of samples, folded at half the rate; a law that was band-limited before it was sampled is lower
+/// there, by (sin x / x)^alpha, x = pi f / rate: what that is of white noise's power.
+double folded_share(const std::vector<PowerBin>& bins, const ModelPoint& at, double exponent, double rate_hz) {
+  double share = 0, dof = 0;
+  for (const PowerBin& bin : with_law(bins, {exponent})) {
+    const double x = std::numbers::pi * bin.frequency_hz / rate_hz;
+    const double white = at.theta[kWhiteColumn] * bin.unit[kWhiteColumn];
+    share += bin.dof * at.theta[kLawColumn] * bin.unit[kLawColumn] * (1 - std::pow(std::sin(x) / x, exponent)) / white;
+    dof += bin.dof;
+  }
+  return share / dof;
+}
+
 std::optional<PowerLawChoice> law_in(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                      const TermSet& terms) {
   constexpr int kSteps = 8;
@@ -102,7 +116,8 @@ std::optional<PowerLawChoice> law_in(const std::vector<PowerBin>& bins, const Ba
   out.band = band;
   if (band.orders == 0) out.band.law = {out.exponent, best.at.theta[kWhiteColumn], best.at.theta[kLawColumn]};
   out.white = std::sqrt(best.at.theta[kWhiteColumn]);
-  out.white_log_sd = law.white_log_sd(best.at, out.exponent);
+  out.white_log_sd =
+      std::hypot(law.white_log_sd(best.at, out.exponent), folded_share(bins, best.at, out.exponent, rate_hz));
   return out;
 }
 
