@@ -327,7 +327,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
   if (law && process->needed && is_likelier(*process, *law)) law.reset();
   if (law) process.reset();
   if (law) band = law->band;
-  if (process && process->needed) band = process->band;
+  if (process) band = process->band;
   Attempt now = attempt(bins, std::move(band), rate_hz, samples, options);
   if (now.band.tau_s) {  // once more at the best correlation time of the terms that stay
     process->tau_s = *(now.band.tau_s = likeliest_tau(bins, now.band, rate_hz, now.fit.theta));
@@ -339,6 +339,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     if (!now.band.law) answer_low_frequencies(now);
     report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
+    if (now.band.doubtful_end && !law && !(process && process->needed)) report_doubtful_end(now.fit);
     if (band_options.small_shapes && now.band.passes) average_over_shapes(now);
   }
   judge(now.fit, now.band.passes, allan);

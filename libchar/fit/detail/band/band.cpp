@@ -540,11 +540,12 @@ double slow_end_of(const Search& search, const Trial& trial) {
   return std::min(slow, dof > 0 ? energy / dof : slow) / most;
 }
 
-/// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it.
-std::optional<Band> high_passed(const Search& search, const Trial& unshaped, double slowest_hz) {
+/// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it. A walk
+/// leaves a plateau behind a high-pass, as processes do: then it is none, and the band has `doubtful_end`.
+std::optional<Band> high_passed(const Search& search, Trial& unshaped, double slowest_hz) {
+  constexpr double kFalls = 0.5;  ///< at the slow end, of the largest
   constexpr double kNeeded = 10;  ///< of 2 lnL
   constexpr double kPeriods = 4;  ///< of the corner in the record: below, a drift looks like that
-  constexpr double kFalls = 2;  ///< at the slow end, of the largest
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
@@ -577,8 +578,9 @@ std::optional<Band> high_passed(const Search& search, const Trial& unshaped, dou
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
   const std::optional<Trial> trial = search.at(band);
-  if (!trial || !trial->band.passes || slow_end_of(search, *trial) > kFalls) return std::nullopt;
-  return trial->band;
+  if (!trial || !trial->band.passes) return std::nullopt;
+  unshaped.band.doubtful_end = slow_end_of(search, *trial) > kFalls;
+  return unshaped.band.doubtful_end ? std::nullopt : std::optional(trial->band);
 }
 
 }  // namespace
@@ -610,7 +612,7 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   Band whole = whole_band(bins, rate_hz);
   whole.tau_s = options.tau_s;
   Search search{bins, rate_hz, terms, options, std::nullopt};
-  const std::optional<Trial> unshaped = search.at(whole);
+  std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
   const double slowest_hz = search.slowest_hz();
   const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};

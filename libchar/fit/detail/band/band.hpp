@@ -35,6 +35,7 @@ struct Band {
   std::optional<double> faster_s;  ///< the same of a second, faster one, in the column of quantization noise
   std::optional<SlowLaw> law;      ///< what the terms stand in for
   SmallShape small;                ///< of the top, too small for the tests; where nothing else shapes it freely
+  bool doubtful_end = false;       ///< a high-pass explains what the terms do not, and so may a process
   bool passes = true;              ///< the residuals are those of noise, or too few to judge
   Goodness goodness;               ///< of the band, its slowest coefficients left out
   Goodness top;                    ///< of its top octave and a half

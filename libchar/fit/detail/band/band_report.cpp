@@ -220,6 +220,20 @@ void report_corner(const Band& band, NoiseFit& fit) {
                                  "the slow end of the spectrum falls like behind a high-pass"));
 }
 
+void report_doubtful_end(NoiseFit& fit) {
+  for (const Term slow : {Term::flicker, Term::walk}) {
+    Coefficient& term = fit.term[static_cast<std::size_t>(slow)];
+    if (term.status == Status::detected) term.status = Status::undetermined;
+  }
+  Finding found =
+      finding("undetermined",
+              "The slow end of the spectrum is lower than bias instability and random walk give: there is a "
+              "high-pass, or a process takes their place. Their values and limits hold above it alone.",
+              "B and K are undetermined: the slow end is lower than they give");
+  found.severity = Severity::caution;
+  fit.findings.push_back(std::move(found));
+}
+
 std::vector<FitResidual> inside_of(const std::vector<FitResidual>& residuals) {
   std::vector<FitResidual> inside;
   for (const FitResidual& residual : residuals)

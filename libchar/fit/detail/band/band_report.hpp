@@ -17,6 +17,9 @@ void add_lines(const std::vector<PowerBin>& clipped, const std::vector<PowerBin>
 /// The remedies that stand for the band's decisions.
 void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit);
 
+/// B and K of a slow end that lies lower than they say.
+void report_doubtful_end(NoiseFit& fit);
+
 /// The finding, where the slow end is that of a high-pass, or the spectrum has two levels.
 void report_corner(const Band& band, NoiseFit& fit);
 

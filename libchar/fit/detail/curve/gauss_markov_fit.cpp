@@ -265,12 +265,33 @@ std::optional<Band> unshaped_band(const std::vector<PowerBin>& bins, double rate
   return band;
 }
 
+constexpr double kFewest = 2;  ///< samples of the correlation time of what may be a filter as well
+
+/// A process above white noise as what a filter leaves: a shelf that falls has the same spectrum.
+std::optional<Band> as_shelf(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const Band& band,
+                             double tau_s, double plateau_over_white) {
+  NamedShape start;
+  start.family = NamedShape::Family::shelf;
+  start.pole_hz = 1 / (2 * std::numbers::pi * tau_s);
+  start.zero_hz = start.pole_hz * std::sqrt(1 + plateau_over_white);
+  return describing(with_shelf(bins, rate_hz, terms, band, start));
+}
+
+/// The whole spectrum with one process of few samples, where that describes it, as a shelf.
+std::optional<Band> band_of_fast(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
+                                 const TermSet& terms) {
+  const Band whole = whole_band(bins, rate_hz);
+  const Peak peak = search_tau(bins, whole, rate_hz, duration_s, terms, kFewest).peak;
+  if (!(peak.tau_s < kFastest / rate_hz) || !falls_to_white(bins, peak)) return std::nullopt;
+  return as_shelf(bins, rate_hz, terms, whole, peak.tau_s, process_at(peak, 0) / peak.at.theta[0]);
+}
+
 /// Two processes, the faster above white noise: the whole spectrum, where they describe it. A faster one of few samples
 /// may be a filter: it is a shelf that falls, which has the same spectrum.
 std::optional<Band> band_of_two(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
                                 const TermSet& terms) {
-  constexpr double kFewest = 2, kApart = 4;  ///< samples of the faster correlation time, and the other over it
-  constexpr double kOverLaw = 6;             ///< of ln L: a power law has four unknowns less
+  constexpr double kApart = 4;    ///< of the slower correlation time over the faster
+  constexpr double kOverLaw = 6;  ///< of ln L: a power law has four unknowns less
   if (terms[kFaster]) return std::nullopt;
   Band band = whole_band(bins, rate_hz);
   AtTau both(bins, band, rate_hz, terms);
@@ -285,18 +306,9 @@ std::optional<Band> band_of_two(const std::vector<PowerBin>& bins, double rate_h
   const auto law = choose_power_law(bins, band, rate_hz, terms);
   if (law && law->half_deviance < faster.half_deviance + kOverLaw) return std::nullopt;
   band.tau_s = faster.slower_s;
-  std::optional<Band> two;
-  if (faster.tau_s > kFastest / rate_hz) {
-    band.faster_s = faster.tau_s;
-    two = judged(bins, rate_hz, terms, band);
-  } else {
-    NamedShape start;
-    start.family = NamedShape::Family::shelf;
-    start.pole_hz = 1 / (2 * std::numbers::pi * faster.tau_s);
-    start.zero_hz = start.pole_hz * std::sqrt(1 + plateau / white);
-    two = with_shelf(bins, rate_hz, terms, band, start);
-  }
-  return describing(std::move(two));
+  if (!(faster.tau_s > kFastest / rate_hz)) return as_shelf(bins, rate_hz, terms, band, faster.tau_s, plateau / white);
+  band.faster_s = faster.tau_s;
+  return describing(judged(bins, rate_hz, terms, band));
 }
 
 /// A band that the terms with the process describe: found with the process at its most likely correlation time under any
@@ -361,6 +373,9 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
     choice.band.tau_s = choice.tau_s;
     return choice;
   }
+  // A free shape and a cut band see the slow side of a fall alone.
+  if (cut || (shaped && band.named.family == NamedShape::Family::none))
+    if (const auto fast = band_of_fast(bins, rate_hz, duration_s, terms)) choice.band = *fast;
   const Peak alone = most_likely(rival, kFewestSamples / rate_hz, kLongest * duration_s);
   if (alone.tau_s < 0.45 * duration_s && alone.half_deviance < with_slow - kRival / 2) {
     choice.tau_s = alone.tau_s;
