@@ -46,6 +46,18 @@ TEST_CASE("impulse responses have unit sum and the shape's gain") {
   }
 }
 
+TEST_CASE("a measured shape that reaches below what the taps resolve has its gain above") {
+  // That of 1/f^1.3 over a random walk that stands in for it: f^.7, up to .1 Hz.
+  NoiseShape law{NoiseShape::Kind::measured, 0, {}, {}};
+  for (double f = 2.5e-4; f < 50; f *= std::exp2(0.125)) {
+    law.frequency_hz.push_back(f);
+    law.ratio.push_back(std::min(1.0, std::pow(f / 0.1, 0.7)));
+  }
+  const std::vector<double> h = shape_taps(law, kRate);
+  for (const double f : {0.02, 0.05, 0.5, 3.0, 37.0})
+    CHECK(power_gain(h, f) == Approx(shape_ratio(law, f, kRate)).epsilon(0.08));
+}
+
 TEST_CASE("filtered noise is the convolution, stationary from the first sample, in pieces of any size") {
   const NoiseShape shape{NoiseShape::Kind::bartlett, 6, {}, {}};
   const std::vector<double> h = shape_taps(shape, kRate);

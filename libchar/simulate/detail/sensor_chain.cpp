@@ -243,7 +243,10 @@ std::vector<double> sampled_response(const NoiseShape& shape, double rate_hz) {
   const std::size_t n = std::clamp(power_of_two(std::min(wanted, 1e9)), kFewestTaps, kMostTaps);
   RealFft plan(n);
   const std::span<std::complex<double>> gain = plan.coefficients();
-  gain[0] = 1;
+  // Of a shape that reaches below what the taps resolve the window mixes several gains there, and their sum says nothing
+  // of the others.
+  const double slowest = shape_ratio(shape, rate_hz / (2 * static_cast<double>(n)), rate_hz);
+  gain[0] = std::sqrt(slowest);
   for (std::size_t k = 1; k < gain.size(); ++k) {
     const double f = rate_hz * static_cast<double>(k) / static_cast<double>(n);
     // Half a block later: (-1)^k.
@@ -256,7 +259,7 @@ std::vector<double> sampled_response(const NoiseShape& shape, double rate_hz) {
     const double phase = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
     sum += h[i] = response[i] * 0.5 * (1 - std::cos(phase));
   }
-  for (double& tap : h) tap /= sum;
+  for (double& tap : h) tap /= slowest == 1 ? sum : static_cast<double>(n);
   return h;
 }
 
