@@ -243,8 +243,8 @@ std::vector<double> sampled_response(const NoiseShape& shape, double rate_hz) {
   const std::size_t n = std::clamp(power_of_two(std::min(wanted, 1e9)), kFewestTaps, kMostTaps);
   RealFft plan(n);
   const std::span<std::complex<double>> gain = plan.coefficients();
-  // Of a shape that reaches below what the taps resolve the window mixes several gains there, and their sum says nothing
-  // of the others.
+  // Of a shape that reaches below what the taps resolve the window mixes several gains there, and their sum says
+  // nothing of the others.
   const double slowest = shape_ratio(shape, rate_hz / (2 * static_cast<double>(n)), rate_hz);
   gain[0] = std::sqrt(slowest);
   for (std::size_t k = 1; k < gain.size(); ++k) {

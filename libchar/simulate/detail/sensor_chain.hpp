@@ -37,8 +37,8 @@ class SensorChain {
 
 // Noise with the density of a shape: a finite impulse response over blocks, by fast convolution.
 
-/// Impulse response with the shape's gain, of unit sum; boxcar and bartlett exactly, a measured one
-/// to within the resolution of its lowest frequency (at most 2^16 taps; not of unit sum where it goes on below what they resolve).
+/// Impulse response with the shape's gain, of unit sum; boxcar and bartlett exactly, a measured one to within the
+/// resolution of its lowest frequency (at most 2^16 taps; not of unit sum where it goes on below what they resolve).
 std::vector<double> shape_taps(const NoiseShape& shape, double rate_hz);
 
 class ShapeFilter {
