@@ -347,11 +347,11 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
            (in.top_hz < 0.99 * rate_hz / 2 && peak.at.theta[0] < kSteep * process_at(peak, in.top_hz));
   };
   TauSearch here = search_tau(bins, band, rate_hz, duration_s, terms);
-  GaussMarkovChoice choice{band, here.peak.tau_s,        here.ratio, here.ratio > kNeeded && !filters(band, here.peak),
-                           0,    here.peak.half_deviance};
+  GaussMarkovChoice choice{band, here.peak.tau_s, here.ratio};
+  choice.needed = here.ratio > kNeeded && !filters(band, here.peak);
+  choice.half_deviance = here.peak.half_deviance;
   const bool doubtful = cut || shaped;
   std::optional<Band> other = doubtful ? unshaped_band(bins, rate_hz, duration_s, terms) : std::nullopt;
-  bool free = other.has_value();  // of a filter's affair
   if (doubtful || choice.needed) {
     const auto deviance = [&](const Band& of) {
       return search_tau(bins, of, rate_hz, duration_s, terms, kFastest).peak.half_deviance;
@@ -360,9 +360,9 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
                        : doubtful ? std::numeric_limits<double>::infinity()
                                   : here.peak.half_deviance;
     const auto two = band_of_two(bins, rate_hz, duration_s, terms);
-    free = free || two;
     if (two && deviance(*two) + kNeeded / 2 < one) other = two;
   }
+  const bool free = other.has_value();  // of a filter's affair
   if (!other && cut) other = other_band(bins, band, rate_hz, duration_s, terms, here.peak.tau_s);
   if (other) {
     here = search_tau(bins, *other, rate_hz, duration_s, terms, free ? kFastest : kFewestSamples);

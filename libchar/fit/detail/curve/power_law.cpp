@@ -82,6 +82,15 @@ double folded_share(const std::vector<PowerBin>& bins, const ModelPoint& at, dou
   return share / dof;
 }
 
+/// The terms in a band of the whole spectrum, each unknown of its shape worth one of ln L.
+bool terms_are_likelier(const Band& band, const std::vector<PowerBin>& bins, double rate_hz, TermSet terms,
+                        const PowerLawChoice& law) {
+  if (!band.passes || band.inside != law.band.inside) return false;
+  terms[kQuantizationColumn] = terms[kQuantizationColumn] || band.quantized;
+  const int unknowns = band.orders + (band.low_pass ? 1 : 0) + (band.quantized ? 1 : 0);
+  return score(band_problem(bins, band, rate_hz), terms).half_deviance + unknowns < law.half_deviance;
+}
+
 std::optional<PowerLawChoice> law_in(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                      const TermSet& terms) {
   constexpr int kSteps = 8;
@@ -134,7 +143,7 @@ std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins
   if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn]) return std::nullopt;
   if (band.orders > 0 || band.low_pass || band.quantized || band.top_hz < 0.99 * rate_hz / 2) {
     const auto law = law_in(bins, whole_band(bins, rate_hz), rate_hz, terms);
-    if (law && describes(law->band, bins, rate_hz)) return law;
+    if (law && describes(law->band, bins, rate_hz) && !terms_are_likelier(band, bins, rate_hz, terms, *law)) return law;
   }
   return band.passes ? law_in(bins, band, rate_hz, terms) : std::nullopt;
 }
