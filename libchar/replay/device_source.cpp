@@ -181,10 +181,17 @@ class Writer {
            "}\n\nint fusion_step(fusion_state *s, const fusion_real y[N], fusion_real *x, fusion_real *sd) {\n"
            "  fusion_real samples[N], variance = -1;\n  int i, given;\n"
            "  for (i = 0; i < N; ++i) samples[i] = y[i] * scale_of[i] - offset_of[i];\n" +
-           align + "  given = estimate(s, samples, x, &variance);\n" +
-           fmt::format(
-               "  *sd = given && variance >= 0 ? {} * SQRT(variance) : -1;\n  return given;\n}}\n",
-               fusion::c_number(algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1, options_.single));
+           align + "  given = estimate(s, samples, x, &variance);\n  *sd = given && variance >= 0 ? " + deviation() +
+           " : -1;\n  return given;\n}\n";
+  }
+
+  /// As `fuse` states it.
+  std::string deviation() const {
+    const auto number = [&](double v) { return fusion::c_number(v, options_.single); };
+    const double factor = algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1;
+    const std::optional<double>& level = learnt_.inputs[0].level_sd;
+    return level ? fmt::format("SQRT({} * variance + {})", number(factor * factor), number(*level * *level))
+                 : number(factor) + " * SQRT(variance)";
   }
 
   const LearntFusion& learnt_;

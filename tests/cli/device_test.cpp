@@ -1,6 +1,7 @@
 // model --to c: the method of a replay as one C99 file, compiled as an engineer would, against fuse on the same log.
 #include <fmt/format.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -203,6 +204,31 @@ TEST_CASE("model --to c: the virtual sensor in its steady state") {
   INFO(apart(a, b) / sd);
   CHECK(apart(a, b) < 0.05 * sd);
   CHECK(apart(c.x, single.x) < 1e-4);
+}
+
+TEST_CASE("model --to c: the deviation of a level that no reference gives is in it") {
+  const Device device;
+  const libchar::Recording log = libchar::read_recording(device.path("log.csv"));
+  std::ofstream table(device.path("log.csv"));
+  table << "t,a,b,c,d\n";
+  const std::array<double, 4> offsets = {0.3, -0.2, 0.5, -0.4};
+  for (std::size_t k = 0; k < log.samples[0].size(); ++k) {
+    table << fmt::format("{:.2f}", static_cast<double>(k) / 100);
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      std::size_t column = 0;
+      while (log.info.channels[column].name != device.sensors[i]) ++column;
+      const double y = log.samples[column][k];
+      table << ',' << (std::isnan(y) ? "" : fmt::format("{}", y + offsets[i]));
+    }
+    table << '\n';
+  }
+  table.close();
+  Device::run({"replay", device.path("log.csv"), "--sensors", "a,b,c,d", "-o", device.path("run"), "--force",
+               "--no-allan", "--algorithms", "minque", "--set", "minque.fault_detection=2"});
+  const Device::Estimates fused = device.by_fuse("minque"), c = device.by_c("minque", "f64");
+  CHECK(fused.sd[100] > 0.1);
+  CHECK(apart(fused.x, c.x) == 0);
+  CHECK(apart(fused.sd, c.sd) < 1e-12);
 }
 
 TEST_CASE("model --to c: the complementary filter") {
