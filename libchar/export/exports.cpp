@@ -63,6 +63,23 @@ void note_left_out(const ExportTarget& target, const SensorGroup& group, Export&
     if (placed) leave(*placed->model);
 }
 
+// A shape that adds power: a resonance, a second process.
+std::string added_text(const SensorGroup& group) {
+  constexpr double kAdds = 1.5;
+  double most = kAdds, at_hz = 0;
+  const SensorModel* of = nullptr;
+  for (const SensorModel* m : group.all)
+    for (std::size_t i = 0; i < m->noise_shape.ratio.size(); ++i) {
+      if (!(m->noise_shape.ratio[i] > most)) continue;
+      most = m->noise_shape.ratio[i];
+      at_hz = m->noise_shape.frequency_hz[i];
+      of = m;
+    }
+  if (of == nullptr) return "";
+  return fmt::format(", and the power of {} is up to {} times what they give (at {} Hz)", printable(of->channel, 40),
+                     brief_text(most, 2), brief_text(at_hz, 2));
+}
+
 // What is known of the sensors and gets lost: terms that the consumer has no word for, and the
 // low-pass, behind which samples scatter less than N sqrt(f) and neighbours are correlated.
 std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGroup& group) {
@@ -92,8 +109,8 @@ std::vector<std::string> unexpressed(const ExportTarget& target, const SensorGro
   const std::string shaped = among([](const SensorModel& m) { return m.noise_shape.kind != NoiseShape::Kind::none; });
   if (!shaped.empty() && !target.takes.status)
     out.push_back(fmt::format(
-        "not in this file: the shape of the noise of {} over frequency; densities are those of slow frequencies",
-        shaped));
+        "not in this file: the shape of the noise of {} over frequency; densities are those of slow frequencies{}",
+        shaped, added_text(group)));
   return out;
 }
 

@@ -500,6 +500,7 @@ TEST_CASE("a misfit is refused, or goes with a sentence, generic JSON keeps the 
   std::vector<SensorModel> models = test::euroc_imu();
   models[1].noise[0].status = Status::misfit;
   models[1].noise_shape = {NoiseShape::Kind::boxcar, 4, {}, {}};
+  models[2].noise_shape = {NoiseShape::Kind::measured, 0, {0.1, 0.7, 5}, {1.2, 6, 0.9}};
   for (const ExportTarget& target : export_targets()) {
     CAPTURE(target.name);
     const std::string name(target.name);
@@ -513,6 +514,7 @@ TEST_CASE("a misfit is refused, or goes with a sentence, generic JSON keeps the 
     const Export made = exported(name, models, options);
     CHECK(made.text.find("misfit") != std::string::npos);
     CHECK(made.text.find("shape of the noise") != std::string::npos);
+    CHECK(made.text.find("is up to 6 times what they give (at 0.7 Hz)") != std::string::npos);
   }
 }
 
