@@ -227,6 +227,18 @@ TEST_CASE("slow noise of another exponent is a law over the whole spectrum, and 
   CHECK(found >= 8);
 }
 
+TEST_CASE("the Allan curve of a law goes on beyond the recording as the law does") {
+  constexpr double rate = 100, white = 5e-3, exponent = 1.3;
+  test::Gaussian gauss(2);
+  std::vector<double> y = law_record(200000, rate, exponent, white * white * 1.75, gauss);
+  for (double& value : y) value += white * std::sqrt(rate) * gauss();
+  const NoiseFit fit = fit_of(y, rate);
+  const auto variance = [&](double tau_s) { return shaped_allan_variance(fit, tau_s * rate, 1 / rate); };
+  // Flicker and walk alone rise by twice. What is left of them at long times is a small difference of large numbers.
+  CHECK(variance(200) / variance(100) == Approx(std::pow(2, exponent - 1)).epsilon(0.08));
+  CHECK(variance(800) / variance(400) == Approx(std::pow(2, exponent - 1)).epsilon(0.2));
+}
+
 TEST_CASE("flicker and walk are not taken for a Gauss-Markov process") {
   int found = 0, of = 0;
   const std::vector<Mixture> kinds = {{5e-3, 5e-3, 1.5e-3, 0, 0},

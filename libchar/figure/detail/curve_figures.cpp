@@ -195,7 +195,7 @@ void draw_alone(Chart& figure, const ChosenCurve& chosen) {
     measured.look.width = 0.7;
   }
   for (const Interval& out : c.left_out)
-    figure.stretches.push_back({out.low, out.high, c.is_allan ? "shaped by a filter" : "left out", Ink::grey});
+    figure.stretches.push_back({out.low, out.high, c.is_allan ? "shaped spectrum" : "left out", Ink::grey});
   figure.series.push_back(std::move(measured));
   if (!c.model.empty())
     figure.series.push_back(

@@ -105,9 +105,7 @@ bool describes(const std::vector<PowerBin>& bins, const Mixture& theta) {
   constexpr double kProbability = 1e-3;
   double chi2 = 0;
   for (const PowerBin& bin : bins) {
-    double model = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) model += theta[i] * bin.unit[i];
-    const double z = normal_deviate(bin.energy / model, bin.dof);
+    const double z = normal_deviate(bin.energy / expected_energy(bin, theta), bin.dof);
     chi2 += z * z;
   }
   return chi_square_tail(chi2, static_cast<double>(bins.size())) > kProbability;

@@ -25,6 +25,13 @@ struct PowerBin {
   std::uint64_t first = 0, end = 0, length = 0, spacing = 1;
 };
 
+/// E[energy] of a mixture.
+inline double expected_energy(const PowerBin& bin, const Mixture& theta) {
+  double sum = 0;
+  for (std::size_t i = 0; i < kTerms; ++i) sum += theta[i] > 0 ? theta[i] * bin.unit[i] : 0;
+  return sum;
+}
+
 /// Mean squared coefficients k = first.. of one transform length, pooled over `pooled` transforms.
 struct PooledPower {
   /// A sine that was taken out of the record.

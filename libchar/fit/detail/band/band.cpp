@@ -152,10 +152,8 @@ bool explains_nulls(const std::vector<PowerBin>& bins, double rate_hz, const Tri
       inside += weight * bin.energy;
       continue;
     }
-    double model = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) model += trial.theta[i] * bin.unit[i];
     outside += weight * bin.energy;
-    expected += weight * model * mean_ratio(trial.band.filter, bin, rate_hz);
+    expected += weight * expected_energy(bin, trial.theta) * mean_ratio(trial.band.filter, bin, rate_hz);
   }
   return outside <= kTimes * expected + kBeside * inside;
 }
@@ -526,8 +524,7 @@ double slow_end_of(const Search& search, const Trial& trial) {
   double slowest_hz = std::numeric_limits<double>::infinity(), slow = 0, most = 0;
   double energy = 0, dof = 0;
   for (const PowerBin& bin : inside) {
-    double model = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) model += trial.theta[i] * bin.unit[i];
+    const double model = expected_energy(bin, trial.theta);
     most = std::max(most, model);
     if (bin.high_hz < trial.band.named.pole_hz / 3) {
       energy += bin.dof * bin.energy;

@@ -68,10 +68,29 @@ NoiseShape measured_shape(std::vector<ShapePoint> points) {
   return shape;
 }
 
-double expected(const PowerBin& bin, const Mixture& theta) {
-  double sum = 0;
-  for (std::size_t i = 0; i < kTerms; ++i) sum += theta[i] * bin.unit[i];
-  return sum;
+auto slowest_bin(const std::vector<PowerBin>& bins) {
+  return std::min_element(bins.begin(), bins.end(),
+                          [](const PowerBin& a, const PowerBin& b) { return a.frequency_hz < b.frequency_hz; });
+}
+
+/// A law goes on below the slowest coefficient, where flicker and walk leave it: long averages hold what is there.
+void add_slower(const std::vector<PowerBin>& bins, const SlowLaw& law, const Mixture& rest,
+                std::vector<ShapePoint>& points) {
+  constexpr int kSteps = 24;  ///< of a quarter of an octave
+  const auto slowest = std::min_element(
+      bins.begin(), bins.end(), [](const PowerBin& a, const PowerBin& b) { return a.frequency_hz < b.frequency_hz; });
+  const PowerBin with = with_law({*slowest}, law)[0];
+  for (int i = 1; i <= kSteps; ++i) {
+    const double slower = std::exp2(0.25 * i);
+    PowerBin below = *slowest, of_law = with;
+    for (PowerBin* bin : {&below, &of_law}) {
+      bin->unit[static_cast<std::size_t>(Term::flicker)] *= slower;
+      bin->unit[static_cast<std::size_t>(Term::walk)] *= slower * slower;
+    }
+    of_law.unit[static_cast<std::size_t>(Term::ramp)] *= std::pow(slower, law.exponent);
+    points.push_back(
+        {slowest->frequency_hz / slower, expected_energy(of_law, law.theta()) / expected_energy(below, rest), 1});
+  }
 }
 
 }  // namespace
@@ -91,7 +110,7 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
   if (band.faster_s) rest[static_cast<std::size_t>(Term::quantization)] = 0;
   std::vector<double> described;
   for (const PowerBin& bin : band.law ? with_law(all, *band.law) : all)
-    described.push_back(expected(bin, band.law ? band.law->theta() : best.theta));
+    described.push_back(expected_energy(bin, band.law ? band.law->theta() : best.theta));
   if (band.law) rest[0] = band.law->white;
   fit.residuals = residuals_of(all, rest, rate_hz);
   Band shown = band;
@@ -103,7 +122,7 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
     residual.inside = band.inside[j] != 0;
     const bool slow = bins[j].high_hz <= band.top_hz && !residual.inside && bins[j].dof <= 1;
     if (residual.inside) {
-      const double ratio = gain[inside++] * described[j] / expected(all[j], rest);
+      const double ratio = gain[inside++] * described[j] / expected_energy(all[j], rest);
       const double known = std::exp(band_log_gain(shown, bins[j], rate_hz));
       points.push_back({residual.frequency_hz, ratio * known, residual.dof});
       residual.model *= ratio;
@@ -113,6 +132,7 @@ void describe_band(const std::vector<PowerBin>& bins, const Band& band, const Bi
       points.push_back({residual.frequency_hz, known * residual.measured / residual.model, residual.dof});
     }
   }
+  if (band.law) add_slower(all, *band.law, rest, points);
   fit.shape = band.filter.kind != NoiseShape::Kind::none ? band.filter : measured_shape(std::move(points));
   if (!band.low_pass) return;
   fit.bandwidth_hz = band.low_pass->corner_hz;
@@ -129,13 +149,15 @@ void add_lines(const std::vector<PowerBin>& clipped, const std::vector<PowerBin>
     return 0.0;
   };
   std::vector<ShapePoint> points;
+  for (std::size_t k = 0; k < fit.shape.ratio.size() && fit.shape.frequency_hz[k] < slowest_bin(full)->frequency_hz;
+       ++k)
+    points.push_back({fit.shape.frequency_hz[k], fit.shape.ratio[k], 1});
   bool any = false;
   const bool flicker_phase = fit.flicker_phase && fit.flicker_phase->value;
   const std::vector<double> phase_units =
       flicker_phase ? flicker_phase_units(full, fit.rate_hz) : std::vector<double>{};
   for (const PowerBin& bin : full) {
-    double terms = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) terms += fit.theta[i] * bin.unit[i];
+    double terms = expected_energy(bin, fit.theta);
     if (flicker_phase)
       terms += *fit.flicker_phase->value * *fit.flicker_phase->value *
                phase_units[static_cast<std::size_t>(&bin - full.data())];

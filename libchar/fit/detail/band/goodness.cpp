@@ -29,8 +29,7 @@ std::vector<FitResidual> residuals_of(const std::vector<PowerBin>& bins, const M
   std::vector<FitResidual> residuals;
   residuals.reserve(bins.size());
   for (const PowerBin& bin : bins) {
-    double model = 0;
-    for (std::size_t i = 0; i < kTerms; ++i) model += theta[i] > 0 ? theta[i] * bin.unit[i] : 0;
+    const double model = expected_energy(bin, theta);
     residuals.push_back({bin.frequency_hz, bin.energy / rate_hz, model / rate_hz, bin.dof,
                          normal_deviate(bin.energy / model, bin.dof)});
   }
