@@ -36,6 +36,21 @@ Record louder_between(unsigned seed, double factor, double from, double to) {
   return y;
 }
 
+// Factors of sixteen stretches with a standard deviation of ln of .06; `sd`: theirs.
+Record wandering(unsigned seed, unsigned factors, double* sd = nullptr) {
+  test::Gaussian normal(factors);
+  double sum = 0, squares = 0;
+  Record y = clean(seed);
+  for (std::size_t s = 0; s < 16; ++s) {
+    const double log_factor = 0.06 * normal();
+    sum += log_factor;
+    squares += log_factor * log_factor;
+    for (std::size_t t = s * kSteadySamples / 16; t < (s + 1) * kSteadySamples / 16; ++t) y[t] *= std::exp(log_factor);
+  }
+  if (sd != nullptr) *sd = std::sqrt((squares - sum * sum / 16) / 15);
+  return y;
+}
+
 Stationarity of(const Record& y) { return fit_record(y, kSteadyRate, nullptr).stationarity; }
 
 }  // namespace
@@ -68,23 +83,31 @@ TEST_CASE("stationarity: a louder stretch is found, placed and sized") {
 }
 
 TEST_CASE("stationarity: the spread is that of the stretches") {
-  // Factors of sixteen stretches with a standard deviation of ln of .06.
-  test::Gaussian normal(5);
-  double sum = 0, squares = 0;
-  Record y = clean(3);
-  for (std::size_t s = 0; s < 16; ++s) {
-    const double log_factor = 0.06 * normal();
-    sum += log_factor;
-    squares += log_factor * log_factor;
-    for (std::size_t t = s * kSteadySamples / 16; t < (s + 1) * kSteadySamples / 16; ++t) y[t] *= std::exp(log_factor);
-  }
-  const double sd = std::sqrt((squares - sum * sum / 16) / 15);
+  double sd = 0;
+  const Record y = wandering(3, 5, &sd);
   const Stationarity found = of(y);
   REQUIRE_FALSE(found.steady);
   CHECK(found.spread[0].relative_sd == Approx(sd).epsilon(0.15));
   // Student's t of fifteen degrees of freedom, and the mean of sixteen.
   CHECK(spread_reach(found, 0.01) == Approx(2.1314 * std::sqrt(17.0 / 16) * found.spread[0].relative_sd).epsilon(1e-4));
   CHECK(spread_reach(found, 1e6) == spread_reach(found, found.spread.back().tau_s));
+}
+
+TEST_CASE("stationarity: the interval of a coefficient holds what stretches differ by, as the Allan curve's does") {
+  const double long_run = 5e-3 * std::exp(0.06 * 0.06);
+  int held = 0, held_as_steady = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const Record y = wandering(seed, seed + 100);
+    FitOptions as_steady;
+    as_steady.stationarity = false;
+    for (const bool steady : {false, true}) {
+      const Coefficient n = fit_record(y, kSteadyRate, nullptr, steady ? as_steady : FitOptions{})[Term::white];
+      const bool holds = n.ci95.low <= long_run && long_run <= n.ci95.high;
+      (steady ? held_as_steady : held) += holds ? 1 : 0;
+    }
+  }
+  CHECK(held >= 36);
+  CHECK(held_as_steady <= 24);
 }
 
 TEST_CASE("stationarity: scale and offset change nothing, and time reversed is the same") {

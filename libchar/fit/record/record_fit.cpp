@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "libchar/allan/allan_pyramid.hpp"
+#include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
@@ -32,6 +34,14 @@ namespace {
 // spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half
 // its excess kurtosis. Slower terms have weights that do not see white noise, so that theirs stays.
 
+/// `wider` times as wide, on the logarithm.
+void widen(double wider, Coefficient& term) {
+  const double value = *term.value;
+  term.relative_sd *= wider;
+  term.ci95 = {value * std::pow(std::max(term.ci95.low, 0.0) / value, wider),
+               value * std::pow(term.ci95.high / value, wider)};
+}
+
 // Widens the interval and covariance of the white noise by what heavy tails add, and says so;
 // nothing where the kurtosis of first differences is below `spike_alarm(samples)`, as of Gaussian
 // noise. `samples` without the missing ones.
@@ -44,9 +54,7 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   const double more = 2 * (difference_kurtosis - 3) / static_cast<double>(samples);
   const double wider = std::sqrt((variance + more) / variance);
   variance += more;
-  white.relative_sd *= wider;
-  white.ci95.high = *white.value * std::pow(white.ci95.high / *white.value, wider);
-  white.ci95.low = *white.value * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider);
+  widen(wider, white);
   if (wider > 1.05)
     fit.findings.push_back(finding(
         "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences {} "
@@ -64,10 +72,8 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers, double ra
   if (!(theirs < square)) return;
   const double core = std::sqrt(square - theirs), share = core / *white.value;
   const double more = outliers->sd / rate_hz / (2 * core * core);
-  const double wider = std::hypot(1.0, more / white.relative_sd);
-  white.ci95 = {core * std::pow(std::max(white.ci95.low, 0.0) / *white.value, wider),
-                core * std::pow(white.ci95.high / *white.value, wider)};
-  white.relative_sd *= wider;
+  widen(std::hypot(1.0, more / white.relative_sd), white);
+  white.ci95 = {share * white.ci95.low, share * white.ci95.high};
   fit.covariance[kWhite][kWhite] += 4 * more * more;
   fit.theta[kWhite] *= share * share;
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
@@ -145,9 +151,32 @@ bool has_step(std::span<const Event> events) {
   return std::any_of(events.begin(), events.end(), [](const Event& event) { return event.kind == EventKind::step; });
 }
 
+/// What stretches differ by where most is known of a term: where share²/tau is largest, its share of the Allan variance.
+StretchSpread spread_of(Term term, const NoiseFit& fit) {
+  const auto known = [&](const StretchSpread& at) {
+    const double m = at.tau_s * fit.rate_hz, dt_s = 1 / fit.rate_hz;
+    const double all = allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s);
+    const double share = fit.theta[static_cast<std::size_t>(term)] * unit_allan_variance(term, m, dt_s) / all;
+    return share * share / at.tau_s;
+  };
+  return *std::max_element(fit.stationarity.spread.begin(), fit.stationarity.spread.end(),
+                           [&](const auto& a, const auto& b) { return known(a) < known(b); });
+}
+
+/// A coefficient is the mean of what the stretches have, as the points of the Allan curve are.
+void widen_by_stretches(NoiseFit& fit) {
+  for (std::size_t t = 0; t < kTerms; ++t) {
+    Coefficient& term = fit.term[t];
+    if (!term.value || !(fit.theta[t] > 0) || !(term.relative_sd > 0)) continue;
+    const StretchSpread spread = spread_of(static_cast<Term>(t), fit);
+    widen(std::hypot(1.0, spread.relative_sd / std::sqrt(spread.independent) / term.relative_sd), term);
+  }
+}
+
 void report_stationarity(NoiseFit& fit) {
   const Stationarity& found = fit.stationarity;
   if (found.steady) return;
+  widen_by_stretches(fit);
   Finding changed = finding("not_stationary", found.sentence, "the noise is not the same throughout the recording");
   if (!found.noticeable) changed.severity = Severity::note;
   changed.where.time_s = {found.smallest_s, found.largest_s};
