@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/record/power_bins.hpp"
@@ -42,6 +43,51 @@ TEST_CASE("selected lower limits: zero at the threshold, the plain limit far fro
   CHECK(selected_rise(13.0, 5.41) < 13.0);
   CHECK(selected_rise(60, 5.41) == Approx(kTwoSided95).epsilon(1e-3));
   CHECK(selected_rise(INFINITY, 5.41) == kTwoSided95);
+}
+
+TEST_CASE("upper limits: exact for the mean of few squares, that of chi-square for many") {
+  for (const double dof : {1.0, 2.0, 7.0, 60.0})
+    for (const double tail : {0.025, 0.05}) {
+      BinProblem problem;
+      problem.energy = Eigen::ArrayXd::Constant(3, 1.7);
+      problem.dof = Eigen::ArrayXd::Constant(3, dof / 3);
+      problem.unit.setZero(3, kTerms);
+      problem.unit.col(0).setConstant(4);
+      const TermSet white = {true, false, false, false, false};
+      const ScoringResult best = score(problem, white);
+      const double upper = profile_upper(problem, white, {best.at, best.half_deviance}, 0, 1.7 / 4, tail);
+      INFO(dof << " squares, tail " << tail);
+      CHECK(upper == Approx(1.7 / 4 * dof / chi_square_quantile(tail, dof)).epsilon(1e-3));
+    }
+  CHECK(rise_below(0.025, 0) == Approx(kTwoSided95));
+  CHECK(rise_below(0.025, 0.011) == Approx(kTwoSided95).epsilon(0.01));
+  CHECK(rise_below(0.05, 2) == Approx(4.04).epsilon(0.001));  // two squares
+}
+
+TEST_CASE("upper limits of short records hold the truth, and white noise that flicker explains is not detected") {
+  constexpr std::size_t n = 200;
+  constexpr double kRate = 100, kFlicker = 1, kRounding = 0.05;
+  constexpr int kRecords = 200;
+  test::NoiseSource source(n, kRate, 5);
+  test::Gaussian normal(6);
+  FitOptions options;
+  options.terms = {true, true, true, true, false};
+  int false_limits = 0, false_white = 0;
+  for (int r = 0; r < kRecords; ++r) {
+    std::vector<double> y = source.record(0, kFlicker, 0);
+    double before = normal();
+    for (double& value : y) {
+      const double now = normal();
+      value += kRounding * kRate * (now - before);
+      before = now;
+    }
+    const NoiseFit fit = fit_record(y, kRate, nullptr, options);
+    const Coefficient &n_of = fit[Term::white], &b = fit[Term::flicker];
+    false_limits += b.status == Status::not_detected && *b.upper95 < kFlicker ? 1 : 0;
+    false_white += n_of.status == Status::detected ? 1 : 0;
+  }
+  CHECK(false_limits <= 0.06 * kRecords);
+  CHECK(false_white <= 0.06 * kRecords);
 }
 
 TEST_CASE("the value in the model of all terms is right on average where a neighbour is not detected") {

@@ -181,6 +181,7 @@ INPUTS = {
     "contradicted": fitted("contradicted", band_hump, analysis=("--no-remedies",)),
     "allan_disagrees": fitted("disagrees", slow_wave),
     "flicker_or_walk": fitted_model("slow", 8000, white=0.02, flicker=0.02),
+    "white_or_flicker": fitted_model("white_or", 64, flicker=0.02),
     "too_short": fitted_model("short", 4000, white=0.02, walk=0.01),
     "undetermined": fitted_model("between", 8000, white=0.02, flicker=0.02),
     "reaches_zero": fitted_model("zero", 12000, white=0.02, flicker=0.01),

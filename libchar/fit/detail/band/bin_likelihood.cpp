@@ -146,6 +146,15 @@ TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms) {
   return result;
 }
 
+ScoreMoments score_moments(const BinProblem& problem, const ModelPoint& at, const TermSet& terms, std::size_t term) {
+  const auto k = static_cast<Eigen::Index>(term);
+  const TermMatrix covariance = inverse_of(fisher_information(problem, at, terms), terms);
+  const double sd = std::sqrt(covariance(k, k));
+  const Eigen::ArrayXd weight = problem.dof / 2 * shape_of(problem, at.shape) / model_of(problem, at) *
+                                (problem.unit.matrix() * covariance.col(k)).array() / sd;
+  return {sd, (8 * weight.cube() / problem.dof.square()).sum()};
+}
+
 // Non-negative Fisher scoring. The likelihood is that of gamma variables whose means are mu = (A theta) exp(S a), so that each
 // scoring step is a weighted linear least-squares problem,
 //   theta, da <- argmin_{theta >= 0} sum nu/(2 mu^2) (x - exp(S a) A theta - mu S da)^2,

@@ -55,6 +55,13 @@ TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, c
 /// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are scaled first.
 TermMatrix inverse_of(const TermMatrix& information, const TermSet& terms);
 
+/// Standard deviation of theta by its efficient score, and the skewness of that: a sum of chi-squares,
+/// sum w_j (u_j - 1), w = nu/2 (I^-1 a) / mu, of the skewness sum w³ 8 / nu² over sd³.
+struct ScoreMoments {
+  double sd = 0, skewness = 0;
+};
+ScoreMoments score_moments(const BinProblem& problem, const ModelPoint& at, const TermSet& terms, std::size_t term);
+
 inline TermSet only_positive(const Mixture& theta) {
   TermSet set{};
   for (std::size_t i = 0; i < kTerms; ++i) set[i] = theta[i] > 0;

@@ -17,7 +17,7 @@ namespace libchar {
 
 // A term whose true value is zero improves 2 ln L by half a chi-square with one degree of freedom and half a zero
 // (boundary of theta >= 0): threshold 5.41 is passed by 1 % of such terms. Elimination runs backward from the full set,
-// least needed first. Flicker and walk may each be dispensable while the other is there and yet not both
+// least needed first. Neighbours may each be dispensable while the other is there and yet not both
 // (docs/theory/fit.md): then both are kept and reported as undetermined.
 
 namespace {
@@ -54,16 +54,28 @@ class Submodels {
   std::array<std::optional<ScoringResult>, 1U << kTerms> known_;
 };
 
-constexpr auto kFlicker = static_cast<std::size_t>(Term::flicker);
-constexpr auto kWalk = static_cast<std::size_t>(Term::walk);
+/// Neighbours by their slopes, of which one can do for the other.
+struct Neighbours {
+  Term faster, slower;
+  const char* code;
+  const char* sentence;
+};
+constexpr std::array<Neighbours, 2> kNeighbours = {{
+    {Term::flicker, Term::walk, "flicker_or_walk",
+     "The record shows slow noise but cannot tell bias instability from random walk: "
+     "each could explain it alone. A longer record can tell."},
+    {Term::white, Term::flicker, "white_or_flicker",
+     "The record cannot tell white noise from bias instability: each could explain it alone. A longer record can tell."},
+}};
 
-bool cannot_tell(Submodels& models, const TermSet& set, double threshold) {
-  if (!set[kFlicker] || !set[kWalk]) return false;
+bool cannot_tell(Submodels& models, const TermSet& set, const Neighbours& pair, double threshold) {
+  const auto a = static_cast<std::size_t>(pair.faster), b = static_cast<std::size_t>(pair.slower);
+  if (!set[a] || !set[b]) return false;
   TermSet neither = set;
-  neither[kFlicker] = neither[kWalk] = false;
+  neither[a] = neither[b] = false;
   if (count_of(neither) == 0) return false;
   const double both = 2 * (models.at(neither).half_deviance - models.at(set).half_deviance);
-  return models.ratio(set, kFlicker) < threshold && models.ratio(set, kWalk) < threshold && both > threshold;
+  return models.ratio(set, a) < threshold && models.ratio(set, b) < threshold && both > threshold;
 }
 
 }  // namespace
@@ -73,11 +85,16 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
   Decision decision;
   TermSet set = offered;
   for (;;) {
-    if (threshold > 0 && cannot_tell(models, set, threshold)) decision.flicker_or_walk = true;
+    for (std::size_t p = 0; p < kNeighbours.size() && threshold > 0; ++p)
+      if (cannot_tell(models, set, kNeighbours[p], threshold)) {
+        decision.either[p] = true;
+        for (const Term term : {kNeighbours[p].faster, kNeighbours[p].slower})
+          decision.ambiguous[static_cast<std::size_t>(term)] = true;
+      }
     std::size_t weakest = kTerms;
     double least = threshold;
     for (std::size_t i = 0; i < kTerms && count_of(set) > 1; ++i) {
-      if (!set[i] || (decision.flicker_or_walk && (i == kFlicker || i == kWalk))) continue;
+      if (!set[i] || decision.ambiguous[i]) continue;
       const double ratio = models.ratio(set, i);
       if (ratio < least) {
         least = ratio;
@@ -117,7 +134,7 @@ Interval profile_interval(const BinProblem& problem, const TermSet& terms, const
                           double lower_rise) {
   const double sd = sd_of_theta(problem, best.at, terms, term);
   return {std::sqrt(profile_lower(problem, terms, best, term, sd, lower_rise)),
-          std::sqrt(profile_upper(problem, terms, best, term, sd, kTwoSided95))};
+          std::sqrt(profile_upper(problem, terms, best, term, sd, kEachTail))};
 }
 
 /// The model of all terms that were offered. A dropped term is not known to be zero: without it the intervals of the
@@ -144,7 +161,6 @@ WithDropped with_dropped(const BinProblem& problem, const Decision& decision, co
 /// One step of Fisher scoring from the maximum over theta >= 0, which lets dropped terms below zero: an efficient estimate of each theta
 /// that no bound and no decision biases (van der Vaart, Asymptotic Statistics (1998), 5.7).
 ///   theta = theta_max + I^-1 g,   g_i = sum nu/2 (u - 1) a_i / mu
-/// So it is a sum of chi-squares, sum w_j (u_j - 1) with w = nu/2 (I^-1 a) / mu, and has the skewness sum w³ 8 / nu² over sd³.
 void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficients& terms) {
   const ModelPoint& at = all.best.at;
   const TermMatrix covariance = inverse_of(fisher_information(problem, at, all.terms), all.terms);
@@ -157,13 +173,10 @@ void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficien
     gradient[k] = all.terms[i] ? (slope * problem.unit.col(k)).sum() : 0;
   }
   for (std::size_t i = 0; i < kTerms; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
     if (!all.terms[i]) continue;
-    const double sd = std::sqrt(covariance(k, k));
-    const Eigen::ArrayXd weight =
-        problem.dof / 2 * shape / model * (problem.unit.matrix() * covariance.col(k)).array() / sd;
-    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(k).dot(gradient), sd,
-                                  (8 * weight.cube() / problem.dof.square()).sum()};
+    const ScoreMoments moments = score_moments(problem, at, all.terms, i);
+    terms[i].in_all = SquareInAll{at.theta[i] + covariance.row(static_cast<Eigen::Index>(i)).dot(gradient), moments.sd,
+                                  moments.skewness};
   }
 }
 
@@ -183,8 +196,8 @@ void report_limits(const BinProblem& problem, TermSet terms, const Optimum& repo
   const bool better = with.half_deviance <= reported.half_deviance;
   const Optimum best = better ? Optimum{with.at, with.half_deviance} : reported;
   const double sd = sd_of_theta(problem, best.at, terms, i);
-  term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, kOneSided95));
-  term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kTwoSided95))};
+  term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, 2 * kEachTail));
+  term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kEachTail))};
   term.profile = true;
 }
 
@@ -232,8 +245,7 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
     term = {};
     if (!options.terms[i]) continue;
     term.likelihood_ratio = decision.likelihood_ratio[i];
-    const bool ambiguous = decision.flicker_or_walk &&
-                           (i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk));
+    const bool ambiguous = decision.ambiguous[i];
     if (!(fit.theta[i] > 0)) {
       term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
       report_limits(problem, decision.kept, best, i, term);
@@ -260,11 +272,8 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
     }
   }
   report_in_all(problem, all, fit.term);
-  if (decision.flicker_or_walk) {
-    fit.findings.push_back(finding("flicker_or_walk",
-                                   "The record shows slow noise but cannot tell bias instability from random walk: "
-                                   "each could explain it alone. A longer record can tell."));
-  }
+  for (std::size_t p = 0; p < kNeighbours.size(); ++p)
+    if (decision.either[p]) fit.findings.push_back(finding(kNeighbours[p].code, kNeighbours[p].sentence));
   return best.at;
 }
 

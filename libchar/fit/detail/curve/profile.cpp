@@ -1,6 +1,13 @@
 // The limits are the roots of 2 (lnL_max - max over the others of lnL(theta)) = rise, sought in the
 // signed root of the left side, which is nearly linear in ln theta: the secant with a bracket needs
 // four or five profile points, each a warm-started scoring of the other terms.
+//
+// Under theta the left side is a chi-square of one degree of freedom only where many coefficients of the spectrum see the term. Of the mean x
+// of nu squares it is nu (x - 1 - ln x) exactly, and what lies below a limit with the probability `tail` is
+//   rise = nu (q - 1 - ln q),   nu q the quantile `tail` of chi-square with nu degrees of freedom:
+// 2.71 for many, 4.0 for two (tail 5 %). The efficient score of a term has the skewness sqrt(8/nu) of such a mean, whatever share of the
+// coefficients it has; so that nu is that of the limit at hand (Barndorff-Nielsen and Cox, Inference and Asymptotics (1994), 5.2: the
+// skewness of the score is what the first-order law leaves out).
 
 #include "libchar/fit/detail/curve/profile.hpp"
 
@@ -8,6 +15,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
@@ -22,12 +30,19 @@ namespace libchar {
 
 namespace {
 
-constexpr double kTail = 0.025;
-constexpr double kFarRoot = 20;  ///< beyond it a limit is zero whatever the term
+constexpr double kFewestSquares = 0.5;  ///< degrees of freedom
+constexpr double kSymmetric = 1e-2;     ///< skewness below which the chi-square of one degree of freedom is right
+constexpr double kFarRoot = 20;         ///< beyond it a limit is zero whatever the term
 
 double above(double r) { return 0.5 * std::erfc(r / std::numbers::sqrt2); }
 
 }  // namespace
+
+double rise_below(double tail, double skewness) {
+  if (!(skewness > kSymmetric)) return chi_square_upper_quantile(2 * tail, 1);
+  const double dof = std::max(kFewestSquares, 8 / (skewness * skewness)), q = chi_square_quantile(tail, dof) / dof;
+  return dof * (q - 1 - std::log(q));
+}
 
 double selected_rise(double likelihood_ratio, double threshold) {
   const double z = std::sqrt(likelihood_ratio), c = std::sqrt(threshold);
@@ -35,7 +50,7 @@ double selected_rise(double likelihood_ratio, double threshold) {
   double low = std::sqrt(kTwoSided95), high = kFarRoot;
   for (int i = 0; i < 60; ++i) {
     const double r = 0.5 * (low + high);
-    (above(r) > kTail * above(r + c - z) ? low : high) = r;
+    (above(r) > kEachTail * above(r + c - z) ? low : high) = r;
   }
   return high * high;
 }
@@ -63,6 +78,13 @@ class Profile {
     }
     if (!std::isfinite(value)) return 1e6;
     return std::sqrt(std::max(0.0, 2 * (value - best_.half_deviance)));
+  }
+
+  /// sqrt of the rise at which less than what was found has the probability `tail` under theta; after root_rise(theta).
+  double root_at(double theta, double tail) const {
+    ModelPoint at = warm_;
+    at.theta[term_] = theta;
+    return std::sqrt(rise_below(tail, score_moments(problem_, at, only_positive(at.theta), term_).skewness));
   }
 
  private:
@@ -106,10 +128,13 @@ double root_beyond(const F& f, double in, double f_in, double step) {
 }  // namespace
 
 double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
-                     double rise) {
+                     double tail) {
   Profile profile(problem, terms, best, term);
-  const double goal = std::sqrt(rise), at = best.at.theta[term];
-  const auto f = [&](double theta) { return profile.root_rise(theta) - goal; };
+  const double goal = std::sqrt(rise_below(tail, 0)), at = best.at.theta[term];
+  const auto f = [&](double theta) {
+    const double root = profile.root_rise(theta);
+    return root - profile.root_at(theta, tail);
+  };
   return root_beyond(f, at, -goal, goal * sd);
 }
 

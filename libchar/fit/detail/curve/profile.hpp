@@ -12,8 +12,12 @@ namespace libchar {
 /// Where it exceeds the likelihood ratio itself, the interval begins at zero.
 double selected_rise(double likelihood_ratio, double threshold);
 
+inline constexpr double kEachTail = 0.025;                ///< beyond each end of an interval
 inline constexpr double kTwoSided95 = 3.841458820694124;  ///< chi-square, one degree of freedom
 inline constexpr double kOneSided95 = 2.705543454095404;
+
+/// Rise of -2 ln L at the upper limit that a theta of this skewness of its score exceeds with the probability `tail`.
+double rise_below(double tail, double skewness);
 
 /// The optimum a profile starts from.
 struct Optimum {
@@ -21,11 +25,11 @@ struct Optimum {
   double half_deviance = 0;
 };
 
-/// Largest theta of the term with 2 (lnL_max - lnL_profile) <= rise; `sd` is a first guess of
+/// The theta of the term under which as little as was found has the probability `tail`; `sd` is a first guess of
 /// theta's standard deviation.
 double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
-                     double rise);
-/// Smallest such theta; 0 when zero is not excluded.
+                     double tail);
+/// Smallest theta with 2 (lnL_max - lnL_profile) <= rise; 0 when zero is not excluded.
 double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise);
 
