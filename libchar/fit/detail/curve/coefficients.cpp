@@ -201,6 +201,20 @@ void report_limits(const BinProblem& problem, TermSet terms, const Optimum& repo
   term.profile = true;
 }
 
+/// A term whose neighbour may explain the same: its interval reaches as far up as without that.
+void join_alone(const BinProblem& problem, const Decision& decision, std::size_t i, Coefficient& term) {
+  TermSet alone = decision.kept;
+  for (std::size_t p = 0; p < kNeighbours.size(); ++p) {
+    const auto a = static_cast<std::size_t>(kNeighbours[p].faster), b = static_cast<std::size_t>(kNeighbours[p].slower);
+    if (decision.either[p] && (i == a || i == b)) alone[i == a ? b : a] = false;
+  }
+  const ScoringResult found = score(problem, alone);
+  Coefficient limits;
+  report_limits(problem, alone, {found.at, found.half_deviance}, i, limits);
+  term.ci95.high = std::max(term.ci95.high, limits.ci95.high);
+  if (term.upper95) term.upper95 = std::max(*term.upper95, *limits.upper95);
+}
+
 }  // namespace
 
 std::string long_name(Term term) {
@@ -271,6 +285,8 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
       term.profile = true;
     }
   }
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (options.terms[i] && decision.ambiguous[i]) join_alone(problem, decision, i, fit.term[i]);
   report_in_all(problem, all, fit.term);
   for (std::size_t p = 0; p < kNeighbours.size(); ++p)
     if (decision.either[p]) fit.findings.push_back(finding(kNeighbours[p].code, kNeighbours[p].sentence));
