@@ -385,14 +385,13 @@ NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::
 }
 
 NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
-                    const FitOptions& options, FitWorkspace* workspace,
-                    const std::optional<TemperatureEffect>& temperature) {
+                    const FitOptions& options, FitWorkspace* workspace, std::span<const double> spent) {
   ClippedBins lines;
   if (options.remedies)
     lines = clipped_power_bins(powers, rate_hz);
   else
     lines.bins = power_bins(powers, rate_hz);
-  if (temperature) count_spent(*temperature, static_cast<double>(samples) / rate_hz, lines.bins);
+  if (!spent.empty()) count_spent(spent, static_cast<double>(samples) / rate_hz, lines.bins);
   FitOptions chosen = options;
   // The cycles are in the Allan curve: no opinion on what is left.
   chosen.second_opinion = options.second_opinion && lines.cycles.empty();

@@ -27,11 +27,11 @@ void widen_as_misfit(double wider, NoiseFit& fit);
 NoiseFit fit_power_bins(const std::vector<PowerBin>& bins, double rate_hz, std::uint64_t samples,
                         const AllanCurve* allan, const FitOptions& options = {}, FitWorkspace* workspace = nullptr);
 
-/// The same on the powers of a record, spectral lines clipped when remedies are on, and temperature
-/// has taken degrees of freedom. `samples` without the missing ones.
+/// The same on the powers of a record, spectral lines clipped when remedies are on. `samples` without the missing
+/// ones; `spent`: of the degree of freedom of coefficient k = 1.. at [k-1], by means that were taken out.
 NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::uint64_t samples, const AllanCurve* allan,
                     const FitOptions& options = {}, FitWorkspace* workspace = nullptr,
-                    const std::optional<TemperatureEffect>& temperature = {});
+                    std::span<const double> spent = {});
 
 /// What the caller of `fit_record` knows of its record; none of it is needed.
 struct RecordKnowledge {

@@ -151,7 +151,7 @@ bool has_step(std::span<const Event> events) {
   return std::any_of(events.begin(), events.end(), [](const Event& event) { return event.kind == EventKind::step; });
 }
 
-/// What stretches differ by where most is known of a term: where share²/tau is largest, its share of the Allan variance.
+/// What stretches differ by where most is known of a term: at its largest share² of the Allan variance over tau.
 StretchSpread spread_of(Term term, const NoiseFit& fit) {
   const auto known = [&](const StretchSpread& at) {
     const double m = at.tau_s * fit.rate_hz, dt_s = 1 / fit.rate_hz;
@@ -249,7 +249,7 @@ NoiseFit fit_whole(std::span<const double> record, double rate_hz, const AllanCu
   const std::vector<PooledPower> powers =
       present.size() > kLeafSamples ? powers_without_ends(record_sums(present, false).plain.bins, {}, rate_hz, options)
                                     : powers_without_ends(present, rate_hz, options);
-  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, means.temperature);
+  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, spent_on(means));
   if (!options.clock) {
     const bool counted = options.difference_kurtosis && as_recorded;
     widen_for_tails(counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
@@ -281,7 +281,7 @@ NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, cons
     allan = &own;
   }
   const std::vector<PooledPower> powers = powers_without_ends(std::move(used.bins), events, rate_hz, options);
-  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace);
+  NoiseFit fit = fit_powers(powers, rate_hz, samples, allan, options, workspace, spent_on(means));
   // Spikes and steps are in the kurtosis of the differences; what it would be without them is not known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);

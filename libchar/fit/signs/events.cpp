@@ -22,8 +22,12 @@
 namespace libchar {
 namespace {
 
-constexpr double kNotTold = 6;        ///< of LR: odds of twenty to one
-constexpr double kGate = 0.7;         ///< share of a threshold that a score must reach to be looked at again
+constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
+constexpr double kGate = 0.7;   ///< share of a threshold that a score must reach to be looked at again
+/// The same of a ramp: a random walk that is fitted to one hides it.
+constexpr double kRampGate = 0.3;
+/// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
+constexpr double kFavoured = 3, kWalkGone = 0.5;
 constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
@@ -218,18 +222,28 @@ std::vector<EventKind> offered(const Search& search, const Hypothesis& now) {
   return kinds;
 }
 
-/// The next event, if there is one.
-std::optional<Trial> next_event(const Search& search, const Hypothesis& now) {
+/// LR of a ramp that is no event and yet likelier than the walk in its place; 0: there is none.
+double walk_like_drift(const Hypothesis& now, const Trial& ramp) {
+  return ramp.gain > kFavoured && ramp.with.power.front() < kWalkGone * now.power.front() ? ramp.gain : 0;
+}
+
+/// The next event, if there is one; otherwise what the ramp is worth.
+std::optional<Trial> next_event(const Search& search, const Hypothesis& now, double& drift_gain) {
   std::vector<Trial> trials;
   for (const EventKind kind : offered(search, now)) {
     const Candidate candidate = best_of(kind, search, now.fit, now.weight);
     const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
-    if (!bends_another && std::abs(candidate.score) < kGate * candidate.threshold) continue;
+    const double gate = kind == EventKind::ramp ? kRampGate : kGate;
+    if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
   }
   const auto best = std::max_element(trials.begin(), trials.end(),
                                      [](const Trial& a, const Trial& b) { return a.worth() < b.worth(); });
-  if (best == trials.end() || best->worth() <= 0) return std::nullopt;
+  if (best == trials.end() || best->worth() <= 0) {
+    for (const Trial& trial : trials)
+      if (trial.candidate.shape.kind == EventKind::ramp) drift_gain = walk_like_drift(now, trial);
+    return std::nullopt;
+  }
   std::vector<EventKind> not_told;
   for (const Trial& other : trials)
     if (&other != &*best && other.worth() > best->worth() - kNotTold) not_told.push_back(other.candidate.shape.kind);
@@ -464,7 +478,7 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   for (int i = 0; i < kRounds && !search.offset.empty(); ++i) fit_both(search, search.offset, now);
   EventSearch found;
   for (int round = 0; round <= options.most; ++round) {
-    std::optional<Trial> next = next_event(search, now);
+    std::optional<Trial> next = next_event(search, now, found.drift_gain);
     if (!next) break;
     found.more = round == options.most;
     if (found.more) break;
@@ -478,9 +492,9 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
     if (found.events.back().kind == EventKind::step)
       found.findings.back().where.time_s.push_back({found.events.back().at_s, found.events.back().at_s});
-    found.spent += now.fit.shape[i].kind == EventKind::ramp ? 1 : 2;
   }
   judge_many(search, now, unit, found);
+  if (!found.events.empty()) found.leverage = leverage_of(now.fit, now.weight);
   found.power = std::move(now.power);
   return found;
 }

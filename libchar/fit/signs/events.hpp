@@ -29,8 +29,9 @@ struct EventSearch {
   std::vector<Event> events;  ///< in the order in which they were found
   std::vector<double> power;  ///< the noise they were found against: E c_k^2 of the series without them
   std::optional<Telegraph> telegraph;
-  int spent = 0;                  ///< degrees of freedom that the events took from the noise
+  std::vector<double> leverage;   ///< what the events took of the degree of freedom of each c_k, k = 1.. at [k-1]
   bool more = false;              ///< stopped at `most` with more to find
+  double drift_gain = 0;          ///< 2 ln L by which a ramp, too weak for an event, is likelier than a random walk
   std::vector<Finding> findings;  ///< one for each event, in the unit given
 };
 

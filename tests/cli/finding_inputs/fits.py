@@ -7,7 +7,7 @@ from . import parts
 from .parts import Input, N, RATE, SD, gyro, noise, raw
 
 
-def simulated(name, rate=RATE, samples=60000, seed=1, more="", **terms):
+def simulated(name, rate=RATE, samples=60000, seed=1, more="", options=(), **terms):
     """A record of a sensor with these terms (white, flicker, walk, resolution), by `simulate`."""
     def make(folder):
         model = folder / f"{name}.yaml"
@@ -18,7 +18,7 @@ def simulated(name, rate=RATE, samples=60000, seed=1, more="", **terms):
         log = folder / f"{name}.npy"
         subprocess.run([parts.PROGRAM, "simulate", model, "--samples", str(samples), "--seed", str(seed), "-o", log,
                         "--no-truth",
-                        "--no-scene", "--force", "-q"], check=True)
+                        "--no-scene", "--force", "-q", *options], check=True)
         return log
     return make
 
@@ -182,6 +182,8 @@ INPUTS = {
     "allan_disagrees": fitted("disagrees", slow_wave),
     "flicker_or_walk": fitted_model("slow", 8000, white=0.02, flicker=0.02),
     "white_or_flicker": fitted_model("white_or", 64, flicker=0.02),
+    "drift_or_walk": fitted_model("drifting", 4000, white=0.02, flicker=0.019, options=("--deterministic",),
+                                  more="deterministic:\n  - {kind: ramp, size: 0.16, per_s: 0.004}\n"),
     "too_short": fitted_model("short", 4000, white=0.02, walk=0.01),
     "undetermined": fitted_model("between", 8000, white=0.02, flicker=0.02),
     "reaches_zero": fitted_model("zero", 12000, white=0.02, flicker=0.01),

@@ -65,7 +65,8 @@ constexpr std::array<Neighbours, 2> kNeighbours = {{
      "The record shows slow noise but cannot tell bias instability from random walk: "
      "each could explain it alone. A longer record can tell."},
     {Term::white, Term::flicker, "white_or_flicker",
-     "The record cannot tell white noise from bias instability: each could explain it alone. A longer record can tell."},
+     "The record cannot tell white noise from bias instability: each could explain it alone. A longer record can "
+     "tell."},
 }};
 
 bool cannot_tell(Submodels& models, const TermSet& set, const Neighbours& pair, double threshold) {

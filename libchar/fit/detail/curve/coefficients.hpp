@@ -17,7 +17,7 @@ struct Decision {
   double half_deviance = 0;
   /// 2 (lnL with - lnL without): of a kept term within the model, of a dropped one when it is added
   Mixture likelihood_ratio{};
-  Mixture ratio_in_all{};        ///< the same within the model of all offered terms
+  Mixture ratio_in_all{};  ///< the same within the model of all offered terms
   /// neither is needed when the other is there, but one of them is: flicker and walk, white noise and flicker
   std::array<bool, 2> either{};
   TermSet ambiguous{};  ///< the terms of those pairs

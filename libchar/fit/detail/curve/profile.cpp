@@ -2,12 +2,13 @@
 // signed root of the left side, which is nearly linear in ln theta: the secant with a bracket needs
 // four or five profile points, each a warm-started scoring of the other terms.
 //
-// Under theta the left side is a chi-square of one degree of freedom only where many coefficients of the spectrum see the term. Of the mean x
-// of nu squares it is nu (x - 1 - ln x) exactly, and what lies below a limit with the probability `tail` is
+// Under theta the left side is a chi-square of one degree of freedom only where many coefficients of the spectrum see
+// the term. Of the mean x of nu squares it is nu (x - 1 - ln x) exactly, and what lies below a limit with the
+// probability `tail` is
 //   rise = nu (q - 1 - ln q),   nu q the quantile `tail` of chi-square with nu degrees of freedom:
-// 2.71 for many, 4.0 for two (tail 5 %). The efficient score of a term has the skewness sqrt(8/nu) of such a mean, whatever share of the
-// coefficients it has; so that nu is that of the limit at hand (Barndorff-Nielsen and Cox, Inference and Asymptotics (1994), 5.2: the
-// skewness of the score is what the first-order law leaves out).
+// 2.71 for many, 4.0 for two (tail 5 %). The efficient score of a term has the skewness sqrt(8/nu) of such a mean,
+// whatever share of the coefficients it has; so that nu is that of the limit at hand (Barndorff-Nielsen and Cox,
+// Inference and Asymptotics (1994), 5.2: the skewness of the score is what the first-order law leaves out).
 
 #include "libchar/fit/detail/curve/profile.hpp"
 

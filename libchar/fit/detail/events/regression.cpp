@@ -4,6 +4,7 @@
 
 #include "libchar/fit/detail/events/regression.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -117,6 +118,16 @@ Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::
     for (std::size_t k = 0; k < x.size(); ++k) fit.rest[k] -= fit.size(i) * x[k];
   }
   return fit;
+}
+
+std::vector<double> leverage_of(const Regression& fit, std::span<const double> weight) {
+  std::vector<double> leverage(weight.size());
+  Eigen::VectorXd row(fit.size.size());
+  for (std::size_t k = 0; k < leverage.size(); ++k) {
+    for (Eigen::Index i = 0; i < row.size(); ++i) row(i) = fit.column[static_cast<std::size_t>(i)][k];
+    leverage[k] = std::clamp(row.dot(fit.covariance * row) * weight[k], 0.0, 1.0);
+  }
+  return leverage;
 }
 
 Score score_of(const Regression& beside, std::span<const double> column, std::span<const double> weight) {

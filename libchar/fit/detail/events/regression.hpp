@@ -74,6 +74,9 @@ double weighted_product(std::span<const double> weight, std::span<const double> 
 Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::span<const double> coefficients,
                    std::span<const double> weight);
 
+/// The share of each coefficient that the shapes explain whatever it is: the diagonal of X (X'WX)^-1 X'W.
+std::vector<double> leverage_of(const Regression& fit, std::span<const double> weight);
+
 /// Score of one more column beside a regression: its size over its standard deviation when it joins.
 struct Score {
   double numerator = 0, information = 0;

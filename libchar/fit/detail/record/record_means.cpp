@@ -84,6 +84,14 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   if (search.more || search.telegraph)
     for (Coefficient& term : fit.term)
       if (term.status == Status::detected) term.status = Status::undetermined;
+  Coefficient& walk = fit.term[static_cast<std::size_t>(Term::walk)];
+  if (search.drift_gain > 0 && walk.status == Status::detected) {
+    walk.status = Status::undetermined;
+    fit.findings.push_back(finding(
+        "drift_or_walk", fmt::format("A straight drift is likelier than the random walk K (2 ln L {}), but too weak to "
+                                     "be taken out: the record cannot tell them apart.",
+                                     brief_text(search.drift_gain, 2))));
+  }
   if (!means.events_taken) return;
   fit.events = search.events;
   for (const Event& event : fit.events)
@@ -129,12 +137,23 @@ RecordMeans means_in(const EventSeries& series, const FitOptions& options) {
   return out;
 }
 
-void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins) {
-  std::vector<double> sum(effect.leverage.size() + 1, 0.0);
-  for (std::size_t k = 0; k < effect.leverage.size(); ++k) sum[k + 1] = sum[k] + effect.leverage[k];
+std::vector<double> spent_on(const RecordMeans& means) {
+  std::vector<double> spent;
+  const auto add = [&](const std::vector<double>& leverage) {
+    if (spent.size() < leverage.size()) spent.resize(leverage.size());
+    for (std::size_t k = 0; k < leverage.size(); ++k) spent[k] += leverage[k];
+  };
+  if (means.temperature) add(means.temperature->leverage);
+  if (means.events_taken) add(means.search.leverage);
+  return spent;
+}
+
+void count_spent(std::span<const double> leverage, double duration_s, std::vector<PowerBin>& bins) {
+  std::vector<double> sum(leverage.size() + 1, 0.0);
+  for (std::size_t k = 0; k < leverage.size(); ++k) sum[k + 1] = sum[k] + leverage[k];
   // Coefficient k = 1.. stands for frequencies from k - 1/2 to k + 1/2 over twice the duration.
   const auto below = [&](double frequency_hz) {
-    const double at = std::clamp(2 * duration_s * frequency_hz - 0.5, 0.0, static_cast<double>(effect.leverage.size()));
+    const double at = std::clamp(2 * duration_s * frequency_hz - 0.5, 0.0, static_cast<double>(leverage.size()));
     const auto i = static_cast<std::size_t>(at);
     return sum[i] + (i + 1 < sum.size() ? (at - std::floor(at)) * (sum[i + 1] - sum[i]) : 0);
   };

@@ -26,8 +26,10 @@ RecordMeans without_means(std::span<const double> record, double rate_hz, const 
 /// The same events of a series alone, without samples.
 RecordMeans means_in(const EventSeries& series, const FitOptions& options);
 
-/// What the temperature takes from the transform coefficients, for the bins.
-void count_spent(const TemperatureEffect& effect, double duration_s, std::vector<PowerBin>& bins);
+/// What they take of the degree of freedom of each coefficient of the transform, k = 1.. at [k-1].
+std::vector<double> spent_on(const RecordMeans& means);
+/// That, for the bins.
+void count_spent(std::span<const double> leverage, double duration_s, std::vector<PowerBin>& bins);
 
 /// Into the fit of what is left: sentences, events, remedies.
 void report_means(const RecordMeans& means, const FitOptions& options, NoiseFit& fit);
