@@ -312,7 +312,7 @@ TEST_CASE("events: a ramp has a sign and an honest interval") {
 TEST_CASE("events: a weak ramp over flicker is no random walk, and a random walk stays one") {
   constexpr int kRecords = 30;
   constexpr std::size_t kShort = 8192;
-  constexpr double kShortT = kShort / kEventRate, kFlicker = 6 / 9.05, kWalk = 20 / kShortT;
+  constexpr double kShortT = kShort / kEventRate, kFlicker = 6 / 9.05, kWalk = 60 / kShortT;
   test::NoiseSource source(kShort, kEventRate, 21);
   int walks = 0, ramps = 0, kept = 0, held = 0;
   for (int r = 0; r < kRecords; ++r) {

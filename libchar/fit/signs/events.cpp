@@ -318,9 +318,8 @@ void bound_tau(const Search& search, const Regression& others, const Hypothesis&
   event.tau_ci95 = {scan.tau[low] * step_s, high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
 }
 
-/// Standard deviations of the sizes. Of a warm-up the time constant is not known either: a second
-/// one beside it spans what it may be, and the size is the sum of both, as each begins at one.
-std::vector<double> sds_of(const Search& search, const Hypothesis& now) {
+/// Of a warm-up the time constant is not known either: a second one beside it spans what it may be.
+Regression with_free_taus(const Search& search, const Hypothesis& now) {
   constexpr double kOtherTau = 1.2;
   std::vector<EventShape> shapes = now.fit.shape;
   for (const EventShape& shape : now.fit.shape) {
@@ -328,13 +327,18 @@ std::vector<double> sds_of(const Search& search, const Hypothesis& now) {
     shapes.push_back(shape);
     shapes.back().tau *= kOtherTau;
   }
-  const Regression fit = regress(shapes, search.grid, search.coefficients, now.weight);
+  return regress(std::move(shapes), search.grid, search.coefficients, now.weight);
+}
+
+/// Standard deviations of the sizes: that of a warm-up is the sum of both, as each begins at one.
+std::vector<double> sds_of(const Regression& fit, const Hypothesis& now) {
   const Eigen::Index other = fit.covariance.rows() - 1;
   std::vector<double> sd;
   for (std::size_t i = 0; i < now.fit.shape.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
     double variance = fit.covariance(j, j);
-    if (shapes[i].kind == EventKind::warm_up) variance += fit.covariance(other, other) + 2 * fit.covariance(j, other);
+    if (fit.shape[i].kind == EventKind::warm_up)
+      variance += fit.covariance(other, other) + 2 * fit.covariance(j, other);
     sd.push_back(std::sqrt(std::max(variance, now.fit.covariance(j, j))));
   }
   return sd;
@@ -486,7 +490,8 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
     place_again(search, now);
     drop_weak(search, now);
   }
-  const std::vector<double> sd = sds_of(search, now);
+  const Regression free_taus = with_free_taus(search, now);
+  const std::vector<double> sd = sds_of(free_taus, now);
   for (std::size_t i = search.offsets(); i < now.fit.shape.size(); ++i) {
     found.events.push_back(event_of(search, now, i, sd[i]));
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
@@ -494,7 +499,7 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
       found.findings.back().where.time_s.push_back({found.events.back().at_s, found.events.back().at_s});
   }
   judge_many(search, now, unit, found);
-  if (!found.events.empty()) found.leverage = leverage_of(now.fit, now.weight);
+  if (!found.events.empty()) found.leverage = leverage_of(free_taus.column, free_taus.covariance, now.weight);
   found.power = std::move(now.power);
   return found;
 }

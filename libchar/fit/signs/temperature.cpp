@@ -302,8 +302,8 @@ double refined_lag(const TemperatureSearch& search, const TemperatureTrial& tria
   return gain(middle) > trial.scan.gain[best] ? middle : search.lag[best];
 }
 
-/// x_k' C x_k / E c_k^2 of the columns and of the change with the lag: degrees of freedom that each coefficient has lost.
-std::vector<double> leverage_of(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size,
+/// Of the columns and of the change with the lag.
+std::vector<double> leverage_at(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size,
                                 std::span<const double> weight) {
   const TemperatureColumns at = temperature_columns(search.temperature, lag);
   std::vector<std::vector<double>> columns(at.begin(), at.begin() + size.size());
@@ -314,14 +314,7 @@ std::vector<double> leverage_of(const TemperatureSearch& search, double lag, con
     for (std::size_t k = 0; k < change.size(); ++k) change[k] -= more[k];
     columns.push_back(std::move(change));
   }
-  const Eigen::MatrixXd covariance = fit_temperature(columns, search.coefficients, weight).covariance;
-  std::vector<double> leverage(search.coefficients.size());
-  Eigen::VectorXd row(static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < leverage.size(); ++k) {
-    for (std::size_t j = 0; j < columns.size(); ++j) row(static_cast<Eigen::Index>(j)) = columns[j][k];
-    leverage[k] = std::clamp(row.dot(covariance * row) * weight[k], 0.0, 1.0);
-  }
-  return leverage;
+  return leverage_of(columns, fit_temperature(columns, search.coefficients, weight).covariance, weight);
 }
 
 /// The noise beside an effect whose degrees of freedom are counted: what the columns took from a coefficient is missing in the rest.
@@ -329,7 +322,7 @@ NoiseBeside noise_beside_counted(const TemperatureSearch& search, double lag, co
                                  std::span<const double> weight) {
   constexpr double kMostTaken = 0.9;
   EventSeries left = series_without(search, lag, size);
-  const std::vector<double> taken = leverage_of(search, lag, size, weight), rest = transformed(left.value);
+  const std::vector<double> taken = leverage_at(search, lag, size, weight), rest = transformed(left.value);
   CosineSums back(left.value.size());
   const std::span<double> c = back.input();
   c[0] = 0;
@@ -392,7 +385,7 @@ void describe_effect(const TemperatureSearch& search, const TemperatureTrial& tr
   double square = 0;
   for (const double x : effect.value) square += x * x;
   effect.rms = std::sqrt(square / static_cast<double>(effect.value.size()));
-  effect.leverage = leverage_of(search, lag, fit.size, noise.weight);
+  effect.leverage = leverage_at(search, lag, fit.size, noise.weight);
 }
 
 }  // namespace

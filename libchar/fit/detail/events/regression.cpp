@@ -120,12 +120,13 @@ Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::
   return fit;
 }
 
-std::vector<double> leverage_of(const Regression& fit, std::span<const double> weight) {
+std::vector<double> leverage_of(const std::vector<std::vector<double>>& columns, const Eigen::MatrixXd& covariance,
+                                std::span<const double> weight) {
   std::vector<double> leverage(weight.size());
-  Eigen::VectorXd row(fit.size.size());
+  Eigen::VectorXd row(covariance.rows());
   for (std::size_t k = 0; k < leverage.size(); ++k) {
-    for (Eigen::Index i = 0; i < row.size(); ++i) row(i) = fit.column[static_cast<std::size_t>(i)][k];
-    leverage[k] = std::clamp(row.dot(fit.covariance * row) * weight[k], 0.0, 1.0);
+    for (Eigen::Index i = 0; i < row.size(); ++i) row(i) = columns[static_cast<std::size_t>(i)][k];
+    leverage[k] = std::clamp(row.dot(covariance * row) * weight[k], 0.0, 1.0);
   }
   return leverage;
 }

@@ -74,8 +74,10 @@ double weighted_product(std::span<const double> weight, std::span<const double> 
 Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::span<const double> coefficients,
                    std::span<const double> weight);
 
-/// The share of each coefficient that the shapes explain whatever it is: the diagonal of X (X'WX)^-1 X'W.
-std::vector<double> leverage_of(const Regression& fit, std::span<const double> weight);
+/// The share of each coefficient that columns explain whatever it is, the diagonal of X (X'WX)^-1 X'W: so much of a degree
+/// of freedom is missing in the rest.
+std::vector<double> leverage_of(const std::vector<std::vector<double>>& columns, const Eigen::MatrixXd& covariance,
+                                std::span<const double> weight);
 
 /// Score of one more column beside a regression: its size over its standard deviation when it joins.
 struct Score {
