@@ -21,6 +21,7 @@
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/plan/sensor_words.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/device_source.hpp"

@@ -226,7 +226,7 @@ const Fields<LearntFusion> kFusionContent = {
     list_of<&LearntFusion::inputs>(
         "inputs", kLearntInputFields,
         {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference, "
-                    "`level_sd`: deviation of the level, the mean of the sensors' means",
+                    "`level_sd`: deviation of the level, by what the sensors' means differ",
          .required = true,
          .form = Entry::Form::flow}),
     field<&LearntFusion::interpolation>(

@@ -56,7 +56,7 @@ struct LearntSensor {
 struct LearntInput {
   std::string name, unit;
   std::optional<double> reference_offset;  ///< subtracted from the reference: it is not in the estimates
-  std::optional<double> level_sd;          ///< of the level: offsets from it are taken out
+  std::optional<double> level_sd;          ///< of the level, by what the sensors' means differ
 };
 
 struct LearntAlgorithm {
