@@ -295,6 +295,9 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
           {.meaning =
                "of each input: the stated standard deviation times this covered 95 % of the errors of the replay",
            .otherwise = "not known"}),
+      field<&LearntAlgorithm::sd>(
+          "sd", {.meaning = "of each input, of a method that states no deviation: the RMS error of the replay",
+                 .otherwise = "not known"}),
       custom<LearntAlgorithm, read_learnt, write_learnt>("learnt", "map of lists of numbers",
                                                          {.meaning = "from the reference"}),
   };

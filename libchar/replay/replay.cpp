@@ -610,6 +610,14 @@ void doubt_offset(ReplayResult& out) {
   found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
 }
 
+// Of each input; empty: of one it is not known.
+std::vector<double> rms_errors(const AlgorithmResult& algorithm) {
+  std::vector<double> out;
+  for (const InputScore& input : algorithm.inputs)
+    if (std::isfinite(input.error.rmse)) out.push_back(input.error.rmse);
+  return out.size() == algorithm.inputs.size() ? out : std::vector<double>();
+}
+
 // What the methods that are recommended say of themselves is about the verdict.
 void add_doubts_of_chosen(ReplayResult& out) {
   for (std::size_t i = 0; i < out.algorithms.size(); ++i) {
@@ -667,8 +675,11 @@ ReplayResult Replay::collect() {
     tell_readings(out);
   }
   for (const AlgorithmRun& run : runs_)
-    for (LearntAlgorithm& algorithm : learnt_.algorithms)
-      if (run.planned().asked && algorithm.label == run.planned().label) algorithm.sd_factor = run.sd_factor();
+    for (LearntAlgorithm& algorithm : learnt_.algorithms) {
+      if (!run.planned().asked || algorithm.label != run.planned().label) continue;
+      algorithm.sd_factor = run.sd_factor();
+      if (algorithm.sd_factor.empty()) algorithm.sd = rms_errors(*out.find(algorithm.label));
+    }
   out.learnt = learnt_;
   doubt_offset(out);
   add_doubts_of_chosen(out);
