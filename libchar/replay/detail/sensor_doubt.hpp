@@ -3,7 +3,7 @@
 // beyond its usual offset and gain against the median u of all (reading_meter.hpp), a sensor is in doubt while the
 // running mean of e_i or of e_i^2 over 32 instants is beyond what is usual. While one is, the running mean of
 // (estimate - m)^2 over 8 instants is added to the variance, m the mean of what the sensors that are not in doubt say
-// of u, by their usual scatter, and the variance is that of m at least; the median itself where fewer than two are left.
+// of u, by their usual scatter, and the variance is that of m at least; where fewer than two are left m is the median.
 
 #include <Eigen/Core>
 #include <algorithm>
