@@ -10,6 +10,7 @@
 namespace libchar::detail {
 namespace {
 
+constexpr int kHeld = 4096;  // instants: a turned sensor shows nothing at rest, and weights remember
 constexpr double kMemory = 1.0 / 32, kMemoryOfDistance = 1.0 / 8;
 // Beyond what is usual of a block of 256 or 64 instants:
 constexpr double kDoubtedMean = 1.25;  // of its rms
@@ -19,7 +20,7 @@ constexpr double kDoubtedScatter = 2;  // of its rms
 }  // namespace
 
 SensorDoubt::SensorDoubt(std::vector<std::optional<LearntSensor::Reading>> learnt)
-    : learnt_(std::move(learnt)), mean_(learnt_.size()), square_(learnt_.size()) {
+    : learnt_(std::move(learnt)), held_(learnt_.size()), mean_(learnt_.size()), square_(learnt_.size()) {
   for (std::size_t i = 0; i < learnt_.size(); ++i)
     if (learnt_[i]) square_[i] = learnt_[i]->usual_rms * learnt_[i]->usual_rms;
 }
@@ -39,9 +40,11 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
     const double e = y - u - usual.offset - usual.gain * u;
     mean_[i] += kMemory * (e - mean_[i]);
     square_[i] += kMemory * (e * e - square_[i]);
-    const bool doubted =
-        std::abs(mean_[i]) > std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
-        std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms;
+    if (std::abs(mean_[i]) > std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
+        std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms)
+      held_[i] = kHeld;
+    const bool doubted = held_[i] > 0;
+    held_[i] -= doubted ? 1 : 0;
     any = any || doubted;
     if (doubted || !(usual.usual_rms > 0) || !(usual.gain > -1)) continue;
     const double weight = 1 / (usual.usual_rms * usual.usual_rms);

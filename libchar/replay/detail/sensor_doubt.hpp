@@ -1,7 +1,7 @@
 #pragma once
 // How far an estimate is off because sensors read otherwise than they were learnt to: with e_i what sensor i reads
 // beyond its usual offset and gain against the median u of all (reading_meter.hpp), a sensor is in doubt while the
-// running mean of e_i or of e_i^2 over 32 instants is beyond what is usual. While one is, the running mean of
+// running mean of e_i or of e_i^2 over 32 instants is beyond what is usual, and for 4096 more. While one is, that of
 // (estimate - m)^2 over 8 instants is added to the variance, m the mean of what the sensors that are not in doubt say
 // of u, by their usual scatter, and the variance is that of m at least; where fewer than two are left m is the median.
 
@@ -30,6 +30,7 @@ class SensorDoubt {
   Variance instant(const Eigen::MatrixXd& samples, Eigen::Index at, double estimate);
 
   std::vector<std::optional<LearntSensor::Reading>> learnt_;
+  std::vector<int> held_;
   std::vector<double> mean_, square_, sorted_;
   std::vector<Variance> out_;
   double away_ = 0;  // running mean of (estimate - m)²
