@@ -182,7 +182,7 @@ class Writer {
            "  fusion_real samples[N], variance = -1;\n  int i, given;\n"
            "  for (i = 0; i < N; ++i) samples[i] = y[i] * scale_of[i] - offset_of[i];\n" +
            align + "  given = estimate(s, samples, x, &variance);\n  *sd = given && variance >= 0 ? " + deviation() +
-           " : -1;\n  return given;\n}\n";
+           " : -1;\n" + measured_deviation() + "  return given;\n}\n";
   }
 
   /// As `fuse` states it.
@@ -192,6 +192,14 @@ class Writer {
     const std::optional<double>& level = learnt_.inputs[0].level_sd;
     return level ? fmt::format("SQRT({} * variance + {})", number(factor * factor), number(*level * *level))
                  : number(factor) + " * SQRT(variance)";
+  }
+
+  /// Of a method that states none.
+  std::string measured_deviation() const {
+    if (algorithm_.sd.size() != 1) return "";
+    return fmt::format(
+        "  for (i = 0; i < N && usable(samples[i]); ++i) {{\n  }}\n  if (given && variance < 0 && i == N) *sd = {};\n",
+        fusion::c_number(std::hypot(algorithm_.sd[0], learnt_.inputs[0].level_sd.value_or(0)), options_.single));
   }
 
   const LearntFusion& learnt_;

@@ -21,6 +21,7 @@
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/plan/sensor_words.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/device_source.hpp"
@@ -92,7 +93,7 @@ class Fusing {
   const Eigen::MatrixXd& given(const Eigen::MatrixXd& samples);
   void note_faults(std::int64_t end);
   void fill_flags(const Eigen::MatrixXd& samples, std::size_t first);
-  double stated(Eigen::Index input) const;
+  double stated(Eigen::Index input, double variance, const Eigen::VectorXd& samples) const;
   void begin_check();
   void check_readings();
   detail::ReadingMeter::Readings learnt_readings() const;
@@ -129,7 +130,7 @@ class Fusing {
     std::vector<Eigen::Index> rows;  // of the algorithm, whose sensors are in the log
     std::optional<StepNoiseMeter> steps;
     std::optional<detail::ReadingMeter> readings;
-    std::optional<detail::SensorDoubt> doubt;  // of a method that a failing sensor leads astray
+    std::optional<detail::SensorDoubt> doubt;
   } check_;
 };
 
@@ -417,16 +418,16 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   x_.resize(inputs, all.cols());
   variance_.resize(inputs, all.cols());
   runner_->run(all, x_, variance_);
-  const std::vector<double>* const doubt = check_.doubt ? &check_.doubt->push(all, x_.row(0)) : nullptr;
+  const auto* const doubt = check_.doubt ? &check_.doubt->push(all, x_.row(0)) : nullptr;
   x_ *= output_scale_;
   for (std::vector<double>& column : out_) column.resize(rows);
   for (Eigen::Index j = 0; j < inputs; ++j)
     for (std::size_t k = 0; k < rows; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = x_(j, at);
-      double sd = stated(j) * std::sqrt(variance_(j, at));
+      double sd = stated(j, variance_(j, at), all.col(at));
       if (const auto level = learnt_.inputs[static_cast<std::size_t>(j)].level_sd) sd = std::hypot(sd, *level);
-      if (doubt != nullptr && (*doubt)[k] > 0) sd = std::hypot(sd, output_scale_ * std::sqrt((*doubt)[k]));
+      if (doubt != nullptr && (*doubt)[k].more > 0) sd = std::sqrt((*doubt)[k].of(sd * sd));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] = std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
     }
@@ -443,10 +444,13 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   sink.block(columns);
 }
 
-/// By how much a deviation that the algorithm states is multiplied: unit, and what the replay measured of its coverage.
-double Fusing::stated(Eigen::Index input) const {
-  const std::vector<double>& factor = algorithm_.sd_factor;
-  return output_scale_ * (factor.size() == learnt_.inputs.size() ? factor[static_cast<std::size_t>(input)] : 1);
+/// A deviation by the variance that the algorithm states, and by what the replay measured: of its coverage, or of the
+/// errors of one that states none, as long as it has what it had there.
+double Fusing::stated(Eigen::Index input, double variance, const Eigen::VectorXd& samples) const {
+  const std::vector<double>&factor = algorithm_.sd_factor, &sd = algorithm_.sd;
+  const auto j = static_cast<std::size_t>(input);
+  if (std::isnan(variance) && sd.size() == learnt_.inputs.size() && samples.allFinite()) return sd[j];
+  return output_scale_ * (factor.size() == learnt_.inputs.size() ? factor[j] : 1) * std::sqrt(variance);
 }
 
 void Fusing::begin_check() {
@@ -457,7 +461,7 @@ void Fusing::begin_check() {
   const Eigen::MatrixXd h = array.h();
   if (array.one_common_input() && array.channels >= 3) {
     check_.readings.emplace(array.channels, instants_->info().count);
-    if (entry_->description->withstands == 0) check_.doubt.emplace(learnt_readings());
+    check_.doubt.emplace(learnt_readings());
   }
   check_.steps.emplace(h(check_.rows, Eigen::all), instants_->info().count);
   // The sum of two sensors' noises is comparable only where the same two are there.

@@ -226,7 +226,7 @@ const Fields<LearntFusion> kFusionContent = {
     list_of<&LearntFusion::inputs>(
         "inputs", kLearntInputFields,
         {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference, "
-                    "`level_sd`: deviation of the level, the mean of the sensors' means",
+                    "`level_sd`: deviation of the level, by what the sensors' means differ",
          .required = true,
          .form = Entry::Form::flow}),
     field<&LearntFusion::interpolation>(
@@ -295,6 +295,9 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
           {.meaning =
                "of each input: the stated standard deviation times this covered 95 % of the errors of the replay",
            .otherwise = "not known"}),
+      field<&LearntAlgorithm::sd>(
+          "sd", {.meaning = "of each input, of a method that states no deviation: the RMS error of the replay",
+                 .otherwise = "not known"}),
       custom<LearntAlgorithm, read_learnt, write_learnt>("learnt", "map of lists of numbers",
                                                          {.meaning = "from the reference"}),
   };

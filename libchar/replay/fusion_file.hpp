@@ -56,7 +56,7 @@ struct LearntSensor {
 struct LearntInput {
   std::string name, unit;
   std::optional<double> reference_offset;  ///< subtracted from the reference: it is not in the estimates
-  std::optional<double> level_sd;          ///< of the level: offsets from it are taken out
+  std::optional<double> level_sd;          ///< of the level, by what the sensors' means differ
 };
 
 struct LearntAlgorithm {
@@ -64,6 +64,7 @@ struct LearntAlgorithm {
   std::vector<std::pair<std::string, double>> options;  ///< all of them, as used
   fusion::Learnt learnt;
   std::vector<double> sd_factor;  ///< of each input: times the stated deviation it covered 95 % of the replay
+  std::vector<double> sd;         ///< of one that states none: RMS error of each input in the replay
   std::string refused;            ///< why it cannot be applied, a sentence; empty: it can
   int line = 0, column = 0;       ///< in the file it was read from
 };

@@ -23,6 +23,7 @@
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
 #include "libchar/replay/detail/plan/sensor_knowledge.hpp"
+#include "libchar/replay/detail/plan/sensor_words.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/plan/tilt_check.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
@@ -131,17 +132,33 @@ class Replay {
   // Where nothing says which sensor is right, what they read on average and what they do about it are two questions.
   // The first is answered by the mean of their means, and no score sees the second through their offsets.
   void level() {
-    if (instants_.info().has_reference || scene_.align || scene_.rest) return;
+    if (instants_.info().has_reference || scene_.rest) return;
     PassProgress passing(progress_, "comparing the means");
     std::optional<detail::ReadingMeter> meter;
     ++passes_;
     instants_.pass(plan_.run_from, plan_.run_to, kLearningBlock, passing,
                    [&](const InstantBlock& b) { push_reading(b.samples, plan_.run_from, meter); });
-    const auto found = meter ? meter->level() : std::nullopt;
+    std::vector<double> offsets;
+    for (const detail::TakenOut& one : taken_out()) offsets.push_back(one.offset);
+    const auto found = meter ? meter->level(offsets) : std::nullopt;
     if (!found) return;
     knowledge_.level_sd = found->sd;
+    if (!found->matters || scene_.align) return;
     for (std::size_t k = 0; k < found->offsets.size(); ++k) knowledge_.offsets[live(k)] = found->offsets[k];
     instants_.set_offsets(knowledge_.offsets);
+  }
+
+  // From each sensor that is not left out.
+  std::vector<detail::TakenOut> taken_out() const {
+    std::vector<detail::TakenOut> out;
+    const std::size_t sensors = plan_.live.empty() ? scene_.sensors.size() : plan_.live.size();
+    for (std::size_t k = 0; k < sensors; ++k) {
+      out.push_back({knowledge_.level_sd ? knowledge_.offsets[live(k)] : 0, 0});
+      if (!alignment_ || !scene_.align->apply) continue;
+      const fusion::ChannelAlignment& aligned = alignment_->alignment.channels[live(k)];
+      out.back() = {aligned.bias, aligned.gain};
+    }
+    return out;
   }
 
   // Place of a sensor that is not left out.
@@ -593,6 +610,14 @@ void doubt_offset(ReplayResult& out) {
   found.help.push_back({"Take it out of the reference.", {{"reference_offset", "estimate"}}});
 }
 
+// Of each input; empty: of one it is not known.
+std::vector<double> rms_errors(const AlgorithmResult& algorithm) {
+  std::vector<double> out;
+  for (const InputScore& input : algorithm.inputs)
+    if (std::isfinite(input.error.rmse)) out.push_back(input.error.rmse);
+  return out.size() == algorithm.inputs.size() ? out : std::vector<double>();
+}
+
 // What the methods that are recommended say of themselves is about the verdict.
 void add_doubts_of_chosen(ReplayResult& out) {
   for (std::size_t i = 0; i < out.algorithms.size(); ++i) {
@@ -611,19 +636,12 @@ void add_doubts_of_chosen(ReplayResult& out) {
 void Replay::tell_readings(ReplayResult& out) const {
   if (!out.faults.empty()) return;
   std::vector<std::string> names, units;
-  std::vector<detail::TakenOut> taken_out;
-  const std::size_t sensors = plan_.live.empty() ? out.sensors.size() : plan_.live.size();
-  for (std::size_t k = 0; k < sensors; ++k) {
-    const SensorResult& sensor = out.sensors[live(k)];
-    names.push_back(sensor.name);
-    units.push_back(sensor.unit);
-    taken_out.push_back({knowledge_.level_sd ? sensor.offset : 0, 0});
-    if (!alignment_ || !scene_.align->apply) continue;
-    const fusion::ChannelAlignment& aligned = alignment_->alignment.channels[live(k)];
-    taken_out.back() = {aligned.bias, aligned.gain};
+  for (std::size_t k = 0; k < taken_out().size(); ++k) {
+    names.push_back(out.sensors[live(k)].name);
+    units.push_back(out.sensors[live(k)].unit);
   }
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
-  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, taken_out, out.warnings);
+  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, taken_out(), out.warnings);
 }
 
 ReplayResult Replay::collect() {
@@ -657,8 +675,11 @@ ReplayResult Replay::collect() {
     tell_readings(out);
   }
   for (const AlgorithmRun& run : runs_)
-    for (LearntAlgorithm& algorithm : learnt_.algorithms)
-      if (run.planned().asked && algorithm.label == run.planned().label) algorithm.sd_factor = run.sd_factor();
+    for (LearntAlgorithm& algorithm : learnt_.algorithms) {
+      if (!run.planned().asked || algorithm.label != run.planned().label) continue;
+      algorithm.sd_factor = run.sd_factor();
+      if (algorithm.sd_factor.empty()) algorithm.sd = rms_errors(*out.find(algorithm.label));
+    }
   out.learnt = learnt_;
   doubt_offset(out);
   add_doubts_of_chosen(out);

@@ -208,7 +208,7 @@ struct ReplayFacts {
   std::string best_fusion;
   /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
-  /// without a reference, offsets from the mean of the sensors' means are taken out; the deviation of that level
+  /// without a reference: deviation of the level, by what the sensors' means differ
   std::optional<double> level_sd;
   /// without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;

@@ -7,6 +7,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/replay/detail/coverage_meter.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/fuse.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/kept_columns.hpp"
@@ -44,13 +45,12 @@ std::string honest_log(std::uint64_t seed, double (*spoil)(double y, int k) = nu
 }
 
 struct HonestBench {
-  explicit HonestBench(const std::string& more = "") {
+  explicit HonestBench(const std::string& more = "", bool three = false) {
     bench.put("log.csv", honest_log(1));
     const Scene scene = bench.read(
         "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n"
-        "  - {name: a, noise: 0.05}\n  - {name: b, noise: 0.1}\n  - {name: c, noise: 0.08}\n"
-        "  - {name: d, noise: 0.2}\nreference: x\nlearning: [0, 50]\n" +
-        more);
+        "  - {name: a, noise: 0.05}\n  - {name: b, noise: 0.1}\n  - {name: c, noise: 0.08}\n" +
+        std::string(three ? "" : "  - {name: d, noise: 0.2}\n") + "reference: x\nlearning: [0, 50]\n" + more);
     learnt = parse_fusion_file(fusion_yaml(replay(scene, {}).learnt), "fusion.yaml");
   }
   FuseResult fuse_log(const std::string& log, const std::string& algorithm, KeptColumns& kept) {
@@ -100,8 +100,9 @@ TEST_CASE("fuse: standard deviations cover 92 to 97 % on another log, whatever t
     HonestBench bench(align);
     int stated = 0;
     for (const LearntAlgorithm& algorithm : bench.learnt.algorithms) {
-      if (!algorithm.refused.empty() || algorithm.sd_factor.empty()) continue;
-      INFO(algorithm.label << (*align == 0 ? "" : ", aligned") << ", factor " << algorithm.sd_factor[0]);
+      if (!algorithm.refused.empty()) continue;
+      INFO(algorithm.label << (*align == 0 ? "" : ", aligned"));
+      CHECK(algorithm.sd_factor.empty() != algorithm.sd.empty());
       KeptColumns kept;
       bench.fuse_log(honest_log(2), algorithm.label, kept);
       const double share = coverage(kept);
@@ -170,6 +171,36 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
     CHECK_THAT(places, Contains(std::string(kind) == "from the middle" ? "from 5" : "from the start"));
     CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
   }
+}
+
+TEST_CASE(
+    "fuse: a sensor of three that reads otherwise is in the standard deviation of methods that withstand it too") {
+  HonestBench bench("", true);
+  using Spoil = double (*)(double, int);
+  const std::pair<const char*, Spoil> kinds[] = {{"offset", [](double y, int) { return y + 0.6; }},
+                                                 {"sign", [](double y, int) { return -y; }},
+                                                 {"ramp", [](double y, int k) { return y + 1e-4 * k; }}};
+  for (const auto& [kind, spoil] : kinds)
+    for (const char* algorithm : {"minque", "neural-simplex"}) {
+      INFO(kind << ", " << algorithm);
+      KeptColumns kept;
+      bench.fuse_log(honest_log(7, spoil), algorithm, kept);
+      CHECK(coverage(kept) >= 0.91);
+    }
+}
+
+TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does not show, as weights remember it") {
+  const double usual = 0.05;
+  const LearntSensor::Reading reading{0, 0, 0.1 * usual, usual};
+  detail::SensorDoubt doubt({reading, reading, reading});
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(3, 3000);
+  y.row(1).head(500).setConstant(2);  // and then it agrees with the others again
+  Eigen::VectorXd estimates = Eigen::VectorXd::Constant(3000, 0.3);
+  const auto& variances = doubt.push(y, estimates);
+  CHECK(variances[2999].more == Approx(0.09).epsilon(0.01));
+  CHECK(variances[2999].least == Approx(usual * usual / 2));
+  detail::SensorDoubt sound({reading, reading, reading});
+  CHECK(sound.push(Eigen::MatrixXd::Zero(3, 3000), estimates)[2999].more == 0);
 }
 
 TEST_CASE(

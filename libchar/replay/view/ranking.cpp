@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "libchar/core/numeric/interval.hpp"
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -163,6 +164,25 @@ std::string without_reference_sentence(const ReplayResult& r, const AlgorithmRes
   return best.label + " learns from a reference.";
 }
 
+// Which sensors needed it most.
+std::string largest_parts(const ReplayResult& r) {
+  if (!r.alignment->applied) return "";
+  const std::vector<fusion::ChannelAlignment>& all = r.alignment->learnt.channels;
+  const auto largest = [&](double fusion::ChannelAlignment::*part) {
+    const auto less = [&](const auto& a, const auto& b) { return std::abs(a.*part) < std::abs(b.*part); };
+    return static_cast<std::size_t>(std::max_element(all.begin(), all.end(), less) - all.begin());
+  };
+  const std::size_t bias = largest(&fusion::ChannelAlignment::bias), gain = largest(&fusion::ChannelAlignment::gain);
+  std::string out;
+  if (all[bias].bias != 0)
+    out += fmt::format(" The largest bias is that of {}: {}.", r.sensors[bias].name,
+                       error_text(all[bias].bias, r.inputs[0].unit));
+  if (all[gain].gain != 0)
+    out += fmt::format(" The gain of {} is furthest from one: {}.", r.sensors[gain].name,
+                       brief_text(1 + all[gain].gain, 3));
+  return out;
+}
+
 // What the learning window taught, and what each step of it brought.
 std::string taught_sentence(const ReplayResult& r) {
   if (!r.alignment || r.alignment->trials.empty() || !r.learning) return "";
@@ -183,7 +203,7 @@ std::string taught_sentence(const ReplayResult& r) {
                   error_text(trials[0].of_mean, r.inputs[0].unit), error_text(trials[0].rmse, r.inputs[0].unit));
   if (!kept.empty()) out += fmt::format("; taken out of the sensors in turn: {}", list_of(kept));
   if (!idle.empty()) out += fmt::format("; not worth it: {}", list_of(idle));
-  return out + ".";
+  return out + "." + largest_parts(r);
 }
 
 std::string bounds_sentence(const ReplayResult& r) {
@@ -263,19 +283,60 @@ std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
 
 std::string level_sentence(const ReplayResult& r) {
   if (!r.level_sd) return "";
+  const std::string reach = error_text(kNormal95 * *r.level_sd, r.inputs[0].unit);
+  if (std::all_of(r.sensors.begin(), r.sensors.end(), [](const SensorResult& s) { return s.offset == 0; }))
+    return fmt::format("The level is known to ± {} (95 %), by what the means of the sensors differ.", reach);
+  const auto less = [](const SensorResult& a, const SensorResult& b) {
+    return std::abs(a.offset) < std::abs(b.offset);
+  };
+  const SensorResult& furthest = *std::max_element(r.sensors.begin(), r.sensors.end(), less);
   return fmt::format(
-      "The means of the sensors differ: the level is their mean without those far from the others (± {} "
-      "with 95 %), offsets from it are taken out, and the method is chosen for the variation.",
-      error_text(kNormal95 * *r.level_sd, r.inputs[0].unit));
+      "The means of the sensors differ, that of {} by {}: the level is their mean without those far from the others "
+      "(± {} with 95 %), offsets from it are taken out, and the method is chosen for the variation.",
+      furthest.name, error_text(furthest.offset, r.inputs[0].unit), reach);
+}
+
+// Where the others have samples.
+std::string missing_samples(const ReplayResult& r) {
+  constexpr double kWorthSaying = 0.1;  // of the instants
+  std::vector<double> all;
+  for (const SensorResult& sensor : r.sensors) all.push_back(sensor.missing);
+  const double usual = median_in_place(all);
+  std::string out;
+  for (const SensorResult& sensor : r.sensors)
+    if (sensor.missing > usual + kWorthSaying && sensor.missing < 1)
+      out += fmt::format("{}{} at {}", out.empty() ? "" : ", ", sensor.name, percent_text(sensor.missing, 3));
+  return out.empty() ? out : fmt::format("Samples are missing: {} of the instants.", out);
+}
+
+// Of faults that nobody declared, for as long as is worth a word.
+std::string detected_faults(const ReplayResult& r, const AlgorithmResult& best) {
+  constexpr double kLeastShare = 0.05;  // of the run
+  const std::vector<const AlgorithmResult*> all = ranked(r);
+  const auto watches = [](const AlgorithmResult* a) { return a->watches_faults && !a->bound; };
+  const auto first = std::find_if(all.begin(), all.end(), watches);
+  if (!r.faults.empty() || first == all.end()) return "";
+  const AlgorithmResult& watching = best.watches_faults ? best : **first;
+  const double end_s = r.end_s();
+  std::vector<std::string> out;
+  for (const FoundFault& one : watching.faults) {
+    const double to_s = one.to_s.value_or(end_s);
+    if (to_s - one.from_s < kLeastShare * (end_s - r.start_s) || one.sensor >= r.sensors.size()) continue;
+    out.push_back(fmt::format("{} ({} from {} to {})", r.sensors[one.sensor].name, one.kind, duration_text(one.from_s),
+                              to_s < end_s ? duration_text(to_s) : "the end"));
+  }
+  return out.empty() ? "" : fmt::format("While it runs {} doubts {}.", watching.label, list_of(out));
 }
 
 // Sensors that fail or stand apart, as found.
 std::string doubtful_sensors(const ReplayResult& r) {
-  std::string out;
-  for (const Finding& one : r.warnings.list())
+  std::string out = missing_samples(r);
+  for (const Finding& one : r.warnings.list()) {
+    const bool unlike = one.code == "sensor_unlike";
     if (one.code == "sensor_failing" || one.code == "sensor_apart" || one.code == "frozen_sensor" ||
-        one.code == "constant_sensor" || one.code == "sensor_without_samples")
-      out += (out.empty() ? "" : " ") + fmt::format("Caution: {}.", sentence_of(one));
+        one.code == "constant_sensor" || one.code == "sensor_without_samples" || unlike)
+      out += (out.empty() ? "" : " ") + fmt::format("{}: {}.", unlike ? "Not decidable" : "Caution", sentence_of(one));
+  }
   return out;
 }
 
@@ -314,6 +375,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   add(level_sentence(r));
   add(alone_sentence(r, best));
   add(doubtful_sensors(r));
+  add(detected_faults(r, best));
   for (const Finding& one : best.remarks.list())
     if (one.severity != Severity::note) add("Caution: " + one.sentence + ".");
   add(without_reference_sentence(r, best, costs));

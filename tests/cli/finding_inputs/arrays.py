@@ -212,6 +212,7 @@ INPUTS = {
     "sensor_changed": asked(fuse(set_to("b", lambda made: [v + 5 for v in made["b"]]))),
     "sensor_failing": asked(replay(set_to("b", lambda made: made["b"][:4000] + [v + 5 for v in made["b"][4000:]]))),
     "sensor_apart": asked(replay(set_to("b", lambda made: [-v for v in made["b"]]), reference="")),
+    "sensor_unlike": asked(replay(set_to("b", lambda made: [8 * v for v in noise(N_ROWS, seed=5)]), reference="")),
     "noise_changed": asked(fuse(louder("b", 3))),
     "noise_changed_of_all": asked(fuse(louder("abc", 3))),
     "another_rate": asked(fuse(again=at_half_rate)),

@@ -1,8 +1,5 @@
 #include "libchar/replay/detail/plan/reading_meter.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +7,6 @@
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
-#include "libchar/core/text/readable.hpp"
-#include "libchar/core/text/text.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
 namespace libchar::detail {
@@ -26,17 +21,12 @@ constexpr double kOfHalfRms = 1.1;    // of rms
 constexpr double kBeyondUsual = 4;    // times the usual mean of a block
 constexpr double kBeyondNoise = 0.5;  // of the noise: a smaller change of the mean is not worth a word
 constexpr double kLouder = 2.5;       // times the usual rms of a block
+constexpr double kQuietest = 0.5;     // of the usual rms of the middle sensor: less is no scatter of its own
 
-// Of a sensor that stands apart from the others, at least:
-constexpr double kLeastOffset = 3;  // times the noise
-constexpr double kLeastGain = 0.05;
-constexpr double kLeastLouder = 1;  // of the logarithm of the noise
-// Scatter of sound sensors of one kind.
-constexpr double kUsualGain = 0.03, kUsualLevel = 0.3;
+constexpr double kLeastDrift = 0.05;   // of a gain
+constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
 constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
-constexpr double kOfNormal = 1.4826;   // deviation over the median distance
-constexpr double kNear = 3;            // such deviations from the median: they make the level
-constexpr double kFalseAlarm = 0.003;  // of each of the three in a sound array
+constexpr double kNear = 7;            // deviations from the median: they make the level
 
 double quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
@@ -78,7 +68,10 @@ std::vector<ReadingMeter::Change> own_changes(std::vector<ReadingMeter::Change> 
 }  // namespace
 
 ReadingMeter::ReadingMeter(Eigen::Index sensors, std::int64_t instants)
-    : n_(static_cast<std::size_t>(sensors)), block_(instants >= kManyInstants ? kLongBlock : kShortBlock), now_(n_) {}
+    : n_(static_cast<std::size_t>(sensors)),
+      block_(instants >= kManyInstants ? kLongBlock : kShortBlock),
+      now_(n_),
+      neighbours_(n_) {}
 
 void ReadingMeter::push(const Eigen::MatrixXd& samples) {
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
@@ -95,6 +88,19 @@ void ReadingMeter::push(const Eigen::MatrixXd& samples) {
         s.r0 = y - u;
       }
       const double du = u - s.u0, dr = y - u - s.r0;
+      if (s.last >= 0 && s.last + 1 == seen_) {
+        const double step_u = du - s.last_u, step_r = dr - s.last_r;
+        s.steps += 1;
+        s.suu += step_u * step_u;
+        s.sur += step_u * step_r;
+        s.srr += step_r * step_r;
+        neighbours_[i].all += 1;
+        neighbours_[i].same += y == neighbours_[i].last ? 1 : 0;
+      }
+      neighbours_[i].last = y;
+      s.last_u = du;
+      s.last_r = dr;
+      s.last = seen_;
       s.n += 1;
       s.u += du;
       s.r += dr;
@@ -156,52 +162,192 @@ ReadingMeter::Readings ReadingMeter::result() const { return readings(kUsual, 1,
 
 ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHalf, kOfHalfRms); }
 
-std::optional<ReadingMeter::Level> ReadingMeter::level() const {
+namespace {
+
+struct Place {
+  double offset = 0, noise = 0;
+};
+
+/// Deviation of the weighted mean of offsets that are draws of one kind, widened to hold 95 % as normal errors do.
+double level_deviation(const std::vector<Place>& near, bool alike) {
+  const auto n = static_cast<double>(near.size());
+  double mean = 0, squares = 0, w = 0, ww = 0;
+  for (const Place& one : near) mean += one.offset / n;
+  for (const Place& one : near) {
+    const double weight = alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise);
+    squares += (one.offset - mean) * (one.offset - mean);
+    w += weight;
+    ww += weight * weight;
+  }
+  return std::sqrt(squares / (n - 1) * ww) / w * student_quantile(0.975, n - 1) / kNormal95;
+}
+
+}  // namespace
+
+std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<double>& taken_out) const {
   Level out;
+  std::vector<Place> places, near;
   std::vector<double> scatter, away;
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<double> means, rms;
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) means.push_back(fit(block[i], 0, 0).mean);
     if (means.size() < kLeastBlocks) return std::nullopt;
-    out.offsets.push_back(median_in_place(means));
+    const double middle = median_in_place(means);
     for (const auto& block : blocks_)
-      if (block[i].n >= kLeastInBlock) rms.push_back(fit(block[i], out.offsets[i], 0).rms);
+      if (block[i].n >= kLeastInBlock) rms.push_back(fit(block[i], middle, 0).rms);
     scatter.push_back(median_in_place(rms));
+    places.push_back({middle + taken_out[i], scatter.back()});
+    out.offsets.push_back(places.back().offset);
   }
-  std::vector<double> middle = out.offsets, near;
+  std::vector<double> middle = out.offsets;
   const double median = median_in_place(middle);
   for (const double offset : out.offsets) away.push_back(std::abs(offset - median));
   const double away_all = median_in_place(away), noise = median_in_place(scatter);
-  if (!(away_all * away_all > kOffsetsCount * (away_all * away_all + noise * noise))) return std::nullopt;
-  for (const double offset : out.offsets)
-    if (std::abs(offset - median) <= kNear * kOfNormal * away_all) near.push_back(offset);
-  const auto n = static_cast<double>(near.size());
-  double mean = 0, squares = 0;
-  for (const double offset : near) mean += offset / n;
-  for (const double offset : near) squares += (offset - mean) * (offset - mean);
+  for (const Place& one : places)
+    if (std::abs(one.offset - median) <= kNear * kMadToSd * away_all) near.push_back(one);
+  double mean = 0;
+  for (const Place& one : near) mean += one.offset / static_cast<double>(near.size());
   for (double& offset : out.offsets) offset -= mean;
-  out.sd = std::sqrt(squares / (n * (n - 1))) * student_quantile(0.975, n - 1) / kNormal95;
+  out.matters = away_all * away_all > kOffsetsCount * (away_all * away_all + noise * noise);
+  out.sd = level_deviation(near, out.matters);
   return out;
 }
 
-bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual, bool quieter) {
-  return std::abs(block.mean) > std::max(kBeyondUsual * usual.usual_mean, kBeyondNoise * usual.usual_rms) ||
-         block.rms > kLouder * usual.usual_rms || (quieter && block.rms * kLouder < usual.usual_rms);
+std::vector<double> ReadingMeter::repeated() const {
+  std::vector<double> out;
+  for (const Neighbours& one : neighbours_) out.push_back(one.same / std::max(1.0, one.all));
+  return out;
+}
+
+std::vector<std::optional<double>> ReadingMeter::slow_scatter(const Readings& readings) const {
+  std::vector<std::optional<double>> out(n_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (!readings[i]) continue;
+    const double b = readings[i]->gain;
+    std::vector<double> rms, steps;
+    for (const auto& block : blocks_) {
+      const Sums& s = block[i];
+      if (s.steps < kLeastInBlock) continue;
+      rms.push_back(fit(s, readings[i]->offset, b).rms);
+      steps.push_back(std::sqrt(std::max(0.0, (s.srr - 2 * b * s.sur + b * b * s.suu) / (2 * s.steps))));
+    }
+    if (rms.size() < kLeastBlocks) continue;
+    const double step = median_in_place(steps), all = median_in_place(rms);
+    if (step > 0 && all > 0) out[i] = all / step;
+  }
+  return out;
+}
+
+// Weighted least squares of the parts' gains b_p on their places in the log, weights W_p = sum (u - mean u)^2.
+std::optional<ReadingMeter::Line> ReadingMeter::gain_line(std::size_t sensor) const {
+  constexpr std::size_t kParts = 8, kLeastParts = 6;
+  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0, used = 0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    double uu = 0, ur = 0, rr = 0, n = 0;
+    for (std::size_t k = part * blocks_.size() / kParts; k < (part + 1) * blocks_.size() / kParts; ++k) {
+      const Sums& s = blocks_[k][sensor];
+      if (s.n < kLeastInBlock) continue;
+      uu += s.uu - s.u * s.u / s.n;
+      ur += s.ur - s.u * s.r / s.n;
+      rr += s.rr - s.r * s.r / s.n;
+      n += s.n;
+    }
+    if (!(n > 0) || !(uu > 0)) continue;
+    const double gain = ur / uu, noise = rr - gain * ur, at = (static_cast<double>(part) + 0.5) / kParts;
+    if (!(uu > kLeastSignal * noise)) continue;  // the noise of the median would be taken for the gain's
+    w += uu;
+    wx += uu * at;
+    wy += uu * gain;
+    wxx += uu * at * at;
+    wxy += uu * at * gain;
+    wyy += uu * gain * gain;
+    used += 1;
+  }
+  if (used < kLeastParts) return std::nullopt;
+  const double x = wx / w, y = wy / w, sxx = wxx - w * x * x, slope = (wxy - w * x * y) / sxx;
+  const double left = std::max(0.0, wyy - w * y * y - slope * slope * sxx), dof = used - 2;
+  return Line{y - slope * x, y + slope * (1 - x), std::sqrt(left / dof / sxx), dof};
+}
+
+std::vector<ReadingMeter::GainDrift> ReadingMeter::gain_drifts(double false_alarm) const {
+  std::vector<std::optional<Line>> lines;
+  for (std::size_t i = 0; i < n_; ++i) lines.push_back(gain_line(i));
+  const auto size = [](const Line& line) { return std::abs(line.to - line.from); };
+  std::vector<GainDrift> out;
+  for (std::size_t i = 0; i < n_; ++i) {
+    std::vector<double> others;
+    for (std::size_t j = 0; j < n_; ++j)
+      if (j != i && lines[j]) others.push_back(size(*lines[j]));
+    if (!lines[i] || others.size() < 2) continue;
+    const Line& line = *lines[i];
+    const double chance = student_quantile(1 - false_alarm / (2 * static_cast<double>(n_)), line.dof) * line.error;
+    if (size(line) > std::max({kLeastDrift, kBeyondUsual * median_in_place(others), chance}))
+      out.push_back({i, line.from, line.to});
+  }
+  return out;
+}
+
+bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual, const Limits& limits, double motion) {
+  const double more = std::max(1.0, motion), rms = more * std::max(usual.usual_rms, limits.least);
+  return std::abs(block.mean) > std::max(kBeyondUsual * more * usual.usual_mean, kBeyondNoise * rms) ||
+         block.rms > kLouder * rms ||
+         (limits.quieter && block.rms * kLouder < std::min(1.0, motion) * usual.usual_rms &&
+          block.rms > kQuietest * limits.least);
+}
+
+// A sensor in the middle is the median itself, and its scatter nothing, for as long as the signal holds it there:
+// what scatters less than the middle sensor is taken to scatter as much.
+ReadingMeter::Limits ReadingMeter::limits(const Readings& learnt, bool quieter) {
+  std::vector<double> rms;
+  for (const auto& one : learnt)
+    if (one) rms.push_back(one->usual_rms);
+  return {median_in_place(rms), quieter};
+}
+
+// Delays and other axes scatter with the motion m, the mean square step of the median: rms^2 = v + c m, v the median of
+// the calmer half of the blocks, c that of the other half.
+std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const {
+  struct Block {
+    double motion = 0, square = 0;
+    std::size_t at = 0;
+  };
+  std::vector<double> out(blocks_.size(), 1.0);
+  std::vector<Block> all;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Sums& s = blocks_[k][sensor];
+    if (s.n < kLeastInBlock || s.steps < kLeastInBlock) continue;
+    const double rms = fit(s, usual.offset, usual.gain).rms;
+    all.push_back({s.suu / s.steps, rms * rms, k});
+  }
+  if (all.size() < kLeastBlocks) return out;
+  std::sort(all.begin(), all.end(), [](const Block& a, const Block& b) { return a.motion < b.motion; });
+  const std::size_t half = all.size() / 2;
+  std::vector<double> calm, slopes;
+  for (std::size_t k = 0; k < half; ++k) calm.push_back(all[k].square);
+  const double v = median_in_place(calm);
+  for (std::size_t k = half; k < all.size(); ++k)
+    if (all[k].motion > 0) slopes.push_back(std::max(0.0, all[k].square - v) / all[k].motion);
+  const double c = slopes.empty() ? 0 : median_in_place(slopes), middle = v + c * all[half].motion;
+  for (const Block& block : all)
+    if (middle > 0) out[block.at] = std::sqrt((v + c * block.motion) / middle);
+  return out;
 }
 
 // Outliers put single blocks of any sensor beyond: so many in a row are more than those of the middle sensor do by
 // chance, in all sensors together.
-std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, bool quieter) const {
+std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
   constexpr double kByChance = 1e-3;
   std::vector<double> begun;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
     double times = 0;
     bool before = false;
-    for (const auto& block : blocks_) {
-      const Sums& s = block[i];
-      const bool now = s.n >= kLeastInBlock && beyond(fit(s, learnt[i]->offset, learnt[i]->gain), *learnt[i], quieter);
+    const std::vector<double> motion = motion_factors(i, *learnt[i]);
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const Sums& s = blocks_[k][i];
+      const Fit here = fit(s, learnt[i]->offset, learnt[i]->gain);
+      const bool now = s.n >= kLeastInBlock && beyond(here, *learnt[i], limits, motion[k]);
       times += now && !before ? 1 : 0;
       before = now;
     }
@@ -215,18 +361,20 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, bool quieter) 
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, bool quieter) const {
-  const std::int64_t least = least_in_a_row(learnt, quieter);
+  const Limits limits = ReadingMeter::limits(learnt, quieter);
+  const std::int64_t least = least_in_a_row(learnt, limits);
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
     const LearntSensor::Reading& usual = *learnt[i];
+    const std::vector<double> motion = motion_factors(i, usual);
     Change one{i, 0, 1, 0, 0, false}, row = one;  // of those in a row
     std::int64_t in_a_row = 0, changed = 0, first = -1, last = 0;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Sums& s = blocks_[k][i];
       if (s.n < kLeastInBlock) continue;
       const Fit here = fit(s, usual.offset, usual.gain);
-      if (!beyond(here, usual, quieter)) {
+      if (!beyond(here, usual, limits, motion[k])) {
         in_a_row = 0;
         continue;
       }
@@ -247,124 +395,6 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, 
     out.push_back(one);
   }
   return own_changes(std::move(out), learnt);
-}
-
-namespace {
-
-/// "g1: up to 5 deg/s off, 12 times its scatter, from 4 min to the end"
-std::string change_text(const ReadingMeter::Change& change, const std::vector<std::string>& names,
-                        const std::vector<std::string>& units, const Clock& clock) {
-  const auto at = [&](std::int64_t instant) {
-    return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
-  };
-  const std::string& unit = units[change.sensor];
-  return fmt::format("{}: up to {}{}{} off, {} times its scatter, from {} to {}", printable(names[change.sensor], 40),
-                     brief_text(change.offset, 2), unit.empty() ? "" : " ", unit, brief_text(change.scatter, 2),
-                     change.from == 0 ? std::string("the start") : at(change.from),
-                     change.to_end ? std::string("the end") : at(change.to));
-}
-
-/// How far a value is from others that are as scattered as these, over what chance does in an array in 300: by their
-/// deviation (Student's t of one left out), and of many by their median deviation, so that several may stand apart.
-/// `usual_sd`: what sound sensors scatter by counts as three more of them; 0: nothing is known of that.
-double apart_from(std::vector<double> others, double value, double usual_sd) {
-  constexpr std::size_t kMany = 8;
-  constexpr double kOfMedian = 10;
-  const auto n = static_cast<double>(others.size());
-  double mean = 0, squares = 0;
-  for (const double other : others) mean += other / n;
-  for (const double other : others) squares += (other - mean) * (other - mean);
-  const double more = usual_sd > 0 ? 3 : 0, dof = n - 1 + more;
-  const double sd = std::sqrt((squares + more * usual_sd * usual_sd) / dof * (1 + 1 / n));
-  const double limit = student_quantile(1 - kFalseAlarm / (2 * (n + 1)), dof);
-  const double by_sd = (value - mean) / (limit * sd);
-  if (others.size() < kMany) return by_sd;
-  const double middle = median_in_place(others);
-  for (double& other : others) other = std::abs(other - middle);
-  const double by_median = (value - middle) / (kOfMedian * kOfNormal * median_in_place(others));
-  return std::abs(by_median) > std::abs(by_sd) ? by_median : by_sd;
-}
-
-/// Of each value, beyond 1 in magnitude: it stands apart, and by `least` at least; 0: unknown.
-std::vector<double> apart(const std::vector<std::optional<double>>& values, double least, double usual_sd) {
-  std::vector<double> out(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    std::vector<double> others;
-    for (std::size_t j = 0; j < values.size(); ++j)
-      if (j != i && values[j]) others.push_back(*values[j]);
-    if (!values[i] || others.size() < 2) continue;
-    const double away = (*values[i] - median_in_place(others)) / least;
-    const double by_chance = apart_from(std::move(others), *values[i], usual_sd);
-    out[i] = std::abs(by_chance) < std::abs(away) ? by_chance : away;
-  }
-  return out;
-}
-
-struct ApartSensor {
-  std::string name, unit;
-  double offset = 0, gain = 0, noise = 0;  ///< beyond 1 in magnitude: it stands apart by that
-};
-
-/// What is said of one sensor.
-std::string apart_text(const ApartSensor& sensor, const LearntSensor::Reading& reading) {
-  std::vector<std::string> what;
-  if (std::abs(sensor.gain) > 1) what.push_back(fmt::format("gain {}", brief_text(1 + reading.gain, 3)));
-  if (std::abs(sensor.offset) > 1)
-    what.push_back(
-        fmt::format("offset {}{}{}", brief_text(reading.offset, 2), sensor.unit.empty() ? "" : " ", sensor.unit));
-  if (sensor.noise > 1) what.push_back(fmt::format("noise {}", brief_text(reading.usual_rms, 2)));
-  return fmt::format("{}: {}", printable(sensor.name, 40), fmt::join(what, ", "));
-}
-
-void warn_of_apart(const ReadingMeter::Readings& steady, const std::vector<std::string>& names,
-                   const std::vector<std::string>& units, Findings& warnings) {
-  std::vector<std::optional<double>> offset, gain, noise;
-  std::vector<double> rms;
-  for (const auto& one : steady) {
-    offset.push_back(one ? std::optional(one->offset) : std::nullopt);
-    gain.push_back(one ? std::optional(one->gain) : std::nullopt);
-    noise.push_back(one && one->usual_rms > 0 ? std::optional(std::log(one->usual_rms)) : std::nullopt);
-    if (one) rms.push_back(one->usual_rms);
-  }
-  if (rms.size() < 3) return;
-  const double usual = median_in_place(rms);
-  const std::vector<double> offsets = apart(offset, kLeastOffset * usual, 0),
-                            gains = apart(gain, kLeastGain, kUsualGain),
-                            levels = apart(noise, kLeastLouder, kUsualLevel);
-  for (std::size_t i = 0; i < steady.size(); ++i) {
-    const ApartSensor one{names[i], units[i], offsets[i], gains[i], levels[i]};
-    if (std::abs(one.offset) > 1 || std::abs(one.gain) > 1 || one.noise > 1)
-      warnings.add("sensor_apart", "sensors read otherwise than all others, throughout", apart_text(one, *steady[i]));
-  }
-}
-
-}  // namespace
-
-void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
-                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
-                      Findings& warnings) {
-  ReadingMeter::Readings steady = meter.steady();
-  std::vector<ReadingMeter::Change> changes = meter.changes(steady, true);
-  // Where most change it is what they see that does: motion, and how the sensors differ in it.
-  if (2 * changes.size() > steady.size()) changes.clear();
-  for (const ReadingMeter::Change& change : changes)
-    warnings.add("sensor_failing", "sensors read otherwise, relative to the others, than for most of the run",
-                 change_text(change, names, units, clock));
-  for (std::size_t i = 0; i < steady.size(); ++i)
-    if (steady[i]) {
-      steady[i]->offset += taken_out[i].offset;
-      steady[i]->gain += taken_out[i].gain;
-    }
-  warn_of_apart(steady, names, units, warnings);
-}
-
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
-                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
-  for (const ReadingMeter::Change& change : changes)
-    warnings.add("sensor_changed",
-                 "sensors read otherwise, relative to the others, than where this was learnt: weights and standard "
-                 "deviations of there do not fit",
-                 change_text(change, names, units, clock));
 }
 
 }  // namespace libchar::detail

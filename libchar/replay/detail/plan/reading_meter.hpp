@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "libchar/core/finding.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar::detail {
@@ -33,13 +32,14 @@ class ReadingMeter {
   /// half of the log are not in it.
   Readings steady() const;
 
-  /// Where offsets are a fifth of the mean square of what the sensors differ by, or more: of each sensor its middle
-  /// distance from the median of all, less the level, the mean of these distances without those that stand apart.
+  /// Of each sensor its middle distance from the median of all, and `taken_out` of what was taken out of it before,
+  /// less the level: the mean of these distances without those that stand apart.
   struct Level {
     std::vector<double> offsets;
-    double sd = 0;  ///< of the level; 1.96 of it hold 95 %
+    bool matters = false;  ///< they are a fifth of the mean square of what the sensors differ by, or more
+    double sd = 0;         ///< 1.96 of it hold 95 %: of the level where they matter, else of the mean by variances
   };
-  std::optional<Level> level() const;
+  std::optional<Level> level(const std::vector<double>& taken_out) const;
 
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other, and in more than
   /// outliers of all sensors explain.
@@ -53,45 +53,57 @@ class ReadingMeter {
   /// `quieter`: also where it scatters less, as one does that fails for most of the log.
   std::vector<Change> changes(const Readings& learnt, bool quieter = false) const;
 
+  /// Of each sensor the rms over what it is from sample to sample, 1 where neighbours are independent: an error that is
+  /// slow beside others that are not is its own. Medians over the blocks.
+  std::vector<std::optional<double>> slow_scatter(const Readings& readings) const;
+
+  /// Of each sensor the share of its samples that repeat the one before: coarse steps, or values that are held.
+  std::vector<double> repeated() const;
+
+  /// A gain that moves from one end of the log to the other (a line through those of eight parts, each
+  /// from what is left of the means of its blocks), by more than chance does in a sound array in so many.
+  struct GainDrift {
+    std::size_t sensor = 0;
+    double from = 0, to = 0;  ///< beyond one
+  };
+  std::vector<GainDrift> gain_drifts(double false_alarm) const;
+
  private:
   struct Sums {
     double n = 0, u = 0, r = 0, uu = 0, ur = 0, rr = 0;  // of u and r less their first values
     double u0 = 0, r0 = 0;
+    double steps = 0, suu = 0, sur = 0, srr = 0;  // of the differences between neighbours
+    double last_u = 0, last_r = 0;
+    std::int64_t last = -1;  // instant of these
+  };
+  struct Line {
+    double from = 0, to = 0, error = 0, dof = 0;  // at both ends; of their difference
   };
   struct Fit {
     double mean = 0, rms = 0;
   };
   static Fit fit(const Sums& sums, double a, double b);
-  static bool beyond(const Fit& block, const LearntSensor::Reading& usual, bool quieter);
-  std::int64_t least_in_a_row(const Readings& learnt, bool quieter) const;
+  struct Limits {
+    double least = 0;  ///< what scatters less is taken to scatter so much
+    bool quieter = false;
+  };
+  static Limits limits(const Readings& learnt, bool quieter);
+  static bool beyond(const Fit& block, const LearntSensor::Reading& usual, const Limits& limits, double motion);
+  std::vector<double> motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const;
+  std::int64_t least_in_a_row(const Readings& learnt, const Limits& limits) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
+  std::optional<Line> gain_line(std::size_t sensor) const;
 
   std::size_t n_;
   std::int64_t block_, stride_ = 1, seen_ = 0, closed_ = 0;
   std::vector<Sums> now_;
+  struct Neighbours {
+    double all = 0, same = 0, last = 0;
+  };
+  std::vector<Neighbours> neighbours_;     // of each sensor
   std::vector<std::vector<Sums>> blocks_;  // one of `stride_` is kept
   std::vector<double> sorted_;
 };
-
-/// Of the instants that a meter saw.
-struct Clock {
-  double start_s = 0, rate_hz = 1;
-};
-
-/// Of a sensor, before it was fused.
-struct TakenOut {
-  double offset = 0, gain = 0;
-};
-
-/// Sensors that read otherwise than they do for most of the log they are judged by, or than all
-/// others throughout: offset, gain and noise of one that stand apart from those of the rest. `taken_out`: what the
-/// meter did not see.
-void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
-                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
-                      Findings& warnings);
-
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
-                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
 
 }  // namespace libchar::detail

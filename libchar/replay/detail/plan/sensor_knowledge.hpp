@@ -39,7 +39,7 @@ class RestMeter {
 /// What was found out about each sensor before the plan.
 struct SensorKnowledge {
   std::vector<double> offsets;
-  std::optional<double> level_sd;          ///< offsets are from the mean of the means; the deviation of that
+  std::optional<double> level_sd;          ///< of the level, where no reference says it
   std::vector<double> noise_variances;     ///< NaN: not known
   std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
 };

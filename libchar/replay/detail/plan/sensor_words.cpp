@@ -1,0 +1,213 @@
+#include "libchar/replay/detail/plan/sensor_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/numeric/distributions.hpp"
+#include "libchar/core/numeric/median.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
+
+namespace libchar::detail {
+namespace {
+
+constexpr double kFalseAlarm = 0.003;   // of each judgement in a sound array
+constexpr double kSuspicion = 0.05;     // the same where a fault is not told
+constexpr double kSuspected = 1.5;      // times the least, then
+constexpr double kSuspectedOffset = 1;  // scatter of the offsets of three sound sensors, times the noise
+
+// Of a sensor that stands apart from the others, at least:
+constexpr double kLeastOffset = 3;  // times the noise
+constexpr double kLeastGain = 0.05;
+constexpr double kLeastLouder = 1;      // of the logarithm of the noise
+constexpr double kLeastSlower = 0.3;    // of that of its slow part
+constexpr double kLeastRepeated = 0.3;  // of its samples, more than of the others'
+// Scatter of sound sensors of one kind.
+constexpr double kUsualGain = 0.03, kUsualLevel = 0.3, kUsualSlow = 0.07;
+
+using Values = std::vector<std::optional<double>>;
+
+/// How far a value is from others that are as scattered as these, over what chance does in an array of `false_alarm`:
+/// by their deviation (Student's t of one left out), and of many by their median deviation, so that several may
+/// stand apart. `usual_sd`: what sound sensors scatter by counts as three more of them; 0: nothing is known of that.
+double apart_from(std::vector<double> others, double value, double usual_sd, double false_alarm) {
+  constexpr std::size_t kMany = 8;
+  constexpr double kOfMedian = 10;
+  const auto n = static_cast<double>(others.size());
+  double mean = 0, squares = 0;
+  for (const double other : others) mean += other / n;
+  for (const double other : others) squares += (other - mean) * (other - mean);
+  const double more = usual_sd > 0 ? 3 : 0, dof = n - 1 + more;
+  const double sd = std::sqrt((squares + more * usual_sd * usual_sd) / dof * (1 + 1 / n));
+  const double limit = student_quantile(1 - false_alarm / (2 * (n + 1)), dof);
+  const double by_sd = (value - mean) / (limit * sd);
+  if (others.size() < kMany) return by_sd;
+  const double middle = median_in_place(others);
+  for (double& other : others) other = std::abs(other - middle);
+  const double by_median = (value - middle) / (kOfMedian * kMadToSd * median_in_place(others));
+  return std::abs(by_median) > std::abs(by_sd) ? by_median : by_sd;
+}
+
+/// Of each value, beyond 1 in magnitude: it stands apart, and by `least` at least; 0: unknown.
+std::vector<double> apart(const Values& values, double least, double usual_sd, double false_alarm) {
+  std::vector<double> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> others;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      if (j != i && values[j]) others.push_back(*values[j]);
+    if (!values[i] || others.size() < 2) continue;
+    const double away = (*values[i] - median_in_place(others)) / least;
+    const double by_chance = apart_from(std::move(others), *values[i], usual_sd, false_alarm);
+    out[i] = std::abs(by_chance) < std::abs(away) ? by_chance : away;
+  }
+  return out;
+}
+
+/// Everything that is said of a sensor has these.
+struct Sensors {
+  const std::vector<std::string>& names;
+  const std::vector<std::string>& units;
+  std::string name(std::size_t i) const { return printable(names[i], 40); }
+  std::string amount(double value, std::size_t i) const {
+    return brief_text(value, 2) + (units[i].empty() ? "" : " ") + units[i];
+  }
+};
+
+/// What sensors read on average: what is judged, and what is said of it.
+struct Throughout {
+  ReadingMeter::Readings steady;
+  Values slow;
+  std::vector<double> repeated;
+  bool level = false;  // offsets were taken out
+  double noise = 0;    // of the middle sensor
+
+  Values each(double (*value)(const LearntSensor::Reading& reading)) const {
+    Values out;
+    for (const auto& one : steady) out.push_back(one ? std::optional(value(*one)) : std::nullopt);
+    return out;
+  }
+
+  /// Of each sensor; empty where it does not stand apart.
+  std::vector<std::vector<std::string>> words(const Sensors& of, bool sure) const {
+    const double by_chance = sure ? kFalseAlarm : kSuspicion, times = sure ? 1 : kSuspected;
+    const bool few = !sure && !level && steady.size() == 3;
+    Values slower = slow;
+    for (auto& one : slower)
+      if (one) one = std::log(*one);
+    const auto offsets = apart(each([](const auto&one) { return one.offset; }), times * kLeastOffset * noise,
+                               few ? kSuspectedOffset * noise : 0, by_chance),
+               gains = apart(each([](const auto&one) { return one.gain; }), times * kLeastGain, kUsualGain, by_chance),
+               levels = apart(each([](const auto&one) { return std::log(one.usual_rms); }), times * kLeastLouder,
+                              kUsualLevel, by_chance),
+               slowly = apart(slower, kLeastSlower, kUsualSlow, by_chance);
+    std::vector<double> sorted = repeated;
+    const double usual = median_in_place(sorted);
+    std::vector<std::vector<std::string>> out(steady.size());
+    for (std::size_t i = 0; i < steady.size(); ++i) {
+      if (std::abs(gains[i]) > 1) out[i].push_back("gain " + brief_text(1 + steady[i]->gain, 3));
+      if (std::abs(offsets[i]) > 1) out[i].push_back("offset " + of.amount(steady[i]->offset, i));
+      if (levels[i] > 1) out[i].push_back("noise " + of.amount(steady[i]->usual_rms, i));
+      if (!sure && slowly[i] > 1)  // sound sensors drift, and are late, unlike each other
+        out[i].push_back(fmt::format("scatter {} times that from sample to sample", brief_text(*slow[i], 2)));
+      if (repeated[i] > usual + kLeastRepeated)
+        out[i].push_back(fmt::format("{} of its samples repeat the one before", percent_text(repeated[i], 2)));
+    }
+    return out;
+  }
+};
+
+struct Said {
+  std::string name, text;
+};
+
+/// All of them by name, also where a finding has no room for their texts.
+void add(Findings& warnings, std::string_view code, std::string sentence, const std::vector<Said>& sensors) {
+  constexpr std::size_t kMostTexts = 3;
+  std::vector<std::string> names;
+  for (const Said& one : sensors) names.push_back(one.name);
+  if (names.size() > kMostTexts) sentence += fmt::format(": {}", fmt::join(names, ", "));
+  for (const Said& one : sensors) warnings.add(code, sentence, one.name + ": " + one.text);
+}
+
+void warn_of_apart(const Throughout& all, const Sensors& of, Findings& warnings) {
+  const auto sure = all.words(of, true), suspected = all.words(of, false);
+  std::vector<Said> apart, unlike;
+  for (std::size_t i = 0; i < sure.size(); ++i) {
+    std::vector<std::string> words = sure[i];
+    for (const std::string& one : suspected[i])
+      if (std::find(words.begin(), words.end(), one) == words.end()) words.push_back(one);
+    if (!words.empty())
+      (sure[i].empty() ? unlike : apart).push_back({of.name(i), fmt::format("{}", fmt::join(words, ", "))});
+  }
+  add(warnings, "sensor_apart", "sensors read otherwise than all others, throughout", apart);
+  add(warnings, "sensor_unlike",
+      "sensors differ from the others throughout, by no more than sound ones may: a fault cannot be distinguished from "
+      "their kind",
+      unlike);
+}
+
+/// "up to 5 deg/s off, 12 times its scatter, from 4 min to the end"
+std::string change_text(const ReadingMeter::Change& change, const Sensors& of, const Clock& clock) {
+  const auto at = [&](std::int64_t instant) {
+    return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
+  };
+  return fmt::format("up to {} off, {} times its scatter, from {} to {}", of.amount(change.offset, change.sensor),
+                     brief_text(change.scatter, 2), change.from == 0 ? std::string("the start") : at(change.from),
+                     change.to_end ? std::string("the end") : at(change.to));
+}
+
+std::vector<Said> changes_said(const std::vector<ReadingMeter::Change>& changes, const Sensors& of,
+                               const Clock& clock) {
+  std::vector<Said> out;
+  for (const ReadingMeter::Change& change : changes)
+    out.push_back({of.name(change.sensor), change_text(change, of, clock)});
+  return out;
+}
+
+}  // namespace
+
+void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
+                      Findings& warnings) {
+  const Sensors of{names, units};
+  ReadingMeter::Readings steady = meter.steady();
+  Throughout all{{}, meter.slow_scatter(steady), meter.repeated()};
+  std::vector<ReadingMeter::Change> changes = meter.changes(steady, true);
+  // Where most change it is what they see that does: motion, and how the sensors differ in it.
+  if (2 * changes.size() > steady.size()) changes.clear();
+  std::vector<Said> failing = changes_said(changes, of, clock);
+  for (const ReadingMeter::GainDrift& drift : meter.gain_drifts(kFalseAlarm)) {
+    const auto said = [&](const Said& one) { return one.name == of.name(drift.sensor); };
+    const double before = 1 + taken_out[drift.sensor].gain;
+    if (std::none_of(failing.begin(), failing.end(), said))
+      failing.push_back(
+          {of.name(drift.sensor), fmt::format("its gain drifts from {} to {}", brief_text(before + drift.from, 3),
+                                              brief_text(before + drift.to, 3))});
+  }
+  add(warnings, "sensor_failing", "sensors read otherwise, relative to the others, than for most of the run", failing);
+  std::vector<double> rms;
+  for (std::size_t i = 0; i < steady.size(); ++i) {
+    all.level = all.level || taken_out[i].offset != 0;
+    if (!steady[i]) continue;
+    steady[i]->offset += taken_out[i].offset;
+    steady[i]->gain += taken_out[i].gain;
+    rms.push_back(steady[i]->usual_rms);
+  }
+  if (rms.size() < 3) return;
+  all.noise = median_in_place(rms);
+  all.steady = std::move(steady);
+  warn_of_apart(all, of, warnings);
+}
+
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
+                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
+  add(warnings, "sensor_changed",
+      "sensors read otherwise, relative to the others, than where this was learnt: weights and standard deviations of "
+      "there do not fit",
+      changes_said(changes, {names, units}, clock));
+}
+
+}  // namespace libchar::detail

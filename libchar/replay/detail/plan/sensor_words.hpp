@@ -1,0 +1,31 @@
+#pragma once
+// Which sensors read otherwise than the rest, and what is said of them: for a part of the run, drifting through it, or
+// throughout. Offset, gain, the logarithm of the noise and that of its slow part are judged each against those of the
+// others by Student's t, where what sound sensors scatter by counts as three more of them. Beyond what chance does in
+// one sound array of 300 a sensor stands apart; beyond what it does in one of 20 it is unlike the others, and a fault
+// cannot be distinguished from its kind: of three sensors two say little about the third.
+
+#include "libchar/replay/detail/plan/reading_meter.hpp"
+
+namespace libchar::detail {
+
+/// Of the instants that a meter saw.
+struct Clock {
+  double start_s = 0, rate_hz = 1;
+};
+
+/// Of a sensor, before it was fused.
+struct TakenOut {
+  double offset = 0, gain = 0;
+};
+
+/// Sensors that read otherwise than they do for most of the log they are judged by, or than all
+/// others throughout. `taken_out`: what the meter did not see.
+void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+                      const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
+                      Findings& warnings);
+
+void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
+                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
+
+}  // namespace libchar::detail
