@@ -78,7 +78,7 @@ function start(words, what, made = []) {
 
 /** One item, looked at by the program. */
 async function inspect(item) {
-  const answer = await start(["inspect", item.name, ...readingWords(item), "--json"], `Reading ${item.name}`);
+  const answer = await start(["inspect", item.name, ...readingWords(item), "--json", "--preview"], `Reading ${item.name}`);
   item.error = "";
   item.recording = null;
   if (answer.failed !== undefined || answer.code !== 0) {
