@@ -25,7 +25,7 @@ function unitCell(item, channel, changed) {
   return element("td", {}, input);
 }
 
-/** The whole record, as small as a word: a stroke from the least to the largest value of each block. */
+/** The whole record, as small as a word: a line through the largest and the least value of each block. */
 function traceCell(channel) {
   const { low, high } = channel.trace, known = low.map((_, i) => i).filter(i => low[i] !== null);
   const least = Math.min(...known.map(i => low[i])), height = Math.max(...known.map(i => high[i])) - least || 1;
@@ -33,7 +33,7 @@ function traceCell(channel) {
   const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg"), path = document.createElementNS(picture.namespaceURI, "path");
   for (const [name, value] of Object.entries({ class: "trace", viewBox: `0 0 ${low.length} 24`, preserveAspectRatio: "none", role: "img", "aria-label": `Trace of ${channel.name}` }))
     picture.setAttribute(name, value);
-  path.setAttribute("d", known.map(i => `M${i + 0.5} ${y(high[i])}V${Number(y(low[i])) + 0.6}`).join(""));
+  path.setAttribute("d", known.map(i => `${low[i - 1] === null || i === 0 ? "M" : "L"}${i + 0.5} ${y(high[i])}V${Number(y(low[i])) + 0.6}`).join(""));
   picture.append(path);
   return element("td", { "data-label": "trace" }, picture);
 }
