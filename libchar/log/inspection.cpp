@@ -17,33 +17,44 @@ namespace {
 // Channels are measured beside each other; each by one thread, so that nothing depends on their number.
 class Meters final : public BlockSink {
  public:
-  explicit Meters(int threads) : threads_(threads) {}
+  Meters(int threads, bool traced) : threads_(threads), traced_(traced) {}
 
   void begin(const LogInfo& so_far) override {
     meters_.resize(so_far.channels.size());
+    traces_.resize(traced_ ? meters_.size() : 0);
     arena_.limit_to(threads_beside_reading(so_far, threads_));
   }
   void block(const SampleBlock& samples) override {
     arena_.run([&] {
       parallel::for_each(0, meters_.size(), [&](std::size_t c) {
         meters_[c].push({samples.channels[c], samples.rows});
+        if (traced_) traces_[c].push({samples.channels[c], samples.rows});
       });
     });
   }
   ChannelQuality quality(std::size_t channel, double rate_hz) const { return meters_[channel].finish(rate_hz); }
+  std::vector<Trace> traces() const {
+    std::vector<Trace> out;
+    for (const TraceMeter& one : traces_) out.push_back(one.finish(kSmall));
+    return out;
+  }
 
  private:
+  static constexpr std::size_t kSmall = 100;  // blocks of a trace as wide as a word or two
   int threads_;
+  bool traced_;
   parallel::Threads arena_;
   std::vector<QualityMeter> meters_;
+  std::vector<TraceMeter> traces_;
 };
 
-Inspection inspect_rows(const std::string& path, const ReadOptions& options, Progress& progress) {
-  Meters meters(options.threads);
+Inspection inspect_rows(const std::string& path, const ReadOptions& options, Progress& progress, bool traces) {
+  Meters meters(options.threads, traces);
   Inspection inspection;
   inspection.info = read_log(path, options, meters, progress);
   for (std::size_t c = 0; c < inspection.info.channels.size(); ++c)
     inspection.quality.push_back(meters.quality(c, inspection.info.time.rate_hz));
+  inspection.traces = meters.traces();
   judge_gravity(inspection.info.channels, [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
   return inspection;
 }
@@ -57,9 +68,9 @@ Inspection list_topics(const std::string& path, const ReadOptions& options) {
 
 }  // namespace
 
-Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress) {
+Inspection inspect(const std::string& path, const ReadOptions& options, Progress& progress, bool traces) {
   try {
-    return inspect_rows(path, options, progress);
+    return inspect_rows(path, options, progress, traces);
   } catch (const Error& error) {
     if (error.problem().code != kTopicNotChosen) throw;
   }
@@ -92,7 +103,7 @@ Json inspection_json(const std::vector<Inspection>& inspections) {
   document["version"] = 1;
   document["recordings"] = Json::array();
   for (const Inspection& inspection : inspections)
-    document["recordings"].push_back(recording_json(inspection.info, inspection.quality));
+    document["recordings"].push_back(recording_json(inspection.info, inspection.quality, inspection.traces));
   return document;
 }
 

@@ -14,10 +14,12 @@ namespace libchar {
 struct Inspection {
   LogInfo info;
   std::vector<ChannelQuality> quality;  ///< one per channel
+  std::vector<Trace> traces;            ///< the same, small, where they were asked for
 };
 
 /// Reads a log once, in constant memory. Of a log with several topics, without a choice, it lists them (`is_listing`).
-Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
+Inspection inspect(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress(),
+                   bool traces = false);
 
 /// Are these topics of a log, to be chosen before it is read?
 bool is_listing(const LogInfo& info);

@@ -95,8 +95,14 @@ const Fields<DescribedChannel>& described_channel_fields() {
   using Q = ChannelQuality;
   static const auto kSampled = when<[](const T& c) { return 0 < c.quality.samples; }>;
   static const auto kVaries = when<[](const T& c) { return c.quality.minimum < c.quality.maximum; }>;
+  static const Fields<Trace> trace = always(Fields<Trace>{
+      field<&Trace::block>("samples_per_block"),
+      field<&Trace::low>("low", {.meaning = "smallest sample of each block"}),
+      field<&Trace::high>("high", {.meaning = "largest"}),
+  });
   static const Fields<T> own = {field<&T::channel, &Channel::rate_hz>(
-      "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"})};
+                                    "own_rate_hz", {.unit = "Hz", .meaning = "of a channel on a grid of its own"}),
+                                maybe_part<&T::trace>("trace", trace)};
   static const Fields<T> rows = joined(
       always(Fields<T>{
           field<&T::channel, &Channel::name>("name"),
@@ -190,10 +196,13 @@ LogInfo document_info(const std::string& path) {
   return info;
 }
 
-Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities) {
+Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities,
+                    const std::vector<Trace>& traces) {
   DescribedRecording out{log, {}};
-  for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i)
+  for (std::size_t i = 0; i < std::min(log.channels.size(), qualities.size()); ++i) {
     out.channels.push_back({log.channels[i], qualities[i]});
+    if (i < traces.size()) out.channels.back().trace = traces[i];
+  }
   return document_of(recording_fields(), out);
 }
 

@@ -2,6 +2,7 @@
 // What a document says about the recordings it comes from: one description for every verb. Keys may
 // be added; none changes its meaning or goes.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,12 +44,14 @@ LogInfo document_info(const std::string& path);
 struct DescribedChannel {
   Channel channel;
   ChannelQuality quality;
+  std::optional<Trace> trace = {};
 };
 /// Name, unit and what the samples of a channel say about the instrument.
 const Fields<DescribedChannel>& described_channel_fields();
 
-/// File, channels, time base and repairs; `qualities` has one element per channel of `log`.
-Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities);
+/// File, channels, time base and repairs; `qualities` has one element per channel of `log`; so has `traces`, or none.
+Json recording_json(const LogInfo& log, const std::vector<ChannelQuality>& qualities,
+                    const std::vector<Trace>& traces = {});
 
 /// Schemas of a recording, and of the sidecar of a raw binary log.
 std::span<const Field> recording_rows();

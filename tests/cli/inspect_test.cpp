@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -56,6 +57,24 @@ TEST_CASE("inspect --json keeps its promise to scripts") {
   CHECK(recording["channels"][0]["unit"] == "");
   CHECK(recording["channels"][0]["missing"] == 2);
   CHECK(recording["channels"][0]["maximum"] == 65504.0);
+}
+
+TEST_CASE("inspect --preview has small traces of the channels in place of the digest") {
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  const auto ran = test::run({"inspect", "--json", "--preview", log});
+  REQUIRE(ran.code == 0);
+  const libchar::Json document = libchar::parse_json(ran.out, "stdout"), &recording = document["recordings"][0];
+  CHECK(!recording.contains("sha256"));
+  for (const libchar::Json& channel : recording["channels"]) {
+    const std::vector<double> low = channel["trace"]["low"], high = channel["trace"]["high"];
+    CHECK(low.size() == (50000 + channel["trace"]["samples_per_block"].get<std::size_t>() - 1) /
+                            channel["trace"]["samples_per_block"].get<std::size_t>());
+    CHECK(low.size() <= 100);
+    CHECK(*std::min_element(low.begin(), low.end()) == channel["minimum"].get<double>());
+    CHECK(*std::max_element(high.begin(), high.end()) == channel["maximum"].get<double>());
+  }
+  const auto plain = test::run({"inspect", "--json", log});
+  CHECK(!libchar::parse_json(plain.out, "stdout")["recordings"][0]["channels"][0].contains("trace"));
 }
 
 TEST_CASE("several logs make one document, channels are chosen by repetition and by commas") {

@@ -185,7 +185,7 @@ def arguments_of(words):
     parser.add_argument("files", nargs="*", type=pathlib.Path)
     parser.add_argument("--few", action="store_true")
     parser.add_argument("--hostile", type=int, default=0)
-    return parser.parse_args(words)
+    return parser.parse_intermixed_args(words)  # FILE… may stand behind options
 
 
 def main():

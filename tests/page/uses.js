@@ -184,6 +184,18 @@ async function anArray(one) {
   await one.has("-fused.csv");
 }
 
+/** A file and channels with names that a command line takes for something else. */
+async function hardNames(one) {
+  const draw = normal(11), rows = Array.from({ length: 3000 }, (_, i) => [i / 100, ...[0, 0, 0].map(() => (0.1 * draw()).toFixed(5))]);
+  check(await one.drop(written(one.folder, "--help", ["t", '"a, left"', "-b", '"c=2!"'], rows)) === "done", "a file --help is read");
+  await one.tab.getByLabel("Unit of -b").fill("deg/s");
+  await one.tab.getByLabel("Unit of -b").press("Tab");
+  await one.ended("a unit is told");
+  check((await one.tab.locator("#found td", { hasText: "deg/s" }).count()) === 1, "the unit of a channel -b is taken");
+  await one.run("An array: best fusion");
+  await one.has("help-replay/fusion.yaml");
+}
+
 async function aModel(one) {
   check(await one.drop(path.join(one.folder, "gyro_z.sensor.yaml")) === "done", "a model opens");
   check((await one.text()).includes("gyro_z"), "a model is shown");
@@ -230,7 +242,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder) {
   for (const [name, scene] of Object.entries(SCENES)) {

@@ -23,7 +23,7 @@ namespace {
 struct InspectVerb {
   std::vector<std::string> logs;
   libchar::ReadOptions reading;
-  bool json = false;
+  bool json = false, preview = false;
 };
 
 std::string next_command(const InspectVerb& verb, const libchar::Inspection& inspection) {
@@ -85,7 +85,7 @@ void run_inspect(Session& session, const InspectVerb& verb) {
   std::optional<libchar::Error> refused;  // a log that cannot be read does not hide those behind it
   for (const std::string& log : verb.logs) {
     try {
-      inspections.push_back(libchar::inspect(log, verb.reading, session.terminal));
+      inspections.push_back(libchar::inspect(log, verb.reading, session.terminal, verb.preview));
     } catch (const libchar::Error& error) {
       if (verb.logs.size() == 1) throw;
       if (refused) say_error(session, *refused);
@@ -110,9 +110,14 @@ std::function<void()> inspect_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<InspectVerb>();
   options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input").required();
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
+  options.add_flag(
+      "--preview", verb->preview,
+      "what a viewer shows at once: a small trace of each channel, and no digest, which takes as long as the "
+      "numbers in a browser");
+  options.only("with --json", [verb = verb.get()] { return verb->json; }, {"--preview"});
   add_reading_options(options, session, verb->reading);
   return [&session, verb] {
-    verb->reading.hash = verb->json;  // only the document states it
+    verb->reading.hash = verb->json && !verb->preview;  // only the document states it
     run_inspect(session, *verb);
   };
 }

@@ -29,46 +29,72 @@ constexpr std::array<std::uint32_t, 64> kRound = {
     0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
     0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
 
-std::uint32_t big_endian(const char* bytes) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes, sizeof word);
-  return std::endian::native == std::endian::big ? word : __builtin_bswap32(word);
+/// One word of each of four blocks: (1) depends on nothing before its block, so that vectors take four at once.
+using Four [[gnu::vector_size(16)]] = std::uint32_t;
+constexpr std::size_t kTogether = sizeof(Four) / sizeof(std::uint32_t);
+
+template <class Word>
+[[gnu::always_inline]] inline Word turned(Word x, int bits) {  // std::rotr takes no vectors
+  return x >> bits | x << (32 - bits);
 }
 
-/// A round (2): of the eight words two change, which are d and h here.
+[[gnu::always_inline]] inline Four big_endian(Four word) {
+  if (std::endian::native == std::endian::big) return word;
+  return (turned(word, 8) & 0xFF00FF00U) | (turned(word, 24) & 0x00FF00FFU);
+}
+
+/// A round (2): of the eight words two change, which are d and h here. S1(e) is e ^ e>>>5 ^ e>>>19, turned by 6.
 [[gnu::always_inline]] inline void round(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t& d,
                                          std::uint32_t e, std::uint32_t f, std::uint32_t g, std::uint32_t& h,
                                          std::uint32_t k_and_w) {
-  const std::uint32_t s1 = std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25);
-  const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
+  const std::uint32_t s1 = turned(turned(turned(e, 14) ^ e, 5) ^ e, 6);
+  const std::uint32_t s0 = turned(turned(turned(a, 9) ^ a, 11) ^ a, 2);
   h += s1 + (g ^ (e & (f ^ g))) + k_and_w;
   d += h;
-  h += s0 + ((a & b) | (c & (a | b)));
+  h += s0 + ((a & b) + (c & (a ^ b)));
 }
 
-void add_block(const char* block, Words& hash) {
-  std::array<std::uint32_t, 64> w;
-  for (std::size_t t = 0; t < 16; ++t) w[t] = big_endian(block + 4 * t);
+/// K(t) + W(t) of up to four blocks.
+using Schedule = std::array<std::array<std::uint32_t, kTogether>, 64>;
+
+void schedule(const char* blocks, std::size_t count, Schedule& out) {
+  std::array<Four, 64> w;
+  for (std::size_t t = 0; t < 16; ++t) {
+    std::array<std::uint32_t, kTogether> words{};
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(&words[i], blocks + kBlock * i + 4 * t, 4);
+    std::memcpy(&w[t], words.data(), sizeof(Four));
+    w[t] = big_endian(w[t]);
+  }
   for (std::size_t t = 16; t < 64; ++t) {  // (1)
-    const std::uint32_t x = w[t - 15], y = w[t - 2];
-    const std::uint32_t s0 = std::rotr(x, 7) ^ std::rotr(x, 18) ^ (x >> 3U);
-    const std::uint32_t s1 = std::rotr(y, 17) ^ std::rotr(y, 19) ^ (y >> 10U);
+    const Four x = w[t - 15], y = w[t - 2];
+    const Four s0 = turned(x, 7) ^ turned(x, 18) ^ (x >> 3U), s1 = turned(y, 17) ^ turned(y, 19) ^ (y >> 10U);
     w[t] = s1 + w[t - 7] + s0 + w[t - 16];
   }
-  auto [a, b, c, d, e, f, g, h] = hash;
-  // (2), eight rounds a turn: after them each word is where it was, and none has been moved.
-  for (std::size_t t = 0; t < 64; t += 8) {
-    round(a, b, c, d, e, f, g, h, kRound[t] + w[t]);
-    round(h, a, b, c, d, e, f, g, kRound[t + 1] + w[t + 1]);
-    round(g, h, a, b, c, d, e, f, kRound[t + 2] + w[t + 2]);
-    round(f, g, h, a, b, c, d, e, kRound[t + 3] + w[t + 3]);
-    round(e, f, g, h, a, b, c, d, kRound[t + 4] + w[t + 4]);
-    round(d, e, f, g, h, a, b, c, kRound[t + 5] + w[t + 5]);
-    round(c, d, e, f, g, h, a, b, kRound[t + 6] + w[t + 6]);
-    round(b, c, d, e, f, g, h, a, kRound[t + 7] + w[t + 7]);
+  for (std::size_t t = 0; t < 64; ++t) {
+    const Four sum = w[t] + kRound[t];
+    std::memcpy(out[t].data(), &sum, sizeof(Four));
   }
-  const Words more = {a, b, c, d, e, f, g, h};
-  for (std::size_t i = 0; i < hash.size(); ++i) hash[i] += more[i];
+}
+
+void add_blocks(const char* blocks, std::size_t count, Words& hash) {
+  Schedule of;
+  count == kTogether ? schedule(blocks, kTogether, of) : schedule(blocks, count, of);
+  for (std::size_t i = 0; i < count; ++i) {
+    auto [a, b, c, d, e, f, g, h] = hash;
+    // (2), eight rounds a turn: after them each word is where it was, and none has been moved.
+    for (std::size_t t = 0; t < 64; t += 8) {
+      round(a, b, c, d, e, f, g, h, of[t][i]);
+      round(h, a, b, c, d, e, f, g, of[t + 1][i]);
+      round(g, h, a, b, c, d, e, f, of[t + 2][i]);
+      round(f, g, h, a, b, c, d, e, of[t + 3][i]);
+      round(e, f, g, h, a, b, c, d, of[t + 4][i]);
+      round(d, e, f, g, h, a, b, c, of[t + 5][i]);
+      round(c, d, e, f, g, h, a, b, of[t + 6][i]);
+      round(b, c, d, e, f, g, h, a, of[t + 7][i]);
+    }
+    const Words more = {a, b, c, d, e, f, g, h};
+    for (std::size_t k = 0; k < hash.size(); ++k) hash[k] += more[k];
+  }
 }
 
 }  // namespace
@@ -91,10 +117,14 @@ void Sha256::update(std::string_view bytes) {
     bytes.remove_prefix(more);
     s.held += more;
     if (s.held < kBlock) return;
-    add_block(s.rest.data(), s.hash);
+    add_blocks(s.rest.data(), 1, s.hash);
     s.held = 0;
   }
-  for (; bytes.size() >= kBlock; bytes.remove_prefix(kBlock)) add_block(bytes.data(), s.hash);
+  while (bytes.size() >= kBlock) {
+    const std::size_t count = std::min(kTogether, bytes.size() / kBlock);
+    add_blocks(bytes.data(), count, s.hash);
+    bytes.remove_prefix(count * kBlock);
+  }
   if (!bytes.empty()) std::memcpy(s.rest.data(), bytes.data(), bytes.size());
   s.held = bytes.size();
 }

@@ -70,14 +70,7 @@ struct Halving {
     parts.pop_back();
   }
 
- private:
-  void close() {
-    parts.push_back(std::exchange(open, {}));
-    filled = 0;
-    if (parts.size() == kMost) halve();
-  }
-
-  // A part without a partner is of the one that is open.
+  /// Half as many parts. One without a partner is of the one that is open.
   void halve() {
     for (std::size_t i = 0; i < parts.size() / 2; ++i) {
       Part pair = parts[2 * i];
@@ -92,6 +85,13 @@ struct Halving {
     }
     parts.resize(parts.size() / 2);
     length *= 2;
+  }
+
+ private:
+  void close() {
+    parts.push_back(std::exchange(open, {}));
+    filled = 0;
+    if (parts.size() == kMost) halve();
   }
 };
 

@@ -9,6 +9,9 @@
 #define LIBCHAR_X86_64
 /// A function that runs only where `instructions()` says so.
 #define LIBCHAR_AVX2 target("avx2,bmi,bmi2,popcnt")
+#elif defined(__wasm_simd128__) && !defined(LIBCHAR_PORTABLE)
+/// A web page: every browser that opens it has vectors of 16 bytes.
+#define LIBCHAR_WASM
 #endif
 
 namespace libchar::detail {

@@ -25,12 +25,25 @@ function unitCell(item, channel, changed) {
   return element("td", {}, input);
 }
 
+/** The whole record, as small as a word: a line through the largest and the least value of each block. */
+function traceCell(channel) {
+  const { low, high } = channel.trace, known = low.map((_, i) => i).filter(i => low[i] !== null);
+  const least = Math.min(...known.map(i => low[i])), height = Math.max(...known.map(i => high[i])) - least || 1;
+  const y = value => (23 - 22 * (value - least) / height).toFixed(2);
+  const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg"), path = document.createElementNS(picture.namespaceURI, "path");
+  for (const [name, value] of Object.entries({ class: "trace", viewBox: `0 0 ${low.length} 24`, preserveAspectRatio: "none", role: "img", "aria-label": `Trace of ${channel.name}` }))
+    picture.setAttribute(name, value);
+  path.setAttribute("d", known.map(i => `${low[i - 1] === null || i === 0 ? "M" : "L"}${i + 0.5} ${y(high[i])}V${Number(y(low[i])) + 0.6}`).join(""));
+  picture.append(path);
+  return element("td", { "data-label": "trace" }, picture);
+}
+
 function channelTable(item, recording, changed) {
-  const heads = ["channel", "unit", "mean", "standard deviation", "smallest", "largest", "missing"];
+  const heads = ["channel", "unit", "trace", "mean", "standard deviation", "smallest", "largest", "missing"];
   const rows = recording.channels.map(channel => element("tr", {},
-    element("th", { scope: "row" }, channel.name), unitCell(item, channel, changed),
+    element("th", { scope: "row" }, channel.name), unitCell(item, channel, changed), traceCell(channel),
     ...[channel.mean, channel.standard_deviation, channel.minimum, channel.maximum, channel.missing].map((value, i) =>
-      element("td", { class: "n", "data-label": heads[i + 2] }, numberText(value)))));
+      element("td", { class: "n", "data-label": heads[i + 3] }, numberText(value)))));
   return element("div", { class: "wide" }, element("table", { class: "cards" },
     element("thead", {}, element("tr", {}, ...heads.map(head => element("th", { scope: "col" }, head)))),
     element("tbody", {}, ...rows)));
@@ -119,6 +132,5 @@ function inspectionView(item, changed) {
 /** Words that read an item as it was described. */
 function readingWords(item) {
   const words = optionWords(item.reading);
-  if (item.units.size > 0) words.push("--unit", [...item.units].map(([name, unit]) => `${name}=${unit}`).join(","));
-  return words;
+  return [...words, ...optionWords([["--unit", [...item.units].map(([name, unit]) => `${listed(name)}=${unit}`).join(",")]])];
 }

@@ -55,6 +55,9 @@ async function walk(entry, above, found) {
   }
 }
 
+/** A name that no command takes for an option. */
+const namedSafely = name => name.startsWith("-") ? `./${name}` : name;
+
 /** A name that no other has: "imu (2).csv". */
 function freeName(name, taken) {
   if (!taken.has(name)) return name;

@@ -2,7 +2,7 @@
 "use strict";
 
 /** Told by the page itself, or of no meaning in it. */
-const NOT_ASKED = new Set(["-h", "--help", "--quiet", "--color", "--output", "--force", "--json", "--threads", "--list", "--gnuplot", "--no-timing"]);
+const NOT_ASKED = new Set(["-h", "--help", "--quiet", "--color", "--output", "--force", "--json", "--preview", "--threads", "--list", "--gnuplot", "--no-timing"]);
 
 const verbOf = name => USAGE.verbs.find(verb => verb.name === name);
 const longFlag = option => option.flags.find(flag => flag.startsWith("--")) || option.flags[0];

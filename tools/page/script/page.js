@@ -78,7 +78,7 @@ function start(words, what, made = []) {
 
 /** One item, looked at by the program. */
 async function inspect(item) {
-  const answer = await start(["inspect", item.name, ...readingWords(item), "--json"], `Reading ${item.name}`);
+  const answer = await start(["inspect", item.name, ...readingWords(item), "--json", "--preview"], `Reading ${item.name}`);
   item.error = "";
   item.recording = null;
   if (answer.failed !== undefined || answer.code !== 0) {
@@ -176,7 +176,7 @@ function stopped(error) {
 async function take(files) {
   const taken = new Set(bench.items.map(({ name }) => name)), fresh = [], results = resultFolders(files);
   for (const { name, parts: found } of asLogs(files)) {
-    const free = freeName(name, taken);
+    const free = freeName(namedSafely(name), taken);
     taken.add(free);
     let kind = found.length > 1 ? "log" : await kindOf(free, found[0].file);
     if (kind === "log" && [...results].some(folder => name.startsWith(folder))) kind = "beside";

@@ -19,12 +19,12 @@ function readingOf(logs) {
 }
 
 /** Channels that one axis can have: of unlike units, the first. */
-const drawable = channels => new Set(channels.map(({ unit }) => unit)).size > 1 ? channels[0].name : "";
+const drawable = channels => new Set(channels.map(({ unit }) => unit)).size > 1 ? listed(channels[0].name) : "";
 
 /** The first figure of a report. */
 function figureWords(bench, source) {
   const channel = drawable(bench.subjects.find(({ name }) => name === source).channels);
-  return ["plot", source, ...(channel ? ["--channel", channel] : []), "-o", bench.free(`${stem(source)}.svg`)];
+  return ["plot", source, ...optionWords([["--channel", channel]]), "-o", bench.free(`${stem(source)}.svg`)];
 }
 
 const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...readingOf(logs), ...optionWords(use.values), "-o", out];
@@ -102,7 +102,7 @@ const USES = [
     },
     words: (bench, use) => {
       const log = bench.logs.find(({ name }) => name === use.source);
-      const array = log ? [...readingWords(log), "--sensors", [...use.sensors].join(","), ...(use.reference ? ["--reference", use.reference] : [])] : [];
+      const array = log ? [...readingWords(log), ...optionWords([["--sensors", [...use.sensors].map(listed).join(",")], ["--reference", use.reference && listed(use.reference)]])] : [];
       return ["replay", use.source, ...array, ...optionWords(use.values), "-o", bench.free(`${stem(use.source)}-replay`)];
     },
   },

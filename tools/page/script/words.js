@@ -9,6 +9,9 @@ const typed = verb => verb.split("-");
 
 const shellCommand = words => ["sensorchar", ...words].map(shellWord).join(" ");
 
+/** A channel in a list of them: what would end a name there stands as a ?, which is any character. */
+const listed = channel => channel.replace(/[,=!]/g, "?");
+
 /** Words of options that were set: a Map of flag → value, true for a flag without one. */
 function optionWords(options) {
   const words = [];
@@ -24,4 +27,4 @@ function optionWords(options) {
 /** `rate_hz` in a sentence of the library is --rate to who types commands. */
 const withFlags = (text, settings) => text.replace(/`([a-z_]+)`/g, (all, name) => settings[name] || all);
 
-const stem = name => name.split("/").pop().replace(/\.(csv|tsv|txt)?(\.(gz|xz|zst|bz2))?$/i, "").replace(/\.[A-Za-z0-9]{1,5}$/, "") || "log";
+const stem = name => name.split("/").pop().replace(/^-+/, "").replace(/\.(csv|tsv|txt)?(\.(gz|xz|zst|bz2))?$/i, "").replace(/\.[A-Za-z0-9]{1,5}$/, "") || "log";

@@ -19,7 +19,7 @@ inline constexpr auto kDivisors = [] {
   return table;
 }();
 
-LIBCHAR_AVX2_INLINE inline __m256i both(const void* low, const void* high) {
+LIBCHAR_VECTOR_INLINE inline __m256i both(const void* low, const void* high) {
   const __m128i first = _mm_loadu_si128(static_cast<const __m128i*>(low)),
                 second = _mm_loadu_si128(static_cast<const __m128i*>(high));
   return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
@@ -34,7 +34,7 @@ struct FourFields {
 };
 
 template <bool kLast>
-LIBCHAR_AVX2_INLINE inline void locate_fours(const Column& column, const std::uint32_t* stop, FourFields& at) {
+LIBCHAR_VECTOR_INLINE inline void locate_fours(const Column& column, const std::uint32_t* stop, FourFields& at) {
   const char* const text = column.text;
   const std::uint32_t separator = static_cast<unsigned char>(kLast ? '\n' : column.delimiter);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -56,8 +56,8 @@ struct TwoFields {
   __m256i fours, strange;
 };
 
-LIBCHAR_AVX2_INLINE inline TwoFields digits_of_two(const char* const* begin, const std::uint32_t* length,
-                                                   std::uint32_t* distance) {
+LIBCHAR_VECTOR_INLINE inline TwoFields digits_of_two(const char* const* begin, const std::uint32_t* length,
+                                                     std::uint32_t* distance) {
   const __m256i raw = both(begin[0], begin[1]);
   const auto points = static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(raw, _mm256_set1_epi8('.'))));
   const void* gather[2];
@@ -76,8 +76,8 @@ LIBCHAR_AVX2_INLINE inline TwoFields digits_of_two(const char* const* begin, con
 /// Four fields of a column at `stop` to four values: they share most instructions, and what is
 /// wrong with one of them shows at the end; then there is nothing stored and the answer is false.
 template <bool kLast>
-LIBCHAR_AVX2_INLINE inline bool four_fields(const Column& column, const std::uint32_t* stop, double* values,
-                                            std::uint32_t& fractional) {
+LIBCHAR_VECTOR_INLINE inline bool four_fields(const Column& column, const std::uint32_t* stop, double* values,
+                                              std::uint32_t& fractional) {
   FourFields at;
   locate_fours<kLast>(column, stop, at);
   std::uint32_t distance[4];
@@ -110,8 +110,8 @@ LIBCHAR_AVX2_INLINE inline bool four_fields(const Column& column, const std::uin
 /// Whole fours of rows, as long as all fields are regular. Row 0 must not be among the rows.
 /// Returns the first row that is left.
 template <bool kLast>
-LIBCHAR_AVX2_INLINE inline std::size_t take_fours(const Column& column, std::size_t row, std::size_t last,
-                                                  double* values, std::uint32_t& fractional) {
+LIBCHAR_VECTOR_INLINE inline std::size_t take_fours(const Column& column, std::size_t row, std::size_t last,
+                                                    double* values, std::uint32_t& fractional) {
   const std::uint32_t* stop = column.stops + row * column.width + column.index;
   for (; row + 4 <= last; row += 4, stop += 4 * column.width)
     if (!four_fields<kLast>(column, stop, values + row, fractional)) break;

@@ -14,34 +14,53 @@
 
 namespace libchar {
 
-#if defined(LIBCHAR_X86_64)
+#if defined(LIBCHAR_VECTOR)
 
 using namespace vector_parsing;
 
 namespace {
 
+/// Which of 64 bytes are delimiters or line feeds.
+#if defined(LIBCHAR_X86_64)
+LIBCHAR_VECTOR_INLINE inline std::uint64_t separators_of(const char* bytes, char delimiter) {
+  const __m256i wanted = _mm256_set1_epi8(delimiter), line_feed = _mm256_set1_epi8('\n');
+  std::uint64_t mask = 0;
+  for (unsigned half = 0; half < 2; ++half) {
+    const __m256i text = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32 * half));
+    const __m256i hit = _mm256_or_si256(_mm256_cmpeq_epi8(text, wanted), _mm256_cmpeq_epi8(text, line_feed));
+    mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit))) << (32 * half);
+  }
+  return mask;
+}
+#else
+LIBCHAR_VECTOR_INLINE inline std::uint64_t separators_of(const char* bytes, char delimiter) {
+  const v128_t wanted = wasm_i8x16_splat(delimiter), line_feed = wasm_i8x16_const_splat('\n');
+  std::uint64_t mask = 0;
+  for (unsigned quarter = 0; quarter < 4; ++quarter) {
+    const v128_t text = wasm_v128_load(bytes + 16 * quarter);
+    const v128_t hit = wasm_v128_or(wasm_i8x16_eq(text, wanted), wasm_i8x16_eq(text, line_feed));
+    mask |= static_cast<std::uint64_t>(wasm_i8x16_bitmask(hit)) << (16 * quarter);
+  }
+  return mask;
+}
+#endif
+
 /// Offsets of the delimiters and line feeds of `text` into `positions` (grown as needed), until
 /// there are `enough`; returns their number.
-__attribute__((LIBCHAR_AVX2)) std::size_t find_separators(std::string_view text, char delimiter, std::size_t enough,
-                                                          std::vector<std::uint32_t>& positions) {
-  const __m256i wanted = _mm256_set1_epi8(delimiter), line_feed = _mm256_set1_epi8('\n');
+LIBCHAR_VECTOR std::size_t find_separators(std::string_view text, char delimiter, std::size_t enough,
+                                           std::vector<std::uint32_t>& positions) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < text.size() && count < enough; at += 64) {
     if (positions.size() < count + 64 + 8) positions.resize(2 * positions.size() + 4096);
-    std::uint64_t mask = 0;
-    for (unsigned half = 0; half < 2; ++half) {
-      const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text.data() + at + 32 * half));
-      const __m256i hit = _mm256_or_si256(_mm256_cmpeq_epi8(bytes, wanted), _mm256_cmpeq_epi8(bytes, line_feed));
-      mask |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(hit))) << (32 * half);
-    }
+    std::uint64_t mask = separators_of(text.data() + at, delimiter);
     if (at + 64 > text.size()) mask &= (std::uint64_t{1} << (text.size() - at)) - 1;
-    const auto found = static_cast<std::size_t>(_mm_popcnt_u64(mask));
+    const auto found = static_cast<std::size_t>(std::popcount(mask));
     std::uint32_t* out = positions.data() + count;
     // Eight at a time without asking: positions beyond `found` are overwritten by the next 64 bytes.
     for (std::size_t done = 0; done < found || done == 0; done += 8)
       for (std::size_t k = 0; k < 8; ++k) {
-        out[done + k] = static_cast<std::uint32_t>(at + _tzcnt_u64(mask));
-        mask = _blsr_u64(mask);
+        out[done + k] = static_cast<std::uint32_t>(at) + static_cast<std::uint32_t>(std::countr_zero(mask));
+        mask &= mask - 1;
       }
     count += found;
   }
@@ -78,8 +97,8 @@ __attribute__((noinline)) Slow<std::int64_t> read_stamp_slowly(const char* begin
 /// Reads rows [first, last) of a column with `take(row, begin, end, negative, field)`; returns the
 /// first row that it refuses.
 template <bool kLast, class Take>
-LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column, std::size_t first, const std::size_t last,
-                                                   Take take) {
+LIBCHAR_VECTOR_INLINE inline std::size_t take_fields(const Column column, std::size_t first, const std::size_t last,
+                                                     Take take) {
   const char* const text = column.text;
   const std::size_t width = column.width;
   const char separator = kLast ? '\n' : column.delimiter;
@@ -105,18 +124,18 @@ LIBCHAR_AVX2_INLINE inline std::size_t take_fields(const Column column, std::siz
 }
 
 template <class Take>
-LIBCHAR_AVX2_INLINE inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last,
-                                                   Take take) {
+LIBCHAR_VECTOR_INLINE inline std::size_t take_column(const Column& column, std::size_t first, std::size_t last,
+                                                     Take take) {
   return column.index + 1 == column.width ? take_fields<true>(column, first, last, take)
                                           : take_fields<false>(column, first, last, take);
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column, std::size_t first, std::size_t last,
-                                                      const VectorColumn& to) {
+LIBCHAR_VECTOR std::size_t take_values(const Column& column, std::size_t first, std::size_t last,
+                                       const VectorColumn& to) {
   double* const values = to.values;
   std::uint32_t behind = 0;  // of all fields together
   const auto one = [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative,
-                       const Field& field) LIBCHAR_AVX2_INLINE {
+                       const Field& field) LIBCHAR_VECTOR_INLINE {
     if (__builtin_expect(!field.regular || field.digits >= kExactInteger, 0)) {
       const Slow<double> slow = read_value_slowly(begin, end);
       values[row] = slow.value;
@@ -131,12 +150,16 @@ __attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column, std:
   };
   std::size_t row = first, alone = 1;  // the very first row goes alone
   while (row < last) {
+#if defined(LIBCHAR_X86_64)
     if (row > 0) {
       const std::size_t before = row;
       row = column.index + 1 == column.width ? take_fours<true>(column, row, last, values, behind)
                                              : take_fours<false>(column, row, last, values, behind);
       alone = row > before ? 4 : 64;  // a column of seventeen digits is not asked every time
     }
+#else
+    alone = last - row;
+#endif
     const std::size_t end = std::min(last, row + alone);
     row = take_column(column, row, end, one);
     if (row != end) break;
@@ -145,12 +168,12 @@ __attribute__((LIBCHAR_AVX2)) std::size_t take_values(const Column& column, std:
   return row;
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last,
-                                                      const VectorColumn& to) {
+LIBCHAR_VECTOR std::size_t take_stamps(const Column& column, std::size_t first, std::size_t last,
+                                       const VectorColumn& to) {
   return take_column(
       column, first, last,
       [&](std::size_t row, const char* begin, const char* end, std::uint32_t negative, const Field& field)
-          LIBCHAR_AVX2_INLINE {
+          LIBCHAR_VECTOR_INLINE {
             const int shift = to.stamp_digits - static_cast<int>(field.behind);
             if (__builtin_expect(field.regular && shift >= 0, 1))
               return !__builtin_mul_overflow(negative ? -field.digits : field.digits,
@@ -161,17 +184,16 @@ __attribute__((LIBCHAR_AVX2)) std::size_t take_stamps(const Column& column, std:
           });
 }
 
-__attribute__((LIBCHAR_AVX2)) std::size_t check_fields(const Column& column, std::size_t first, std::size_t last) {
+LIBCHAR_VECTOR std::size_t check_fields(const Column& column, std::size_t first, std::size_t last) {
   return take_column(column, first, last,
                      [](std::size_t, const char* begin, const char* end, std::uint32_t, const Field& field)
-                         LIBCHAR_AVX2_INLINE { return field.regular || read_value_slowly(begin, end).good; });
+                         LIBCHAR_VECTOR_INLINE { return field.regular || read_value_slowly(begin, end).good; });
 }
 
 constexpr std::size_t kBatch = 128;  // rows read column by column while their text is in the first-level cache
 
-__attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text, char delimiter, bool crlf,
-                                               std::span<const VectorColumn> columns, std::size_t max_rows,
-                                               std::vector<std::uint32_t>& scratch) {
+LIBCHAR_VECTOR VectorRows parse(std::string_view text, char delimiter, bool crlf, std::span<const VectorColumn> columns,
+                                std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
   const std::size_t width = columns.size();
   const std::size_t rows = std::min(max_rows, find_separators(text, delimiter, max_rows * width, scratch) / width);
   std::size_t good = 0;
@@ -211,7 +233,10 @@ __attribute__((LIBCHAR_AVX2)) VectorRows parse(std::string_view text, char delim
 
 VectorRows parse_vector_rows(std::string_view text, char delimiter, bool crlf, std::span<const VectorColumn> columns,
                              std::size_t max_rows, std::vector<std::uint32_t>& scratch) {
-  if (detail::instructions() < detail::Instructions::avx2 || columns.empty()) return {};
+#if defined(LIBCHAR_X86_64)
+  if (detail::instructions() < detail::Instructions::avx2) return {};
+#endif
+  if (columns.empty()) return {};
   return parse(text, delimiter, crlf, columns, max_rows, scratch);
 }
 

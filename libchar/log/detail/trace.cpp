@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "libchar/characterize/characterization.hpp"
 #include "libchar/core/numeric/lanes.hpp"
+#include "libchar/log/quality.hpp"
 
 namespace libchar {
 
@@ -53,12 +53,13 @@ void TraceMeter::Block::join(const Block& later) {
   missing += later.missing;
 }
 
-Trace TraceMeter::finish() const {
+Trace TraceMeter::finish(std::size_t most) const {
   Trace out;
-  out.block = all_.length;
-  std::vector<Block> blocks = all_.parts;
-  if (all_.filled > 0) blocks.push_back(all_.open);
-  for (const Block& b : blocks) {
+  detail::Halving<Block, kMost> all = all_;
+  while (all.parts.size() >= most) all.halve();
+  out.block = all.length;
+  if (all.filled > 0) all.parts.push_back(all.open);
+  for (const Block& b : all.parts) {
     const bool any = b.low <= b.high;
     out.low.push_back(any ? b.low : std::numeric_limits<double>::quiet_NaN());
     out.high.push_back(any ? b.high : std::numeric_limits<double>::quiet_NaN());
