@@ -142,6 +142,23 @@ TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median
   CHECK(changes[0].to_end);
 }
 
+TEST_CASE("reading meter: of a log of more blocks than are kept every second one says the same") {
+  constexpr Eigen::Index kInstants = 540000;  // 2109 blocks
+  test::Gaussian gauss(3);
+  detail::ReadingMeter meter(3, kInstants);
+  Eigen::MatrixXd y(3, 1000);
+  for (Eigen::Index done = 0; done < kInstants; done += y.cols()) {
+    for (double& one : y.reshaped()) one = gauss();
+    y.row(2).array() += done < kInstants * 3 / 4 ? 0 : 5;
+    meter.push(y);
+  }
+  const auto changes = meter.changes(meter.steady());
+  REQUIRE(changes.size() == 1);
+  CHECK(changes[0].sensor == 2);
+  CHECK(std::abs(changes[0].from - kInstants * 3 / 4) <= 1024);
+  CHECK(changes[0].to_end);
+}
+
 TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log is silent") {
   HonestBench bench;
   const auto told = [&](const std::string& log) -> std::string {

@@ -117,7 +117,7 @@ void ReadingMeter::close() {
   ++closed_;
   std::fill(now_.begin(), now_.end(), Sums{});
   if (blocks_.size() < kMostBlocks) return;
-  for (std::size_t k = 0; 2 * k < blocks_.size(); ++k) blocks_[k] = std::move(blocks_[2 * k]);
+  for (std::size_t k = 1; 2 * k < blocks_.size(); ++k) blocks_[k] = std::move(blocks_[2 * k]);
   blocks_.resize((blocks_.size() + 1) / 2);
   stride_ *= 2;
 }
