@@ -24,8 +24,9 @@ namespace {
 
 constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
 constexpr double kGate = 0.7;   ///< share of a threshold that a score must reach to be looked at again
-/// The same of a ramp: a random walk that is fitted to one hides it.
-constexpr double kRampGate = 0.3;
+/// The same of a ramp beside a random walk, which may be fitted to it and hides it then: where the slowest power is so
+/// many times the next (2 of flicker, 4 of a walk).
+constexpr double kRampGate = 0.3, kLikeWalk = 2.4;
 /// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
 constexpr double kFavoured = 3, kWalkGone = 0.5;
 constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
@@ -233,7 +234,8 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now, dou
   for (const EventKind kind : offered(search, now)) {
     const Candidate candidate = best_of(kind, search, now.fit, now.weight);
     const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
-    const double gate = kind == EventKind::ramp ? kRampGate : kGate;
+    const bool hidden = kind == EventKind::ramp && now.power[0] > kLikeWalk * now.power[1];
+    const double gate = hidden ? kRampGate : kGate;
     if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
   }
