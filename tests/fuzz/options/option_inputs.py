@@ -119,4 +119,5 @@ ARGUMENTS = {
     "fleet-merge": [["fl", "-o", "OUT"], ["fl", "fl2", "-o", "OUT"]],
     "fleet-export": [["fl3", "--to", "parallel"], ["fl4", "--to", "slurm"]],
     "fleet-compare": [["fl", "fl2"]],
+    "page": [["-o", "OUT.html"]],  # of a build that found one
 }
