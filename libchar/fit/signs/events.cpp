@@ -26,7 +26,7 @@ constexpr double kNotTold = 6;  ///< of LR: odds of twenty to one
 constexpr double kGate = 0.7;   ///< share of a threshold that a score must reach to be looked at again
 /// The same of a ramp beside a random walk, which may be fitted to it and hides it then: where the slowest power is so
 /// many times the next (2 of flicker, 4 of a walk).
-constexpr double kRampGate = 0.3, kLikeWalk = 2.4;
+constexpr double kRampGate = 0.45, kLikeWalk = 2.4;
 /// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
 constexpr double kFavoured = 3, kWalkGone = 0.5;
 constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
