@@ -27,6 +27,7 @@ constexpr double kGate = 0.7;   ///< share of a threshold that a score must reac
 /// The same of a ramp beside a random walk, which may be fitted to it and hides it then: where the slowest power is so
 /// many times the next (2 of flicker, 4 of a walk).
 constexpr double kRampGate = 0.45, kLikeWalk = 2.4;
+constexpr double kHiddenMore = 4;  ///< of LR, for such a ramp: few coefficients know the walk
 /// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
 constexpr double kFavoured = 3, kWalkGone = 0.5;
 constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
@@ -238,6 +239,9 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now, dou
     const double gate = hidden ? kRampGate : kGate;
     if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
+    double& threshold = trials.back().candidate.threshold;
+    if (std::abs(candidate.score) < kGate * candidate.threshold)
+      threshold = std::sqrt(threshold * threshold + kHiddenMore);
   }
   const auto best = std::max_element(trials.begin(), trials.end(),
                                      [](const Trial& a, const Trial& b) { return a.worth() < b.worth(); });
