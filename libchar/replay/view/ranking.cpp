@@ -9,6 +9,7 @@
 
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 
 namespace libchar {
@@ -322,7 +323,7 @@ std::string detected_faults(const ReplayResult& r, const AlgorithmResult& best) 
   for (const FoundFault& one : watching.faults) {
     const double to_s = one.to_s.value_or(end_s);
     if (to_s - one.from_s < kLeastShare * (end_s - r.start_s) || one.sensor >= r.sensors.size()) continue;
-    out.push_back(fmt::format("{} ({} from {} to {})", r.sensors[one.sensor].name, one.kind, duration_text(one.from_s),
+    out.push_back(fmt::format("{} ({} from {} to {})", r.sensors[detail::in_memory(one.sensor)].name, one.kind, duration_text(one.from_s),
                               to_s < end_s ? duration_text(to_s) : "the end"));
   }
   return out.empty() ? "" : fmt::format("While it runs {} doubts {}.", watching.label, list_of(out));
