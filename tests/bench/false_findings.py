@@ -1,5 +1,5 @@
-"""How often a sound log is called doubtful: simulated logs of ten kinds (rates, units, formats, quantization, gaps,
-clocks), 20 seeds each, through characterize. Prints the cautions and bad findings, a line for each kind.
+"""How often a sound log is called doubtful: simulated logs of eleven kinds (rates, units, formats, quantization,
+gaps, clocks), 20 seeds each, through characterize. Prints the cautions and bad findings, a line for each kind.
 
 usage: false_findings.py PROGRAM [SEEDS = 20]
 """
@@ -21,6 +21,7 @@ KINDS = {
     "gyroscope N B K": ("deg/s", 100, 5e-3, 3e-3, 5e-4, None, 200000, ".npy", []),
     "accelerometer in g": ("g", 50, 1e-4, 5e-5, 0, None, 40000, ".csv", []),
     "coarse magnetometer": ("uT", 20, 0.1, 0, 0, 0.3, 20000, ".csv", []),
+    "whole counts": ("deg/s", 100, 5e-3, 0, 0, 6e-3, 10000, ".npy", []),
     "slow barometer": ("Pa", 1, 2, 0.5, 0, None, 7200, ".csv", []),
     "gaps": ("deg/s", 100, 5e-3, 0, 0, None, 30000, ".csv", []),
     "clock": ("s", 1, 1e-9, 0, 0, None, 20000, ".csv", ["--data", "phase"]),

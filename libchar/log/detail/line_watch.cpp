@@ -22,9 +22,10 @@ void LineWatch::take(double x, bool direct, std::uint64_t at) {
   ++n_;
 }
 
-/// Whether two neighbours of x[0..n) have the flag, the one before x[0] among them; x[-3] can be read.
+/// Whether two neighbours of x[0..n) may have the flag, the one before x[0] among them; x[-3] can be read. A little
+/// less straight than `on_line`, so that steps of zero need no look of their own.
 LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
-  constexpr double kSquare = kStraight * kStraight;
+  constexpr double kSquare = 1.001 * kStraight * kStraight;
   Four any = {};
   auto found = any != any, before = found;
   before[3] = on_line(x[-3], x[-2], x[-1], kStraight) ? -1 : 0;
@@ -32,7 +33,7 @@ LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
   for (; i + 4 <= n; i += 4) {
     const Four a = LIBCHAR_FOUR(x + i - 2), b = LIBCHAR_FOUR(x + i - 1), c = LIBCHAR_FOUR(x + i);
     const Four step = b - a, bend = (c - b) - step;
-    const auto flag = (bend * bend <= kSquare * (step * step)) & (step != 0.0);
+    const auto flag = bend * bend < kSquare * (step * step);
     found |= flag & __builtin_shufflevector(before, flag, 3, 4, 5, 6);
     before = flag;
   }
@@ -43,15 +44,26 @@ LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
 }
 constexpr InLanes<any_two_lanes> any_two;
 
-void LineWatch::push(std::span<const double> x, const unsigned char* starts, std::size_t i, std::uint64_t at) {
-  const bool whole = starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0);
-  flag(x[i - 2], x[i - 1], x[i], whole, at + i);
-}
-
 void LineWatch::flag(double a, double b, double c, bool whole, std::uint64_t at) {
   const bool straight = whole && on_line(a, b, c, kStraight);
   runs_.push(straight, at);
   exact_.push(straight && on_line(a, b, c, kExactly), at);
+}
+
+void LineWatch::pass(std::uint64_t n) {
+  for (FlagRuns* runs : {&runs_, &exact_}) runs->push_without(n);
+}
+
+void LineWatch::look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to,
+                     std::uint64_t at) {
+  std::size_t next = from;
+  for (std::size_t i = from; i < to; ++i) {
+    if (!on_line(x[i - 2], x[i - 1], x[i], kStraight)) continue;
+    pass(i - next);
+    flag(x[i - 2], x[i - 1], x[i], starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0), at + i);
+    next = i + 1;
+  }
+  pass(to - next);
 }
 
 // A lone flag is none: most stretches of a noise are passed over at once.
@@ -66,10 +78,9 @@ void LineWatch::block(std::span<const double> x, const unsigned char* starts, st
   if (coarse_) i = x.size();
   while (i < x.size()) {
     const std::size_t n = std::min(kStretch, x.size() - i);
-    const bool none = !any_two(&x[i], n);
-    if (none)
-      for (FlagRuns* runs : {&runs_, &exact_}) runs->push_without(n - 1);
-    for (std::size_t k = none ? n - 1 : 0; k < n; ++k) push(x, starts, i + k, at);
+    const std::size_t passed = any_two(&x[i], n) ? 0 : n - 1;
+    pass(passed);
+    look(x, starts, i + passed, i + n, at);
     i += n;
   }
   before_ = x[i - 2];
@@ -130,7 +141,7 @@ std::uint64_t LineWatch::least_exact_run() const {
   constexpr double kLogChance = -9.2;
   const std::vector<double>&straight = runs_.closed(), &exact = exact_.closed();
   const double lone = straight.empty() ? 0 : straight[1];
-  const double share = ((exact.empty() ? 0 : exact[1]) + 1) / (lone + 100);
+  const double share = ((exact.empty() ? 0 : exact[1]) + 1) / (lone + 1);
   for (std::uint64_t length = 2; length < kFewest; ++length) {
     const double mean =
         static_cast<double>(runs_.from_length(length).second) * std::pow(share, static_cast<double>(length));

@@ -52,7 +52,9 @@ class LineWatch {
   void flag(double a, double b, double c, bool whole, std::uint64_t at);
   bool has_chance_lines() const;
   void take(double x, bool direct, std::uint64_t at);
-  void push(std::span<const double> x, const unsigned char* starts, std::size_t i, std::uint64_t at);
+  /// Samples without a flag that counts, and those of x[from..to), where each is looked at.
+  void pass(std::uint64_t n);
+  void look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to, std::uint64_t at);
 
   std::uint64_t n_ = 0;
   double before_ = 0, last_ = 0;   ///< the last two samples
