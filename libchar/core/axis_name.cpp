@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 
 #include "libchar/core/text/text.hpp"
 
@@ -24,18 +25,31 @@ constexpr std::array<std::string_view, 19> kWords = {
     "gyr",       "gyro", "mag",    "omega",  "rate", "acceleration", "accelerometer",
     "gyroscope", "imu",  "angvel", "linacc", "axis"};
 
+constexpr std::array<std::string_view, 11> kRateWords = {
+    "g", "w", "gyr", "gyro", "gyroscope", "omega", "rate", "angvel", "dtheta", "delta_angle", "deltaangle"};
+
+// In a word of its own: not any text that ends so.
+bool ends_in_any(std::string_view text, std::span<const std::string_view> words) {
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+    return text == word || (text.ends_with(word) && !is_letter(text[text.size() - word.size() - 1]));
+  });
+}
+
 }  // namespace
+
+bool names_angular_rate(std::string_view channel) {
+  const AxisName name = axis_name(channel);
+  std::string front = name.axis != 0 ? name.front : stem_of(channel);
+  while (!front.empty() && !is_letter(front.back())) front.pop_back();
+  return ends_in_any(front, kRateWords);
+}
 
 AxisName axis_name(std::string_view channel) {
   const std::string stem = stem_of(channel);
   if (stem.empty() || stem.back() < 'x') return {};
   AxisName out{stem.back(), stem.substr(0, stem.size() - 1)};
   if (out.front.empty() || !is_letter(out.front.back())) return out;
-  const auto ends_in = [&](std::string_view word) {
-    return out.front == word || (out.front.ends_with(word) && out.front.size() > word.size() &&
-                                 !is_letter(out.front[out.front.size() - word.size() - 1]));
-  };
-  return std::any_of(kWords.begin(), kWords.end(), ends_in) ? out : AxisName{};
+  return ends_in_any(out.front, kWords) ? out : AxisName{};
 }
 
 }  // namespace libchar

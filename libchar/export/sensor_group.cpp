@@ -84,6 +84,13 @@ std::optional<Place> place_of(const SensorModel& model, const AxisOverrides& ove
 double factor_to_si(const SensorModel& model, const Kind& kind) {
   const auto unit = find_unit(model.unit);
   if (unit && unit->quantity == kind.quantity) return unit->to_si;
+  if (unit && unit->quantity == Quantity::angle && kind.quantity == Quantity::angular_rate)
+    throw input_error("E0583", model.channel)
+        .says("its unit is that of an angle, and a {} needs one of {}", kind.name, kind.quantity_name)
+        .got(model.unit)
+        .hint(
+            "characterize the log as a rate: increments by `channel_scale` (the sampling rate) and `channel_unit`, an "
+            "angle as phase");
   throw input_error("E0583", model.channel)
       .says(model.unit.empty()
                 ? fmt::format("its model names no unit, a {} needs one of {}", kind.name, kind.quantity_name)

@@ -215,4 +215,22 @@ TEST_CASE("what is no phase, no fraction of a frequency and no rate is doubted, 
   CHECK(found(SampleKind::rate, "looks_integrated") == "data");
   CHECK(found(SampleKind::frequency, "looks_integrated") == "data");
   CHECK(found(SampleKind::phase, "looks_integrated").empty());
+  // What the unit says of them.
+  const auto unit_of = [&](std::string name, std::string unit, const std::vector<double>& samples) {
+    recording.info.channels[0] = {std::move(name), std::move(unit)};
+    recording.samples = {samples};
+    return found(SampleKind::rate, "integral_unit");
+  };
+  const std::vector<double> walk = recording.samples[0];
+  CHECK(unit_of("gx", "rad", noise) == "channel_scale");
+  CHECK(unit_of("delta_angle[0]", "rad", noise) == "channel_scale");
+  CHECK(unit_of("gyro_x", "deg", walk) == "data");
+  CHECK(found(SampleKind::rate, "looks_integrated").empty());
+  CHECK(unit_of("roll", "deg", noise).empty());
+  CHECK(unit_of("gx", "rad/s", noise).empty());
+  CHECK(unit_of("phase", "s", noise) == "data");
+  std::vector<double> periods(noise.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) periods[i] = 1e-7 * (1 + 1e-11 * noise[i]);
+  CHECK(unit_of("period", "s", periods).empty());
+  CHECK(found(SampleKind::rate, "frequency_mean") == "data");
 }

@@ -386,6 +386,9 @@ TEST_CASE("groups: an unknown or wrong unit says which one is needed") {
   models[0].unit = "m/s^2";
   CHECK(has(refusal("kalibr", models), "gyr_x"));
   CHECK(has(refusal("kalibr", models), "none of angular rate"));
+  models[0].unit = "rad";  // another name would not make increments a rate
+  CHECK(has(refusal("kalibr", models), "increments by `channel_scale`"));
+  CHECK_FALSE(has(refusal("kalibr", models), "write unit"));
   models[0].unit = "rad/s";
   models[0].rate_hz = 0;
   CHECK(has(refusal("vins", models), "names no sampling rate"));

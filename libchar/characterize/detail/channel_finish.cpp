@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/core/axis_name.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -17,6 +18,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
@@ -27,6 +29,7 @@ namespace libchar {
 namespace {
 
 constexpr std::size_t kFewestForMotion = 2048;
+constexpr double kClockScatter = 1e-8;  // of the mean: below, values are frequencies or periods as counted
 constexpr std::uint64_t kLongForAll = std::uint64_t{1} << 17U;  // of which every m is asked for
 
 // For intervals when no fit is wanted or possible: white noise alone, from the shortest averaging time.
@@ -82,6 +85,7 @@ class Finish {
   void curve_and_fit(ChannelResult& curve, ChannelResult& result, double rate_hz);
   void add_spectrum(ChannelResult& result, double rate_hz);
   bool is_noise(ChannelResult& result) const;
+  void doubt_unit(ChannelResult& result, double rate_hz) const;
   void doubt_frequency(ChannelResult& result) const;
   void doubt_rate(ChannelResult& result, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
@@ -359,13 +363,39 @@ void Finish::finish(ChannelResult& result, double rate_hz) {
                          curve.findings.end());
 }
 
+// The unit of an integral where a rate is analysed: a clock's time error, an angle, or what was turned through from one
+// sample to the next, whose noise is as large in samples as in sums.
+void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
+  const std::string& unit = result.channel.unit;
+  const auto known = find_unit(unit);
+  if (options_.data != SampleKind::rate || !known || found_.samples < 2) return;
+  const bool time = known->quantity == Quantity::time;
+  if ((time || known->quantity == Quantity::frequency) &&
+      found_.standard_deviation < kClockScatter * std::abs(found_.mean))
+    return doubt_frequency(result);
+  if (!time && (known->quantity != Quantity::angle || !names_angular_rate(result.channel.name))) return;
+  const bool increments = !time && found_.difference_sd > found_.standard_deviation;
+  const char* const what = time ? "as the time error of a clock the samples are a phase, and no fractional frequency"
+                           : increments ? "the samples are increments of an angle, and no angular rate"
+                                        : "the samples are an angle, and no angular rate";
+  Finding integral = finding("integral_unit", fmt::format("The unit is {}: {}.", unit, what));
+  Finding::Help& help = integral.help.emplace_back(
+      Finding::Help{increments ? "Take each as a rate over its sampling interval." : "Say so."});
+  if (increments)
+    help.options = {{"channel_scale", fmt::format("{}={}", result.channel.name, shortest(rounded(rate_hz, 9)))},
+                    {"channel_unit", fmt::format("{}={}/s", result.channel.name, unit)}};
+  else
+    help.options = {{"data", "phase"}};
+  result.findings.push_back(std::move(integral));
+}
+
 // A clock is a few parts in a million off, not a hundredth: else somebody has named the wrong kind
 // of data, or no nominal frequency.
 void Finish::doubt_frequency(ChannelResult& result) const {
-  constexpr double kMostOff = 0.01, kLeastScatter = 1e-8;
-  if (options_.data == SampleKind::rate || found_.samples == 0) return;
+  constexpr double kMostOff = 0.01;
+  if (found_.samples == 0) return;
   const double nominal = options_.nominal_frequency;
-  if (nominal == 0 && found_.standard_deviation < kLeastScatter * std::abs(found_.mean)) {
+  if (nominal == 0 && found_.standard_deviation < kClockScatter * std::abs(found_.mean)) {
     Finding whole =
         finding("frequency_mean", fmt::format("The values scatter by {} of their mean, {}: they look like frequencies "
                                               "or periods themselves, not like {}.",
@@ -373,7 +403,7 @@ void Finish::doubt_frequency(ChannelResult& result) const {
                                               number_text(found_.mean, 6),
                                               options_.data == SampleKind::phase ? "a phase" : "fractions of them"));
     Finding::Help& help = whole.help.emplace_back(Finding::Help{"Take them as fractions of their mean."});
-    if (options_.data == SampleKind::phase) help.options.push_back({"data", "frequency"});
+    if (options_.data != SampleKind::frequency) help.options.push_back({"data", "frequency"});
     help.options.push_back({"nominal_frequency", shortest(rounded(found_.mean, 9))});
     result.findings.push_back(std::move(whole));
     return;
@@ -393,7 +423,7 @@ void Finish::doubt_frequency(ChannelResult& result) const {
 // between the fastest samples.
 void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   constexpr double kShare = 1;  // of the walk's own root density there
-  if (options_.data == SampleKind::phase || !result.fit) return;
+  if (options_.data == SampleKind::phase || !result.fit || has(result.findings, "integral_unit")) return;
   const Coefficient& walk = (*result.fit)[Term::walk];
   const Coefficient& white = (*result.fit)[Term::white];
   if (walk.status != Status::detected || !walk.value || !white.upper95) return;
@@ -450,7 +480,8 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
     result.findings.push_back(finding("no_fit", "no curves and no fit: " + why));
     return result;
   }
-  doubt_frequency(result);
+  doubt_unit(result, rate_hz);
+  if (options_.data != SampleKind::rate) doubt_frequency(result);
   is_whole_ = found_.samples + found_.missing <= kLeafSamples;
   kept_ = std::move(is_whole_ ? read_.sums.kept : read_.all);
   make_rate(rate_hz);

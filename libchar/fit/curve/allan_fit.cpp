@@ -102,7 +102,8 @@ void compare(const NoiseFit& first, const Solution& solution, SecondOpinion& sec
                                    second.sentence.empty() ? "" : "; ", brief_text(*second.value[i], 4),
                                    long_name(static_cast<Term>(i)), apart, brief_text(*term.value, 4));
   }
-  if (second.goodness.p < 1e-3) {
+  // Few degrees of freedom at the longest times: 1e-3 of the tail comes in .28 % of 2,157 simulated records, 1e-4 in one.
+  if (second.goodness.p < 1e-4) {
     // An opinion that does not describe the curve it was made from supports nothing.
     second.agrees = false;
     second.sentence += fmt::format("{}does not describe the Allan curve itself (p = {})",

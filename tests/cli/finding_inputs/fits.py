@@ -192,6 +192,8 @@ INPUTS = {
                          analysis=("--data", "phase"), not_in={"psd": "it names no slopes"}),
     "frequency_mean": Input(raw("frequency", clock_of("Hz", 10e6, 1e-3), rate=1), made_by="characterize",
                             analysis=("--data", "frequency")),
+    "integral_unit": Input(raw("increments", lambda: {"gx": ("rad", noise(20000, SD / RATE))}), made_by="characterize",
+                           truth=N),
     "looks_integrated": Input(gyro("angle", integral), made_by="characterize",
                               not_in={"psd": "it fits nothing"}),
     "no_fit": Input(raw("no_fit", hardly_there), made_by="characterize"),

@@ -541,7 +541,7 @@ double slow_end_of(const Search& search, const Trial& trial) {
 /// leaves a plateau behind a high-pass, as processes do: then it is none, and the band has `doubtful_end`.
 std::optional<Band> high_passed(const Search& search, Trial& unshaped, double slowest_hz) {
   constexpr double kFalls = 0.5;  ///< at the slow end, of the largest
-  constexpr double kNeeded = 10;  ///< of 2 lnL
+  constexpr double kNeeded = 15;  ///< of 2 lnL; records without a high-pass reach 12.5 in 2 of 1,000
   constexpr double kPeriods = 4;  ///< of the corner in the record: below, a drift looks like that
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
