@@ -37,7 +37,7 @@ bool ends_in_any(std::string_view text, std::span<const std::string_view> words)
 
 }  // namespace
 
-bool names_angular_rate(std::string_view channel) {
+bool detail::names_angular_rate(std::string_view channel) {
   const AxisName name = axis_name(channel);
   std::string front = name.axis != 0 ? name.front : stem_of(channel);
   while (!front.empty() && !is_letter(front.back())) front.pop_back();

@@ -14,7 +14,11 @@ struct AxisName {
 /// "gyr_x", "ax", "Gyro Y [deg/s]", "wz": a letter behind a mark, or behind a word of the field.
 AxisName axis_name(std::string_view channel);
 
+namespace detail {
+
 /// Whether the name is that of a gyroscope's channel or of what one measures: "gx", "gyro_x", "wz", "delta_angle[0]".
 bool names_angular_rate(std::string_view channel);
+
+}  // namespace detail
 
 }  // namespace libchar

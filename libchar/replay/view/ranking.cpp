@@ -323,8 +323,8 @@ std::string detected_faults(const ReplayResult& r, const AlgorithmResult& best) 
   for (const FoundFault& one : watching.faults) {
     const double to_s = one.to_s.value_or(end_s);
     if (to_s - one.from_s < kLeastShare * (end_s - r.start_s) || one.sensor >= r.sensors.size()) continue;
-    out.push_back(fmt::format("{} ({} from {} to {})", r.sensors[detail::in_memory(one.sensor)].name, one.kind, duration_text(one.from_s),
-                              to_s < end_s ? duration_text(to_s) : "the end"));
+    out.push_back(fmt::format("{} ({} from {} to {})", r.sensors[detail::in_memory(one.sensor)].name, one.kind,
+                              duration_text(one.from_s), to_s < end_s ? duration_text(to_s) : "the end"));
   }
   return out.empty() ? "" : fmt::format("While it runs {} doubts {}.", watching.label, list_of(out));
 }
