@@ -10,6 +10,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -34,14 +35,23 @@ struct Sine {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();
 };
 
-Eigen::RowVector2d column_at(double place, std::size_t k, std::size_t n) {
-  const double length = static_cast<double>(n), unit = std::numbers::pi / length;
-  const double w = unit * place, theta = unit * static_cast<double>(k);
-  const double turn = std::numbers::pi * place, sign = k % 2 == 0 ? 1 : -1;
-  const double far = 1 / std::sin((w + theta) / 2) + 1 / std::sin((w - theta) / 2);
-  const double scale = std::sqrt(2 / length) / 4 * far;
-  return {scale * sign * std::sin(turn), scale * (1 - sign * std::cos(turn))};
-}
+/// The two columns of a place, row by row.
+struct Columns {
+  double half_unit, half_w, scale, sine, cosine;
+
+  Columns(double place, std::size_t n)
+      : half_unit(std::numbers::pi / static_cast<double>(n) / 2),
+        half_w(half_unit * place),
+        scale(std::sqrt(2 / static_cast<double>(n)) / 4),
+        sine(std::sin(std::numbers::pi * place)),
+        cosine(std::cos(std::numbers::pi * place)) {}
+
+  Eigen::RowVector2d at(std::size_t k) const {
+    const double half_theta = half_unit * static_cast<double>(k), sign = k % 2 == 0 ? 1 : -1;
+    const double far = scale * (1 / std::sin(half_w + half_theta) + 1 / std::sin(half_w - half_theta));
+    return {far * sign * sine, far * (1 - sign * cosine)};
+  }
+};
 
 /// Off the coefficients themselves, where both factors are zero over zero.
 double off_grid(double place) {
@@ -75,11 +85,13 @@ struct Window {
   /// Squares left beside the best sine at a place.
   double squares_beside(Sine& sine) const {
     const auto rows = static_cast<Eigen::Index>(to - from);
-    Eigen::Matrix<double, Eigen::Dynamic, 2> columns(rows, 2);
-    Eigen::VectorXd values(rows);
+    constexpr int kMostRows = 2 * kReach + 1;
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMostRows> columns(rows, 2);
+    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows> values(rows);
+    const Columns sines(sine.place, head.length);
     for (std::size_t k = from; k < to; ++k) {
       const auto row = static_cast<Eigen::Index>(k - from);
-      columns.row(row) = weight(k) * column_at(sine.place, k, head.length);
+      columns.row(row) = weight(k) * sines.at(k);
       values(row) = weight(k) * head.rest[k];
     }
     sine.size = columns.colPivHouseholderQr().solve(values);
@@ -87,9 +99,10 @@ struct Window {
   }
 };
 
-/// The best sine within a coefficient and a half of the peak.
+/// The best sine within a coefficient and a half of the peak; by the step of the places where none is near.
 Sine fitted_sine(const Window& window, double peak, double& left) {
   constexpr int kPlaces = 30, kThirds = 24;
+  constexpr double kHopeful = 3;  ///< of `kReduction`, where the place is .05 off
   Sine best;
   left = -1;
   double step = 3.0 / kPlaces;
@@ -100,11 +113,14 @@ Sine fitted_sine(const Window& window, double peak, double& left) {
     left = squares;
     best = sine;
   }
+  if (!(window.squares() > kHopeful * left)) return best;
   double low = best.place - step, high = best.place + step;
   for (int i = 0; i < kThirds; ++i) {
     Sine one{off_grid(low + (high - low) / 3)}, two{off_grid(high - (high - low) / 3)};
-    (window.squares_beside(one) < window.squares_beside(two) ? high : low) =
-        window.squares_beside(one) < window.squares_beside(two) ? two.place : one.place;
+    if (window.squares_beside(one) < window.squares_beside(two))
+      high = two.place;
+    else
+      low = one.place;
   }
   best.place = off_grid(0.5 * (low + high));
   left = window.squares_beside(best);
@@ -112,17 +128,21 @@ Sine fitted_sine(const Window& window, double peak, double& left) {
 }
 
 void add(const Sine& sine, double times, const Head& head) {
-  for (std::size_t k = 1; k < head.rest.size(); ++k)
-    head.rest[k] += times * column_at(sine.place, k, head.length).dot(sine.size.transpose());
+  const Columns sines(sine.place, head.length);
+  for (std::size_t k = 1; k < head.rest.size(); ++k) head.rest[k] += times * sines.at(k).dot(sine.size.transpose());
 }
 
-double median_beside(std::span<const double> rest, std::size_t peak) {
-  std::vector<double> beside;
+/// Over the median beside it, which is sought only where half of them are low enough.
+bool stands_out(std::span<const double> rest, std::size_t peak) {
+  const double limit = rest[peak] * rest[peak] / kStandsOut;
+  std::array<double, 2 * kReach> beside;
+  std::size_t n = 0, low = 0;
+  const auto look = [&](std::size_t k) { low += (beside[n++] = rest[k] * rest[k]) < limit ? 1 : 0; };
   for (std::size_t d = 3; d <= kReach; ++d) {
-    if (peak > d) beside.push_back(rest[peak - d] * rest[peak - d]);
-    if (peak + d < rest.size()) beside.push_back(rest[peak + d] * rest[peak + d]);
+    if (peak > d) look(peak - d);
+    if (peak + d < rest.size()) look(peak + d);
   }
-  return median_in_place(beside);
+  return 2 * low >= n && limit > median_in_place(std::span(beside).first(n));
 }
 
 /// The highest peak that stands out of what is beside it and is none of those looked at.
@@ -135,7 +155,7 @@ std::optional<std::size_t> next_peak(std::span<const double> rest, const std::ve
     if (square < rest[k - 1] * rest[k - 1] || square < rest[k + 1] * rest[k + 1]) continue;
     const bool known = std::any_of(looked_at.begin(), looked_at.end(),
                                    [&](std::size_t other) { return other + 1 >= k && k + 1 >= other; });
-    if (!known && square > kStandsOut * median_beside(rest, k)) best = k;
+    if (!known && stands_out(rest, k)) best = k;
   }
   return best;
 }
