@@ -104,7 +104,7 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "--frozen", "N", [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
       "treat runs of N or more equal values as missing (default: they count)");
   verb.add_parsed(
-      "--interpolated", "N", [&a](const std::string& text) { a.options.interpolated = parse_count(text, 4); },
+      "--interpolated", "N", [&a](const std::string& text) { a.options.interpolated = parse_count(text, 3); },
       "treat samples on straight lines of N or more samples as missing, as in gaps that were filled; lines of fewer "
       "than 8 must be straight to 0.1 % (default: they count)");
   verb.add_bytes("--memory", a.options.memory_bytes,

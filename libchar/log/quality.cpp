@@ -832,6 +832,17 @@ std::vector<Interval> times_of(const std::vector<ChannelQuality::Signs::Place>& 
   return out;
 }
 
+/// Of the samples that only repeat the one before, or lie half-way: the step of the values over the deviation of their
+/// differences says how many by chance. Not where quiet stretches have coarser steps than loud ones.
+constexpr double kMostKurtosis = 10;
+
+/// Between values that lie side by side: their grid, that of 32-bit floats, or what so few values leave.
+double value_step(const ChannelQuality& q) {
+  if (q.resolution) return *q.resolution;
+  const double left = (q.maximum - q.minimum) / static_cast<double>(std::max<std::uint64_t>(1, q.distinct_values));
+  return q.distinct_values < kDistinct ? left : q.float32 ? q.float32_step : 0;
+}
+
 /// Changes from sample to sample as noise does: what moves smoothly may rest, or go straight.
 bool is_restless(const ChannelQuality& q) {
   constexpr double kLeast = 0.5;
@@ -893,6 +904,25 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   out.push_back(std::move(stuck));
 }
 
+/// Samples that only repeat the one before, here and there, where differences of a smooth density hardly are zero.
+void judge_repeats(const ChannelQuality& q, std::vector<Finding>& out) {
+  constexpr double kMuch = 0.01, kLeast = 1e-3, kTimes = 3, kFewest = 20, kMost = 0.3;
+  if (q.distinct_values <= 16 || q.signs.held_times > 1 || !is_restless(q) || !q.signs.counter.empty()) return;
+  if (q.difference_kurtosis > kMostKurtosis) return;
+  const auto repeats = static_cast<double>(q.repeats - std::min(q.repeats, q.signs.frozen));
+  const double by_chance = value_step(q) / (std::sqrt(2 * std::numbers::pi) * q.difference_sd);
+  const double share = repeats / static_cast<double>(q.samples);
+  if (repeats < kFewest || share < std::max(kLeast, kTimes * by_chance)) return;
+  Finding again = finding("repeated_samples",
+                          fmt::format("{} of the samples only repeat the one before, where {} would by chance: read "
+                                      "faster than the sensor measures, or written twice",
+                                      percent_text(share), percent_text(by_chance)));
+  again.count = clamped_whole<std::uint64_t>(repeats);
+  if (share > kMuch) again.severity = Severity::bad;
+  if (share < kMost) again.help.push_back({"Take what repeats as missing.", {{"frozen", "2"}}});
+  out.push_back(std::move(again));
+}
+
 void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
   if (!(q.signs.held_times > 1)) return;
   const double times = q.signs.held_times;
@@ -912,9 +942,11 @@ void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& 
   const double share = static_cast<double>(q.signs.on_lines) / static_cast<double>(q.samples);
   Finding lines =
       finding("interpolated",
-              fmt::format("{} lie on straight lines between two others, in {}: filled or interpolated",
+              fmt::format("{}{} lie {}: filled or interpolated", q.signs.line_run == 1 ? "about " : "",
                           share < kMuch ? plural(q.signs.on_lines, "sample") : percent_text(share) + " of the samples",
-                          plural(q.signs.lines, "place")));
+                          q.signs.line_run == 1
+                              ? "half-way between their neighbours"
+                              : "on straight lines between two others, in " + plural(q.signs.lines, "place")));
   lines.count = q.signs.lines;
   lines.where.time_s = times_of(q.signs.lines_at, rate_hz);
   if (share > kMuch) lines.severity = Severity::bad;
@@ -962,7 +994,10 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   }
   judge_held(q, rate_hz, out);
   if (judge_zeros(q, out)) return;
-  if (!has(out, "much_saturated")) judge_runs(q, rate_hz, out);  // it stands at the end of the range
+  if (!has(out, "much_saturated")) {  // it stands at the end of the range
+    judge_runs(q, rate_hz, out);
+    judge_repeats(q, out);
+  }
   judge_lines(q, rate_hz, out);
 }
 
@@ -1099,6 +1134,17 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
       q.standard_deviation = std::numeric_limits<double>::quiet_NaN();
   }
   q.distinct_values = state.distinct.values().size();
+  q.difference_kurtosis = state.differences.kurtosis();
+  q.difference_sd = state.differences.standard_deviation();
+  q.signs.counter = state.odd.counter.sentence();
+  q.float32 = q.samples > 0 && state.float32;
+  const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
+  if (std::isfinite(largest))
+    q.float32_step = static_cast<double>(std::nextafter(largest, HUGE_VALF)) - static_cast<double>(largest);
+  if (const auto step = grid_step(state.distinct.values()); step && q.samples >= 4) {
+    const bool format_only = q.float32 && *step <= 1.01 * q.float32_step && q.distinct_values > 16;
+    if (!format_only) q.resolution = tidy(*step);
+  }
   q.longest_stuck = q.samples > 0 ? state.odd.same.longest() + 1 : 0;
   const double others = state.top.next + state.bottom.next;
   if (q.distinct_values > 3) {
@@ -1124,10 +1170,12 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   std::tie(q.signs.frozen_runs, q.signs.frozen) = state.odd.same.from_length(kFrozenRun - 1);
   for (const auto& [from, to] : state.odd.same.places()) q.signs.frozen_at.push_back({from - 1, to});
   q.signs.held_times = held_times(state.odd.same);
-  const detail::LineWatch::Found lines = state.odd.lines.found();
+  const detail::LineWatch::Found lines =
+      state.odd.lines.found(q.difference_kurtosis > kMostKurtosis ? 1 : value_step(q) / q.difference_sd);
   q.signs.line_run = lines.least_run;
   if (lines.least_run > 0) {
     std::tie(q.signs.lines, q.signs.on_lines) = lines.runs->from_length(lines.least_run);
+    if (lines.alone > 0) q.signs.lines = q.signs.on_lines = clamped_whole<std::uint64_t>(std::round(lines.alone));
     for (const auto& [from, to] : lines.runs->places())
       if (to - from >= q.signs.line_run) q.signs.lines_at.push_back({from - 2, to});
   }
@@ -1142,17 +1190,6 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
                   (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
-  q.difference_kurtosis = state.differences.kurtosis();
-  q.difference_sd = state.differences.standard_deviation();
-  q.signs.counter = state.odd.counter.sentence();
-  q.float32 = q.samples > 0 && state.float32;
-  const auto largest = static_cast<float>(std::max(std::fabs(q.minimum), std::fabs(q.maximum)));
-  if (std::isfinite(largest))
-    q.float32_step = static_cast<double>(std::nextafter(largest, HUGE_VALF)) - static_cast<double>(largest);
-  if (const auto step = grid_step(state.distinct.values()); step && q.samples >= 4) {
-    const bool format_only = q.float32 && *step <= 1.01 * q.float32_step && q.distinct_values > 16;
-    if (!format_only) q.resolution = tidy(*step);
-  }
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
   q.findings = findings_of(q, rate_hz);

@@ -90,13 +90,13 @@ TEST_CASE("lines: found in noise, not in noise alone, and the same wherever the 
   for (double& v : x) v = std::round(normal(engine) * 1e6) / 1e6;
   LineWatch clean;
   clean.block(x, nullptr, 0);
-  CHECK(clean.found().least_run == 0);
+  CHECK(clean.found(0).least_run == 0);
   for (std::size_t at = 500; at + 100 < x.size(); at += 1000)  // gaps of 20 to 60 samples, filled
     for (std::size_t i = 1, n = 20 + at / 1000 % 41; i < n; ++i)
       x[at + i] = x[at] + (x[at + n] - x[at]) * static_cast<double>(i) / static_cast<double>(n);
   LineWatch whole;
   whole.block(x, nullptr, 0);
-  const LineWatch::Found found = whole.found();
+  const LineWatch::Found found = whole.found(0);
   REQUIRE(found.least_run > 0);
   CHECK(found.runs->from_length(found.least_run).first == 50);
   for (const auto& [from, to] : found.runs->places()) {  // chance may add one at either end
@@ -113,8 +113,8 @@ TEST_CASE("lines: found in noise, not in noise alone, and the same wherever the 
       joined.join(part, true, from);
       from = to;
     }
-    CHECK(joined.found().least_run == found.least_run);
-    check_same(*joined.found().runs, *found.runs, 2);
+    CHECK(joined.found(0).least_run == found.least_run);
+    check_same(*joined.found(0).runs, *found.runs, 2);
   }
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("lines: noise that is smooth by nature has none") {
     LineWatch watch;
     watch.block(x, nullptr, 0);
     INFO("keeps " << keep);
-    CHECK(watch.found().least_run == 0);
+    CHECK(watch.found(0).least_run == 0);
   }
 }
 
@@ -147,7 +147,7 @@ TEST_CASE("lines: short gaps that were filled are found where there are digits, 
       LineWatch watch;
       watch.block(x, nullptr, 0);
       INFO(levels << " levels, " << filled << " filled");
-      const LineWatch::Found found = watch.found();
+      const LineWatch::Found found = watch.found(0.7 / levels);
       if (filled == 0) CHECK(found.least_run == 0);
       if (filled > 0 && levels >= 1e4) {
         REQUIRE(found.least_run > 0);
@@ -176,8 +176,36 @@ TEST_CASE("lines: white noise in whole counts has none, however short the record
         for (double& v : x) v = std::round(counts * normal(engine));
         LineWatch watch;
         watch.block(x, nullptr, 0);
-        found += watch.found().least_run > 0;
+        found += watch.found(0.7 / counts).least_run > 0;
       }
   INFO(found << " of " << records);
   CHECK(found <= 3);
+}
+
+TEST_CASE("lines: single samples that were filled are found and counted") {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  for (const double levels : {100.0, 1e3, 1e6})  // per standard deviation
+    for (const double share : {0.0, 0.02, 0.05, 0.2}) {
+      std::vector<double> x(100000);
+      for (double& v : x) v = std::round(levels * normal(engine)) / levels;
+      std::size_t filled = 0;
+      for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+        if (std::uniform_real_distribution<double>()(engine) >= share) continue;
+        x[i] = 0.5 * (x[i - 1] + x[i + 1]);
+        ++filled;
+        ++i;
+      }
+      LineWatch watch;
+      watch.block(x, nullptr, 0);
+      const LineWatch::Found found = watch.found(0.7 / levels);
+      INFO(levels << " levels, " << share);
+      CHECK((found.least_run > 0) == (share > 0));
+      if (share == 0) continue;
+      CHECK(found.least_run == 1);
+      CHECK(found.alone == Approx(static_cast<double>(filled)).epsilon(0.2));
+      detail::forget_lines(x, found.least_run + 2);
+      const auto lost = std::count_if(x.begin(), x.end(), [](double v) { return v != v; });
+      CHECK(static_cast<double>(lost) > 0.99 * static_cast<double>(filled));
+    }
 }

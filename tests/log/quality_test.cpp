@@ -486,3 +486,24 @@ TEST_CASE("a dead band is named, with its value and share, and coarse rounding a
   for (double& v : coarse) v = std::round(v);
   CHECK_FALSE(has(meter(coarse).findings, "dead_band"));
 }
+
+TEST_CASE("samples that only repeat the one before are told from what steps repeat by chance") {
+  std::mt19937_64 engine(21);
+  std::normal_distribution<double> normal;
+  for (const double levels : {0.5, 2.0, 20.0, 300.0, 1e5})  // per standard deviation
+    for (const double share : {0.0, 0.03}) {
+      std::vector<double> x(40000);
+      for (double& v : x) v = std::round(levels * normal(engine)) / levels;
+      for (std::size_t i = 1; i < x.size(); ++i)
+        if (std::uniform_real_distribution<double>()(engine) < share) x[i] = x[i - 1];
+      INFO(levels << " levels, " << share);
+      const bool said = has(meter(x).findings, "repeated_samples");
+      if (share == 0) CHECK_FALSE(said);
+      if (share > 0 && levels > 100) CHECK(said);
+    }
+  // Quiet stretches among loud ones repeat what loud ones do not.
+  std::vector<double> handled(40000);
+  for (std::size_t i = 0; i < handled.size(); ++i)
+    handled[i] = std::round((i % 4000 < 400 ? 200 : 1.0) * normal(engine));
+  CHECK_FALSE(has(meter(handled).findings, "repeated_samples"));
+}

@@ -112,6 +112,7 @@ class Finish {
 bool Finish::is_answered(const Finding& one) const {
   if (one.code == "spiky") return options_.unwrap > 0 || options_.frozen > 1;
   return (options_.unwrap > 0 && one.code == "phase_wraps") || (options_.frozen > 1 && one.code == "stuck") ||
+         (options_.frozen == 2 && one.code == "repeated_samples") ||
          (options_.interpolated > 0 && one.code == "interpolated");
 }
 

@@ -15,7 +15,10 @@ void LineWatch::take(double x, bool direct, std::uint64_t at) {
     second_ = x;
     direct_ = direct;
   }
-  if (n_ > 1) flag(before_, last_, x, direct && pair_, at);
+  if (n_ > 1) {
+    flag(before_, last_, x, direct && pair_, at);
+    ++looked_;
+  }
   pair_ = direct && n_ > 0;
   before_ = last_;
   last_ = x;
@@ -56,6 +59,7 @@ void LineWatch::pass(std::uint64_t n) {
 
 void LineWatch::look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to,
                      std::uint64_t at) {
+  looked_ += to - from;
   std::size_t next = from;
   for (std::size_t i = from; i < to; ++i) {
     if (!on_line(x[i - 2], x[i - 1], x[i], kStraight)) continue;
@@ -107,6 +111,7 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
   runs_.join(later.runs_, at, 2);
   exact_.join(later.exact_, at, 2);
   n_ = own + later.n_;
+  looked_ += later.looked_;
   if (later.n_ > 1) {
     before_ = later.before_;
     last_ = later.last_;
@@ -151,13 +156,25 @@ std::uint64_t LineWatch::least_exact_run() const {
   return 0;
 }
 
-LineWatch::Found LineWatch::found() const {
+// Between neighbours, the middle of a smooth density is as likely as what is beside it; on a grid it is one of few.
+double LineWatch::alone(double grid) const {
+  constexpr double kLeast = 20, kTimes = 3, kDeviations = 5, kPerStep = 20;
+  const std::vector<double>&straight = runs_.closed(), &exact = exact_.closed();
+  if (straight.empty() || exact.empty()) return 0;
+  const double by_chance = straight[1] * (kExactly / kStraight + kPerStep * grid);
+  if (exact[1] < kLeast || exact[1] < kTimes * by_chance + kDeviations * std::sqrt(by_chance)) return 0;
+  return (exact[1] - by_chance) * static_cast<double>(n_) / static_cast<double>(std::max<std::uint64_t>(1, looked_));
+}
+
+LineWatch::Found LineWatch::found(double grid) const {
   if (coarse_) return {};
-  const Found straight{least_run(), &runs_}, exact{least_exact_run(), &exact_};
+  const Found straight{least_run(), &runs_, 0}, exact{least_exact_run(), &exact_, 0};
   const auto on_lines = [](const Found& one) {
     return one.least_run == 0 ? 0 : one.runs->from_length(one.least_run).second;
   };
-  return on_lines(exact) > on_lines(straight) ? exact : straight;
+  const Found& longer = on_lines(exact) > on_lines(straight) ? exact : straight;
+  const double single = alone(grid);
+  return single > static_cast<double>(on_lines(longer)) ? Found{1, &exact_, single} : longer;
 }
 
 void forget_frozen(std::span<double> samples, std::uint64_t fewest) {

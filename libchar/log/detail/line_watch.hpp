@@ -29,13 +29,15 @@ class LineWatch {
   struct Found {
     std::uint64_t least_run = 0;  ///< flags in a row; 0: there are none
     const FlagRuns* runs = nullptr;
+    double alone = 0;  ///< samples half-way between their neighbours, by the stretches that were looked at
   };
-  Found found() const;
+  /// `grid`: step of the values over the deviation of their differences; 0: there is none.
+  Found found(double grid) const;
   /// Shorter runs of flags are told by exact lines.
   static constexpr std::uint64_t kFewest = 6;
 
   static void layout(auto& at, auto& watch) {
-    at.group("lines of a channel", watch.n_, watch.before_, watch.last_, watch.first_, watch.second_);
+    at.group("lines of a channel", watch.n_, watch.looked_, watch.before_, watch.last_, watch.first_, watch.second_);
     at(watch.pair_, watch.direct_, watch.coarse_);
     FlagRuns::layout(at, watch.runs_);
     FlagRuns::layout(at, watch.exact_);
@@ -49,6 +51,7 @@ class LineWatch {
   static constexpr std::uint64_t kEnough = 4096;
   std::uint64_t least_run() const;
   std::uint64_t least_exact_run() const;
+  double alone(double grid) const;
   void flag(double a, double b, double c, bool whole, std::uint64_t at);
   bool has_chance_lines() const;
   void take(double x, bool direct, std::uint64_t at);
@@ -56,12 +59,12 @@ class LineWatch {
   void pass(std::uint64_t n);
   void look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to, std::uint64_t at);
 
-  std::uint64_t n_ = 0;
-  double before_ = 0, last_ = 0;   ///< the last two samples
-  double first_ = 0, second_ = 0;  ///< the first two
-  bool pair_ = false;              ///< the last one follows directly on that before
-  bool direct_ = false;            ///< the second one on the first
-  bool coarse_ = false;            ///< steps of a coarse grid are alike by chance: nothing is told from it
+  std::uint64_t n_ = 0, looked_ = 0;  ///< looked_: not passed over, as stretches without two flags in a row are
+  double before_ = 0, last_ = 0;      ///< the last two samples
+  double first_ = 0, second_ = 0;     ///< the first two
+  bool pair_ = false;                 ///< the last one follows directly on that before
+  bool direct_ = false;               ///< the second one on the first
+  bool coarse_ = false;               ///< steps of a coarse grid are alike by chance: nothing is told from it
   /// Of either straightness; a run of one flag may be left out.
   FlagRuns runs_{kFewest}, exact_{2};
 };

@@ -31,6 +31,7 @@ WEIGHS = ("export", "plot", "compare", "lot", "simulate")  # say what is doubtfu
 OTHER_SEVERITIES = {
     "constant": {"bad"},  # of a channel without a fit
     "counter": {"bad"},  # likewise
+    "repeated_samples": {"bad"},  # above one per cent
     "time_unit_guessed": {"caution"},  # another unit is as usual
     "motion": {"bad"},  # more than a tenth of N
     "interpolated": {"bad"},  # more than a hundredth of the samples

@@ -1,5 +1,6 @@
 """Records whose samples raise the findings of their quality."""
 import math
+import random
 
 from .parts import Input, N, RATE, SD, csv_text, gyro, noise, raw, text
 
@@ -28,6 +29,15 @@ def frozen():
     x = noise(30000)
     for start in range(1000, 30000, 5000):
         x[start:start + 250] = [x[start]] * 250
+    return x
+
+
+def repeated():
+    x = noise(60000)
+    draw = random.Random(9)
+    for i in range(1, 60000):  # evenly, they would be a slower sensor's
+        if draw.random() < 0.04:
+            x[i] = x[i - 1]
     return x
 
 
@@ -79,6 +89,7 @@ INPUTS = {
                        made_by="samples"),
     "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="samples"),
     "interpolated": Input(gyro("interpolated", interpolated), made_by="samples", truth=N),
+    "repeated_samples": Input(gyro("repeated", repeated), made_by="samples", truth=N),
     "stuck": Input(gyro("frozen", frozen), made_by="samples", truth=N),
     "beyond_range": Input(gyro("beyond", lambda: [1e200 if i == 500 else v for i, v in enumerate(noise(30000))]),
                           made_by="samples"),
