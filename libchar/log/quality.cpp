@@ -303,9 +303,15 @@ class WrapWatch {
   static constexpr double kJump = 0.8;
 
   void block(const double* x, const double* before, std::size_t n, double range) {
+    double last = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const double d = x[i] - before[i];
-      if (!(std::fabs(d) >= kJump * range)) continue;
+      if (!(std::fabs(d) >= kJump * range)) {
+        last = 0;
+        continue;
+      }
+      if (d * last < 0) ++(d < 0 ? peaks_ : dips_);
+      last = d;
       ++count_;
       sum_ += d;
       size_ += std::fabs(d);
@@ -314,6 +320,8 @@ class WrapWatch {
   }
   void join(const WrapWatch& later) {
     count_ += later.count_;
+    peaks_ += later.peaks_;
+    dips_ += later.dips_;
     sum_ += later.sum_;
     size_ += later.size_;
     least_ = std::min(least_, later.least_);
@@ -324,7 +332,7 @@ class WrapWatch {
     constexpr double kFewSteps = 1.5;  // a heading about north wraps with every second sample
     const auto count = static_cast<double>(count_);
     if (count_ < kFewest || !(least_ >= kJump * range) || !(count * least_ * least_ > kMost * all.s2) ||
-        !(all.n > kFewSteps * count))
+        !(all.n > kFewSteps * count) || are_spikes())
       return;
     const double usual = (all.s1 - sum_) / (all.n - count);
     // Jumps back over the end count against those over it.
@@ -339,11 +347,16 @@ class WrapWatch {
     signs.period = found;
   }
   static void layout(auto& at, auto& w) {
-    at(w.count_);
+    at(w.count_, w.peaks_, w.dips_);
     at.group("jumps", w.sum_, w.size_, w.least_);
   }
 
  private:
+  /// All of them to one side and back at once: a heading about north is as often alone on either side.
+  bool are_spikes() const {
+    const std::uint64_t more = std::max(peaks_, dips_), fewer = std::min(peaks_, dips_);
+    return 20 * more > 9 * count_ && 10 * fewer < more;
+  }
   // A turn or a power of two, else the shortest decimal number within `off`.
   static double with_digits(double value, double off) {
     constexpr double kTurn = 2 * std::numbers::pi;
@@ -355,7 +368,7 @@ class WrapWatch {
     return value;
   }
 
-  std::uint64_t count_ = 0;
+  std::uint64_t count_ = 0, peaks_ = 0, dips_ = 0;  ///< peaks_, dips_: single samples on the other side
   double sum_ = 0, size_ = 0, least_ = __builtin_inf();
 };
 
@@ -762,7 +775,7 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
 /// repeats of coarsely rounded noise come by chance, runs of one among them. Where r < 2, single values are there as
 /// well, and the repeats come evenly.
 static double held_times(const detail::FlagRuns& same) {
-  constexpr double kFewest = 64, kUneven = 0.35;
+  constexpr double kFewest = 64, kUneven = 0.35, kSingle = 0.9;
   const double runs = static_cast<double>(same.pauses()) - 1;  // between pauses, with both ends
   if (runs < kFewest || static_cast<double>(same.set()) < kFewest || same.closed().empty()) return 1;
   double longer = 0, samples = runs;
@@ -778,7 +791,7 @@ static double held_times(const detail::FlagRuns& same) {
   };
   const std::size_t shortest = quantile(0.01), longest = quantile(0.99);
   const bool every = shortest >= 2 && longest <= 2 * shortest + 1;
-  const bool some = shortest == 1 && longest <= 2 && same.unevenness() < kUneven;
+  const bool some = shortest == 1 && longest <= 2 && same.closed()[1] > kSingle * longer && same.unevenness() < kUneven;
   return every || some ? samples / runs : 1;
 }
 

@@ -507,3 +507,21 @@ TEST_CASE("samples that only repeat the one before are told from what steps repe
     handled[i] = std::round((i % 4000 < 400 ? 200 : 1.0) * normal(engine));
   CHECK_FALSE(has(meter(handled).findings, "repeated_samples"));
 }
+
+TEST_CASE("spikes of one size are no wraps, and one frozen stretch is no held value") {
+  std::mt19937_64 engine(22);
+  std::normal_distribution<double> normal;
+  std::vector<double> spiky(50000), heading(50000);
+  for (double& v : spiky) v = 1e-9 * normal(engine);
+  for (int i = 0; i < 50; ++i) spiky[1 + engine() % 49998] = 2e-8;
+  CHECK_FALSE(has(meter(spiky).findings, "phase_wraps"));
+  for (double& v : spiky) v = -v;
+  CHECK_FALSE(has(meter(spiky).findings, "phase_wraps"));
+  for (double& v : heading) v = std::fmod(360.02 + 0.05 * normal(engine), 360.0);
+  CHECK(has(meter(heading).findings, "phase_wraps"));
+  std::vector<double> frozen = heading;
+  for (double& v : frozen) v = normal(engine);
+  std::fill_n(frozen.begin() + 20000, 500, 0.0);
+  CHECK_FALSE(has(meter(frozen).findings, "held_values"));
+  CHECK(has(meter(frozen).findings, "stuck"));
+}

@@ -111,6 +111,8 @@ class Finish {
 // By an option that was given.
 bool Finish::is_answered(const Finding& one) const {
   if (one.code == "spiky") return options_.unwrap > 0 || options_.frozen > 1;
+  // The phase of a clock that is off in frequency rises by as much with every sample.
+  if (one.code == "counter") return options_.data == SampleKind::phase;
   return (options_.unwrap > 0 && one.code == "phase_wraps") || (options_.frozen > 1 && one.code == "stuck") ||
          (options_.frozen == 2 && one.code == "repeated_samples") ||
          (options_.interpolated > 0 && one.code == "interpolated");
