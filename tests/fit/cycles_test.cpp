@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "libchar/core/finding.hpp"
 #include "libchar/fit/noise_fit.hpp"
@@ -77,6 +78,28 @@ TEST_CASE("cycles: a heating cycle is named, and B and K are not its") {
       CHECK(fit[Term::walk].status == Status::not_detected);
     }
   }
+}
+
+TEST_CASE("cycles: in a short record a sine as strong as the noise leaves N") {
+  const double sd = kWhiteOfCycles * std::sqrt(kCycleRate);
+  int held = 0, detected = 0, records = 0;
+  for (const std::size_t n : {std::size_t{500}, std::size_t{1000}})
+    for (const double cycles : {7.0, 12.6, 30.2})
+      for (unsigned seed = 0; seed < 10; ++seed, ++records) {
+        std::mt19937_64 engine(400 + seed);
+        std::normal_distribution<double> normal;
+        std::vector<double> y(n);
+        for (std::size_t t = 0; t < n; ++t)
+          y[t] =
+              sd * (normal(engine) +
+                    std::sin(2 * std::numbers::pi * cycles * static_cast<double>(t) / static_cast<double>(n) + seed));
+        const NoiseFit fit = fit_of(y);
+        held += within(fit[Term::white]);
+        detected += fit[Term::white].status == Status::detected;
+      }
+  INFO(held << " held and " << detected << " detected of " << records);
+  CHECK(held >= 54);
+  CHECK(detected >= 57);
 }
 
 TEST_CASE("cycles: a heating without a steady period leaves N, and limits of B and K") {

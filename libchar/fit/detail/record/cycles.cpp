@@ -26,8 +26,9 @@ constexpr std::size_t kHighestPeak = 2048;  ///< beyond, what is left out reache
 constexpr std::size_t kReach = 16;          ///< of the window on either side
 constexpr std::size_t kMostCycles = 24;
 constexpr double kStandsOut = 32;  ///< a peak over the median beside it
-/// Squares in the window, without the sine and with it: noise alone reaches that once in 10^12 windows (F of 3 and 30).
-constexpr double kReduction = 30;
+/// Squares in the window, without the sine and with it: noise alone reaches that once in 10^7 windows (F of 3 and 30),
+/// and a peak of it has to stand out before.
+constexpr double kReduction = 4;
 
 /// A sine at coefficient `place` (half periods in the record) and its two columns.
 struct Sine {
@@ -102,7 +103,7 @@ struct Window {
 /// The best sine within a coefficient and a half of the peak; by the step of the places where none is near.
 Sine fitted_sine(const Window& window, double peak, double& left) {
   constexpr int kPlaces = 30, kThirds = 24;
-  constexpr double kHopeful = 3;  ///< of `kReduction`, where the place is .05 off
+  constexpr double kHopeful = 1.5;  ///< of `kReduction`, where the place is .05 off
   Sine best;
   left = -1;
   double step = 3.0 / kPlaces;
