@@ -919,12 +919,13 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
 
 /// Samples that only repeat the one before, here and there, where differences of a smooth density hardly are zero.
 void judge_repeats(const ChannelQuality& q, std::vector<Finding>& out) {
-  constexpr double kMuch = 0.01, kLeast = 1e-3, kTimes = 3, kFewest = 20, kMost = 0.3;
+  constexpr double kMuch = 0.01, kLeast = 1e-3, kTimes = 6, kFewest = 20, kMost = 0.3;
   if (q.distinct_values <= 16 || q.signs.held_times > 1 || !is_restless(q) || !q.signs.counter.empty()) return;
   if (q.difference_kurtosis > kMostKurtosis) return;
   const auto repeats = static_cast<double>(q.repeats - std::min(q.repeats, q.signs.frozen));
   const double by_chance = value_step(q) / (std::sqrt(2 * std::numbers::pi) * q.difference_sd);
   const double share = repeats / static_cast<double>(q.samples);
+  // Digits of a fixed number step ten times coarser above a power of ten.
   if (repeats < kFewest || share < std::max(kLeast, kTimes * by_chance)) return;
   Finding again = finding("repeated_samples",
                           fmt::format("{} of the samples only repeat the one before, where {} would by chance: read "

@@ -501,6 +501,10 @@ TEST_CASE("samples that only repeat the one before are told from what steps repe
       if (share == 0) CHECK_FALSE(said);
       if (share > 0 && levels > 100) CHECK(said);
     }
+  std::vector<double> digits(40000);  // three of them
+  for (double& v : digits) v = 10 + normal(engine), v = std::round(v * (v < 10 ? 100 : 10)) / (v < 10 ? 100 : 10);
+  CHECK_FALSE(has(meter(digits).findings, "repeated_samples"));
+  CHECK_FALSE(has(meter(digits).findings, "interpolated"));
   // Quiet stretches among loud ones repeat what loud ones do not.
   std::vector<double> handled(40000);
   for (std::size_t i = 0; i < handled.size(); ++i)
