@@ -858,8 +858,8 @@ double value_step(const ChannelQuality& q) {
 
 /// Changes from sample to sample as noise does: what moves smoothly may rest, or go straight.
 bool is_restless(const ChannelQuality& q) {
-  constexpr double kLeast = 0.5;
-  return q.difference_sd > kLeast * q.standard_deviation;
+  constexpr double kLeast = 0.5, kRough = 1;
+  return q.difference_sd > kLeast * q.standard_deviation || q.signs.roughness > kRough;
 }
 
 /// Zeros among values that hardly repeat: they stand for no reading, or for all values near them. True where found.
@@ -1187,6 +1187,7 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   const detail::LineWatch::Found lines =
       state.odd.lines.found(q.difference_kurtosis > kMostKurtosis ? 1 : value_step(q) / q.difference_sd);
   q.signs.line_run = lines.least_run;
+  q.signs.roughness = state.odd.lines.roughness();
   if (lines.least_run > 0) {
     std::tie(q.signs.lines, q.signs.on_lines) = lines.runs->from_length(lines.least_run);
     if (lines.alone > 0) q.signs.lines = q.signs.on_lines = clamped_whole<std::uint64_t>(std::round(lines.alone));

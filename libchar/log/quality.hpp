@@ -33,6 +33,7 @@ struct ChannelQuality {
     /// runs on straight lines of `line_run` steps and more, as chance does not give them, and the samples inside
     std::uint64_t lines = 0, on_lines = 0, line_run = 0;
     std::vector<Place> lines_at;
+    double roughness = 0;             ///< mean square of second differences over that of the first, about
     double held_times = 1;            ///< each value is recorded, on average, where a slower sensor was polled
     std::uint64_t marked = 0;         ///< samples at `marks`
     std::uint64_t other_repeats = 0;  ///< samples that equal the one before and are not 0

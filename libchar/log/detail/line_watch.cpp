@@ -62,6 +62,9 @@ void LineWatch::look(std::span<const double> x, const unsigned char* starts, std
   looked_ += to - from;
   std::size_t next = from;
   for (std::size_t i = from; i < to; ++i) {
+    const double step = x[i - 1] - x[i - 2], bend = (x[i] - x[i - 1]) - step;
+    bends_ += bend * bend;
+    steps_ += step * step;
     if (!on_line(x[i - 2], x[i - 1], x[i], kStraight)) continue;
     pass(i - next);
     flag(x[i - 2], x[i - 1], x[i], starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0), at + i);
@@ -112,6 +115,8 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
   exact_.join(later.exact_, at, 2);
   n_ = own + later.n_;
   looked_ += later.looked_;
+  bends_ += later.bends_;
+  steps_ += later.steps_;
   if (later.n_ > 1) {
     before_ = later.before_;
     last_ = later.last_;

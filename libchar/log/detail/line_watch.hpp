@@ -33,11 +33,14 @@ class LineWatch {
   };
   /// `grid`: step of the values over the deviation of their differences; 0: there is none.
   Found found(double grid) const;
+  /// Mean square of the bends over that of the steps: 3 for white noise, 0 for what moves smoothly.
+  double roughness() const { return steps_ > 0 ? bends_ / steps_ : 0; }
   /// Shorter runs of flags are told by exact lines.
   static constexpr std::uint64_t kFewest = 6;
 
   static void layout(auto& at, auto& watch) {
-    at.group("lines of a channel", watch.n_, watch.looked_, watch.before_, watch.last_, watch.first_, watch.second_);
+    at.group("lines of a channel", watch.n_, watch.looked_, watch.bends_, watch.steps_, watch.before_, watch.last_,
+             watch.first_, watch.second_);
     at(watch.pair_, watch.direct_, watch.coarse_);
     FlagRuns::layout(at, watch.runs_);
     FlagRuns::layout(at, watch.exact_);
@@ -60,6 +63,7 @@ class LineWatch {
   void look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to, std::uint64_t at);
 
   std::uint64_t n_ = 0, looked_ = 0;  ///< looked_: not passed over, as stretches without two flags in a row are
+  double bends_ = 0, steps_ = 0;      ///< squares, where it was looked
   double before_ = 0, last_ = 0;      ///< the last two samples
   double first_ = 0, second_ = 0;     ///< the first two
   bool pair_ = false;                 ///< the last one follows directly on that before
