@@ -208,7 +208,8 @@ TEST_CASE("a few hundred first rows at another rate are left out") {
 TEST_CASE("first rows at another rate neither spoil the rate of the rest nor make gaps of it") {
   std::mt19937_64 random(9);
   std::normal_distribution<double> noise(0, 1000);
-  for (const auto& [rows, first_us] : {std::pair{1000, 12500}, {1000, 9090}, {1500, 9090}, {300, 12500}}) {
+  for (const auto& [rows, first_us] :
+       {std::pair{1000, 12500}, {1000, 9090}, {1500, 9090}, {300, 12500}, {1500, 20000}}) {
     std::vector<std::int64_t> t = even(static_cast<std::size_t>(rows), first_us);
     for (int i = 0; i < 20 * rows; ++i) t.push_back(t.back() + 10000);
     for (std::int64_t& stamp : t) stamp += static_cast<std::int64_t>(noise(random));
@@ -602,7 +603,10 @@ TEST_CASE("of the fast channel of an outer join the rows of the others are no mi
     text += fmt::format("{:.4f},{},\n", 0.01 * i, i % 7);
     if (i % 12 == 0) text += fmt::format("{:.4f},,{}\n", 0.01 * i + 0.0031, i % 11);
   }
-  CHECK(count(read_text(text), "slow_channel") == 2);
+  const Recording joined = read_text(text);
+  CHECK(count(joined, "slow_channel") == 2);
+  CHECK(std::stod(joined.info.warnings.find("slow_channel")->help.back().options.front().value) ==
+        Approx(100.0 / 12).epsilon(0.01));
   ReadOptions alone;
   alone.channels = {"fast"};
   const Recording fast = read_text(text, alone);

@@ -245,13 +245,13 @@ double TimeGrid::even_interval() {
   return spanned;
 }
 
-// Of the whole log, or of its first rows, where the grid learnt their step and found gaps by it, or where rows over
-// time tell them.
-std::optional<RateChange> TimeGrid::lasting_change() const {
+// Of the whole log, or of its first rows, where the grid learnt their step and found gaps by it, or where steps (`odd`)
+// or rows over time tell them.
+std::optional<RateChange> TimeGrid::lasting_change(bool odd) const {
   constexpr double kOther = 0.03, kUneven = 0.01;
   auto change = sketch_.rate_change();
   const double usual = sketch_.interval_ns(), spanned = sketch_.span_ns(last_.index, last_.stamp);
-  const bool spoilt = (counts_.missing > 0 && std::abs(step_.ns - usual) > kOther * usual) ||
+  const bool spoilt = odd || (counts_.missing > 0 && std::abs(step_.ns - usual) > kOther * usual) ||
                       std::abs(spanned - usual) > kUneven * usual;
   for (const std::size_t parts : {4U, 16U})
     if (!change && spoilt) change = sketch_.rate_change(parts);
@@ -272,7 +272,7 @@ void TimeGrid::judge_rate_change() {
     std::swap(before, after);  // the first rows are the odd ones
     at_ns = static_cast<double>(odd.ended_ns) + odd.intervals * step_.ns;
   }
-  if (const auto change = lasting_change(); change && !asks && odd.rows == 0) {
+  if (const auto change = lasting_change(asks); change && (asks || odd.rows == 0)) {  // which says the place better
     asks = true;
     at_ns = change->row;
     before = 1e9 / change->before_ns;

@@ -121,7 +121,7 @@ class TimeGrid {
   void say_pattern(const StampModel& found);
   double even_interval();
   void judge_rate_change();
-  std::optional<RateChange> lasting_change() const;
+  std::optional<RateChange> lasting_change(bool odd) const;
   void process(bool end);
   std::size_t process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
