@@ -23,14 +23,24 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
                   "whose stamps, where messages have several: header (the sensor's), log (when recorded), publish "
                   "(default: auto)")
       .group("Reading");
+  verb.add_text("--msg", options.unsaid.msg,
+                "folder of the .msg files, of types that a recording of ROS 2 does not define (default: those of an "
+                "installed ROS)")
+      .value_name("DIR")
+      .group("Reading");
   verb.add_instant("--from", options.from_s,
                    "first instant to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
   verb.add_duration("--to", options.to_s,
                     "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
-  verb.add_rate("--rate", options.rate_hz,
-                "sampling rate (Hz, 1.5kHz, 1/300…) of a log without stamps and without a rate")
+  verb.add_parsed(
+          "--rate", "RATE",
+          [&options](const std::string& text) {
+            options.rate_hz = libchar::parse_rate_hz(text, options.unsaid.rate_uncertainty_hz);
+          },
+          "sampling rate (Hz, 1.5kHz, 1/300…), with its uncertainty if it has one (200±0.5Hz, 200Hz±0.1%), of a log "
+          "without stamps and without a rate")
       .group("Reading");
   verb.add_parsed(
           "--interval", "TIME",
@@ -88,7 +98,7 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool 
   if (with_format)
     verb.add_choice("--format", options.format, libchar::format_words(), "format of the log (default: auto)")
         .group("Reading");
-  verb.add_text("--preset", options.preset,
+  verb.add_text("--preset", options.unsaid.preset,
                 "instrument that wrote a .imu file: IMAR, LN200, LN200IG, IXSEA, NAVCHIP_INT, NAVCHIP_FLT")
       .value_name("NAME")
       .group("Reading");
@@ -199,6 +209,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   };
   word("--topic", options.topic, usual.topic);
   word("--time-source", options.time_source, usual.time_source);
+  word("--msg", options.unsaid.msg, usual.unsaid.msg);
   list("-c", options.channels);
   list("--names", options.names);
   list("--units", options.units);
@@ -209,12 +220,16 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
   word("--date-order", options.date_order, usual.date_order);
   number("--from", options.from_s, "s");
   number("--to", options.to_s, "s");
-  number("--rate", options.rate_hz, "Hz");
+  if (options.rate_hz && options.unsaid.rate_uncertainty_hz > 0)
+    flags += fmt::format(" --rate {}±{}Hz", libchar::shortest(*options.rate_hz),
+                         libchar::shortest(options.unsaid.rate_uncertainty_hz));
+  else
+    number("--rate", options.rate_hz, "Hz");
   const bool guessed = info.time.unit_guessed && !info.time.column.empty();
   word("--time-column", guessed ? info.time.column : options.time_column, usual.time_column);
   word("--time-unit", guessed ? info.time.unit : options.time_unit, usual.time_unit);
   word("--format", options.format, usual.format);
-  word("--preset", options.preset, usual.preset);
+  word("--preset", options.unsaid.preset, usual.unsaid.preset);
   word("--delimiter", options.delimiter, usual.delimiter);
   word("--decimal", options.decimal, usual.decimal);
   word("--header", options.header, usual.header);

@@ -72,7 +72,7 @@ const std::array kUnits = {
 // Signs outside ASCII at the front of `text` and what they stand for.
 std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::string_view text) {
   static constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
-      {"·", ""}, {"⋅", ""}, {"⁻", "-"}, {"−", "-"}, {"¹", "1"}, {"²", "2"}, {"³", "3"}};
+      {"·", ""}, {"⋅", ""}, {"⁻", "-"}, {"−", "-"}, {"¹", "1"}, {"²", "2"}, {"³", "3"}, {"º", "°"}};
   for (const auto& sign : kSigns)
     if (text.starts_with(sign.first)) return sign;
   return std::nullopt;

@@ -1,10 +1,12 @@
 #include "libchar/log/convert.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <span>
 
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
+#include "libchar/core/refusal.hpp"
 
 namespace libchar {
 namespace {
@@ -52,6 +54,18 @@ LogInfo known_beforehand(const std::string& from, ReadOptions reading, Progress&
   return read_log(from, reading, nothing, progress);
 }
 
+// The rows of a table that joins the rows of several clocks are no instants of any of them.
+void refuse_without_grid(const LogInfo& log) {
+  if (log.channels.size() < 2 ||
+      !std::all_of(log.channels.begin(), log.channels.end(), [](const Channel& one) { return one.every > 1; }))
+    return;
+  const auto fastest = std::min_element(log.channels.begin(), log.channels.end(),
+                                        [](const Channel& a, const Channel& b) { return a.every < b.every; });
+  throw input_error("E0341", log.file)
+      .says("each channel has rows, and a clock, of its own: no grid holds the samples of all")
+      .hint("`channels` {} writes one of them", fastest->name);
+}
+
 void check_paths(const std::string& from, const std::string& to, const WriteOptions& options) {
   for (const char* suffix : {"", ".json", ".yaml", ".yml"})
     for (const char* other : {"", ".json"}) refuse_same_file(from + suffix, to + other);
@@ -76,6 +90,7 @@ Conversion convert_log(const std::string& from, const std::string& to, const Con
   } else {
     out.log = read_log(from, options.reading, sink, progress);
   }
+  refuse_without_grid(out.log);
   if (options.only_without_warnings && !out.log.warnings.empty()) return out;
   LogWriter& writer = sink.writer();
   writer.refine(out.log);

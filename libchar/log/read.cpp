@@ -341,6 +341,12 @@ void judge_values(const Watch& watch, LogInfo& info, const ReadOptions& options,
     if (slow.help.empty())
       slow.help.push_back({"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
   }
+  const auto by_every = [](const Channel& a, const Channel& b) { return a.every < b.every; };
+  const auto [fast, slow] = std::minmax_element(info.channels.begin(), info.channels.end(), by_every);
+  if (info.channels.size() < 2 || !(fast->every > 1) || !(info.time.rate_hz > 0)) return;  // rows are of the fastest
+  warnings.add("slow_channel", "", {}, 0)
+      .help.push_back({"A replay interpolates each by its own stamps to one grid.",
+                       {{"resample_hz", shortest(rounded(info.time.rate_hz / slow->every, 3))}}});
 }
 
 /// The next rows, with what is marked as missing missing: by the number in the file, or by what it is in the

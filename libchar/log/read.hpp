@@ -21,6 +21,13 @@ struct ReadOptions {
     bool bad_rows = false;      ///< rows that cannot be read are left out, of ten one at most (CSV)
   };
 
+  /// What only the user knows of the log.
+  struct Unsaid {
+    std::string preset;              ///< which instrument wrote a .imu file: "IMAR", "LN200"…
+    std::string msg;                 ///< folder of .msg files that define types of messages (ROS 2 before Iron)
+    double rate_uncertainty_hz = 0;  ///< of `rate_hz`
+  };
+
   /// Rows of several kinds in one table (CSV).
   struct Kinds {
     /// "sensor=Gyroscope": only rows with this in that column; all of them must hold
@@ -41,6 +48,7 @@ struct ReadOptions {
       channel_scale;  ///< "gx=1/16.4", "gyro*=0.05": factors of channels, by name or pattern; the last that fits wins
   std::vector<std::string> channel_unit;  ///< "gx=deg/s": units of channels, likewise
   Kinds kinds;
+  Unsaid unsaid;
   std::string date_order = "auto";  ///< "auto", "day", "month": which comes first in 05/01/2024 (CSV)
   std::optional<double> from_s;     ///< first instant to use, seconds after the first stamp
   std::optional<double> to_s;       ///< first instant not to use
@@ -49,7 +57,6 @@ struct ReadOptions {
   std::string time_column = "auto";  ///< "auto", "none", a name, or c0-style position among all columns
   std::string time_unit = "auto";    ///< "auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"
   std::string format = "auto";       ///< "auto" or a name of the table of formats
-  std::string preset;                ///< which instrument wrote a .imu file, which does not say: "IMAR", "LN200"…
   std::string delimiter = "auto";    ///< "auto", ",", ";", "tab", "space", or one character
   std::string decimal = "auto";      ///< "auto", "point", "comma"
   std::string header = "auto";       ///< "auto", "yes", "no"

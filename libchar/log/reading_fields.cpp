@@ -35,8 +35,13 @@ Fields<ReadOptions> table_fields() {
       field<&ReadOptions::time_source>(
           "time_source",
           {.words = kTimeSources, .meaning = "whose stamps, where messages have several", .otherwise = "auto"}),
+      field<&ReadOptions::unsaid, &ReadOptions::Unsaid::msg>(
+          "msg", {.meaning = "folder of the .msg files of types that a ROS log does not define", .otherwise = "none"}),
       field<&ReadOptions::rate_hz>("rate_hz",
                                    {.unit = "Hz", .range = kRates, .meaning = "sampling rate of a log without stamps"}),
+      field<&ReadOptions::unsaid, &ReadOptions::Unsaid::rate_uncertainty_hz>(
+          "rate_uncertainty_hz",
+          {.unit = "Hz", .range = kNotNegative, .meaning = "of the stated sampling rate", .otherwise = "0"}),
       field<&ReadOptions::delimiter>("delimiter",
                                      {.meaning = "auto, tab, space or one character (CSV)", .otherwise = "auto"}),
       field<&ReadOptions::decimal>("decimal",
@@ -69,8 +74,8 @@ Fields<ReadOptions> time_fields() {
                                      {.words = kTimeUnits, .meaning = "of the stamps", .otherwise = "auto"}),
       field<&ReadOptions::skip_rows>("skip_rows", {.meaning = "lines in front of the header (CSV)", .otherwise = "0"}),
       field<&ReadOptions::format>("format", {.words = format_choices(), .meaning = "of the file", .otherwise = "auto"}),
-      field<&ReadOptions::preset>("preset",
-                                  {.meaning = "which instrument wrote a .imu file, as LN200", .otherwise = "none"}),
+      field<&ReadOptions::unsaid, &ReadOptions::Unsaid::preset>(
+          "preset", {.meaning = "which instrument wrote a .imu file, as LN200", .otherwise = "none"}),
       field<&ReadOptions::from_s>("from_s", {.unit = "s",
                                              .range = kNotNegative,
                                              .meaning = "first instant used, after the first stamp",

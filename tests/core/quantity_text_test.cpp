@@ -83,6 +83,16 @@ TEST_CASE("typed durations, rates and sizes have their units") {
   for (const char* bad : {"-1", "5 m", "5sec", "1e12", "nan", "s", ""})
     CHECK_THAT(refusal_of(kDuration, bad), Catch::Contains("a duration such as"));
   CHECK(parse_rate_hz("200") == 200);
+  double off = 0;
+  for (const char* text : {"200±0.5Hz", "200Hz±0.5Hz", "200 +- 0.5", "200Hz+/-0.25%", "0.2±0.0005kHz"}) {
+    INFO(text);
+    CHECK(parse_rate_hz(text, off) == Approx(200));
+    CHECK(off == Approx(0.5));
+  }
+  CHECK(parse_rate_hz("1/300", off) == 1.0 / 300);
+  CHECK(off == 0);
+  for (const char* text : {"200±", "±0.5", "200±-1", "200±x", "200Hz±200%"})
+    CHECK_THROWS_AS(parse_rate_hz(text, off), Error);
   CHECK(parse_rate_hz("200Hz") == 200);
   CHECK(parse_rate_hz("500mHz") == 0.5);
   CHECK(parse_rate_hz("1.5kHz") == 1500);

@@ -13,7 +13,7 @@ std::string read(const std::string& path, const char* preset, std::size_t block_
   libchar::ReadOptions options;
   options.block_bytes = block_bytes;
   options.hash = false;
-  options.preset = preset;
+  options.unsaid.preset = preset;
   try {
     const auto source = libchar::find_format("imu")->open(path, options);
     libchar::RowBlock block;

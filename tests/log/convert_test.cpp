@@ -53,6 +53,23 @@ TEST_CASE("convert_log: what a format cannot hold is said") {
   CHECK_THAT(lost.losses[0], Contains("rate"));
 }
 
+TEST_CASE("convert_log: rows of several clocks are no grid, those of one channel are") {
+  const test::TemporaryFolder folder;
+  const std::string from = (folder / "joined.csv").string(), to = (folder / "b.csv").string();
+  std::ofstream out(from);
+  out << "t[s],fast,slow\n";
+  for (int i = 0; i < 4000; ++i) {
+    out << fmt::format("{:.4f},{},\n", 0.01 * i, i % 7);
+    if (i % 12 == 0) out << fmt::format("{:.4f},,{}\n", 0.01 * i + 0.0031, i % 11);
+  }
+  out.close();
+  CHECK_THROWS_WITH(convert_log(from, to), Contains("E0341") && Contains("`channels` fast"));
+  CHECK(!fs::exists(to));
+  ConvertOptions one;
+  one.reading.channels = {"fast"};
+  CHECK(convert_log(from, to, one).log.time.rate_hz == Approx(100));
+}
+
 TEST_CASE("convert_log: on request nothing is written from a log that has warnings") {
   const test::TemporaryFolder folder;
   const std::string to = (folder / "b.csv").string();

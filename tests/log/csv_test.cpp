@@ -112,6 +112,11 @@ TEST_CASE("units in names, and names that only look like it") {
   CHECK(name_and_unit("imu1_gx[1/16.4 deg/s]") == Pair{"imu1_gx", "1/16.4 deg/s"});
   CHECK(name_and_unit("speed(m/s)") == Pair{"speed", "m/s"});
   CHECK(name_and_unit("gyro_x") == Pair{"gyro_x", ""});
+  CHECK(name_and_unit("Temperatur °C") == Pair{"Temperatur", "°C"});
+  CHECK(name_and_unit("acc x m/s^2") == Pair{"acc x", "m/s^2"});
+  CHECK(name_and_unit("Humidity %") == Pair{"Humidity", "%"});
+  CHECK(name_and_unit("gyro x g") == Pair{"gyro x g", ""});
+  CHECK(name_and_unit("Sensor -") == Pair{"Sensor -", ""});
   CHECK(name_and_unit("rate_x_deg_per_s") == Pair{"rate_x", "deg/s"});
   CHECK(name_and_unit("accel_m_per_s2") == Pair{"accel", "m/s2"});
   CHECK(name_and_unit("turns_per_s") == Pair{"turns_per_s", ""});
@@ -489,6 +494,8 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"s, "save it as CSV"},
       {"\xB5\x62\x01\x07\x5C\0"s, "pyubx2"},
       {"H Product:Blackbox flight data recorder\n"s, "blackbox_decode"},
+      {"weather,place=roof temperature=21.5,humidity=40i 1465839830100400200\n"s, "influx -execute"},
+      {"MDF     4.10    "s + std::string(200, 0), "asammdf"},
       {"$GPGGA,123519,4807.038,N\n"s, "gpsbabel"},
       {"\0\x05\xE9\x5C\x6F\x10\x20\x30\xFE\x09\0\x01"s, "mavlogdump"},
       {"\x80\x04\x95\x10\0\0\0"s, "pickle"},

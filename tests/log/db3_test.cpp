@@ -40,6 +40,35 @@ TEST_CASE("db3: a type that nobody defines is said, since Iron the file defines 
   CHECK(mag.columns[0][49] == 2e-5 + 49 * 1e-9);
 }
 
+TEST_CASE("db3: a folder of .msg files defines the types of one's own, with their parts") {
+  NEEDS_LIBRARY(SQLITE);
+  const test::TemporaryFolder folder;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << text;
+  };
+  const std::string odd =
+      "uint8 KIND_A=1\nstring<=20 LABEL=\"x#y\"\nbool on\nint64 ticks\nint8[3] small\nuint16 port 9\n"
+      "builtin_interfaces/Duration age\nbyte raw\nCell[2] cells\nCell[] more\nstring[] names\nfloat32[<=8] gains\n"
+      "float32 last\n";
+  write("src/bench/bench_msgs/msg/Odd.msg", odd);
+  write("src/bench/bench_msgs/msg/Cell.msg", "float32 volts\nstring label\nint16 state\n");
+  write("src/other_msgs/msg/Cell.msg", "string label\n");
+  ReadOptions options = test::of_topic("/odd");
+  CHECK_THAT(test::refusal("db3", test::ros("humble.db3"), options),
+             Catch::Contains("no definition of this type") && Catch::Contains("`msg` DIR"));
+  options.unsaid.msg = (folder / "src").string();
+  const test::Rows read = test::read_rows("db3", test::ros("humble.db3"), options);
+  const test::Rows iron = test::read_rows("db3", test::ros("jazzy.db3"), test::of_topic("/odd"));
+  REQUIRE(read.time_ns.size() == 20);
+  CHECK(read.columns.back() == iron.columns.back());
+  CHECK(read.columns.size() == iron.columns.size());
+  CHECK(test::channel_names(read.info) == test::channel_names(iron.info));
+  write("Empty/readme.txt", "");
+  options.unsaid.msg = (folder / "Empty").string();
+  CHECK_THAT(test::refusal("db3", test::ros("humble.db3"), options), Catch::Contains("E0450"));
+}
+
 TEST_CASE("db3: cut anywhere, what is in front of the cut is read or the file refused") {
   NEEDS_LIBRARY(SQLITE);
   const std::string bytes = test::slurp(test::ros("humble.db3"));

@@ -32,6 +32,14 @@ TEST_CASE("an empty last cell ends a line of the sample, a quoted one is a cell"
   CHECK(csv::candidates(sampled_lines(slow), ',').front().columns == 3);
 }
 
+TEST_CASE("cells in apostrophes are quoted cells") {
+  const Recording r =
+      read_text("'t[s]';'it''s a \"w\"';'x'\r\n'0,00';'1,5';'a;b'\r\n'0,01';'-2,5';'c'\r\n'0,02';'3';''\r\n");
+  CHECK(r.info.channels.at(0).name == "it's a \"w\"");
+  CHECK(r.samples.at(0) == std::vector<double>{1.5, -2.5, 3});
+  CHECK(r.info.time.rate_hz == Approx(100));
+}
+
 TEST_CASE("blank lines and comments between the first rows are no part of the sample") {
   const std::string text = "# a;b;c\n\nt,x\n# u;v;w\n\n0,1\n  \n// p;q;r\n1,2\n";
   const csv::Sample sample = csv::sample_lines(text, true, 0, 1, "log.csv");

@@ -275,6 +275,17 @@ std::vector<Export> phone_exports() {
 
 std::vector<Export> imu_exports() {
   std::vector<Export> out;
+  const std::string pairs = lines(12, [](int k) { return fmt::format("{} {}\n", k, 7 * k % 5); });
+  for (const char* front : {"# fs=250\n", "fs = 250 Hz\n", "# dt: 0.004 s\n", "Sampling frequency [Hz] 250\n",
+                            "# Sampling period (ms): 4\n"})
+    out.push_back({front, front + pairs, "c0[] c1[]", 250, kNoStart, {0, 0}, "rate 250 Hz from"});
+  out.push_back({"a length instead of a rate",
+                 "Total time: 48 ms\n" + pairs,
+                 "c0[] c1[]",
+                 0,
+                 kNoStart,
+                 {0, 0},
+                 "say: \"Total time: 48 ms\""});
   out.push_back(
       {"Xsens MT Manager",
        "// Start Time: Unknown\r\n// Update Rate: 100.0Hz\r\n// Filter Profile: human (46.1)\r\n"
@@ -360,6 +371,20 @@ std::vector<Export> imu_exports() {
 
 std::vector<Export> bench_exports() {
   std::vector<Export> out;
+  const std::vector<std::string> beside = {
+      "Record Length,4.0e+01", "Sample Interval,1.0e-04", "Trigger Point,1e+03", ",", "Source,CH1",
+      "Vertical Units,V",      "Horizontal Units,s"};
+  out.push_back({"Tektronix: settings beside the first rows",
+                 lines(40,
+                       [&](int k) {
+                         return fmt::format("{},,{:.5e},{},\n", k < 7 ? beside[static_cast<std::size_t>(k)] : ",",
+                                            1e-4 * k - 1e-3, k % 7);
+                       }),
+                 "c2[] c3[]",
+                 1e4,
+                 -1000000,
+                 {NAN, 0},
+                 "left out columns of words: c0, c1"});
   out.push_back({"LabVIEW .lvm, decimal comma",
                  "LabVIEW Measurement\t\r\nWriter_Version\t2\r\nReader_Version\t2\r\nSeparator\tTab\r\n"
                  "Decimal_Separator\t,\r\nMulti_Headings\tNo\r\nX_Columns\tOne\r\nTime_Pref\tRelative\r\n"
@@ -607,6 +632,31 @@ std::vector<Export> microcontroller_exports() {
                  411480 * std::int64_t{1000000},
                  {0.01, 0},
                  "time column: c1, because it rises evenly"});
+  out.push_back({"VMU931 of two sensors in turns",
+                 lines(48,
+                       [](int k) {
+                         return fmt::format("{},{},0.01,{}\n", k % 2 == 0 ? "acceleration" : "gyroscopes",
+                                            411480 + k / 2 * 5, k);
+                       }),
+                 "",
+                 0,
+                 kNoStart,
+                 {},
+                 "`where` c0=acceleration",
+                 true});
+  out.push_back({"VMU931 of two sensors in turns, one of them",
+                 lines(48,
+                       [](int k) {
+                         return fmt::format("{},{},0.01,{}\n", k % 2 == 0 ? "acceleration" : "gyroscopes",
+                                            411480 + k / 2 * 5, k);
+                       }),
+                 "acceleration_c1[] acceleration_c2[] gyroscopes_c1[] gyroscopes_c2[]",
+                 200,
+                 411480 * std::int64_t{1000000},
+                 {0.01, 0, 0.01, 1},
+                 "time column: c1, because it rises evenly",
+                 false,
+                 [](ReadOptions& options) { options.kinds.group_by = "c0"; }});
   out.push_back(
       {"milliseconds since 1970 with a pause, without a header",
        lines(40, [](int k) { return fmt::format("{},{},0.5,\n", 1723696181000 + 10 * k + (k > 5 ? 3000 : 0), k % 7); }),
@@ -755,6 +805,24 @@ std::vector<Export> clock_exports() {
                  kNoStart,
                  {10000000.001},
                  "thousands are separated by ,",
+                 false,
+                 at_1_hz});
+  out.push_back({"a counter that groups its digits by blanks",
+                 lines(24, [](int k) { return fmt::format("10 000 000.001 {:03d} Hz\r\n", k); }),
+                 "c0[Hz]",
+                 1,
+                 kNoStart,
+                 {10000000.001},
+                 "thousands are separated by blanks",
+                 false,
+                 at_1_hz});
+  out.push_back({"columns of whole numbers by blanks are no groups",
+                 lines(24, [](int k) { return fmt::format("10 {} 250.5\n", 100 + k % 7); }),
+                 "c0[] c1[] c2[]",
+                 1,
+                 kNoStart,
+                 {10, 100, 250.5},
+                 "delimiter blanks",
                  false,
                  at_1_hz});
   out.push_back({"a counter of times without a unit",

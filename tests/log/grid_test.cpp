@@ -205,6 +205,28 @@ TEST_CASE("a few hundred first rows at another rate are left out") {
   CHECK(read_text(log_of(t), options).info.time.rate_hz == Approx(390.625));
 }
 
+TEST_CASE("first rows at another rate neither spoil the rate of the rest nor make gaps of it") {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> noise(0, 1000);
+  for (const auto& [rows, first_us] :
+       {std::pair{1000, 12500}, {1000, 9090}, {1500, 9090}, {300, 12500}, {1500, 20000}}) {
+    std::vector<std::int64_t> t = even(static_cast<std::size_t>(rows), first_us);
+    for (int i = 0; i < 20 * rows; ++i) t.push_back(t.back() + 10000);
+    for (std::int64_t& stamp : t) stamp += static_cast<std::int64_t>(noise(random));
+    INFO(rows << " at " << first_us);
+    ReadOptions rest;
+    const std::string said = failure(log_of(t));
+    if (!said.empty()) {
+      REQUIRE_THAT(said, Catch::Contains("error E0334: the sampling rate changes"));
+      rest.from_s = std::stod(said.substr(said.find("`from_s` ") + 9));
+      CHECK(*rest.from_s == Approx(1e-6 * first_us * rows).epsilon(0.05));
+    }
+    const Recording r = read_text(log_of(t), rest);
+    CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+    CHECK(r.info.time.missing_samples == 0);
+  }
+}
+
 TEST_CASE("stamps too far away for a grid are refused with their distance") {
   CHECK_THAT(failure("t_ns,x\n-3000000000000000000,1\n-2999999999000000000,2\n"
                      "3000000000000000000,3\n3000000001000000000,4\n"),
@@ -248,6 +270,20 @@ TEST_CASE("stamps that are no time axis") {
   CHECK(count(read_text("t_ns,x\n0,1\n100,2\n200,3\n4000000000000000000,4\n300,5\n400,1\n"), "wild_stamp") == 1);
   CHECK(failure("t_ns,x\n-9000000000000000000,1\n9000000000000000000,2\n").find("error E031") != std::string::npos);
   CHECK(failure("t,x\n0,1\n,2\n").find("log.csv:3:1 (byte 8): error E0313: missing time stamp") == 0);
+}
+
+TEST_CASE("a rate that is stated with its uncertainty is taken, and held against stamps by it") {
+  ReadOptions options;
+  options.rate_hz = 100;
+  options.unsaid.rate_uncertainty_hz = 0.5;
+  const Recording bare = read_text("x\n1\n2\n3\n4\n", options);
+  CHECK(bare.info.time.rate_hz == 100);
+  CHECK_THAT(bare.info.warnings.find("rate_uncertain")->sentence, Catch::Contains("N and K to ± 0.25 %"));
+  std::string text = "t[s],x\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.6f},{}\n", i / 99.2, i % 7);
+  CHECK(count(read_text(text, options), "rate_ignored") == 1);  // 0.8 % off
+  options.unsaid.rate_uncertainty_hz = 1.5;
+  CHECK(count(read_text(text, options), "rate_ignored") == 0);
 }
 
 TEST_CASE("one and two rows") {
@@ -567,10 +603,53 @@ TEST_CASE("of the fast channel of an outer join the rows of the others are no mi
     text += fmt::format("{:.4f},{},\n", 0.01 * i, i % 7);
     if (i % 12 == 0) text += fmt::format("{:.4f},,{}\n", 0.01 * i + 0.0031, i % 11);
   }
-  CHECK(count(read_text(text), "slow_channel") == 2);
+  const Recording joined = read_text(text);
+  CHECK(count(joined, "slow_channel") == 2);
+  CHECK(std::stod(joined.info.warnings.find("slow_channel")->help.back().options.front().value) ==
+        Approx(100.0 / 12).epsilon(0.01));
   ReadOptions alone;
   alone.channels = {"fast"};
   const Recording fast = read_text(text, alone);
   CHECK(fast.info.time.rate_hz == Approx(100));
   CHECK(fast.info.samples == 4000);
+}
+
+TEST_CASE("rows of a slow channel between those of a fast one do not change its rate, however few they are") {
+  for (const int apart : {20, 200, 1000}) {
+    std::string text = "t[s],fast,slow\n";
+    for (int i = 0; i < 20000; ++i) {
+      text += fmt::format("{:.4f},{},\n", 0.005 * i, i % 7);
+      if (i % apart == 3) text += fmt::format("{:.4f},,{}\n", 0.005 * i + 0.0013, i % 11);
+    }
+    INFO("one in " << apart);
+    ReadOptions alone;
+    alone.channels = {"fast"};
+    const Recording fast = read_text(text, alone);
+    CHECK(fast.info.time.rate_hz == Approx(200).epsilon(1e-4));
+    CHECK(fast.info.samples == 20000);
+    CHECK(count(read_text(text), "slow_channel") == 2);
+  }
+}
+
+TEST_CASE("samples that are missing now and then are missing samples, no clock of their own") {
+  std::mt19937 random(5);
+  std::string text = "t[s],x\n";
+  for (int i = 0; i < 20000; ++i)
+    text += fmt::format("{:.5f},{}\n", 0.005 * i + 1e-9 * static_cast<double>(random() % 1000000),
+                        i % 200 == 3 ? "" : fmt::to_string(i % 7));
+  const Recording r = read_text(text);
+  CHECK(r.info.samples == 20000);
+  CHECK(count(r, "own_rows") == 0);
+}
+
+TEST_CASE("a clock of whole seconds says the rate from step to step, in short logs too") {
+  for (const int seconds : {5, 10, 30, 100}) {
+    const int rows = 300 * seconds;
+    std::string text = "t[s],x\n";
+    for (int i = 0; i < rows; ++i) text += fmt::format("{},{}\n", 100 + (i + 130) / 300, i % 7);
+    const Recording r = read_text(text);
+    INFO(seconds);
+    CHECK(r.info.time.rate_hz == Approx(300).epsilon(1e-3));
+    CHECK(r.info.samples == static_cast<std::uint64_t>(rows));
+  }
 }

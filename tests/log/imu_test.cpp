@@ -12,7 +12,7 @@ namespace {
 
 ReadOptions by(const std::string& preset) {
   ReadOptions options;
-  options.preset = preset;
+  options.unsaid.preset = preset;
   return options;
 }
 

@@ -1,9 +1,12 @@
 // Tables that are no CSV files, read as CSV is: JSON lines, sheets of workbooks, archives of phones; and sound.
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/read.hpp"
@@ -141,6 +144,28 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
   CHECK(names(nov) == "acc_z acc_y acc_x gyro_z gyro_y gyro_x ");
   CHECK(nov.samples[1][7] == -7);
   CHECK(nov.samples[4][0] == 132863);
+  const Recording attitude = read_recording(
+      Written("a.txt",
+              "$VNRRG,1,VN-100*2B\n$VNYMR,+010.1,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.5,"
+              "-00.002*65\n$VNYMR,+010.2,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.25,"
+              "-00.002*65\n")
+          .path,
+      options);
+  CHECK(attitude.info.channels.size() == 12);
+  CHECK(names(attitude).ends_with("acc_z[m/s^2] gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] "));
+  CHECK(attitude.samples[10] == std::vector<double>{-0.5, -0.25});
+  for (const auto& [name, line, channel, value] :
+       {std::tuple{"%RAWIMUSXA", "00,11,1724,219418.0{}0,111607,43088060,1,2,186983,-132863,823", 4U, 132863.0},
+        {"#CORRIMUDATAA", "1724,219418.0{}0,-2.5,1e-3,0.25,1e-4,2e-4,3e-4", 0U, -2.5},
+        {"%INSPVASA", "1724,219418.0{}0,51.25,-114,1100,1,2,3,4,5,6,INS_SOLUTION_GOOD", 0U, 51.25}}) {
+    std::string lines;
+    for (int k = 0; k < 8; ++k)
+      lines += fmt::format("{},1724,219418.0;{}*5aa97065\n", name, fmt::format(fmt::runtime(line), k));
+    const Recording read = read_recording(Written("a.asc", lines).path);
+    INFO(name);
+    CHECK(read.info.time.rate_hz == Approx(100));
+    CHECK(read.samples[channel][3] == value);
+  }
 }
 
 TEST_CASE("Shimmer: a line between names and units says that values are calibrated") {

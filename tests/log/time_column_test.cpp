@@ -281,6 +281,35 @@ TEST_CASE("a steady clock is the time, whatever its name") {
   }
 }
 
+TEST_CASE("a unit behind a clock's name wins over the usual one of the name") {
+  for (const char* header : {"TOW[ms]", "TOW (ms)", "tow_ms", "seconds [ms]", "time [ms]", "millis() [ms]"}) {
+    INFO(header);
+    const Recording r = with_stamps(header, [](int i) { return std::to_string(345600000 + 10 * i); });
+    CHECK(r.info.time.unit == "ms");
+    CHECK(r.info.time.rate_hz == Approx(100));
+  }
+}
+
+TEST_CASE("whole numbers in steps of a minute are milliseconds where a gyroscope is read") {
+  std::mt19937_64 random(3);
+  for (const auto& [header, hz] : {std::pair{"time,gyroX", 1000.0 / 60},
+                                   {"time,accel_x", 1000.0 / 60},
+                                   {"time,rate[deg/s]", 1000.0 / 60},
+                                   {"time,z,y", 1000.0 / 60},
+                                   {"time,level", 1.0 / 60}}) {
+    INFO(header);
+    const bool axes = std::string_view(header) == "time,z,y";
+    const Recording r = with_stamps(header, [&](int i) {
+      return fmt::format("{},{}", 500 + 60 * i,
+                         axes ? fmt::format("0,{}", random() % 9) : fmt::to_string(random() % 9));
+    });
+    CHECK(r.info.time.rate_hz == Approx(hz));
+  }
+  for (const int seconds : {60, 120, 300, 600, 1800, 3600})
+    CHECK(with_stamps("time", [&](int i) { return std::to_string(500 + seconds * i); }).info.time.rate_hz ==
+          Approx(1.0 / seconds));
+}
+
 TEST_CASE("a temperature that rises and a row counter are no time") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 0.05);
@@ -330,6 +359,10 @@ TEST_CASE("counts of days are read to the millisecond, as a guess") {
   const Recording pair =
       with_stamps("MJD,sod", [](int i) { return fmt::format("{},{}", 60310 + i / 200, i % 200 * 432); });
   CHECK(pair.info.time.rate_hz == Approx(1.0 / 432));
+  for (const char* header : {"mjd,secofday", "Day (MJD),Seconds of day [s]", "MJD,UTC seconds"})
+    CHECK(with_stamps(header, [](int i) {
+            return fmt::format("{},{}", 60310 + i / 200, i % 200 * 432);
+          }).info.time.rate_hz == Approx(1.0 / 432));
   ReadOptions hours;
   for (const auto& [unit, rate] : {std::pair{"min", 1.0 / 60}, {"h", 1.0 / 3600}, {"d", 1.0 / 86400}}) {
     hours.time_unit = unit;

@@ -48,7 +48,7 @@ TEST_CASE("a date, a clock time and one value with a decimal comma are three col
     return fmt::format("22.11.2026;12:00:{:02d};21,{:02d}", k, 7 * k % 100);
   });
   const Recording r = read_text(text);
-  CHECK(channels_of(r) == "Temperatur °C[] ");
+  CHECK(channels_of(r) == "Temperatur[°C] ");
   CHECK(r.samples[0][3] == 21.21);
   CHECK(r.info.time.rate_hz == Approx(1));
 }

@@ -124,6 +124,27 @@ double parse_rate_hz(std::string_view text) {
   return value;
 }
 
+double parse_rate_hz(std::string_view text, double& uncertainty_hz) {
+  uncertainty_hz = 0;
+  for (const std::string_view sign : {"±", "+-", "+/-"}) {
+    const std::size_t at = text.find(sign);
+    if (at == std::string_view::npos || at == 0) continue;
+    std::string rate(text.substr(0, at)), off(text.substr(at + sign.size()));
+    while (rate.ends_with(' ')) rate.pop_back();
+    off.erase(0, std::min(off.find_first_not_of(' '), off.size()));
+    const bool per_cent = off.ends_with('%');
+    if (per_cent) {
+      const double hz = parse_rate_hz(rate);
+      uncertainty_hz = hz * parse_number(std::string_view(off).substr(0, off.size() - 1), 0, 100) / 100;
+      return hz;
+    }
+    if (may_follow(rate.back())) rate += off.substr(off.find_last_of("0123456789.") + 1);  // "200±0.5Hz"
+    uncertainty_hz = parse_rate_hz(off);
+    return parse_rate_hz(rate);
+  }
+  return parse_rate_hz(text);
+}
+
 namespace {
 
 std::string range_form(RangeOf what) {

@@ -24,6 +24,8 @@ double parse_duration_s(std::string_view text, bool lasts = false);
 
 /// Hertz: "200", "200Hz", "1.5kHz", "10MHz". > 0.
 double parse_rate_hz(std::string_view text);
+/// The same, with the uncertainty if one is stated: "200±0.5Hz", "200Hz+-0.1%".
+double parse_rate_hz(std::string_view text, double& uncertainty_hz);
 
 /// What such ends are, each with units of its own ("10s..20min", "100Hz..1.5kHz"), or numbers without.
 enum class RangeOf { duration_s, rate_hz, number };

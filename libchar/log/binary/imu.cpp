@@ -123,7 +123,7 @@ BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate
 
 std::unique_ptr<RowSource> open_imu(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
-  const Preset& preset = find_preset(path, options.preset);
+  const Preset& preset = find_preset(path, options.unsaid.preset);
   if (file->size() == 0) throw input_error("E0322", path).says("the file is empty");
   if (!times_rise(*file, preset.type)) refuse_times(*file, preset);
   const double rate = rate_of(*file, preset);

@@ -200,16 +200,17 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
     const Column& column = dialect.columns[c];
     const bool words = k < dialect.columns.size();
     if (kinds[c] != (words ? ColumnKind::text : ColumnKind::number)) continue;
-    if (static_cast<int>(c) == dialect.time.column || column.text.empty()) continue;
+    const std::string name = column.name.empty() ? fmt::format("c{}", c) : column.name;
+    if (static_cast<int>(c) == dialect.time.column || (column.text.empty() && (!words || dialect.has_header))) continue;
     const std::vector<std::string> values = values_of(rows, c, words ? kMostKinds : kMostNumbers);
     if (values.size() > kMostKinds) continue;
     if (values.size() == 1) {
       if (words && names_kinds(column.name)) dialect.filters.push_back({static_cast<int>(c), values[0], true});
     } else if (words && names_kinds(column.name) && !timed) {
-      refuse(column.name, values, info);
+      refuse(name, values, info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                told_apart(rows, c, words && names_kinds(column.name), dialect)) {
-      refuse(column.name, values, info);
+      refuse(name, values, info);
     }
   }
 }

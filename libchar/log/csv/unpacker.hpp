@@ -14,11 +14,11 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);
-inline constexpr std::size_t kPackingBytes = 64;  ///< that it looks at
+inline constexpr std::size_t kPackingBytes = 1024;  ///< that it looks at
 
 class Unpacker {
  public:

@@ -24,6 +24,8 @@ constexpr const char* kText = "tables of text";
 constexpr ForSome kForSome[] = {
     {"topic", has_topics, "logs that may hold several streams"},
     {"time_source", [](const LogFormat& f) { return f.time_sources; }, "logs whose messages have stamps"},
+    {"msg", [](const LogFormat& f) { return f.name == "db3" || f.name == "mcap" || f.name == "rosbag2"; },
+     "recordings of ROS 2"},
     {"preset", [](const LogFormat& f) { return f.name == "imu"; }, ".imu files"},
     {"overflow_as_missing", [](const LogFormat& f) { return !f.topics; }, "text and arrays"},
     {"delimiter", is_text, kText},

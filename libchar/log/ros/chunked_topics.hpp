@@ -92,7 +92,7 @@ class ChunkedTopics : public MessageTopics {
   /// `scan`, of `file()`, need not be made yet.
   ChunkedTopics(const std::string& path, const ReadOptions& options, bool publishes, ChunkScan& scan,
                 std::uint64_t first_record)
-      : MessageTopics(path, options.time_source, publishes), file_(path), scan_(scan), first_record_(first_record) {}
+      : MessageTopics(path, options, publishes), file_(path), scan_(scan), first_record_(first_record) {}
   MovingWindow& file() { return file_; }
   /// ", chunks packed with zstd"; "" when none was seen.
   std::string packing() const;

@@ -102,7 +102,7 @@ bool Database::has_table(const char* name) const {
 class Db3Reader final : public MessageTopics {
  public:
   Db3Reader(const std::string& path, const ReadOptions& options)
-      : MessageTopics(path, options.time_source, false), database_(path) {
+      : MessageTopics(path, options, false), database_(path) {
     std::error_code none;
     bytes_ = std::filesystem::file_size(path, none);
     warn_of_missing_pages(path);

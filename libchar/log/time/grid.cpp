@@ -245,6 +245,19 @@ double TimeGrid::even_interval() {
   return spanned;
 }
 
+// Of the whole log, or of its first rows, where the grid learnt their step and found gaps by it, or where steps (`odd`)
+// or rows over time tell them.
+std::optional<RateChange> TimeGrid::lasting_change(bool odd) const {
+  constexpr double kOther = 0.03, kUneven = 0.01;
+  auto change = sketch_.rate_change();
+  const double usual = sketch_.interval_ns(), spanned = sketch_.span_ns(last_.index, last_.stamp);
+  const bool spoilt = odd || (counts_.missing > 0 && std::abs(step_.ns - usual) > kOther * usual) ||
+                      std::abs(spanned - usual) > kUneven * usual;
+  for (const std::size_t parts : {4U, 16U})
+    if (!change && spoilt) change = sketch_.rate_change(parts);
+  return change;
+}
+
 // Two rates make no grid: one of the stretches has to be chosen. A few rows at another rate are said
 // and, as are rows of which only each second or third is there, placed on the grid.
 void TimeGrid::judge_rate_change() {
@@ -259,7 +272,7 @@ void TimeGrid::judge_rate_change() {
     std::swap(before, after);  // the first rows are the odd ones
     at_ns = static_cast<double>(odd.ended_ns) + odd.intervals * step_.ns;
   }
-  if (const auto change = sketch_.rate_change(); change && !asks && odd.rows == 0) {
+  if (const auto change = lasting_change(asks); change && (asks || odd.rows == 0)) {  // which says the place better
     asks = true;
     at_ns = change->row;
     before = 1e9 / change->before_ns;
@@ -295,7 +308,13 @@ void TimeGrid::finish(LogInfo& info) {
   info.samples = output_.delivered();
   TimeBase& time = info.time;
   if (!stamped_) {
-    if (options_.rate_hz) time.rate_hz = *options_.rate_hz;
+    if (!options_.rate_hz) return;
+    time.rate_hz = *options_.rate_hz;
+    const double off = options_.unsaid.rate_uncertainty_hz / time.rate_hz;
+    if (off > 0)
+      warnings_.add("rate_uncertain", fmt::format("the rate is known to ± {}: times too, N and K to ± {} in addition "
+                                                  "to their intervals",
+                                                  percent_text(off), percent_text(off / 2)));
     return;
   }
   time.from_stamps = true;
@@ -312,7 +331,10 @@ void TimeGrid::finish(LogInfo& info) {
     warnings_.add("jitter",
                   fmt::format("stamps scatter by {} of the sampling interval: the samples are treated as evenly spaced",
                               percent_text(deviation.robust / interval)));
-  if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > 0.01)
+  const double tolerance = options_.unsaid.rate_uncertainty_hz > 0
+                               ? options_.unsaid.rate_uncertainty_hz / options_.rate_hz.value_or(1)
+                               : 0.01;
+  if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > tolerance)
     warnings_.add("rate_ignored", fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not used "
                                               "(`time_column` none ignores the stamps)",
                                               brief_text(1e9 / interval, 6), brief_text(*options_.rate_hz, 6)));

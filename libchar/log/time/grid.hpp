@@ -28,8 +28,8 @@ namespace libchar {
 // once a second in rows of 200 Hz): the slow channel has rows, and a clock, of its own.
 
 /// Steps between values, and those of them over blank rows: values missing at random leave steps of one, two,
-/// three intervals, and two over a blank; a clock has one step, over blanks as well.
-bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks);
+/// three intervals, and two over a blank; a clock has one step, over blanks as well. Few blanks must show it clearly.
+bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks, double blank_share);
 
 class OwnRows {
  public:
@@ -121,6 +121,7 @@ class TimeGrid {
   void say_pattern(const StampModel& found);
   double even_interval();
   void judge_rate_change();
+  std::optional<RateChange> lasting_change(bool odd) const;
   void process(bool end);
   std::size_t process_rows(Pending& front, std::size_t count);
   bool take_regular(const std::int64_t* time, std::size_t n);
@@ -165,6 +166,7 @@ class TimeGrid {
     std::int64_t from_ns = 0, to_ns = 0;  ///< after the first stamp
     bool begun = false;                   ///< its own rows say the interval
     bool over = false;
+    bool other_rate = false;  ///< what stands in front of it runs at another
   };
   struct Last {
     bool any = false;

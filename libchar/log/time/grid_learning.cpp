@@ -91,6 +91,7 @@ void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
   const std::int64_t from = stamps[row] - stamps.front();
   if (from <= window_.from_ns) return;
   window_.from_ns = from;
+  window_.other_rate = true;
   const double seconds = std::round(static_cast<double>(from) * 1e-6) / 1e3;
   warnings_.add(
       "rate_change",
@@ -109,7 +110,7 @@ void TimeGrid::learn() {
   const bool begins = window_.from_ns <= 0 || last_.any;
   const bool other = stamps.size() >= kEnough && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns;
   if (!last_.any || other) step_ = Step(found);
-  if (other || watch_.longest().rows > 0 || sketch_.rate_change()) {  // of another rate
+  if (other || window_.other_rate || watch_.longest().rows > 0 || sketch_.rate_change()) {  // of another rate
     sketch_ = {};
     recent_.rows.clear();
     watch_ = {};
@@ -132,9 +133,9 @@ void TimeGrid::say_pattern(const StampModel& found) {
       return;
     case StampPattern::coarse:
       warnings_.add("coarse_stamps",
-                    fmt::format("the stamps are rounded to a coarse clock and keep to one line at {} Hz: rows are "
-                                "spaced evenly (`rate_hz` {} takes the longer steps as gaps)",
-                                brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
+                    fmt::format("the stamps are rounded to a coarse clock and keep to one line: rows are spaced "
+                                "evenly (`rate_hz` {} takes the longer steps as gaps)",
+                                shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::packets:
       warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at {} Hz, rows "

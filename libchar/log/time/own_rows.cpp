@@ -11,7 +11,9 @@ namespace {
 constexpr std::size_t kRows = 1025, kMostRows = std::size_t{1} << 18U;  // looked at
 constexpr std::size_t kKept = 4;                                        // at least
 constexpr std::size_t kLearnt = 12;                                     // where there are as many
-constexpr double kLeastBlank = 20;                                      // one row in so many
+constexpr double kLeastBlank = 20;                                      // one row in so many, or
+constexpr std::size_t kFewBlank = 3;                                    // steps over blanks that are none
+constexpr std::size_t kRowsForFew = 8192;                               // looked at for these
 
 bool blank(const RowBlock& rows, std::size_t row) {
   return std::all_of(rows.columns.begin(), rows.columns.end(),
@@ -20,14 +22,16 @@ bool blank(const RowBlock& rows, std::size_t row) {
 
 }  // namespace
 
-bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks) {
+bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks, double blank_share) {
   constexpr std::size_t kFew = 10;  // of so few steps all have to be alike
-  if (over_blanks.empty()) return false;
+  constexpr double kNone = 1.25;    // usual steps: over such a blank nothing is missing
+  const bool few = kLeastBlank * blank_share < 1;
+  if (over_blanks.size() < (few ? kFewBlank : 1)) return false;
   const double usual = median_in_place(steps, Middle::lower);
   const auto share = [&](const auto& holds) {
     return static_cast<double>(std::count_if(steps.begin(), steps.end(), holds)) / static_cast<double>(steps.size());
   };
-  if (!(usual > 0) || median_in_place(over_blanks, Middle::lower) > 1.5 * usual) return false;
+  if (!(usual > 0) || median_in_place(over_blanks, Middle::lower) > (few ? kNone : 1.5) * usual) return false;
   if (steps.size() < kFew) return share([&](double step) { return std::fabs(step - usual) <= 0.25 * usual; }) == 1;
   return share([&](double step) { return step <= 0.55 * usual; }) <= 0.1;
 }
@@ -46,7 +50,8 @@ bool OwnRows::decide(const RowBlock& rows) {
     }
     last_blank_ = is_blank;
     ++rows_;
-    if ((rows_ >= kRows && kept_ >= kLearnt) || rows_ >= kMostRows) judge();
+    const bool unsure = !over_blanks_.empty() && over_blanks_.size() < kFewBlank && rows_ < kRowsForFew;
+    if ((rows_ >= kRows && kept_ >= kLearnt && !unsure) || rows_ >= kMostRows) judge();
   }
   return decided_;
 }
@@ -57,17 +62,20 @@ void OwnRows::decide_at_end() {
 
 void OwnRows::judge() {
   decided_ = true;
-  apart_ = kept_ >= kKept && kLeastBlank * static_cast<double>(rows_ - kept_) >= static_cast<double>(rows_) &&
-           keeps_own_clock(std::move(steps_), std::move(over_blanks_));
+  apart_ = kept_ >= kKept && keeps_own_clock(std::move(steps_), std::move(over_blanks_),
+                                             static_cast<double>(rows_ - kept_) / static_cast<double>(rows_));
 }
 
 void ChannelClocks::look(const RowBlock& rows, std::size_t from, std::size_t to) {
   constexpr std::size_t kLook = 65536, kSteps = 1024;
+  const auto enough = [](const Values& channel) {
+    return channel.steps.size() >= (channel.over_blanks.size() < kFewBlank ? kRowsForFew : kSteps);
+  };
   channels_.resize(rows.columns.size());
   const std::size_t end = std::min(to, from + kLook - std::min(rows_, kLook));
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     Values& channel = channels_[c];
-    for (std::size_t i = from; i < end && channel.steps.size() < kSteps; ++i) {
+    for (std::size_t i = from; i < end && !enough(channel); ++i) {
       ++channel.rows;
       if (std::isnan(rows.columns[c][i])) {
         channel.blank = true;
@@ -89,8 +97,8 @@ double ChannelClocks::every(std::size_t channel) const {
   if (channel >= channels_.size()) return 1;
   const Values& of = channels_[channel];
   const auto rows = static_cast<double>(of.rows), count = static_cast<double>(of.count);
-  if (of.steps.size() < kKept || kLeastBlank * (rows - count) < rows) return 1;
-  return keeps_own_clock(of.steps, of.over_blanks) ? rows / count : 1;
+  if (of.steps.size() < kKept) return 1;
+  return keeps_own_clock(of.steps, of.over_blanks, (rows - count) / rows) ? rows / count : 1;
 }
 
 std::size_t leave_out_blank_rows(RowBlock& rows) {

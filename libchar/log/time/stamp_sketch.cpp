@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/core/numeric/median.hpp"
@@ -123,24 +124,33 @@ double StampSketch::interval_ns() const {
 }
 
 double StampSketch::line_ns() const {
-  double index = 0, stamp = 0;
-  for (const Cell& cell : cells_) {
-    index += static_cast<double>(cell.first.index);
-    stamp += static_cast<double>(cell.first.stamp);
+  // Rows of one stamp: only the first of them is as late as the others. The very first stamp began before the log.
+  std::vector<Pair> rises;
+  for (std::size_t i = 1; i < cells_.size(); ++i)
+    if (cells_[i].first.stamp > cells_[i - 1].first.stamp) rises.push_back(cells_[i].first);
+  const bool told = rises.size() > 1 && 2 * rises.size() < cells_.size();
+  if (!told) {
+    rises.clear();
+    for (const Cell& cell : cells_) rises.push_back(cell.first);
   }
-  const auto n = static_cast<double>(cells_.size());
+  double index = 0, stamp = 0;
+  for (const Pair& pair : rises) {
+    index += static_cast<double>(pair.index);
+    stamp += static_cast<double>(pair.stamp);
+  }
+  const auto n = static_cast<double>(rises.size());
   double sum_ky = 0, sum_kk = 0;
-  for (const Cell& cell : cells_) {
-    const double k = static_cast<double>(cell.first.index) - index / n;
+  for (const Pair& pair : rises) {
+    const double k = static_cast<double>(pair.index) - index / n;
     sum_kk += k * k;
-    sum_ky += k * (static_cast<double>(cell.first.stamp) - stamp / n);
+    sum_ky += k * (static_cast<double>(pair.stamp) - stamp / n);
   }
   return sum_kk > 0 ? sum_ky / sum_kk : 0;
 }
 
-std::optional<RateChange> StampSketch::rate_change() const {
+std::optional<RateChange> StampSketch::rate_change(std::size_t parts) const {
   std::vector<double> index, stamp;
-  for (const Cell& cell : cells_) {
+  for (const Cell& cell : std::span(cells_).first(cells_.size() / parts)) {
     index.push_back(static_cast<double>(cell.first.index));
     stamp.push_back(static_cast<double>(cell.first.stamp));
   }

@@ -47,8 +47,9 @@ class StampSketch {
     return index <= zero_.index ? 0
                                 : static_cast<double>(stamp - zero_.stamp) / static_cast<double>(index - zero_.index);
   }
-  /// A change of rate (find_rate_change), its row in ns after the first stamp, pauses included.
-  std::optional<RateChange> rate_change() const;
+  /// A change of rate (find_rate_change), its row in ns after the first stamp, pauses included; in the first of so
+  /// many parts of the log.
+  std::optional<RateChange> rate_change(std::size_t parts = 1) const;
   /// 1.4826 MAD and largest |stamp minus grid| for that interval, in ns.
   struct Deviation {
     double robust = 0, largest = 0;

@@ -287,7 +287,8 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
     std::string name = ascii_lower(stem_of(column));
     std::replace(name.begin(), name.end(), '_', ' ');
     if (column.text || among(kCounters, name) || unit_of_another_quantity(column) ||
-        name.find("temp") != std::string::npos || name == "t" || (has_unit(column) && !unit_of_time(column)))
+        name.find("temp") != std::string::npos || name.find("year") != std::string::npos || name == "t" ||
+        (has_unit(column) && !unit_of_time(column)))
       continue;
     named = std::any_of(kWords.begin(), kWords.end(),
                         [&](std::string_view word) { return name.find(word) != std::string::npos; });
@@ -373,6 +374,14 @@ bool counts_since_1970(const FirstValues& first) {
   return false;
 }
 
+// Rows of several sources, named in front, have each stamp as many times.
+void take_one_of_each(std::vector<double>& values) {
+  std::vector<double> once = values;
+  once.erase(std::unique(once.begin(), once.end()), once.end());
+  const double n = static_cast<double>(values.size()), m = static_cast<double>(once.size());
+  if (m > 0 && std::fabs(n - std::round(n / m) * m) < n / m) values = std::move(once);
+}
+
 // Without names: a first column, behind words, that rises evenly or holds dates.
 std::optional<std::size_t> column_that_rises(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   std::size_t c = 0;
@@ -380,7 +389,8 @@ std::optional<std::size_t> column_that_rises(const TableFront& table, const Read
   if (c + 1 >= table.columns.size()) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
   const FirstValues first = table.first_values(c);
-  const std::vector<double>& values = first.values;
+  std::vector<double> values = first.values;
+  if (c > 0) take_one_of_each(values);
   const bool dates = table.text && counts_since_1970(first);
   if (!dates && !near_uniform_and_rising(values) && !(table.text && steady_clock(values))) return std::nullopt;
   const bool counter =

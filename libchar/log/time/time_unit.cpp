@@ -95,7 +95,8 @@ constexpr std::array kStampUnits = {std::int64_t{1000000000}, std::int64_t{10000
 /// Intervals at which sensors and loggers are read: whole rates up to 2 kHz in fives, or the usual pauses.
 bool usual_interval(double seconds) {
   constexpr std::array kPauses = {1, 2, 5, 10, 15, 20, 30, 60, 120, 180, 300, 600, 900, 1200, 1800, 3600, 7200, 86400};
-  if (seconds >= 1) return std::any_of(kPauses.begin(), kPauses.end(), [&](int s) { return seconds == s; });
+  if (seconds >= 1)
+    return std::any_of(kPauses.begin(), kPauses.end(), [&](int s) { return std::fabs(seconds - s) < 1e-9 * s; });
   const double rate = 1 / seconds;
   const double unit = rate < 5 ? 1 : 5;
   return rate <= 2000 && std::fabs(rate - unit * std::round(rate / unit)) < 1e-9 * rate;
@@ -148,7 +149,24 @@ std::int64_t guess_unit(const FirstValues& first) {
   const std::int64_t by_step = unit_by_step(step);
   if (!first.integers || says_a_date(first)) return by_step;
   const std::vector<std::int64_t> usual = usual_units(step);
-  return usual.size() == 1 && usual.front() == kStampUnits[0] ? usual.front() : by_step;
+  constexpr double kMinute = 60;
+  return usual.size() == 1 && usual.front() == kStampUnits[0] && step >= kMinute ? usual.front() : by_step;
+}
+
+/// Nobody reads accelerometers and gyroscopes, or x, y and z, once a minute; phones do every 60 ms.
+bool inertial(const TableFront& table) {
+  static constexpr std::array<std::string_view, 6> kNames = {"acc", "gyr", "ax", "gx", "linear_acc", "lin_acc"};
+  std::size_t axes = 0;
+  for (const ColumnLabel& column : table.columns) {
+    const auto [stem, behind] = name_and_unit(column.name);
+    const auto unit = find_unit(column.unit.empty() ? behind : column.unit);
+    const std::string name = ascii_lower(stem);
+    axes += name == "x" || name == "y" || name == "z";
+    if ((unit && (unit->quantity == Quantity::angular_rate || unit->quantity == Quantity::acceleration)) ||
+        std::any_of(kNames.begin(), kNames.end(), [&](std::string_view front) { return name.starts_with(front); }))
+      return true;
+  }
+  return axes == 3;
 }
 
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
@@ -157,7 +175,11 @@ bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& inf
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
   if (uneven_ones(first)) units = {kStampUnits[0], kStampUnits[1]};
   if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
-  if (units.size() == 1 && unit == kStampUnits[0]) return false;
+  constexpr double kSlowest = 200;  // of sensors in ms
+  if (units.size() == 1 && unit == kStampUnits[0]) {
+    if (!(step > 1 && step < kSlowest)) return false;
+    units.push_back(kStampUnits[1]);
+  }
   Finding& guess = info.warnings.add(
       "time_unit_guessed", fmt::format("the stamps state no unit: taken as {} by their step of {}, {} Hz",
                                        unit_name(unit), brief_text(step, 6), brief_text(rate_in(step, unit), 6)));
@@ -176,12 +198,13 @@ std::int64_t unit_from_options(const std::string& word) {
   throw usage_error("E0323").says("unknown time unit").got(word).hint("use auto, s, ms, us, ns, min, h, d or 100us");
 }
 
-// As the name or the file says; 0 when neither does.
+// As the file or the name says, a unit behind the name before the usual one of the name ("TOW [ms]"); 0 when none does.
 std::int64_t unit_said(const ColumnLabel& column) {
   const auto [stem, unit] = name_and_unit(column.name);
-  if (const auto known = time_name(stem); known && known->unit_ns != 0) return known->unit_ns;
-  const std::int64_t apart = unit_in_ns(column.unit);
-  return apart != 0 ? apart : unit_in_ns(unit);
+  for (const std::int64_t said : {unit_in_ns(column.unit), unit_in_ns(unit)})
+    if (said != 0) return said;
+  const auto known = time_name(stem);
+  return known ? known->unit_ns : 0;
 }
 
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
@@ -218,7 +241,9 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     unit.ns = std::max<std::int64_t>(1, clamped_whole<std::int64_t>(std::round(*table.stated_tick_s * 1e9)));
     info.dialect.push_back(fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
   }
-  const FirstValues first = table.first_values(column);
+  FirstValues first = table.first_values(column);
+  if (usual_step(first.values) == 0)  // rows of several sources share their stamps
+    first.values.erase(std::unique(first.values.begin(), first.values.end()), first.values.end());
   const double step = usual_step(first.values);
   const bool comparable = table.stated_rate_hz && step > 0 && first.values.size() > 3;
   const DayCount* days = unit.ns == 0 || unit.ns == kDayNs ? day_count(stem, first) : nullptr;
@@ -228,7 +253,10 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     info.guesses.push_back(
         fmt::format("time: {}, from the size of the stamps (`time_unit` says otherwise)", days->name));
   } else if (unit.ns == 0) {
-    const std::int64_t guess = ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
+    std::int64_t guess = ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
+    constexpr double kSlow = 5;  // s
+    if (guess == kStampUnits[0] && first.integers && step > kSlow && !says_a_date(first) && inertial(table))
+      guess = kStampUnits[1];
     unit.ns = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "libchar/core/file/log_files.hpp"
@@ -30,13 +31,18 @@ std::vector<std::string> readable_names(const std::vector<LogTopic>& topics) {
   return names;
 }
 
+std::string way_to_read(const LogTopic& topic) {
+  return topic.why_not.find("no definition") == std::string::npos ? "inspect lists the topics"
+                                                                  : "`msg` DIR names a folder of its .msg files";
+}
+
 void refuse_unreadable(const LogTopic& topic, const std::string& file) {
   if (readable(topic)) return;
   throw usage_error("E0425", file)
       .says(topic.why_not.empty() ? "this topic holds no numbers"
                                   : fmt::format("this topic cannot be read: {}", topic.why_not))
       .got(topic.name)
-      .hint("inspect lists the topics");
+      .hint(way_to_read(topic));
 }
 
 // "/imu0/angular_velocity.x" and "/imu0.angular_velocity.x" are a field of /imu0; the longest topic that fits is meant.
@@ -160,6 +166,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics, const ReadOpt
     const std::string& why = topics.front().why_not;
     what = "none of its topics holds numbers that can be read";
     got = topics.front().name + (why.empty() ? "" : ": " + why);
+    if (!why.empty()) hint = way_to_read(topics.front());
   } else if (losses.empty()) {
     what = "holds no messages and no arrays";
     hint = "if it should hold some, it was cut behind its beginning: copy it again";
@@ -231,9 +238,12 @@ std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics, cons
 void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file, const Findings& losses) {
   const std::vector<std::string> names = readable_names(topics);
   if (names.empty()) refuse_unreadable_log(topics, file, losses);
+  const auto better = [](const LogTopic& a, const LogTopic& b) {
+    return std::tuple(readable(a), a.sensor, a.rows) < std::tuple(readable(b), b.sensor, b.rows);
+  };
   throw usage_error("E0427", file)
       .says("holds {} topics, each with a clock of its own: {}", names.size(), first_names(names))
-      .hint("`topic` {} chooses one", names.front());
+      .hint("`topic` {} chooses one", std::max_element(topics.begin(), topics.end(), better)->name);
 }
 
 namespace {

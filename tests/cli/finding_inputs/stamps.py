@@ -104,5 +104,7 @@ INPUTS = {
     "uneven_stamps": Input(text("turns.csv", stamped(in_turns([0.5612, 1.4388])))),
     "rate_change": Input(text("rates.csv", stamped(two_rates))),
     "uneven_sampling": Input(text("uneven.csv", stamped(uneven))),
+    "rate_uncertain": Input(text("stated.csv", lambda: "w[deg/s]\n" + "".join(f"{w:.5f}\n" for w in noise(4000))),
+                            ("--rate", "100±0.5Hz")),
     "rate_ignored": Input(text("ignored.csv", stamped(even)), ("--rate", "50")),
 }

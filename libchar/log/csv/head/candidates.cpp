@@ -113,23 +113,25 @@ void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal
   if (decimal != '.') out.push_back({delimiter, ',', columns, rounded(shape * worth.comma)});
 }
 
-// "10,000,000.000,012,3 Hz": counters write groups of three digits on both sides of the point. Columns of whole
-// numbers are not meant: those have no unit behind the last and no zeros in front.
-bool counter_lines(const std::vector<Line>& lines) {
+// "10,000,000.000,012,3 Hz", "10 000 000.000 012": counters write groups of three digits, on both sides of the point.
+// Columns of whole numbers are not meant: those have no unit behind the last and no zeros in front.
+bool counter_lines(const std::vector<Line>& lines, char group) {
+  const bool blanks = group == ' ';
+  const std::string allowed = std::string("+-0123456789.") + group, zero = std::string(1, group) + '0';
   std::size_t grouped = 0;
   bool unit = false, zeros = false;
   for (const Line& line : lines) {
     const std::string_view text = trimmed(line.text);
-    const std::size_t end = std::min(text.find_first_not_of("+-0123456789.,"), text.size());
-    const std::string_view number = text.substr(0, end);
-    const std::string plain = without_thousands(number, {'.', ','});
+    const std::size_t end = std::min(text.find_first_not_of(allowed), text.size());
+    const std::string_view number = trimmed(text.substr(0, end));
+    const std::string plain = without_thousands(number, {'.', group});
     const std::size_t point = number.find('.');
-    if (point == std::string_view::npos || number.find(',', point) == std::string_view::npos ||
-        read_cell(plain, '.').kind != Cell::value)
+    if (point == std::string_view::npos || plain == number || read_cell(plain, '.').kind != Cell::value ||
+        (!blanks && number.find(group, point) == std::string_view::npos))
       continue;
     ++grouped;
-    unit = unit || number_and_unit(text);
-    for (std::size_t at = number.find(",0"); at != std::string_view::npos; at = number.find(",0", at + 1))
+    unit = unit || (!blanks && number_and_unit(text));
+    for (std::size_t at = number.find(zero); at != std::string_view::npos; at = number.find(zero, at + 1))
       zeros = zeros || (at + 2 < number.size() && is_digit(number[at + 2]));
   }
   return grouped > 2 && 4 * grouped >= 3 * lines.size() && (unit || zeros);
@@ -144,7 +146,8 @@ bool occurs(const std::vector<Line>& lines, char delimiter) {
 
 std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter, char decimal) {
   std::vector<Candidate> out;
-  if (delimiter == 0 && decimal != ',' && counter_lines(lines)) return {{';', '.', 1, kOneColumn}};
+  if (delimiter == 0 && decimal != ',' && (counter_lines(lines, ',') || counter_lines(lines, ' ')))
+    return {{';', '.', 1, kOneColumn}};
   bool whole = false;  // lines of one cell are looked at once
   for (const char one : {',', ';', '\t', ' ', '|'}) {
     if (delimiter != 0 && one != ',') break;

@@ -52,8 +52,10 @@ ColumnKind kind_of(const KindCounts& counts) {
       break;
   }
   const std::size_t cells = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-  const bool text = cells > 1 && count(CellKind::word) + count(CellKind::blank) == cells;
-  return text ? ColumnKind::text : ColumnKind::number;
+  const std::size_t words = count(CellKind::word), filled = cells - count(CellKind::blank);
+  // Oscilloscopes put their settings, numbers among them, beside the first rows of a table.
+  const bool beside = filled * 4 < cells && 4 * words > filled;
+  return cells > 1 && (words == filled || beside) ? ColumnKind::text : ColumnKind::number;
 }
 
 }  // namespace

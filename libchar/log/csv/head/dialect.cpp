@@ -331,6 +331,16 @@ void refuse_curve(const Study& study) {
         .hint("`channels` reads only the columns named there");
 }
 
+// Without a rate: what the lines in front of the table say of one, for whoever types it.
+void say_facts_of_time(Study& study) {
+  std::vector<std::string> said;
+  for (const auto* lines : {&study.comments, &study.preamble})
+    for (const Line& line : *lines)
+      if (speaks_of_time(line.text)) said.push_back(fmt::format("\"{}\"", printable(line.text, 80)));
+  if (!said.empty() && !study.options.rate_hz)
+    study.info.guesses.push_back("no rate in what the lines in front of the table say: " + first_names(said));
+}
+
 void choose_time(Study& study) {
   LogInfo& info = study.info;
   const auto rate = stated_rate(study);
@@ -343,7 +353,8 @@ void choose_time(Study& study) {
                 study.dialect, info);
   choose_groups(study.rows, study.options, study.dialect, info);
   refuse_long_table(study.rows, study.kinds, study.options, study.dialect, info);
-  if (!rate || study.dialect.time.column >= 0 || info.time.rate_hz > 0) return;
+  if (study.dialect.time.column >= 0 || info.time.rate_hz > 0) return;
+  if (!rate) return say_facts_of_time(study);
   info.time.rate_hz = *rate;
   info.dialect.push_back(
       fmt::format("rate {} Hz from {}", shortest(*rate), study.comments.empty() ? "the preamble" : "a comment"));

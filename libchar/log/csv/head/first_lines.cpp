@@ -68,18 +68,21 @@ double hertz_of(const Statement& said) {
       "updaterate",        "acquisitionrate", "scanrate",    "datarate",
       "samplingfrequency", "samplefrequency", "samplefreq",  "samplingfreq",
       "loggingrate",       "recordingrate",   "imurate",     "odr"};
-  const bool rate = said.key.find("rate") != std::string::npos || said.key.find("frequency") != std::string::npos;
-  const double factor = said.unit.starts_with("khz") ? 1e3 : said.unit.starts_with("mhz") ? 1e6 : 1;
-  const bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") || said.unit.starts_with("mhz") ||
-                     said.unit.starts_with("sps") || said.unit.starts_with("samples/s");
-  if (rate && hertz && said.key.find("baud") == std::string::npos) return *said.number * factor;
-  if (hertz || said.unit.empty() || !ends_with_any(said.key, std::array<std::string_view, 1>{"hz"}))
-    return (hertz || said.unit.empty()) && ends_with_any(said.key, kKeys) ? *said.number * factor : 0;
-  std::string_view key = said.key;  // "Sample Rate (Hz)": 100
-  key.remove_suffix(2);
-  const double kilo = key.ends_with("k") ? 1e3 : 1;
-  if (kilo > 1) key.remove_suffix(1);
-  return ends_with_any(key, kKeys) ? *said.number * kilo : 0;
+  std::string_view key = said.key;
+  double factor = said.unit.starts_with("khz") ? 1e3 : said.unit.starts_with("mhz") ? 1e6 : 1;
+  bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") || said.unit.starts_with("mhz") ||
+               said.unit.starts_with("sps") || said.unit.starts_with("samples/s");
+  const bool rate = key.find("rate") != std::string_view::npos || key.find("frequency") != std::string_view::npos;
+  if (rate && hertz && key.find("baud") == std::string_view::npos) return *said.number * factor;
+  if (!hertz && key.ends_with("hz")) {  // "Sample Rate (Hz)": 100
+    hertz = true;
+    key.remove_suffix(2);
+    if (key.ends_with("k")) {
+      factor = 1e3;
+      key.remove_suffix(1);
+    }
+  }
+  return (hertz || said.unit.empty()) && (ends_with_any(key, kKeys) || key == "fs") ? *said.number * factor : 0;
 }
 
 double interval_of(const Statement& said) {
@@ -87,11 +90,16 @@ double interval_of(const Statement& said) {
                                                             "samplingperiod", "deltax",           "timestep",
                                                             "sampletime",     "samplingtime",     "xincrement"};
   std::string_view key = said.key, unit = said.unit;
+  for (const std::string_view known : {"ms", "us", "ns", "s"})  // "Sampling period (ms)": 4
+    if (unit.empty() && key.ends_with(known) && ends_with_any(key.substr(0, key.size() - known.size()), kKeys)) {
+      key.remove_suffix(known.size());
+      unit = known;
+    }
   double factor = 1;
   if (unit == "ms") factor = 1e-3;
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
-  return ends_with_any(key, kKeys) ? *said.number * factor : 0;
+  return ends_with_any(key, kKeys) || key == "dt" ? *said.number * factor : 0;
 }
 
 }  // namespace
@@ -109,6 +117,15 @@ std::optional<double> stated_rate_hz(std::string_view line) {
     if (const double interval = interval_of(said); interval > 0) rate = 1 / interval;
   if (!(rate >= kRates.lowest && rate <= kRates.highest)) return std::nullopt;
   return rate;
+}
+
+bool speaks_of_time(std::string_view line) {
+  static constexpr std::array<std::string_view, 9> kWords = {"time", "rate", "freq",      "period",  "interval",
+                                                             " hz",  "sps",  "increment", "duration"};
+  const std::string lower = ascii_lower(line);
+  return lower.find_first_of("0123456789") != std::string::npos &&
+         std::any_of(kWords.begin(), kWords.end(),
+                     [&](std::string_view word) { return lower.find(word) != std::string::npos; });
 }
 
 std::optional<double> stated_count(std::string_view line, std::string_view key) {

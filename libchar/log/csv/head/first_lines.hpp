@@ -18,6 +18,9 @@ namespace libchar::csv {
 /// the sampling rate in Hz that a line states; nothing when it states none that can be.
 std::optional<double> stated_rate_hz(std::string_view line);
 
+/// Does a line in front of the table hold a number and a word for time or rate?
+bool speaks_of_time(std::string_view line);
+
 /// What one count is: "tscale,0.001" (s), "gscale,0.00122" (rad/s) and "ascale,0.00049" (g) of Gyroflow's .gcsv.
 std::optional<double> stated_count(std::string_view line, std::string_view key);
 

@@ -47,6 +47,11 @@ constexpr std::array kMagics = {
     Magic{0, "\x80\x04"sv, "a Python pickle", "numpy.save('log.npy', numpy.asarray(pickle.load(open(FILE, 'rb'))))"},
     Magic{60, "RINEX VERSION"sv, "observations of a GNSS receiver (RINEX)", "gfzrnx or georinex export them as CSV"},
     Magic{0, "\xC3\x40\xF1"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
+    Magic{0, "FEA1"sv, "a Feather table", "pandas reads it: pandas.read_feather(FILE).to_csv('log.csv', index=False)"},
+    Magic{0, "MDF     "sv, "a measurement of ASAM MDF", "asammdf reads it: asammdf.MDF(FILE).export('csv')"},
+    Magic{0, "CDF\x01"sv, "a NetCDF table",
+          "xarray reads it: xarray.open_dataset(FILE).to_dataframe().to_csv('log.csv')"},
+    Magic{0, "fLaC"sv, "packed sound (FLAC)", "unpack it to WAV: flac -d FILE"},
     Magic{0, "C 1 CLIENT"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
 };
 
@@ -60,6 +65,20 @@ bool is_miniseed(std::string_view head) {
   return head.size() > 8 && std::all_of(head.begin(), head.begin() + 6, [](char c) { return c >= '0' && c <= '9'; }) &&
          std::string_view("DRQM").find(head[6]) != std::string_view::npos && head[7] == ' ' &&
          head.substr(0, 64).find('\n') == std::string_view::npos;
+}
+
+/// "weather,place=roof temperature=21.5,humidity=40i 1465839830100400200"
+bool is_line_protocol(std::string_view head) {
+  const std::string_view line = head.substr(0, head.find('\n'));
+  const std::size_t blank = line.find(' '), end = line.rfind(' ');
+  if (blank == std::string_view::npos || end == blank || line.substr(0, blank).find(';') != std::string_view::npos)
+    return false;
+  const std::string_view fields = line.substr(blank + 1, end - blank - 1), stamp = line.substr(end + 1);
+  constexpr std::size_t kDigits = 10;
+  return fields.find('=') != std::string_view::npos && fields.find(": ") == std::string_view::npos &&
+         stamp.size() >= kDigits && line.substr(0, blank).find_first_of("0123456789") != 0 &&
+         line.substr(0, line.find_first_of(", ")).find('=') == std::string_view::npos &&
+         stamp.find_first_not_of("0123456789\r") == std::string_view::npos;
 }
 
 bool is_utf16(std::string_view head) {
@@ -114,6 +133,9 @@ void refuse_other_content(std::string_view head, const std::string& file) {
   refuse_binary(head, file);
   const std::size_t front = head.find_first_not_of(" \t\r\n");
   if (front == std::string_view::npos) return;
+  if (is_line_protocol(head))
+    throw refusal(file, "the line protocol of InfluxDB, not CSV")
+        .hint("influx -execute 'SELECT * FROM NAME' -database DATABASE -format csv exports it");
   if (head[front] == '<')
     throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
   if (head[front] == '{') throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");

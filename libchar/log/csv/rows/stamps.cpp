@@ -18,11 +18,11 @@ struct StampPair {
   bool days = false;      // days since 1858-11-17 and seconds of the day
 };
 
-// "MJD" and "sod".
+// "MJD" and "sod", "Day (MJD)" and "Seconds of day [s]".
 bool days_and_seconds(std::string_view a, std::string_view b) {
-  static constexpr std::array<std::string_view, 6> kSeconds = {"sod",           "second of day",  "seconds of day",
-                                                               "second_of_day", "seconds_of_day", "sec_of_day"};
-  return ascii_lower(a) == "mjd" && std::find(kSeconds.begin(), kSeconds.end(), ascii_lower(b)) != kSeconds.end();
+  const std::string days = ascii_lower(a), seconds = ascii_lower(b);
+  return days.find("mjd") != std::string::npos && (seconds.starts_with("so") || seconds.starts_with("sec") ||
+                                                   seconds.starts_with("tod") || seconds.starts_with("utc"));
 }
 
 bool is_calendar(ColumnKind kind) {
@@ -76,7 +76,8 @@ std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& diale
     for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c) {
       const std::string &first = dialect.columns[c].text, &second = dialect.columns[c + 1].text;
       if (seconds_and_nanoseconds(first, second)) return StampPair{c, c + 1, false};
-      if (days_and_seconds(first, second)) return StampPair{c, c + 1, false, true};
+      if (days_and_seconds(first, second) && !study.rows.empty() && whole_number(study.rows.front(), c))
+        return StampPair{c, c + 1, false, true};
     }
   } else if (dialect.columns.size() > 2 && epoch_and_rest(study.rows)) {
     return StampPair{0, 1, false};

@@ -284,7 +284,7 @@ DecoderOrReason compiled_decoder(const MessageFormat& format, Wire wire) {
     return decoder_of_versions({types}, format, wire);
   }
   const auto versions = ros1 ? std::vector<MessageTypes>{} : known_definitions(plain_type_name(format.type));
-  if (versions.empty()) return {nullptr, "the log has no definition of this type"};
+  if (versions.empty()) return {nullptr, std::string(kNoDefinition)};
   return decoder_of_versions(versions, format, wire);
 }
 

@@ -37,6 +37,8 @@ struct MessageFormat {
   std::vector<std::byte> example;  ///< a message; may be empty
 };
 
+inline constexpr std::string_view kNoDefinition = "the log has no definition of this type";
+
 struct DecoderOrReason {
   std::unique_ptr<MessageDecoder> decoder;  ///< nullptr when there is none
   std::string why_not;

@@ -49,8 +49,8 @@ std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic) {
   return topics.size() - 1;
 }
 
-MessageTopics::MessageTopics(std::string path, std::string time_source, bool publishes)
-    : path_(std::move(path)), time_source_(std::move(time_source)), publishes_(publishes) {}
+MessageTopics::MessageTopics(std::string path, const ReadOptions& options, bool publishes)
+    : path_(std::move(path)), time_source_(options.time_source), files_(options.unsaid.msg), publishes_(publishes) {}
 
 std::string MessageTopics::place(const RawMessage& message) const { return fmt::format("byte {}", message.at); }
 
@@ -58,7 +58,17 @@ void MessageTopics::set_topics(std::vector<RawTopic> raw) {
   for (RawTopic& one : raw) add_topic(one);
 }
 
+// Of a type that the log does not define: as in the folder of the user, else, of unknown types, as in an installed ROS.
+void MessageTopics::define(MessageFormat& format) const {
+  if (!format.definition.empty() || format.message_encoding != "cdr") return;
+  format.definition = files_.given(format.type);
+  if (format.definition.empty() && known_definitions(plain_type_name(format.type)).empty())
+    format.definition = MessageFiles::installed(format.type);
+  if (!format.definition.empty()) format.definition_encoding = "ros2msg";
+}
+
 void MessageTopics::add_topic(RawTopic& raw) {
+  define(raw.format);
   LogTopic topic;
   topic.name = raw.name;
   topic.type = raw.format.type;

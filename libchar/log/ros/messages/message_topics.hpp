@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "libchar/log/read.hpp"
 #include "libchar/log/ros/messages/message_decoder.hpp"
+#include "libchar/log/ros/messages/message_files.hpp"
 #include "libchar/log/topics/topic_reader.hpp"
 
 namespace libchar {
@@ -46,7 +48,7 @@ class MessageTopics : public TopicReader {
 
  protected:
   /// `publishes`: messages have a time of publication too.
-  MessageTopics(std::string path, std::string time_source, bool publishes);
+  MessageTopics(std::string path, const ReadOptions& options, bool publishes);
   /// Called once, when all topics of the log are known.
   void set_topics(std::vector<RawTopic> raw);
   /// Before the first `next_message`: only messages of this topic are wanted.
@@ -72,11 +74,13 @@ class MessageTopics : public TopicReader {
   };
 
   void add_topic(RawTopic& raw);
+  void define(MessageFormat& format) const;
   Source source_of(std::size_t topic) const;
   [[noreturn]] void refuse_source(std::size_t topic, std::string what) const;
   bool row_of(const RawMessage& message, Findings& warnings);
 
   std::string path_, time_source_;
+  MessageFiles files_;
   bool publishes_ = false;
   std::vector<LogTopic> topics_;
   std::vector<Topic> decoders_;
