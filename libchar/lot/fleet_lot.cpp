@@ -266,8 +266,8 @@ std::string without_result(const FleetLot& lot) {
 
 std::string stand_out(const std::vector<std::string>& names, const char* what) {
   return names.size() == 1
-             ? fmt::format(" 1 {} stands out from its kind: {}.", what, names[0])
-             : fmt::format(" {} {}s stand out from their kind: {}.", names.size(), what, first_names(names));
+             ? fmt::format(" 1 {} is an outlier of its kind: {}.", what, names[0])
+             : fmt::format(" {} {}s are outliers of their kind: {}.", names.size(), what, first_names(names));
 }
 
 /// That nobody stands out is a finding only where somebody could.
@@ -285,14 +285,13 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
       if (q.of_kind && !o.all_channels) channels.emplace(o.recording, o.channel);
   }
   if (!any) return " There is no result to judge.";
-  if (!searched)
-    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.", kFewestForOutliers);
+  if (!searched) return fmt::format(" Too few of a kind to find outliers: at least {} are needed.", kFewestForOutliers);
   std::vector<std::string> of_one;
   for (const auto& [recording, channel] : channels) of_one.push_back(fleet.records[recording].channels[channel].name);
   std::string out = devices.empty() ? "" : stand_out(devices, "device");
   if (!of_one.empty()) out += stand_out(of_one, "channel");
   if (!out.empty()) return out;
-  return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
+  return axes ? " No channel is an outlier." : " No device is an outlier.";
 }
 
 /// The alarm of the control charts of all channels together: by the most improbable of their signals, which has the

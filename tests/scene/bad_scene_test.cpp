@@ -124,7 +124,7 @@ const std::map<std::string, Named>& manifest_cases() {
       {"006_self", {"s.yaml", "E0734", "itself"}},
       {"007_nul", {"a\\0b", "E0730", "zero byte"}},
       {"008_long", {std::string(5000, 'a'), "E0730", "5000 bytes"}},
-      {"009_fifo", {"fifo", "E0733", "no regular file"}},
+      {"009_fifo", {"fifo", "E0733", "not a regular file"}},
       {"010_dev_zero", {"/dev/zero", "E0731", "`allow_outside`"}},
       {"011_proc", {"/proc/self/mem", "E0731", "`allow_outside`"}},
       {"012_url", {"http://x/y.csv", "E0732", "network"}},
