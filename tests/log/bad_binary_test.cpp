@@ -96,7 +96,7 @@ TEST_CASE("messages about bad binary files name place, numbers and remedy") {
   says("raw", "raw/007_offset_past_end.f64", "offset of 1000000 bytes lies behind the end");
   says("raw", "raw/016_dtype_case.f64", "did you mean f64?");
   says("raw", "raw/019_unknown_key.f64", "did you mean channels?");
-  says("raw", "raw/020_dup_key.f64", "twice");
+  says("raw", "raw/020_dup_key.f64", "repeated");
   says("raw", "raw/021_sidecar_empty.f64", ":1:1");
   says("raw", "raw/022_sidecar_truncated.f64", "json:1:");
 }

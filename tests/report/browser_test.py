@@ -546,9 +546,11 @@ def main():
                 check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
             check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
             check_drawings(browser, folder / "fleet-400/index.html")
-            for given in sys.argv[4:]:
-                check_page(browser, pathlib.Path(given),
-                           replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
+            for given in map(pathlib.Path, sys.argv[4:]):
+                text = given.read_text()
+                check_page(browser, given, replay="<title>Sensor fusion" in text[:4000])
+                if '<figure class="curves">' in text:
+                    check_drawings(browser, given)
         finally:
             browser.close()
     return 1 if faults else 0

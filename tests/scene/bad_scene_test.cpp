@@ -55,7 +55,7 @@ const std::map<std::string, Case>& yaml_cases() {
       {"003_alias", {kHead + "name: &n x\nrecording: *n\n", ":3:7: error E0521", ""}},
       {"004_deep_flow", {std::string(10000, '['), ":1:1: error E0521", ""}},
       {"005_deep_indent", {deep_indent(), ":", "64 levels"}},
-      {"006_dup_key", {kHead + "version: 2\n" + kBody, ":3:1: error E0521", "twice"}},
+      {"006_dup_key", {kHead + "version: 2\n" + kBody, ":3:1: error E0521", "repeated"}},
       {"007_octal", {with_rate("010"), ":5:12: error E0541", "leading zeros"}},
       {"008_norway", {kHead + "name: no\n" + kBody, "", ""}},
       {"009_sexagesimal", {with_rate("1:30"), ":5:12: error E0541", ""}},
@@ -90,7 +90,7 @@ const std::map<std::string, Case>& json_cases() {
   static const std::map<std::string, Case> cases = {
       {"000_control", {"{" + kJson + "}", "", ""}},
       {"001_deep_100k", {std::string(100000, '[') + std::string(100000, ']'), ":", "64 levels"}},
-      {"002_dup", {"{" + kJson + ",\"version\":2}", ":1:", "twice"}},
+      {"002_dup", {"{" + kJson + ",\"version\":2}", ":1:", "repeated"}},
       {"003_1e400", {"{" + kJson + ",\"learning\":[0,1e400]}", ":1:", "out of range"}},
       {"004_NaN", {"{" + kJson + ",\"learning\":[0,NaN]}", ":1:", "E0601"}},
       {"005_u64", {"{" + kJson + ",\"seed\":18446744073709551616}", ":1:", "64 bits"}},

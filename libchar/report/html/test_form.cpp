@@ -117,7 +117,8 @@ std::string figures(const ReportedCharacterization& report, const FigureSource& 
 constexpr const char* kStyle =
     "\n.form h2 { font-size: 1.05rem; margin: 14px 0 2px; }\n.figures { display: flex; flex-wrap: wrap; gap: 4px 16px; "
     "}\n.form figure { margin: 8px 0; flex: 1 1 300px; max-width: 520px; }\n"
-    "@media print { @page { size: A4; margin: 14mm; } .form figure { flex: none; width: 8.8cm; }\n"
+    "@media print { @page { size: A4; margin: 11mm 12mm; } .form figure { flex: none; width: 8.8cm; margin: 2px 0; }\n"
+    "  .form h2 { margin: 7px 0 1px; }\n"
     "  .form ul.cautions li { font-size: 7.5pt; line-height: 1.2; margin: 1px 0; padding: 1px 6px; } }\n";
 
 }  // namespace
