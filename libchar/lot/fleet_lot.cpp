@@ -14,6 +14,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
@@ -42,8 +43,11 @@ FleetOutlier outlier_of(const Fleet& fleet, const Statistic& s, const Outlier& f
   }
   out.ratio = std::exp(out.value - others);
   out.value = std::exp(out.value);
-  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value), s.lot.unit,
-                             number_text(out.ratio, 3), probability_text(found.p));
+  HabitualValue usual;
+  usual.symbol = s.lot.unit;
+  if (const auto term = term_of(s.lot.quantity)) usual = detail::headline_unit(*term, s.lot.channel_unit);
+  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value * usual.factor),
+                             usual.symbol, number_text(out.ratio, 3), probability_text(found.p));
   return out;
 }
 

@@ -107,8 +107,8 @@ TEST_CASE("a device that does not belong to its fleet is named with its reason, 
   REQUIRE(lot.worst.size() == 2);
   CHECK(lot.outlying == 2);
   CHECK(records[lot.worst[0].recording].device == "imu41");
-  CHECK_THAT(lot.worst[0].reasons[0],
-             Contains("gyro_x: Bias instability") && Contains("times that of the others (p < 0.0001)"));
+  CHECK_THAT(lot.worst[0].reasons[0], Contains("gyro_x: Bias instability") && Contains(" deg/h, ") &&
+                                          Contains("times that of the others (p < 0.0001)"));
   CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio == Approx(1.5).epsilon(0.2));
   CHECK(lot.stands_out[16]);
   CHECK_FALSE(lot.stands_out[17]);
