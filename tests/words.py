@@ -90,6 +90,7 @@ def comments(text):
         if not token[0].startswith(("//", "/*")):
             continue
         value = re.sub(r"^\s*(?://+[<!]?|/\*+<?|\*+/?)|\*/$", "", token[0], flags=re.M)
+        value = re.sub(r"`[^`\n]*`", lambda code: "x" * len(code[0]), value)  # code, as in a page
         if found and re.fullmatch(r"\n[ \t]*", text[end:token.start()] if end >= 0 else ""):
             found[-1][1] += "\n" + value
         else:

@@ -2,6 +2,7 @@
 #include "command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
@@ -98,6 +99,11 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
     hint = libchar::did_you_mean(near);
   else if (::stat(command[1].c_str(), &status) == 0)
     hint = fmt::format("to see what is in this file: {} inspect FILE", app.get_name());
+  else if (command[1].find_first_of("./") != std::string::npos)
+    throw libchar::usage_error("E0203", app.get_name())
+        .says("no verb and no file has this name")
+        .got(command[1])
+        .hint(hint);
   throw libchar::usage_error("E0203", app.get_name()).says("unknown verb").got(command[1]).hint(hint);
 }
 

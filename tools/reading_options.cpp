@@ -1,6 +1,7 @@
 #include "reading_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <sstream>
 

@@ -149,7 +149,7 @@ CorneredHat cornered_hat(std::span<const std::vector<double>> records, double dt
   if (options.type == DeviationType::mtie || options.type == DeviationType::theobr ||
       options.type == DeviationType::theoh)
     throw usage_error("E0870")
-        .says("{} of a difference is no sum of those of two devices", name_of(options.type))
+        .says("{} of a difference is not the sum over two devices", name_of(options.type))
         .hint("oadev, mdev, ohdev and all other mean squares serve");
   const std::size_t n = records.size();
   std::vector<std::vector<AllanCurve>> curves(n);

@@ -181,7 +181,7 @@ ScalingBench bench_scaling(const ScalingBenchOptions& options, Progress& progres
 /// of the largest, with Student's interval.
 Figure growth_exponent(const std::vector<ScalingPoint>& points);
 
-// Questions before buying and before recording: how many of which sensor reach an error, and how
+// Questions before buying and before recording: how many sensors of a kind reach an error, and how
 // long a record must be to know a coefficient. From the bounds, checked by simulation.
 
 struct DesignOptions {
@@ -229,7 +229,7 @@ DesignBench bench_design(const std::vector<BenchSignal>& models, const DesignOpt
 // what is refused in a sentence, and what is neither.
 
 struct StressBenchOptions {
-  bool quick = false;  ///< without the records of 1e8 samples
+  bool quick = false;  ///< without the records of 10⁸ samples
   std::uint64_t seed = 1;
 };
 

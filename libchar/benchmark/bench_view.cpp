@@ -70,7 +70,7 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (const TermAccuracy& term : bench.methods.front().terms)
     out.table.columns.push_back(
         {fmt::format("RMSE / bound, {}", kTermNames[static_cast<std::size_t>(term.term)].letter)});
-  Table rest("Coverage of 95 %|False terms|ns per sample|Time over the first|B per sample|Front");
+  Table rest("Coverage of 95 %|False terms|Time per sample, ns|Time over the first|Memory per sample, bytes|Front");
   for (Table::Column& column : rest.columns) out.table.columns.push_back(std::move(column));
   std::vector<const EstimatorAccuracy*> order;
   for (const EstimatorAccuracy& method : bench.methods) order.push_back(&method);
@@ -126,10 +126,11 @@ BenchSection legend_section(const CharacterizationBench& bench) {
       "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on such a record. RMSE "
       "over it: 1 is as good as can be; a coefficient that is in the records and not detected counts as an estimate of "
       "zero, which can be nearer than the bound says where the bound is wide. False terms: records in which a "
-      "coefficient is stated that is not in them (–: it is told which there are, or all are). Time over the first: of "
-      "the first method listed below, record by record. Methods that are told count against each other only. A "
-      "coefficient whose bound is wider than half of it is not in the mean that the front and the chart go by. Front: "
-      "no method is at least as fast and more exact; else by how much the best of those that are is more exact."};
+      "coefficient is stated that is not in them (–: its terms are given, or all are there). Time over the first: of "
+      "the first method listed below, record by record. Methods that are given the terms count against each other "
+      "only. A "
+      "coefficient whose bound is wider than half of it is not in the mean used by the front and the chart. Front: no "
+      "method is at least as fast and more exact; otherwise by how much the best such method is more exact."};
   return out;
 }
 
@@ -162,7 +163,8 @@ BenchSection over_all(const FusionBench& bench) {
   }
   for (const FusionBenchLeftOut& scene : bench.left_out)
     out.sentences.push_back(fmt::format("Left out: {}; {}.", scene.name, scene.why));
-  for (const char* head : {"ns per instant", "B at most", "Front"}) out.table.columns.push_back({head});
+  for (const char* head : {"Time per instant, ns", "Memory at most, bytes", "Front"})
+    out.table.columns.push_back({head});
   BenchChart chart{"processor time, ns per instant", "RMSE over the yardstick's", {}};
   for (const FusionBenchRow& row : bench.rows) {
     const bool anywhere =

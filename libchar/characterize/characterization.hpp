@@ -82,7 +82,7 @@ struct CharacterizeOptions {
   /// several times, and what needs all samples of a longer one (a deviation other than oadev at
   /// octaves, a temperature) is refused beyond. Changes no result.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30U;
-  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times a decade besides, for plots
+  /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times per decade as well, for plots
   bool ten_a_decade = false;
   bool full_overlap = false;  ///< every term of the overlapping Allan deviation whatever the record's length
 };

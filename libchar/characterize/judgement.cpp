@@ -83,7 +83,7 @@ struct Judge {
           fmt::format("Undetermined: {}. Another term could explain the same part of the record, or its Allan curve "
                       "speaks against it.",
                       letters),
-          letters + " undetermined: not told from another term, or contradicted by the Allan curve");
+          letters + " undetermined: not distinguished from another term, or contradicted by the Allan curve");
       if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
     }
     for (std::size_t t = 0; t < kTerms; ++t)

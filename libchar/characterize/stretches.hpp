@@ -41,8 +41,8 @@ using StateSink = std::function<void(const std::string& bytes)>;
 /// The partial states of all channels over some leaves. Nothing in front of them is read, and nothing of the whole log
 /// is: `identity` (its digest, or whatever tells it from others) goes into the states as it is. Three channels are
 /// taken in one pass over the rows. Memory: that of three, each 8 MB and some 1 MB for each of up to 2 log2(leaves)
-/// nodes of the tree. Throws Error(usage) where the log or the options cannot be divided (E0726) or the range is none
-/// of the log's (E0727), Error(input) as read_log.
+/// nodes of the tree. Throws Error(usage) where the log or the options cannot be divided (E0726) or the range is not
+/// in the log (E0727), Error(input) as read_log.
 void characterize_stretch(const std::string& path, const CharacterizeOptions& options, StretchRange range,
                           const std::string& identity, const StateSink& sink, Progress& progress = no_progress());
 

@@ -1,6 +1,7 @@
 #include "libchar/export/exports.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -191,7 +192,7 @@ constexpr Alike kAlike[] = {
     {"robot_localization", "ros", "it reads the covariances of the messages"},
     {"isaac", "pegasus", "the same densities and correlation time"},
     {"ekf2", "px4", "its parameters"},
-    {"ardupilot", "px4", "the parameters of EK3 stand beside those of EKF2"},
+    {"ardupilot", "px4", "it has the parameters of EK3 next to those of EKF2"},
 };
 
 std::string alike_hint(std::string_view name) {

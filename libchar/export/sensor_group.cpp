@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -94,7 +95,7 @@ double factor_to_si(const SensorModel& model, const Kind& kind) {
   throw input_error("E0583", model.channel)
       .says(model.unit.empty()
                 ? fmt::format("its model names no unit, a {} needs one of {}", kind.name, kind.quantity_name)
-                : fmt::format("its unit is none of {}, which a {} needs", kind.quantity_name, kind.name))
+                : fmt::format("its unit is not one of {}, which a {} needs", kind.quantity_name, kind.name))
       .got(model.unit)
       .hint("write unit: {} into the model file", kind.example);
 }

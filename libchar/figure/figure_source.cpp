@@ -32,7 +32,7 @@ std::string format_in(const Document& document) {
 
 [[noreturn]] void refuse_log(const std::string& file) {
   throw input_error("E0975", file)
-      .says("is no report, curve or sensor model; is it a log?")
+      .says("is not a report, curve or sensor model; is it a log?")
       .hint(
           "sensorchar allan {0} -o curve.csv (or psd) makes a curve of a log, sensorchar characterize {0} -o DIR a "
           "report: plot these",

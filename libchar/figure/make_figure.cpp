@@ -22,11 +22,11 @@ constexpr FigureKind kKinds[] = {
     {"ranking", "error of each method with its interval", true, ranking_figure},
     {"timeline", "reference, estimate and best sensor over the run", true, timeline_figure},
     {"error", "error of the estimate and of the best sensor over the run", true, error_figure},
-    {"window", "error in a moving window, a line a method", true, window_figure},
-    {"weights", "weights over the run, a line a sensor", true, weights_figure, true},
-    {"variances", "noise variances as estimated, a line a sensor", true, variances_figure, true},
-    {"faults", "known faults and findings, a row a sensor", true, faults_figure, true},
-    {"error-allan", "Allan deviation of the error, a line a method", true, error_allan_figure},
+    {"window", "error in a moving window, one line per method", true, window_figure},
+    {"weights", "weights over the run, one line per sensor", true, weights_figure, true},
+    {"variances", "noise variances as estimated, one line per sensor", true, variances_figure, true},
+    {"faults", "known faults and findings, one row per sensor", true, faults_figure, true},
+    {"error-allan", "Allan deviation of the error, one line per method", true, error_allan_figure},
 };
 
 std::string first_kind(std::span<const FigureSource> sources) {
@@ -152,7 +152,7 @@ Chart make_figure(std::span<const FigureSource> sources, const FigureOptions& op
   if (options.labels.size() > sources.size())
     throw usage_error("E0979", "`labels`")
         .says("{} labels for {} files", options.labels.size(), sources.size())
-        .hint("one a file, in their order");
+        .hint("one per file, in their order");
   const FigureKind& kind = kind_of(options.kind.empty() ? first_kind(sources) : options.kind);
   refuse_mixed(sources, kind);
   refuse_unused(options, kind);

@@ -8,7 +8,7 @@
 
 namespace libchar {
 
-/// What a channel of a document says of its fit beside its name and unit. "{unit}" and
+/// What a channel of a document says of its fit after its name and unit. "{unit}" and
 /// "{white_noise}"… stand for the units.
 const Fields<NoiseFit>& noise_fit_fields();
 /// "residuals": long, and on request only.

@@ -14,7 +14,7 @@ struct FitOptions {
                                     false};  ///< offered from the start; quantization and ramp are added on alarm
   /// automatic spikes/lines/ramp/lowest-bin/bandwidth/quantization remedies, each only on its alarm
   bool remedies = true;
-  /// a Gauss-Markov process is looked for beside flicker and walk (remedies on, no ramp offered)
+  /// a Gauss-Markov process is looked for next to flicker and walk (remedies on, no ramp offered)
   bool gauss_markov = true;
   /// the samples are a clock's frequency: white and flicker phase noise are offered, no ramp and no
   /// Gauss-Markov process

@@ -63,7 +63,7 @@ void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit) {
 
 Remedy lines_remedy(std::uint64_t clipped) {
   return {"lines", "coefficients of the spectrum above 32 times the floor around them",
-          fmt::format("{} coefficients in and beside spectral lines left out", clipped), clipped};
+          fmt::format("{} coefficients in and next to spectral lines left out", clipped), clipped};
 }
 
 Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {

@@ -193,7 +193,7 @@ void check_heads(const TableText& table, const std::string& path) {
   head.column = 1;
   for (const std::string& one : table.heads) {
     if (std::count(table.heads.begin(), table.heads.end(), one) > 1)
-      throw input_error("E0781", fmt::format("{}:{}:1", path, table.head_line)).says("a column stands twice").got(one);
+      throw input_error("E0781", fmt::format("{}:{}:1", path, table.head_line)).says("a column is repeated").got(one);
     Document value;
     value.kind = Document::Kind::text;
     head.map.push_back({one, head.line, 1, value});
@@ -309,9 +309,7 @@ std::vector<std::string> files_of_pattern(const std::string& word) {
 void refuse_manifest_among(const std::vector<std::string>& logs) {
   const auto manifest = std::find_if(logs.begin(), logs.end(), is_manifest);
   if (manifest == logs.end()) return;
-  throw usage_error("E0205", *manifest)
-      .says("this is a manifest, and stands among logs")
-      .hint("name one manifest, or logs");
+  throw usage_error("E0205", *manifest).says("this is a manifest, given among logs").hint("name one manifest, or logs");
 }
 
 void check_devices(const Manifest& manifest, const std::string& path) {

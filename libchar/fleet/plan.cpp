@@ -1,6 +1,7 @@
 #include "libchar/fleet/plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -454,7 +455,7 @@ std::optional<ReplacedPlan> plan_in(const fs::path& folder) {
   const std::string begin = fmt::format(R"({{"format":"{}")", kPlanFormat);
   if (!text.starts_with(begin) && !fs::exists(folder / task_file(0), ignored))
     throw input_error("E0784", file.string())
-        .says("this file is no plan of a fleet, and would be overwritten")
+        .says("this file is not a plan of a fleet, and would be overwritten")
         .hint("move it away, or plan into another folder");
   ReplacedPlan out;
   try {
@@ -518,7 +519,7 @@ fs::path fleet_of_task(const std::string& file) {
   const fs::path folder = fs::absolute(file).parent_path().parent_path();
   std::error_code ignored;
   if (!fs::exists(folder / kPlanFile, ignored))
-    throw plan_refusal(file).says("this task is in the folder of no fleet: there is no plan beside it");
+    throw plan_refusal(file).says("this task is in the folder of no fleet: there is no plan next to it");
   return folder;
 }
 

@@ -64,7 +64,7 @@ std::optional<ReplacedPlan> plan_in(const std::filesystem::path& folder);
 /// Results in the folder that are of no unit of the plan.
 std::size_t results_of_others(const FleetPlan& plan, const std::filesystem::path& folder);
 
-/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. A plan that stands there is
+/// Writes the tasks and, flushed to the disk, DIR/plan.jsonl, which makes them a plan. An existing plan is
 /// replaced; results stay, and those of units that are still the same are used. Throws Error(output).
 void write_plan(const FleetPlan& plan, const std::filesystem::path& folder);
 

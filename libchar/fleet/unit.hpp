@@ -64,7 +64,7 @@ std::string settings_id(const CharacterizeOptions& options);
 std::string settings_id(const FleetUnit& unit);
 
 /// The same of what can make results differ that come from unlike logs. How a log is read (its names, units, rate,
-/// which rows) and which of its channels is the thermometer says what is in it, and is no way to characterize it.
+/// which rows) and which of its channels is the thermometer says what is in it, not how it is characterized.
 std::string analysis_id(const FleetUnit& unit);
 
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).

@@ -277,7 +277,7 @@ class Learner {
     out_.instants = rows;
     batches_ = static_cast<std::size_t>(std::clamp<Index>(rows / 40, 4, 30));
     x0_ = x_(rows_).mean();
-    c0_ = cross_(rows_, Eigen::all).colwise().mean().transpose();
+    c0_ = cross_(rows_, Eigen::indexing::all).colwise().mean().transpose();
   }
 
   // Which terms can be told at all: the input, and the other axes, must stand above their own noise.
@@ -458,7 +458,7 @@ class Learner {
                        delays_.ends, used_.size(), kMostDelay));
     if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
-      note(fmt::format("{} of {} other axes hardly move within the stretch: no misalignment with them is told",
+      note(fmt::format("{} of {} other axes hardly move within the stretch: misalignment with them is not estimated",
                        static_cast<std::size_t>(further_) - axes_.size(), further_));
     if (used_.size() < static_cast<std::size_t>(n_))
       note(fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",

@@ -6,8 +6,8 @@
 
 namespace libchar::fusion {
 
-/// How a sample between two instants is read. `sinc`: 24 taps, Kaiser window 8, within 1e-4 of the
-/// amplitude up to 0.37 of the rate. `cubic`: 4 taps (Lagrange), within 1e-2 up to 0.12 of the rate;
+/// How a sample between two instants is read. `sinc`: 24 taps, Kaiser window 8, within 0.01 % of the
+/// amplitude up to 0.37 of the rate. `cubic`: 4 taps (Lagrange), within 1 % up to 0.12 of the rate;
 /// it damps what is faster, most at half a sample, and aliased vibration with it.
 enum class Interpolation { sinc, cubic };
 

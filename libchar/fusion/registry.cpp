@@ -37,7 +37,7 @@ inline constexpr std::array kWatchOptions{
     Option{"fault_detection", "", 0, 0, 1,
            "1: sensors that fail are left out, found by cumulative sums as minque does; 0: all are used", true},
     Option{"false_alarm_s", "s", 1e5, 1, 1e15,
-           "mean time between two false alarms of the array (without a rate: per 2e7 samples)"},
+           "mean time between two false alarms of the array (without a rate: per 20 million samples)"},
     Option{"recovery_window", "samples", 0, 0, 1e9,
            "own samples that must agree with the others before a channel comes in again (0: 200, or those of 2 s where "
            "they are fewer)",
@@ -85,7 +85,7 @@ class WatchedRunner final : public Runner {
     if (detector_) return detector_->remarks(name, warnings);
     warnings.add("faults_not_watched",
                  std::string(name) +
-                     " looks for no faults: the search takes more than two sensors an input, and at most " +
+                     " looks for no faults: the search takes more than two sensors per input, and at most " +
                      std::to_string(kMostPaired));
   }
 

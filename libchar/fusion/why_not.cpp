@@ -63,13 +63,13 @@ std::string why_not(const Description& description, const Array& array) {
     return name + " takes at most " + std::to_string(needs.max_channels) +
            " channels (its memory grows with their square); this scene has " + std::to_string(array.channels);
   if (needs.noise_levels && !known(array.noise_levels, array.channels))
-    return name + " needs a noise level (above zero) for each channel; give a sensor model, noise or a rest";
+    return name + " needs the noise level of each sensor: give `models`, noise or a stretch at rest";
   if (needs.noise_models && static_cast<Eigen::Index>(array.noise_models.size()) != array.channels)
     return name + " needs a noise model of each channel, and its noise level; give each sensor its model";
   if (needs.reference_throughout && !array.reference_throughout)
     return name + " looks at the reference all along; this scene has none over the run";
   if (needs.reference && array.learning_samples == 0)
-    return name + " learns from a reference; this scene has no reference in a learning window (learning: [from, to])";
+    return name + " learns from a reference in a learning window (learning: [from, to]), and there is none";
   if (array.learning_samples < needs.learning_samples)
     return name + " learns from at least " +
            count(static_cast<Eigen::Index>(needs.learning_samples), "instant", "instants") +

@@ -1,6 +1,7 @@
 #include "libchar/log/formats.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

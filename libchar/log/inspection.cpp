@@ -82,8 +82,7 @@ bool is_listing(const LogInfo& info) { return !info.topics.empty() && info.chann
 std::string summary_line(const LogInfo& info) {
   const TimeBase& time = info.time;
   if (is_listing(info))
-    return fmt::format("{}: {}, one of which has to be chosen", printable(info.file),
-                       plural(info.topics.size(), "topic"));
+    return fmt::format("{}: {}, choose one", printable(info.file), plural(info.topics.size(), "topic"));
   std::string line = fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {
     line += brief_text(time.rate_hz, 6) + " Hz";

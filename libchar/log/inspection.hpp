@@ -24,7 +24,7 @@ Inspection inspect(const std::string& path, const ReadOptions& options = {}, Pro
 /// Are these topics of a log, to be chosen before it is read?
 bool is_listing(const LogInfo& info);
 
-/// "euroc.csv: 6 channels, 200.000 Hz (jitter 0.8 us), 7200 s, 0 gaps".
+/// `euroc.csv: 6 channels, 200 Hz (jitter 0.8 µs), 2 h, 0 gaps`.
 std::string summary_line(const LogInfo& info);
 
 /// {"format":"inspect","version":1,"recordings":[…]} with the keys of docs/json.md.

@@ -912,7 +912,7 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   // Where values repeat anyway, as between coarse steps, runs of them are no sign.
   const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
   if (!held && samples * std::pow(repeats, run - 1) < kChance)
-    stuck.help.push_back({"Take what stands still as missing.", {{"frozen", fmt::format("{}", run)}}});
+    stuck.help.push_back({"Take frozen values as missing.", {{"frozen", fmt::format("{}", run)}}});
   stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
   out.push_back(std::move(stuck));
 }
@@ -975,7 +975,7 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
     std::vector<std::string> texts;
     for (const double mark : q.signs.marks) texts.push_back(shortest(mark));
     Finding marked =
-        finding("missing_mark", fmt::format("{} stands {} times, far from all other values: a mark for missing values?",
+        finding("missing_mark", fmt::format("{} occurs {} times, far from all other values: a mark for missing values?",
                                             fmt::join(texts, " or "), q.signs.marked));
     marked.count = q.signs.marked;
     marked.help.push_back({"Say that it means missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
@@ -986,7 +986,7 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
     const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
     Finding cut = finding(
         share > kMostSaturated ? "much_saturated" : "saturated",
-        fmt::format("{} samples ({}) stand at the end of the range ({} or {}): saturated, use a larger full scale",
+        fmt::format("{} samples ({}) are at the end of the range ({} or {}): saturated, use a larger full scale",
                     q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
     cut.count = q.saturated;
     if (q.minimum == 0 || q.maximum == 0)

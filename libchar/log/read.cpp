@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -176,7 +177,7 @@ std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOpt
       const auto factor = parse_factor(*scale);
       if (!factor)
         throw usage_error("E0331", "`channel_scale`")
-            .says("the factor of a channel is no number other than 0")
+            .says("the factor of a channel must be a number other than 0")
             .got(*scale)
             .hint("such as 0.05 or 1/16.4");
       factors[c] = *factor;
@@ -262,7 +263,7 @@ struct Watch final : BlockSink {
 void check_numbers(const ReadOptions& options) {
   if (options.rate_hz && !(*options.rate_hz >= kRates.lowest && *options.rate_hz <= kRates.highest))
     throw usage_error("E0201", "`rate_hz`")
-        .says("the rate must be a positive number of hertz, from 1e-9 to 1e12")
+        .says("the rate must be a positive frequency, from 1 nHz to 1 THz")
         .got(shortest(*options.rate_hz));
   if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
     throw usage_error("E0201", "`to_s`").says("the window is empty: `to_s` does not lie after `from_s`");
@@ -386,7 +387,7 @@ std::string why_no_rows(const LogInfo& log) {
   if (format == nullptr || !format->about.rows_at_places)
     return fmt::format("its rows have no fixed places ({})", log.format);
   if (!log.time.column.empty())
-    return fmt::format("it has stamps (column {}), which say where a sample stands only once all of them are read",
+    return fmt::format("it has stamps (column {}), which say where a sample belongs only once all are read",
                        printable(log.time.column));
   return "";
 }

@@ -61,8 +61,7 @@ Fields<ReadOptions> table_fields() {
       field<&ReadOptions::kinds, &ReadOptions::Kinds::group_by>(
           "group_by", {.meaning = "column whose values become channels of their own (CSV)", .otherwise = "none"}),
       field<&ReadOptions::date_order>(
-          "date_order",
-          {.words = kDateOrders, .meaning = "number of a date that stands first (CSV)", .otherwise = "auto"}),
+          "date_order", {.words = kDateOrders, .meaning = "first number of a date (CSV)", .otherwise = "auto"}),
   };
 }
 

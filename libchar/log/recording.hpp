@@ -48,7 +48,7 @@ struct TimeBase {
   bool unit_guessed = false;  ///< the unit was inferred from the magnitude of the stamps, not read
   bool local = false;         ///< dates without a zone: an hour may be repeated or missing
   std::optional<std::int64_t> start_ns;  ///< stamp of the first sample in ns, when the log has stamps
-  double jitter_s = 0;                   ///< robust standard deviation (1.4826 MAD) of stamp minus grid
+  double jitter_s = 0;                   ///< robust standard deviation (1.483 MAD) of stamp minus grid
   double max_deviation_s = 0;            ///< largest |stamp minus grid|
   std::uint64_t gaps = 0;                ///< stretches of missing grid points
   std::uint64_t missing_samples = 0;     ///< grid points without a row

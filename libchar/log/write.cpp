@@ -1,6 +1,7 @@
 #include "libchar/log/write.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -14,6 +14,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/lot/detail/lot_statistics.hpp"
 #include "libchar/lot/detail/statistics/grouped_effects.hpp"
@@ -42,8 +43,11 @@ FleetOutlier outlier_of(const Fleet& fleet, const Statistic& s, const Outlier& f
   }
   out.ratio = std::exp(out.value - others);
   out.value = std::exp(out.value);
-  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value), s.lot.unit,
-                             number_text(out.ratio, 3), probability_text(found.p));
+  HabitualValue usual;
+  usual.symbol = s.lot.unit;
+  if (const auto term = term_of(s.lot.quantity)) usual = detail::headline_unit(*term, s.lot.channel_unit);
+  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value * usual.factor),
+                             usual.symbol, number_text(out.ratio, 3), probability_text(found.p));
   return out;
 }
 
@@ -266,8 +270,8 @@ std::string without_result(const FleetLot& lot) {
 
 std::string stand_out(const std::vector<std::string>& names, const char* what) {
   return names.size() == 1
-             ? fmt::format(" 1 {} stands out from its kind: {}.", what, names[0])
-             : fmt::format(" {} {}s stand out from their kind: {}.", names.size(), what, first_names(names));
+             ? fmt::format(" 1 {} is an outlier of its kind: {}.", what, names[0])
+             : fmt::format(" {} {}s are outliers of their kind: {}.", names.size(), what, first_names(names));
 }
 
 /// That nobody stands out is a finding only where somebody could.
@@ -285,14 +289,13 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
       if (q.of_kind && !o.all_channels) channels.emplace(o.recording, o.channel);
   }
   if (!any) return " There is no result to judge.";
-  if (!searched)
-    return fmt::format(" Too few of a kind to say which stands out: at least {} are needed.", kFewestForOutliers);
+  if (!searched) return fmt::format(" Too few of a kind to find outliers: at least {} are needed.", kFewestForOutliers);
   std::vector<std::string> of_one;
   for (const auto& [recording, channel] : channels) of_one.push_back(fleet.records[recording].channels[channel].name);
   std::string out = devices.empty() ? "" : stand_out(devices, "device");
   if (!of_one.empty()) out += stand_out(of_one, "channel");
   if (!out.empty()) return out;
-  return axes ? " No channel stands out from its kind." : " No device stands out from its kind.";
+  return axes ? " No channel is an outlier." : " No device is an outlier.";
 }
 
 /// The alarm of the control charts of all channels together: by the most improbable of their signals, which has the

@@ -179,7 +179,7 @@ const Fields<DeterministicTerm>& deterministic_fields() {
 void check_deterministic(const MapReader& at, const DeterministicTerm& term) {
   using Kind = DeterministicTerm::Kind;
   const auto only = [&](std::string_view key, Kind kind) {
-    if (at.has(key) && term.kind != kind) at.refuse(key, fmt::format("is no key of a {}", name_of(term.kind)));
+    if (at.has(key) && term.kind != kind) at.refuse(key, fmt::format("is not a key of a {}", name_of(term.kind)));
     if (!at.has(key) && term.kind == kind) at.refuse("kind", fmt::format("a {} needs `{}`", name_of(kind), key));
   };
   if (!at.has("kind")) at.refuse("kind", "is missing: step, warm-up or ramp");
@@ -294,9 +294,9 @@ const Fields<SensorModel>& noise_fields() {
       term_row(Term::quantization, "Q"),
       term_row(Term::ramp, "R"),
       part<&SensorModel::gauss_markov>("gauss_markov", gauss_markov_fields(),
-                                       {.comment = "first-order Gauss-Markov process beside the terms, sigma in {U}: "
+                                       {.comment = "first-order Gauss-Markov process next to the terms, sigma in {U}: "
                                                    "density 2 sigma^2 tau / (1 + (2 pi f tau)^2)",
-                                        .meaning = "first-order Gauss–Markov process beside the terms",
+                                        .meaning = "first-order Gauss–Markov process next to the terms",
                                         .otherwise = "none",
                                         .form = Entry::Form::flow}),
       field<&SensorModel::flicker_phase>(

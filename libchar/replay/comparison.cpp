@@ -108,7 +108,7 @@ bool same_names(const std::string& what, const std::vector<Named>& a, const std:
   };
   const auto only_a = without(left, right), only_b = without(right, left);
   if (only_a.empty() && only_b.empty() && left.size() == right.size())
-    found.say(what + "s stand in another order");
+    found.say(what + "s are in another order");
   else
     found.add(what + "s that the other does not have", named(only_a), named(only_b));
   return false;
@@ -212,7 +212,7 @@ std::vector<std::string> remarks(const Comparison& c) {
       if (left.name == right.name &&
           !same_number(left.noise_variance.value_or(kNone), right.noise_variance.value_or(kNone)))
         names.push_back(left.name);
-  if (!names.empty()) found.say("algorithms were told other noise levels of " + named(names));
+  if (!names.empty()) found.say("algorithms were given other noise levels of " + named(names));
   for (const ComparedAlgorithm& row : c.algorithms)
     if (row.a != nullptr && row.b != nullptr) compare_options(*row.a, *row.b, found);
   return out;

@@ -437,7 +437,8 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   }
   fill_flags(all, 2 * r);
   if (check_.steps && check_.rows.size() == sensor_of_.size()) check_.steps->push(all);
-  if (check_.steps && check_.rows.size() < sensor_of_.size()) check_.steps->push(all(check_.rows, Eigen::all));
+  if (check_.steps && check_.rows.size() < sensor_of_.size())
+    check_.steps->push(all(check_.rows, Eigen::indexing::all));
   if (check_.readings) check_.readings->push(all);
   faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
@@ -463,7 +464,7 @@ void Fusing::begin_check() {
     check_.readings.emplace(array.channels, instants_->info().count);
     check_.doubt.emplace(learnt_readings());
   }
-  check_.steps.emplace(h(check_.rows, Eigen::all), instants_->info().count);
+  check_.steps.emplace(h(check_.rows, Eigen::indexing::all), instants_->info().count);
   // The sum of two sensors' noises is comparable only where the same two are there.
   if (!check_.steps->identifiable() && check_.rows.size() < sensor_of_.size()) check_.steps.reset();
 }

@@ -50,9 +50,9 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
     field<&LearntAlignment::cross>("cross", {.meaning = "share of each further axis", .otherwise = "none"}),
     field<&LearntAlignment::low>(
         "low",
-        {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; −1e300: no limit",
+        {.meaning = "samples at or below are saturated: of the sensor, then of its further axes; −10³⁰⁰: no limit",
          .otherwise = "no limits"}),
-    field<&LearntAlignment::high>("high", {.meaning = "the same above; 1e300: no limit", .otherwise = "no limits"}),
+    field<&LearntAlignment::high>("high", {.meaning = "the same above; 10³⁰⁰: no limit", .otherwise = "no limits"}),
 };
 
 // One sensor may be the median at nearly every instant: zeros are written too.
@@ -123,7 +123,7 @@ class FileCheck {
   void run() const {
     if (learnt_.preparation.to_hz > 0 &&
         !(learnt_.preparation.from_hz > 0 && learnt_.preparation.from_hz < learnt_.preparation.to_hz))
-      top_.refuse("low_pass_hz", "stands behind a high-pass with a lower corner");
+      top_.refuse("low_pass_hz", "follows a high-pass with a lower corner");
     if (learnt_.sensors.empty()) top_.refuse("sensors", "expected at least one sensor");
     if (learnt_.inputs.empty()) top_.refuse("inputs", "expected at least one input");
     for (std::size_t i = 0; i < learnt_.sensors.size(); ++i) sensor(i);
@@ -146,7 +146,7 @@ class FileCheck {
     if (s.scale == 0) throw refusal("sensors", i).says("a scale of zero leaves nothing of the samples");
     if (!tilted() && s.h.size() != learnt_.inputs.size())
       throw refusal("sensors", i)
-          .says("h: expected {} weights, one an input, found {}", learnt_.inputs.size(), s.h.size());
+          .says("h: expected {} weights, one per input, found {}", learnt_.inputs.size(), s.h.size());
     if (s.flicker.has_value() != s.walk.has_value() || s.gauss_markov_sigma.size() != s.gauss_markov_tau_s.size())
       throw refusal("sensors", i)
           .says("a noise model has flicker and walk, and a gauss_markov_tau_s for each gauss_markov_sigma");
@@ -257,7 +257,7 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
       field<&LearntSensor::h>("h", {.meaning = "weights of the inputs in this sensor", .otherwise = "`1`"}),
       field<&LearntSensor::offset>("offset", {.meaning = "subtracted from the scaled samples", .otherwise = "0"}),
       field<&LearntSensor::noise_variance>("noise_variance",
-                                           {.range = kPositive, .meaning = "of a sample, told to the algorithms"}),
+                                           {.range = kPositive, .meaning = "of a sample, given to the algorithms"}),
       field<&LearntSensor::flicker>("flicker", {.range = kNotNegative, .meaning = "B of its noise model"}),
       field<&LearntSensor::walk>("walk", {.range = kNotNegative, .meaning = "K of its noise model"}),
       field<&LearntSensor::gauss_markov_sigma>("gauss_markov_sigma",
@@ -268,7 +268,7 @@ const Fields<LearntSensor>& fusion_sensor_fields() {
                                      {.meaning = "what is taken out of the sensor"}),
       field<&LearntSensor::step_noise>("step_noise",
                                        {.range = kPositive,
-                                        .meaning = "deviation of its noise from sample to sample, told from the "
+                                        .meaning = "deviation of its noise from sample to sample, by the "
                                                    "differences between sensors: a log that differs is warned of"}),
       field<&LearntSensor::step_noise_error>(
           "step_noise_error", {.range = kNotNegative, .meaning = "standard error of the logarithm of its square"}),

@@ -280,7 +280,7 @@ class Replay {
   template <class Work>
   void with_live(const Eigen::MatrixXd& samples, const Work& work) const {
     if (plan_.live.empty()) return work(samples);
-    work(Eigen::MatrixXd(samples(plan_.live, Eigen::all)));
+    work(Eigen::MatrixXd(samples(plan_.live, Eigen::indexing::all)));
   }
 
   // What another log can be fused with.
@@ -586,9 +586,9 @@ void Replay::refuse_sizes() const {
   if (beyond_ && largest_ > 0) return;
   throw input_error("E0909", scene_.file)
       .says(
-          "all samples of the sensors are beyond 1e100 or below 1e-100 in magnitude: errors of that size cannot be "
+          "all samples of the sensors are beyond 10¹⁰⁰ or below 10⁻¹⁰⁰ in magnitude: errors of that size cannot be "
           "squared")
-      .got(beyond_ ? "beyond 1e100" : brief_text(largest_, 3))
+      .got(beyond_ ? "beyond 10¹⁰⁰" : brief_text(largest_, 3))
       .hint("give the sensors a `scale` and a `unit`");
 }
 

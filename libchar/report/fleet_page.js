@@ -5,7 +5,7 @@ reportPage.start({}, () => 320);
   "use strict";
   const data = reportPage.report, rows = document.querySelector("#devices tbody"), PAGE = 100;
   const search = document.getElementById("device-search"), chosen = document.getElementById("device-state"), place = document.getElementById("device-place");
-  const STATES = [[4, "not characterized"], [8, "without a result yet"], [2, "fails a limit"], [1, "stands out"]];
+  const STATES = [[4, "not characterized"], [8, "without a result yet"], [2, "fails a limit"], [1, "outlier"]];
   const recording = (i) => (data.recording === null ? "" : data.recording[i]);
   const words = data.device.map((name, i) => (name + " " + recording(i) + " " + data.types[data.type[i]] + " " + data.batches[data.batch[i]]).toLowerCase());
   let found = [], page = 0;

@@ -325,5 +325,5 @@
   const ON_PAPER = { residuals: [340, 150], group: [340, 222] };
 
   // What the reader has not unfolded is not printed.
-  start(MAKERS, (kind, figure) => (kind === "trace" ? [340, 66 + parseInt(figure.style.getPropertyValue("--paper-marks"), 10)] : ON_PAPER[kind] || [340, 260]), "details.on-paper:not([open])");
+  start(MAKERS, (kind, figure) => (kind === "trace" ? [340, 82 + parseInt(figure.style.getPropertyValue("--paper-marks"), 10)] : ON_PAPER[kind] || [340, 260]), "details.on-paper:not([open])");
 })();

@@ -611,7 +611,7 @@
 
   const onMemory = (b) => (b < 1000 ? b + " B" : b < 1e6 ? numberText(b / 1e3, 3) + " kB" : numberText(b / 1e6, 3) + " MB");
   const MAKERS = {
-    "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns a sample (one core)", withUnit(axis, u), (x) => numberText(x, 3) + " ns a sample"),
+    "cost-time": (i, axis, u) => costChart("ns_per_sample", "time", "run time, ns per sample (one core)", withUnit(axis, u), (x) => numberText(x, 3) + " ns per sample"),
     "cost-memory": (i, axis, u) => costChart("peak_bytes", "memory", "peak memory, bytes", withUnit(axis, u), onMemory),
     signal: signalChart, error: errorChart, deviations: deviationsChart, ranking: rankingChart,
     window: windowChart, weights: weightsChart, variances: variancesChart, faults: faultsChart, detection: detectionChart, "error-allan": allanChart, sensors: sensorsChart,

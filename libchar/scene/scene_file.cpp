@@ -30,7 +30,7 @@ void check_align_terms(const MapReader& at, const SceneAlign& align) {
   for (const std::string& term : align.terms)
     if (std::find(std::begin(kAlignTerms), std::end(kAlignTerms), term) == std::end(kAlignTerms))
       throw scene_refusal("E0748", at, "terms")
-          .says("{} is no term of an alignment", printable(term, 40))
+          .says("{} is not a term of an alignment", printable(term, 40))
           .hint("there are {}", fmt::join(kAlignTerms, ", "));
 }
 
@@ -142,7 +142,7 @@ std::optional<ArraySimulation> simulation_again(const MapReader& at, const Simul
   const std::size_t inputs = out.truth.size();
   if (!from.rows.empty() && from.rows.size() != inputs * scene.sensors.size())
     throw scene_refusal("E0741", at, "rows")
-        .says("expected {} weights, one a sensor and true input, found {}", inputs * scene.sensors.size(),
+        .says("expected {} weights, one per sensor and true input, found {}", inputs * scene.sensors.size(),
               from.rows.size());
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     const SceneSensor& sensor = scene.sensors[i];
@@ -208,7 +208,7 @@ void read_reference(const MapReader& top, const SceneFolder& folder, Scene& scen
   for (const Document& name : is_scalar(names) ? std::vector<Document>{names} : names.list)
     check_scene_text(top, name, at.path_of(key), scene);
   if (std::set<std::string>(reference.channels.begin(), reference.channels.end()).size() != reference.channels.size())
-    throw scene_refusal("E0737", at, key).says("a channel stands twice");
+    throw scene_refusal("E0737", at, key).says("a channel is repeated");
   if (map) read_options(at, folder, reference, scene);
   if (scene.simulate)
     for (const std::string& channel : reference.channels)

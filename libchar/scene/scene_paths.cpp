@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kOutside = "move the file beside the scene, or allow it with `allow_outside`";
+const std::string kOutside = "move the file next to the scene, or allow it with `allow_outside`";
 
 // One name of a file in a scene, and where it stood, for refusals.
 struct Named {
@@ -37,7 +37,7 @@ fs::path folder_of(const std::string& scene) {
 // What somebody may have meant by a name that is no file.
 std::string hint_for(const std::string& named, const fs::path& folder) {
   if (named.starts_with('~')) return "~ is not expanded: write the path out";
-  if (named.find("://") != std::string::npos) return "nothing is read from a network: save the file beside the scene";
+  if (named.find("://") != std::string::npos) return "nothing is read from a network: save the file next to the scene";
   if (named.find("$(") != std::string::npos || named.find_first_of("`|;") != std::string::npos)
     return "it is taken as a file name, no command is run";
   if (named.find_first_of("*?[") != std::string::npos) return "patterns are not expanded: name one file";
@@ -68,7 +68,7 @@ void check_kind(const Named& named, const fs::path& whole) {
   if (fs::is_directory(status)) throw named.refusal("E0733").says("{} is a folder, a file was expected", shown);
   if (!fs::is_regular_file(status))
     throw named.refusal("E0733")
-        .says("{} is no regular file (a pipe, a device, a socket)", shown)
+        .says("{} is not a regular file (a pipe, a device, a socket)", shown)
         .hint("save its data in a file");
 }
 
@@ -100,7 +100,7 @@ std::string resolve_scene_file(const std::string& text, const SceneFolder& folde
         .says("a link leads out of the scene's folder, to {}", printable(real.string()))
         .hint(kOutside);
   if (detail::is_of_the_kernel(real))
-    throw named.refusal("E0733").says("{} is no recorded file", printable(real.string()));
+    throw named.refusal("E0733").says("{} is not a recorded file", printable(real.string()));
   if (fs::equivalent(whole, folder.scene, problem)) throw named.refusal("E0734").says("the scene names itself as data");
   return whole.string();
 }
@@ -125,7 +125,7 @@ std::string path_for_scene(const std::string& file, const std::string& scene) {
   const std::string name = relative.empty() || leaves(relative) ? target.string() : relative.string();
   if (first_invalid_utf8(name) != std::string::npos || name.find('\0') != std::string::npos)
     throw output_error("E0745", scene)
-        .says("a file whose name is no UTF-8 cannot be named in a scene")
+        .says("a file whose name is not UTF-8 cannot be named in a scene")
         .got(name)
         .hint("rename it");
   return name;

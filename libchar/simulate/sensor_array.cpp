@@ -50,7 +50,7 @@ void check_signals(const ArraySimulation& s) {
     const SignalSpec& signal = s.truth[j];
     const bool derived = signal.kind == "derivative" || signal.kind == "sine_of" || signal.kind == "cosine_of";
     if (derived && signal.of >= j)
-      throw input_error("E0554").says("truth signal {} is made of signal {}, which does not stand before it", j,
+      throw input_error("E0554").says("truth signal {} is derived from signal {}, which must be listed before it", j,
                                       signal.of);
     if (signal.kind == "points" && signal.points.empty())
       throw input_error("E0554").says("a signal of points has none");
@@ -87,7 +87,7 @@ void keep_every(std::span<const double> fine, std::size_t step, std::span<double
 void check(const ArraySimulation& s) {
   if (s.sensors.empty()) throw input_error("E0554").says("there is no sensor to simulate");
   if (!(s.rate_hz >= 1e-9 && s.rate_hz <= 1e12))
-    throw input_error("E0554").says("the sampling rate must be above 0 Hz: from 1e-9 to 1e12");
+    throw input_error("E0554").says("the sampling rate must be above 0 Hz: from 1 nHz to 1 THz");
   if (s.samples == 0)
     throw input_error("E0554").says("there is no sample to simulate").hint("give a duration or a number of samples");
   if (s.oversampling == 0 || s.oversampling > 1024)

@@ -9,6 +9,7 @@
 #include "libchar/simulate/signal.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -195,7 +196,7 @@ const std::vector<SignalKind>& signal_kind_rows() {
       {"ramp", {"slope"}, "U/s"},
       {"points", {"points"}, "`[[t, value], …]`, linear in between, constant outside"},
       {"recording", {"file", "channel"}, "a channel of a log at the rate of the simulation; its last sample is held"},
-      {"derivative", {"of"}, "of a signal that stands before this one, by name or position from 0"},
+      {"derivative", {"of"}, "of a signal listed before this one, by name or position from 0"},
       {"sine_of", {"of", "amplitude"}, "A sin x of such a signal in rad"},
       {"cosine_of", {"of", "amplitude"}, "A cos x of such a signal in rad"},
   };

@@ -50,7 +50,7 @@ with tempfile.TemporaryDirectory() as name:
           f"{report['measured']['passes']} passes: "
           f"{wall:.1f} s wall, {cpu:.1f} s CPU, {after.ru_maxrss / 1024:.0f} MB peak")
     mean = next(a["ns_per_sample"] for a in report["algorithms"] if a["name"] == "mean")
-    print(f"{'algorithm':34} {'ns a sample':>12} {'x mean':>8} {'learning s':>11} {'heap kB':>9}")
+    print(f"{'algorithm':34} {'ns per sample':>12} {'x mean':>8} {'learning s':>11} {'heap kB':>9}")
     for a in report["algorithms"]:
         if a["status"] == "ran":
             heap = "-" if a["peak_bytes"] is None else f"{a['peak_bytes'] / 1e3:.1f}"

@@ -137,7 +137,7 @@ TEST_CASE("digital faults stand in the result, and their coefficients are not be
   REQUIRE(clipped.digital.rails.size() == 2);
   CHECK(clipped.digital.rails[0].share == Approx(0.16).margin(0.01));
   CHECK(clipped.quality.saturated == Approx(0.317 * 40'000).epsilon(0.03));
-  CHECK(find(clipped, "stand at the largest value"));
+  CHECK(find(clipped, "are at the largest value"));
   CHECK((*clipped.fit)[Term::white].status == Status::misfit);
   REQUIRE(coarse.digital.staircase);
   CHECK(find(coarse, "is below the converter's step"));

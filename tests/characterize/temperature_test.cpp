@@ -65,7 +65,7 @@ TEST_CASE("temperature of a recording: refused where it is none or cannot be kep
   options.temperature = "*";
   CHECK(test::refusal(recording, options).find("E0702 several channels match this pattern") == 0);
   options.temperature = "gyr_x";
-  CHECK(test::refusal(recording, options) == "E0702 the channel gyr_x is in deg/s, which is no temperature");
+  CHECK(test::refusal(recording, options) == "E0702 the channel gyr_x is in deg/s, which is not a temperature");
   Recording alone = recording;
   alone.info.channels.erase(alone.info.channels.begin());
   alone.samples.erase(alone.samples.begin());

@@ -15,7 +15,7 @@
 #include "tests/support/run.hpp"
 #include "tests/support/shared.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -155,7 +155,7 @@ TEST_CASE("characterize --lot and a fleet of the same logs say the same") {
   const auto ran = logs.characterize(names, {"--lot"});
   CAPTURE(ran.err, ran.out);
   REQUIRE(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("9 devices. 2 devices stand out from their kind: ") &&
+  CHECK_THAT(ran.out, Contains("9 devices. 2 devices are outliers of their kind: ") &&
                           Contains("gx, gy: recorded in deg/s, rad/s, compared in deg/s."));
   std::vector<std::string> plan = {"fleet", "plan", "-o", logs.path("f"), "--no-second-opinion"};
   for (const std::string& name : names) plan.push_back(logs.path(name));

@@ -142,7 +142,7 @@ TEST_CASE("simulate: what cannot be is one sentence, and nothing is written") {
       {{model, "-o", out, "--samples", "5", "--truth", "recording,file=absent.csv"}, 3, "absent.csv"},
       {{bench.file("fast.yaml", "format: sensor-model\nversion: 1\nrate_hz: 1e300\n"), "-o", out, "--samples", "5"},
        2,
-       "not between 1e-9 and 1e9 Hz"},
+       "not between 1 nHz and 1 GHz"},
       {{model, "-o", out, "--samples", "5", "--truth", "sinus"}, 3, "did you mean sine?"},
       {{model, "-o", out, "--samples", "5", "--truth", "constant"}, 3, "value is missing"},
       {{model, "-o", out, "--samples", "5", "--truth", "ramp"}, 3, "slope is missing"},

@@ -76,7 +76,7 @@ TEST_CASE("NIST StRD univariate sets within half a digit of what binary64 input 
   }
 }
 
-TEST_CASE("an offset of 1e9 standard deviations costs nothing") {
+TEST_CASE("an offset of 10⁹ standard deviations costs nothing") {
   const auto high = gaussian(300'000, 1e9);
   auto low = high;
   for (double& v : low) v -= 1e9;

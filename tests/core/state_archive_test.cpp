@@ -83,7 +83,7 @@ TEST_CASE("state archive: a byte that is another one, or is not there, is told")
   }
   REQUIRE(state_refusal(whole + " ") == "is damaged: its digest is another one");
   REQUIRE(state_refusal("") == "is empty");
-  REQUIRE(state_refusal("some text") == "is no partial state");
+  REQUIRE(state_refusal("some text") == "is not a partial state");
 }
 
 TEST_CASE("state archive: another kind or version is named") {

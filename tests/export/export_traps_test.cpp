@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -100,6 +101,37 @@ TEST_CASE("trap 5: Gazebo turns the sign of the constant bias, so a stated one g
   models = test::euroc_imu();
   models[1].mean = 9.81;
   CHECK_FALSE(has(exported("sdf", models).text, "9.81"));
+}
+
+TEST_CASE("trap: Webots multiplies the noise by the reading, and is as loud at rest as in motion all the same") {
+  const std::string text = exported("webots", test::euroc_imu()).text;
+  const auto rows_of_node = [&](const std::string& node) {
+    std::istringstream in(text.substr(text.find("lookupTable [", text.find("\n" + node + " {")) + 13));
+    std::vector<std::array<double, 3>> rows;
+    for (std::array<double, 3> row{}; in >> row[0] >> row[1] >> row[2];) rows.push_back(row);
+    return rows;
+  };
+  // As WbLookupTable::lookup: both columns linear between rows, reading * (1 + noise * Gaussian).
+  const auto check = [&](const std::string& node, double sd, double range) {
+    const auto rows = rows_of_node(node);
+    REQUIRE(rows.size() > 10);
+    REQUIRE(rows.front()[0] < -range);
+    REQUIRE(rows.back()[0] > range);
+    std::vector<double> inputs = {0};
+    for (double x = 1e-6; x < range; x *= 1.07) inputs.insert(inputs.end(), {x, -x - sd});
+    for (const double input : inputs) {
+      std::size_t i = 0;
+      while (rows[i + 1][0] <= input) ++i;
+      REQUIRE(rows[i][0] < rows[i + 1][0]);
+      const double share = (input - rows[i][0]) / (rows[i + 1][0] - rows[i][0]);
+      const auto column = [&](int c) { return (1 - share) * rows[i][c] + share * rows[i + 1][c]; };
+      CAPTURE(node, input);
+      CHECK(std::abs(column(1)) * column(2) == Approx(sd).epsilon(0.005));
+      CHECK(std::abs(column(1) - input) < 0.021 * sd);
+    }
+  };
+  check("Gyro", 1.6968e-4 * std::sqrt(200), 99);
+  check("Accelerometer", 2.0e-3 * std::sqrt(200), 999);
 }
 
 TEST_CASE("trap 6: deg or rad, per h or per s, g or m/s^2") {

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/error.hpp"
+#include "libchar/figure/detail/drawing.hpp"
+#include "libchar/figure/detail/scale.hpp"
 #include "libchar/figure/draw_figure.hpp"
 #include "libchar/report/html/html_report.hpp"
 #include "libchar/report/replay/replay_text.hpp"
@@ -25,6 +27,39 @@ Chart chart_of(const FigureSource& source, const std::string& kind, std::vector<
   options.kind = kind;
   options.channels = std::move(channels);
   return make_figure({&source, 1}, options);
+}
+
+Box box_of(const DrawnText& text) {
+  const double width = text_width(text.runs, text.size, text.bold);
+  const double before = text.anchor == Anchor::start ? 0 : text.anchor == Anchor::middle ? width / 2 : width;
+  const double up = 0.72 * text.size, down = 0.1 * text.size;  // capitals, and a little below the base line
+  if (text.upright) return {text.at.x - up, text.at.y - width + before, text.at.x + down, text.at.y + before};
+  return {text.at.x - before, text.at.y - up, text.at.x - before + width, text.at.y + down};
+}
+
+std::string words_of(const DrawnText& text) {
+  std::string out;
+  for (const TextRun& run : text.runs) out += run.text;
+  return out;
+}
+
+/// "A over B" for each two texts of the drawing whose boxes meet; "A outside" for one that leaves the sheet.
+std::string texts_in_the_way(const Chart& chart, const DrawingOptions& options) {
+  const Drawing drawing = lay_out(chart, options);
+  std::vector<std::pair<Box, std::string>> boxes;
+  std::string out;
+  for (const DrawnPiece& piece : drawing.pieces) {
+    if (!piece.is_text) continue;
+    const Box box = box_of(piece.text);
+    const std::string words = words_of(piece.text);
+    if (box.left < -0.5 || box.top < -0.5 || box.right > drawing.width + 0.5 || box.bottom > drawing.height + 0.5)
+      out += words + " outside; ";
+    for (const auto& [other, said] : boxes)
+      if (other.meets(box)) out += words + " over " + said + "; ";
+    boxes.emplace_back(box, words);
+  }
+  REQUIRE(boxes.size() > 4);
+  return out;
 }
 
 }  // namespace
@@ -71,6 +106,9 @@ TEST_CASE("every kind is drawn of a report, or says why it has none") {
     }
     Findings warnings;
     CHECK(draw_figure(chart, FigureFormat::svg, {}, warnings).size() > 1000);
+    for (const double width : {kOneColumnMm, kTwoColumnsMm})
+      for (const LegendPlace legend : {LegendPlace::automatic, LegendPlace::inside, LegendPlace::below})
+        CHECK(texts_in_the_way(chart, {.width_mm = width, .legend = legend}) == "");
     // and of the other kind of report it is refused
     CHECK_THROWS_WITH(chart_of(kind.of_replay ? of_log : of_replay, std::string(kind.word)), Contains("E0978"));
   }

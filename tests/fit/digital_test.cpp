@@ -62,7 +62,7 @@ TEST_CASE("digital: samples at a rail are counted, on a grid and off it") {
   CHECK_FALSE(faults.rails[0].high);
   CHECK(faults.rails[1].value == 2.2 * kSigma);
   CHECK(faults.rails[1].share == Approx(clipped / kDigitalSamples));
-  CHECK(faults.findings[1].sentence.find("stand at the largest value, 0.110 deg/s") != std::string::npos);
+  CHECK(faults.findings[1].sentence.find("are at the largest value, 0.110 deg/s") != std::string::npos);
 
   std::vector<double> one = noise(41);
   for (double& value : one) value = std::min(value, 2 * kSigma);

@@ -8,11 +8,13 @@
 #include <numeric>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "libchar/fit/detail/events/regression.hpp"
 #include "libchar/fit/detail/events/scans.hpp"
 #include "libchar/fit/detail/events/series_powers.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "tests/support/noise.hpp"
 
@@ -223,6 +225,16 @@ TEST_CASE("events: two steps, up and down") {
   for (const Event& event : events) CHECK(event.at_ci95.high - event.at_ci95.low < 2);
   CHECK(events[0].size == Approx(2 * kEventSigma).margin(4 * events[0].sd));
   CHECK(events[1].size == Approx(-2 * kEventSigma).margin(4 * events[1].sd));
+  // what was done to the record says both in one row
+  FitOptions options;
+  options.second_opinion = false;
+  const NoiseFit fit = fit_record(y, kEventRate, nullptr, options);
+  REQUIRE(std::count_if(fit.remedies.begin(), fit.remedies.end(), [](const Remedy& r) { return r.kind == "step"; }) ==
+          1);
+  const Remedy& steps = *find_remedy(fit, "step");
+  CHECK(steps.count == 2);
+  CHECK(steps.action.find(place_text(events[0].at_s)) != std::string::npos);
+  CHECK(steps.action.find(place_text(events[1].at_s)) != std::string::npos);
 }
 
 TEST_CASE("events: a warm-up has its size and time constant") {

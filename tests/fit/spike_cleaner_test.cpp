@@ -260,7 +260,7 @@ TEST_CASE("more than one wild sample in a hundred is not cleaned, and the share 
   CHECK(outcome(y).verdict == SpikeVerdict::too_many);
   const NoiseFit fit = fit_record(y, 100, nullptr);
   REQUIRE(!fit.findings.empty());
-  CHECK(fit.findings[0].sentence.find("2 % of the samples stand out") == 0);
+  CHECK(fit.findings[0].sentence.find("2 % of the samples differ from their neighbours") == 0);
   for (const Remedy& remedy : fit.remedies) CHECK(remedy.kind != "spikes");
 }
 

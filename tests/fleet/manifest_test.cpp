@@ -94,7 +94,7 @@ TEST_CASE("what is wrong with a manifest is said with its place") {
              Contains("temperature_c") && Contains("line7.yaml:4"));
   CHECK_THAT(refusal(kHead + "devices:\n  - {log: a.csv, options: {reading: {rate: 5}}}\n"), Contains("rate"));
   CHECK_THAT(refusal("device,log\nA,a.csv,3\n", "t.csv"), Contains("t.csv:2:1: error E0781: 3 cells under 2 heads"));
-  CHECK_THAT(refusal("device,log,log\n", "t.csv"), Contains("t.csv:1:1") && Contains("stands twice"));
+  CHECK_THAT(refusal("device,log,log\n", "t.csv"), Contains("t.csv:1:1") && Contains("is repeated"));
   CHECK_THAT(refusal("device,log\nA,\xE4.csv\n", "t.csv"), Contains("UTF-8") && Contains("t.csv:2"));
   CHECK_THAT(refusal("device,log\n\"A,a.csv\n", "t.csv"), Contains("not closed"));
   CHECK_THAT(refusal("device,log,temperature_c\nA,a.csv,25 °C\n", "t.csv"),

@@ -113,7 +113,7 @@ TEST_CASE("a task that a power cut has torn is read from the plan, one that was 
   CHECK(fleet_of_task(task) == folder / "F");
   test::write_file((folder / "tasks-alone.json").string(), whole);
   CHECK_THROWS_WITH(fleet_of_task((folder / "tasks-alone.json").string()),
-                    Contains("E0784") && Contains("there is no plan beside it"));
+                    Contains("E0784") && Contains("there is no plan next to it"));
   test::write_file(task, test::slurp(folder / "F" / task_file(0)).replace(10, 5, "xxxxx"));
   CHECK_THROWS_AS(read_task(task), Error);
   // Of no plan, or of a longer one that is not there any more.
@@ -189,7 +189,7 @@ TEST_CASE("what a plan replaces is known, and what is no plan is not overwritten
   std::filesystem::create_directory(folder / "G");
   test::write_file(folder / "G" / "plan.jsonl", "{\"project\": 1}\n");
   CHECK_THROWS_WITH(write_plan(plan, folder / "G"),
-                    Contains("E0784") && Contains("no plan of a fleet") && Contains("move it away"));
+                    Contains("E0784") && Contains("not a plan of a fleet") && Contains("move it away"));
   CHECK(test::slurp(folder / "G" / "plan.jsonl") == "{\"project\": 1}\n");
   CHECK_FALSE(std::filesystem::exists(folder / "G" / "tasks"));
 }

@@ -100,7 +100,7 @@ TEST_CASE("mean and inverse variance of several inputs are least squares", "[fus
   Eigen::VectorXd y(5);
   y << 0.3, -1, 2, 0.7, 5;
   const auto expected = [&](const Eigen::VectorXd& w, const std::vector<Eigen::Index>& rows) {
-    const Eigen::MatrixXd h = array.observation_matrix(rows, Eigen::all);
+    const Eigen::MatrixXd h = array.observation_matrix(rows, Eigen::indexing::all);
     const Eigen::MatrixXd hw = h.transpose() * Eigen::VectorXd(w(rows)).asDiagonal();
     return Eigen::VectorXd(test::solution(hw * h, hw * y(rows)));
   };

@@ -22,7 +22,7 @@ double least_of_all(const Eigen::MatrixXd& h, const Eigen::VectorXd& d) {
     for (Eigen::Index b = a + 1; b < h.rows(); ++b)
       for (Eigen::Index c = b + 1; c < h.rows(); ++c) {
         const std::vector<Eigen::Index> set{a, b, c};
-        const Eigen::MatrixXd inverse = test::inverse(h(set, Eigen::all));
+        const Eigen::MatrixXd inverse = test::inverse(h(set, Eigen::indexing::all));
         const double trace = (inverse * d(set).asDiagonal() * inverse.transpose()).trace();
         if (trace < least) least = trace;
       }

@@ -72,7 +72,7 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
         "foo needs at least 3 channels for 1 input; this scene has 2 (the difference of two channels tells the sum of "
         "their variances, not which is the noisier)");
   CHECK(why_not(needing({.noise_levels = true}), two) ==
-        "foo needs a noise level (above zero) for each channel; give a sensor model, noise or a rest");
+        "foo needs the noise level of each sensor: give `models`, noise or a stretch at rest");
   two.noise_levels = Eigen::Vector2d(1, 0);
   CHECK_FALSE(why_not(needing({.noise_levels = true}), two).empty());
   two.noise_levels = Eigen::Vector2d(1, 2);

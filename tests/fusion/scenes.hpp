@@ -86,7 +86,7 @@ inline std::vector<FusionScene> fusion_scenes() {
                                noisy_scene("six equal channels", VectorXd::Constant(6, 0.3)),
                                noisy_scene("200 channels", VectorXd::LinSpaced(200, 0.1, 5), 500),
                                noisy_scene("deviations 1 : 1e12", (VectorXd(4) << 1e-12, 1, 1e12, 2).finished()),
-                               noisy_scene("offset 1e9, noise 1e-6", VectorXd::Constant(5, 1e-12), 600, 1e9, 1e-3),
+                               noisy_scene("offset 10⁹, noise 10⁻⁶", VectorXd::Constant(5, 1e-12), 600, 1e9, 1e-3),
                                noisy_scene("scale 1e-100", five * 1e-200, 600, 0, 1e-100),
                                noisy_scene("one instant", five, 1)};
   for (FusionScene& scene : all)

@@ -42,7 +42,7 @@ struct Textbook {
     for (Eigen::Index s = 0; s < of.size(); ++s) c(of.channel[static_cast<std::size_t>(s)], s) = 1;
   }
   Eigen::VectorXd step(const Eigen::VectorXd& y, const std::vector<Eigen::Index>& present) {
-    const Eigen::MatrixXd hp = h(present, Eigen::all), cp = c(present, Eigen::all);
+    const Eigen::MatrixXd hp = h(present, Eigen::indexing::all), cp = c(present, Eigen::indexing::all);
     Eigen::MatrixXd s = cp * p * cp.transpose();
     s.diagonal() += white(present);
     const Eigen::MatrixXd inverse = test::inverse(s);

@@ -92,11 +92,11 @@ TEST_CASE("messages about bad binary files name place, numbers and remedy") {
   says("npy", "npy/010_shape_overflow.npy", "overflow");
   says("npy", "npy/013_shape_negative.npy", "negative");
   says("npy", "npy/034_datetime.npy", "calendar times");
-  says("npy", "npy/039_dup_key.npy", "a key stands twice in the header; got \"shape\"");
+  says("npy", "npy/039_dup_key.npy", "a key is repeated in the header; got \"shape\"");
   says("raw", "raw/007_offset_past_end.f64", "offset of 1000000 bytes lies behind the end");
   says("raw", "raw/016_dtype_case.f64", "did you mean f64?");
   says("raw", "raw/019_unknown_key.f64", "did you mean channels?");
-  says("raw", "raw/020_dup_key.f64", "twice");
+  says("raw", "raw/020_dup_key.f64", "repeated");
   says("raw", "raw/021_sidecar_empty.f64", ":1:1");
   says("raw", "raw/022_sidecar_truncated.f64", "json:1:");
 }

@@ -247,7 +247,7 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
              Catch::Contains("neither True nor False"));
   CHECK_THAT(fault_of("{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999999999999,), }"),
              Catch::Contains("too large"));
-  CHECK_THAT(fault_of("{'descr': '<f8', " + rest + "x"), Catch::Contains("behind the header"));
+  CHECK_THAT(fault_of("{'descr': '<f8', " + rest + "x"), Catch::Contains("follows the header"));
   CHECK_THAT(fault_of("{'descr': '<f8"), Catch::Contains("does not end"));
   CHECK_THAT(fault_of(""), Catch::Contains("expected {"));
 }

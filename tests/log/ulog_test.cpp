@@ -270,7 +270,7 @@ TEST_CASE("ULog: a topic whose definition cannot be used says why") {
   CHECK(why(ulog_message('F', "a:uint64_t " + std::string(300, 'n') + ";"), "a") ==
         "its fields have names of more than 255 characters");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;nonsense;"), "a") ==
-        "its format has a field that is none: nonsense");
+        "its format has a field that cannot be read: nonsense");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;") + ulog_message('F', "a:uint64_t timestamp;int8_t x;"),
             "a") == "the log defines its format twice, and not alike");
   CHECK(why(ulog_message('F', "a:uint64_t timestamp;uint8_t x;"), "a").empty());

@@ -3,6 +3,7 @@
 #include "libchar/lot/fleet_lot.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -59,7 +60,7 @@ TEST_CASE("a fleet has mean, spread, quantiles and a chart of each quantity, a k
   const QuantityLot& bias = find(lot, "gyro_y", DeviceQuantity::turn_on_bias);
   CHECK(bias.unit == "deg/s");
   CHECK(bias.figures->spread == Approx(0.1).epsilon(0.2));
-  CHECK(lot.verdict == "200 devices. No device stands out from its kind.");
+  CHECK(lot.verdict == "200 devices. No device is an outlier.");
 }
 
 TEST_CASE("the spread of devices is not the uncertainty of one") {
@@ -106,12 +107,12 @@ TEST_CASE("a device that does not belong to its fleet is named with its reason, 
   REQUIRE(lot.worst.size() == 2);
   CHECK(lot.outlying == 2);
   CHECK(records[lot.worst[0].recording].device == "imu41");
-  CHECK_THAT(lot.worst[0].reasons[0],
-             Contains("gyro_x: Bias instability") && Contains("times that of the others (p < 0.0001)"));
+  CHECK_THAT(lot.worst[0].reasons[0], Contains("gyro_x: Bias instability") && Contains(" deg/h, ") &&
+                                          Contains("times that of the others (p < 0.0001)"));
   CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio == Approx(1.5).epsilon(0.2));
   CHECK(lot.stands_out[16]);
   CHECK_FALSE(lot.stands_out[17]);
-  CHECK_THAT(lot.verdict, Contains("2 devices stand out from their kind: imu17, imu41."));
+  CHECK_THAT(lot.verdict, Contains("2 devices are outliers of their kind: imu17, imu41."));
 }
 
 TEST_CASE("a device that is a little noisier in all of its channels stands out as a device") {
@@ -127,7 +128,7 @@ TEST_CASE("a device that is a little noisier in all of its channels stands out a
     named += lot.stands_out[2];
     others += lot.outlying > (lot.stands_out[2] ? 1U : 0U);
     if (!lot.stands_out[2] || lot.outlying > 1) continue;
-    CHECK(lot.verdict == "6 devices. 1 device stands out from its kind: imu3.");
+    CHECK(lot.verdict == "6 devices. 1 device is an outlier of its kind: imu3.");
     CHECK_THAT(lot.worst[0].reasons.back(), Contains("times that of the others"));
   }
   CHECK(named >= 60);
@@ -318,18 +319,18 @@ TEST_CASE("axes that differ in every device alike are no device's fault, of one 
   };
   for (DeviceRecord& r : records) louder(r, 2, 4);
   const FleetLot lot = fleet_lot(records);
-  CHECK(lot.verdict == "12 devices. No device stands out from its kind.");
+  CHECK(lot.verdict == "12 devices. No device is an outlier.");
   CHECK(lot.worst.empty());
   records.resize(1);
   const FleetLot axes = fleet_lot(records);
-  CHECK(axes.verdict == "1 device. 1 channel stands out from its kind: gz.");
+  CHECK(axes.verdict == "1 device. 1 channel is an outlier of its kind: gz.");
   CHECK(axes.outlying == 0);
   const QuantityLot& kind = find(axes, "angular_rate in deg/s", DeviceQuantity::white_noise);
   REQUIRE(kind.outliers.size() == 1);
   CHECK(records[0].channels[kind.outliers[0].channel].name == "gz");
   CHECK(kind.outliers[0].ratio == Approx(4).epsilon(0.1));
   louder(records[0], 2, 0.25);
-  CHECK(fleet_lot(records).verdict == "1 device. No channel stands out from its kind.");
+  CHECK(fleet_lot(records).verdict == "1 device. No channel is an outlier.");
 }
 
 TEST_CASE("two that stand out are each held against those that do not") {
@@ -420,7 +421,7 @@ TEST_CASE("one device is a fleet without statistics") {
   made.devices = 1;
   const FleetLot lot = fleet_lot(test::made_lot(made, 17));
   CHECK_FALSE(find(lot, "gyro_x", DeviceQuantity::white_noise).figures);
-  CHECK(lot.verdict == "1 device. Too few of a kind to say which stands out: at least 4 are needed.");
+  CHECK(lot.verdict == "1 device. Too few of a kind to find outliers: at least 4 are needed.");
 }
 
 TEST_CASE("a result that is not there yet is no failure, and where there is none nobody is judged") {

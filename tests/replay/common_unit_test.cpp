@@ -2,6 +2,7 @@
 #include "libchar/replay/detail/plan/common_unit.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -164,7 +164,7 @@ TEST_CASE("comparison: unlike scenes are refused by what differs") {
   CHECK_THAT(refused_after([](Json& b) { b["sensors"].erase(1); }),
              Contains("sensors that the other does not have: right in A, nothing in B"));
   CHECK_THAT(refused_after([](Json& b) { std::swap(b["sensors"][0], b["sensors"][1]); }),
-             Contains("sensors stand in another order"));
+             Contains("sensors are in another order"));
   CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["unit"] = "mm"; }),
              Contains("unit of sensor right: m in A, mm in B"));
   CHECK_THAT(refused_after([](Json& b) { b["sensors"][1]["h"] = {-1}; }), Contains("row h of sensor right"));
@@ -209,7 +209,7 @@ TEST_CASE("comparison: settings that differ are remarked, not refused") {
   CHECK(c.unlike.empty());
   CHECK(c.remarks == std::vector<std::string>{
                          "program: 0.1.0 in A, 0.2.0 in B", "learning window: none in A, 0 s to 10 s in B",
-                         "algorithms were told other noise levels of left", "mean.gamma: 0.99 in A, 0.999 in B"});
+                         "algorithms were given other noise levels of left", "mean.gamma: 0.99 in A, 0.999 in B"});
 }
 
 TEST_CASE("comparison: checks hold at their limit and fail above it") {
@@ -277,7 +277,7 @@ TEST_CASE("comparison: what is no report of a replay is refused with its place")
              }),
              Contains("algorithms[1].rmse_ci95"));
   CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"][1]["label"] = "mean"; }),
-             Contains("algorithms[1].label: stands twice"));
+             Contains("algorithms[1].label: is repeated"));
   CHECK_THAT(reading_error_after([](Json& r) { r["algorithms"] = {1}; }), Contains("algorithms[0]: expected a map"));
   CHECK_THAT(reading_error_after([](Json& r) {
                r["evaluation"] = {{"from_s", 5}, {"to_s", 5}};

@@ -156,8 +156,8 @@ TEST_CASE("replay: the front holds exactly what no method beats in both") {
 TEST_CASE("replay verdict: names the best, who needs a teacher, and who is not told apart") {
   ReplayResult r = test::synthetic_replay();
   CHECK_THAT(test::verdict_of(r, true), Contains("Use mean: RMSE 0.033 rad/s"));
-  CHECK_THAT(test::verdict_of(r, true), Contains("3 ns a sample"));
-  CHECK_THAT(test::verdict_of(r, false), !Contains("ns a sample"));
+  CHECK_THAT(test::verdict_of(r, true), Contains("3 ns per sample"));
+  CHECK_THAT(test::verdict_of(r, false), !Contains("ns per sample"));
   // A trained method wins: the best that needs no reference is named as well.
   for (AlgorithmResult& a : r.algorithms)
     if (a.label == "least-squares") a.rmse = 0.02;

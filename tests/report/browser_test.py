@@ -376,16 +376,32 @@ def check_labels(browser, page, widths=(390, 800, 1400)):
     browser.console()
 
 
-def check_small_letters(browser, page):
-    """Drawings of a lot or a bench have letters of ten pixels on the smallest screen too."""
-    browser.protocol("Emulation.setDeviceMetricsOverride",
-                     {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False})
-    browser.open(page.resolve().as_uri())
-    browser.run(UNFOLD)
-    least = browser.run("""return Math.min(...Array.from(document.querySelectorAll('figure.curves svg')).flatMap((svg) =>
-        Array.from(svg.querySelectorAll('text')).map((t) => Number(t.getAttribute('font-size')))
-          .filter((size) => size > 6).map((size) => size * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width)))""")
-    expect(least is None or least >= 10, f"{page}: letters of {least} pixels")
+def check_drawings(browser, page, widths=(390, 800, 1400)):
+    """Drawings of a lot, bench or comparison fit the window, have letters of ten pixels, and no text over another."""
+    for width in widths:
+        browser.protocol("Emulation.setDeviceMetricsOverride",
+                         {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+        browser.open(page.resolve().as_uri())
+        browser.run(UNFOLD)
+        least, wide, over, count = browser.run("""
+          const svgs = Array.from(document.querySelectorAll('figure.curves svg')).filter((svg) => svg.getBoundingClientRect().width);
+          const texts = (svg) => Array.from(svg.querySelectorAll('text')).filter((t) => t.textContent.trim());
+          const over = [];
+          svgs.forEach((svg) => {
+            const boxes = texts(svg).map((t) => [t.textContent, t.getBoundingClientRect()]);
+            boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
+              const x = Math.min(p.right, q.right) - Math.max(p.left, q.left), y = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+              // A line's box has room above capitals and below the base line.
+              if (a !== b && x > 1 && y > 0.36 * Math.min(p.height, q.height)) over.push(a + ' over ' + b);
+            }));
+          });
+          const sizes = svgs.flatMap((svg) => texts(svg).map((t) => Number(t.getAttribute('font-size')))
+            .filter((size) => size > 6).map((size) => size * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width));
+          return [Math.min(...sizes), svgs.filter((svg) => svg.getBoundingClientRect().right > innerWidth + 1).length, over, svgs.length];""")
+        expect(count > 0, f"{page}: no drawing at {width} pixels")
+        expect(least is None or least >= 9.9, f"{page}: letters of {least} pixels at {width}")
+        expect(wide == 0, f"{page}: {wide} drawings are wider than {width} pixels")
+        expect(not over, f"{page}: at {width} pixels {len(over)} labels lie over each other: {over[:6]}")
     browser.protocol("Emulation.clearDeviceMetricsOverride")
 
 
@@ -449,7 +465,7 @@ def check_without_script(browser, page):
     browser.open(page.resolve().as_uri())
     browser.protocol("Emulation.setScriptExecutionDisabled", {"value": False})
     text = browser.run("return document.body.innerText")
-    expect("Every number stands in the tables" in text, f"{page}: no notice without scripts")
+    expect("Every number is in the tables" in text, f"{page}: no notice without scripts")
 
 
 def check_fleet(browser, page, devices):
@@ -477,7 +493,7 @@ def check_fleet(browser, page, devices):
         c.value = '1';
         c.dispatchEvent(new Event('change'))""")
     odd = browser.run(rows)
-    expect(odd and all("stands out" in r[3] for r in odd), f"{page}: those that stand out are {odd[:3]}")
+    expect(odd and all("outlier" in r[3] for r in odd), f"{page}: the outliers are {odd[:3]}")
     links = browser.run("return Array.from(document.querySelectorAll('main a[href]')).map((a) => a.href)")
     base = address.rsplit("/", 1)[0] + "/"
     expect(links and all(link.startswith(base) and link.endswith("/report.html") for link in links),
@@ -529,10 +545,12 @@ def main():
                 subprocess.run([sys.argv[3], kind, str(folder / ("fleet-" + kind))], check=True)
                 check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
             check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
-            check_small_letters(browser, folder / "fleet-400/index.html")
-            for given in sys.argv[4:]:
-                check_page(browser, pathlib.Path(given),
-                           replay="<title>Sensor fusion" in pathlib.Path(given).read_text()[:4000])
+            check_drawings(browser, folder / "fleet-400/index.html")
+            for given in map(pathlib.Path, sys.argv[4:]):
+                text = given.read_text()
+                check_page(browser, given, replay="<title>Sensor fusion" in text[:4000])
+                if '<figure class="curves">' in text:
+                    check_drawings(browser, given)
         finally:
             browser.close()
     return 1 if faults else 0

@@ -361,7 +361,7 @@ TEST_CASE("the text of a fleet has its table and its worst devices") {
   const auto records = two_batches();
   const FleetLot lot = fleet_lot(records);
   const std::string text = fleet_text({records, &lot, "", {}, {}});
-  CHECK_THAT(text, Contains("1 device stands out") && Contains("gyro_x") &&
+  CHECK_THAT(text, Contains("1 device is an outlier") && Contains("gyro_x") &&
                        Contains("the worst first:\n  imu8  gyro_x: Bias instability"));
   CHECK_THAT(text, Contains("1 recording could not be characterized") &&
                        Contains("\ncould not be characterized:\n  imu10  is empty\n"));

@@ -80,13 +80,13 @@ TEST_CASE("replay page: the error stands beside the best possible one") {
 
 TEST_CASE("replay page: nanoseconds stand in front only where the rate makes them matter") {
   ReplayResult r = test::synthetic_replay();
-  const std::string folded = "<th scope=\"col\" class=\"more\">A sample</th>",
-                    in_front = "<th scope=\"col\">A sample</th>";
+  const std::string folded = "<th scope=\"col\" class=\"more\">Time per sample</th>",
+                    in_front = "<th scope=\"col\">Time per sample</th>";
   for (AlgorithmResult& a : r.algorithms) a.ns_per_sample = 1000;
   r.rate_hz = 990;  // 0.099 % of a core
   CHECK(test::count(ranking_of(r), folded) == 1);
   CHECK(test::count(body_of(r), "run time decides nothing here") == 1);
-  CHECK(test::count(body_of(r), "ns a sample, ") == 0);
+  CHECK(test::count(body_of(r), "ns per sample, ") == 0);
   const auto reads = [&](const std::vector<std::string>& verdict) {
     const ReplayView view = replay_view(r);
     return replay_text(view).find(verdict.front()) != std::string::npos &&

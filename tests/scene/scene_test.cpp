@@ -223,7 +223,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   recorded("learning: [-1, 3]\n", "5:11: error E0740");
   recorded("align: {learn: rest}\n", "5:16: error E0748: align.learn: the scene has no such window");
   recorded("align: {learn: [3, 1]}\n", "5:16: error E0740");
-  recorded("align: {terms: [phase]}\n", "5:16: error E0748: align.terms: phase is no term");
+  recorded("align: {terms: [phase]}\n", "5:16: error E0748: align.terms: phase is not a term");
   recorded("align: {by: reference}\n", "5:13: error E0748: align.by: the scene has no reference");
   recorded("align: {interpolation: linear}\n", "5:24: error");
   recorded("learning: 3\n", "5:11: error E0541");
@@ -289,7 +289,7 @@ TEST_CASE("scene: refusals name place, key and what would be right") {
   simulated("samples: 9, truth: [{kind: derivative, of: truth2}, {kind: sine}]",
             "4:68: error E0738: simulate.truth[0].of");
   simulated("samples: 9, truth: [{kind: sine, name: x}, {kind: sine_of, of: xx}]",
-            "4:88: error E0738: simulate.truth[1].of: xx is not a signal that stands before");
+            "4:88: error E0738: simulate.truth[1].of: xx is not a signal before");
   simulated("samples: 9, truth: [{kind: sine, name: x}, {kind: zero, name: x}]",
             "4:87: error E0737: simulate.truth[1].name");
   simulated("samples: 9, truth: {kind: points, points: [[0, 1], [0, 2]]}", "4:67: error E0545");

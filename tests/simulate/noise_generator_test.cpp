@@ -371,5 +371,5 @@ TEST_CASE("a Gauss-Markov process is simulated with its variance and covariance,
   }
   CHECK(first == Approx(0.09).epsilon(0.13));  // four standard deviations
   design.gauss_markov_tau_s = 0;
-  CHECK_THROWS_WITH(NoiseGenerator(design, 1, 0), Catch::Matchers::Contains("Gauss-Markov"));
+  CHECK_THROWS_WITH(NoiseGenerator(design, 1, 0), Catch::Contains("Gauss-Markov"));
 }

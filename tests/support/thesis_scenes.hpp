@@ -110,7 +110,7 @@ inline libchar::fusion::LearntWeights learnt(const Recorded& r, const libchar::f
 /// The same recording with some of its sensors only.
 inline Recorded only(const Recorded& r, const std::vector<Index>& sensors) {
   Recorded part = r;
-  part.y = r.y(sensors, Eigen::all);
+  part.y = r.y(sensors, Eigen::indexing::all);
   part.array.noise_levels = r.array.noise_levels(sensors);
   part.array.channels = static_cast<Index>(sensors.size());
   return part;

@@ -1,6 +1,7 @@
 #include "help/completion.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace sensorchar {
 namespace {

@@ -1,6 +1,7 @@
 #include "help/help_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include "help/man_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace sensorchar {
 namespace {

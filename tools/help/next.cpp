@@ -81,6 +81,11 @@ std::string command_again(const Session& session, const std::string& flags, cons
   return forced ? out : out + " --force";
 }
 
+/// The folder of a device's own report, which its record names from the folder of the lot.
+std::string report_of(const std::string& folder, const DeviceRecord& record) {
+  return shell_word((std::filesystem::path(folder) / record.report).lexically_normal().string());
+}
+
 /// Do the models make a file for a target as they are?
 bool exports_to(const Characterization& result, const char* target) {
   std::vector<SensorModel> models;
@@ -146,6 +151,37 @@ std::vector<std::string> next_steps(const Session& session, const Characterizati
   if (!out.empty() && !worst.empty() && worst.front().severity != Severity::note)
     out.push_back("sensorchar explain " + worst.front().code);
   return out;
+}
+
+std::vector<std::string> next_steps(const std::string& folder, std::span<const DeviceRecord> records,
+                                    const FleetLot& lot) {
+  std::vector<std::string> out;
+  std::vector<std::size_t> order;  // outliers first
+  for (const WorstDevice& one : lot.worst) order.push_back(one.recording);
+  order.insert(order.end(), lot.order.begin(), lot.order.end());
+  const auto compared =
+      std::find_if(order.begin(), order.end(), [&](std::size_t r) { return !records[r].report.empty(); });
+  const auto other = std::find_if(compared, order.end(), [&](std::size_t r) {
+    return r != *compared && !records[r].report.empty() && records[r].type == records[*compared].type;
+  });
+  if (other != order.end())
+    out.push_back("sensorchar compare " + report_of(folder, records[*compared]) + " " +
+                  report_of(folder, records[*other]));
+  out.push_back("sensorchar verify " + shell_word(folder));
+  return out;
+}
+
+std::vector<std::string> bench_again(const Session& session, const std::string& folder) {
+  std::string out = "sensorchar";
+  for (std::size_t i = 1; i < session.command.size(); ++i) {
+    const std::string& word = session.command[i];
+    if (word == "-o" || word == "--output" || word == "--against") ++i;
+    if (word.starts_with("-o") || word.starts_with("--output") || word.starts_with("--against") || word == "--force")
+      continue;
+    out += " " + shell_word(word);
+  }
+  const std::filesystem::path place(folder);
+  return {out + " --against " + shell_word((place / "bench.json").string()) + " -o " + shell_word(folder + "-again")};
 }
 
 void say_next(const Session& session, const std::string& command) {

@@ -1,10 +1,12 @@
 #pragma once
 // Where results go when nobody says so, and what to type next.
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/lot/fleet_lot.hpp"
 #include "session.hpp"
 
 namespace sensorchar {
@@ -23,6 +25,13 @@ std::string mended_command(const Session& session, const std::vector<libchar::Fi
 /// found, the file of an IMU for Kalibr, a figure, what the worst finding means.
 std::vector<std::string> next_steps(const Session& session, const libchar::Characterization& result,
                                     const std::string& folder);
+
+/// Of the report of a lot in a folder: the worst device next to another one, and whether its files are still whole.
+std::vector<std::string> next_steps(const std::string& folder, std::span<const libchar::DeviceRecord> records,
+                                    const libchar::FleetLot& lot);
+
+/// Of a bench in a folder: the same once more, held against it.
+std::vector<std::string> bench_again(const Session& session, const std::string& folder);
 
 /// The line that says so; nothing when quiet, or for "".
 void say_next(const Session& session, const std::string& command);

@@ -2,6 +2,7 @@
 // names, defaults, dataclasses and documentation are Python's (libchar/functions.py).
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
 #include <chrono>

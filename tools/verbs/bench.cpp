@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "heap_meter.hpp"
+#include "help/next.hpp"
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/file/output_files.hpp"
@@ -220,7 +221,8 @@ void run_bench(Session& session, BenchVerb& verb) {
   if (!verb.against.empty()) changes = bench_changes(older, report, verb.against);
   std::vector<std::string> removed;
   if (!verb.folder.empty())
-    removed = write_outputs(bench_files(report, verb.folder), verb.folder, inputs_named, verb.force);
+    removed = write_outputs(bench_files(report, verb.folder, bench_again(session, verb.folder)), verb.folder,
+                            inputs_named, verb.force);
   Json document = document_of(bench_fields(), report);
   const double tolerance = verb.tolerance.value_or(5) / 100;
   if (changes) document["against"] = changes_json(*changes, tolerance);

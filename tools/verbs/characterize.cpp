@@ -1,6 +1,7 @@
 // characterize LOG… -o DIR: everything about a recording, in files that can be shown to a colleague.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <limits>
@@ -234,7 +235,7 @@ void run_lot(Session& session, const CharacterizeVerb& verb, const CharacterizeO
   FleetLotOptions how;
   if (limits) how.limits[""] = *limits;
   const FleetLot lot = fleet_lot(records, how);
-  const FleetReport report{records, &lot, "", session.command, results};
+  const FleetReport report{records, &lot, "", session.command, results, next_steps(verb.folder, records, lot)};
   check_outputs(fleet_report_files(verb.folder), verb.folder, inputs_of(verb), verb.force);
   write_folders(session, verb, all);
   const std::vector<std::string> files = write_fleet_report(report, verb.folder, verb.force);

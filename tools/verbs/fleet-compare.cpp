@@ -1,6 +1,7 @@
 // fleet compare A B: two fleets, or two batches of one, by tests.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -1,12 +1,14 @@
 // fleet merge DIR… -o REPORT: the results of a fleet, or of several, as one report of the lot.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "help/next.hpp"
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/process/free_memory.hpp"
@@ -95,6 +97,7 @@ void run_merge(Session& session, const MergeVerb& verb) {
   report.lot = &lot;
   report.name = name_of_fleets(verb);
   report.command = session.command;
+  report.next = next_steps(verb.folder, fleet.records, lot);
   const std::vector<std::string> files = write_fleet_report(report, verb.folder, verb.force);
   session.wrote = true;
   session.terminal.clear();

@@ -1,6 +1,7 @@
 // fleet plan MANIFEST|LOG… -o DIR: the work of many logs in units, for any engine that runs commands.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -203,7 +203,7 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
   sub.add_text("--topic", options.topic,
                targets_that_take(&ExportTakes::topic) + ": ROS topic (default: of the bag, else /imu0)")
       .value_name("NAME");
-  sub.add_flag("--anyway", options.anyway, "also numbers whose status is misfit, with a sentence that says so");
+  sub.add_flag("--anyway", options.anyway, "also export coefficients with status misfit (marked)");
   sub.add_flag("--older", options.older, "basalt: one number in place of three; orbslam3: whole rate, no File.version");
 }
 

@@ -253,7 +253,7 @@ void run_replay(Session& session, ReplayVerb verb) {
   if (verb.explain) return print_plan(session, verb, scene, options_of(verb));
   if (verb.folder.empty() && verb.scene_file.empty()) verb.folder = default_folder(verb.source.path, "replay");
   refuse_standard_output("--output", verb.folder);
-  refuse_standard_output("--write-scene", verb.scene_file, "a scene names its recording by where it lies beside it",
+  refuse_standard_output("--write-scene", verb.scene_file, "a scene names its recording relative to itself",
                          "name a file");
   std::vector<std::string> inputs = scene.files;
   inputs.push_back(verb.source.path);

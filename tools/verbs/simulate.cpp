@@ -56,7 +56,7 @@ void set_length(const SimulateVerb& verb, ArraySimulation& simulation) {
     throw usage_error("E0721", verb.sources[0]).says("states no sampling rate").hint("give --rate");
   if (simulation.rate_hz < 1e-9 || simulation.rate_hz > 1e9)
     throw usage_error("E0721", verb.sources[0])
-        .says("states a sampling rate that is not between 1e-9 and 1e9 Hz")
+        .says("states a sampling rate that is not between 1 nHz and 1 GHz")
         .got(brief_text(simulation.rate_hz, 6))
         .hint("give --rate");
   if (verb.samples > 0 && verb.duration_s)
@@ -225,8 +225,7 @@ void take_standard_output(SimulateVerb& verb) {
 }
 
 void run_simulate(Session& session, SimulateVerb& verb) {
-  refuse_standard_output("--scene", verb.scene_path, "a scene names its recording by where it lies beside it",
-                         "name a file");
+  refuse_standard_output("--scene", verb.scene_path, "a scene names its recording relative to itself", "name a file");
   take_standard_output(verb);
   const Scene scene = read_source(session, verb);
   ArraySimulation simulation = *scene.simulate;

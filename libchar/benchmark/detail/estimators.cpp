@@ -111,7 +111,7 @@ const std::vector<Estimator>& estimators() {
        "what a characterization does: Whittle likelihood, terms decided by likelihood ratio, remedies on alarm, a "
        "second opinion from the Allan curve",
        whole_fit},
-      {"whittle", "Whittle likelihood of the whole record's cosine transform, terms told", whittle, true, true},
+      {"whittle", "Whittle likelihood of the whole record's cosine transform, terms given", whittle, true, true},
       {"whittle-blocks", "the same of blocks of 16384 samples and their means: constant memory", whittle_blocks, true,
        true},
       {"allan-covariance",

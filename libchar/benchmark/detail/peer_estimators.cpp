@@ -90,7 +90,7 @@ Eigen::VectorXd relative_nnls(const Variances& curve) {
     std::vector<Eigen::Index> columns;
     for (Eigen::Index c = 0; c < kAsymptotes; ++c)
       if ((subset >> static_cast<unsigned>(c) & 1U) != 0) columns.push_back(c);
-    Eigen::MatrixXd part = a(Eigen::all, columns);
+    Eigen::MatrixXd part = a(Eigen::indexing::all, columns);
     const Eigen::RowVectorXd scale = part.colwise().norm();
     part.array().rowwise() /= scale.array();
     const Eigen::VectorXd x = part.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(n));

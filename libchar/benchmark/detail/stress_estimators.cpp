@@ -93,13 +93,13 @@ std::vector<double> plain_record(std::uint64_t seed, std::size_t samples) {
 std::vector<StressRecord> stress_records(std::uint64_t seed) {
   StressRecords all(plain_record(seed, kSamples));
   all.add_scaled("a prime number of samples", 0);
-  all.add_moved("offset 1e9, noise 1e-6", 1e9, 1e-6);
-  all.add_moved("offset 9.81, noise 1e-3", 9.81, 1e-3);
-  all.add_moved("offset 1e9, noise 1", 1e9, 1);
-  all.add_scaled("denormal (1e-310)", -1030);
-  all.add_scaled("scale 1e200", 664);
-  all.add_scaled("scale 1e-200", -664);
-  all.add("drift of 1e6 deviations", [](double y, double t) { return y + 1e6 * t; });
+  all.add_moved("offset 10⁹, noise 10⁻⁶", 1e9, 1e-6);
+  all.add_moved("offset 9.81, noise 0.001", 9.81, 1e-3);
+  all.add_moved("offset 10⁹, noise 1", 1e9, 1);
+  all.add_scaled("denormal (10⁻³¹⁰)", -1030);
+  all.add_scaled("scale 10²⁰⁰", 664);
+  all.add_scaled("scale 10⁻²⁰⁰", -664);
+  all.add("drift of 10⁶ deviations", [](double y, double t) { return y + 1e6 * t; });
   all.drifts();
   all.add("constant", [](double, double) { return 9.81; });
   all.add("all zero", [](double, double) { return 0.0; });
@@ -108,7 +108,7 @@ std::vector<StressRecord> stress_records(std::uint64_t seed) {
   all.add("one bit", [](double y, double) { return y > 0 ? 1.0 : -1.0; });
   all.add("saturated", [](double y, double) { return std::clamp(y, -1.0, 0.5); });
   all.add("float32", [](double y, double) { return static_cast<double>(static_cast<float>(9.81 + 1e-3 * y)); });
-  all.add("one spike of 1e300", [first = true](double y, double t) mutable {
+  all.add("one spike of 10³⁰⁰", [first = true](double y, double t) mutable {
     const bool here = first && t >= 0.4;
     first = first && !here;
     return here ? 1e300 : y;
@@ -366,7 +366,7 @@ std::vector<StressCell> stress_estimators(const StressBenchOptions& options, Pro
     double offset, drift;
   };
   for (const Long& one :
-       {Long{"1e8 samples, offset of 1e9 deviations", 1e9, 0}, Long{"1e8 samples, drift of 1e6 deviations", 0, 1e6}})
+       {Long{"10⁸ samples, offset of 10⁹ deviations", 1e9, 0}, Long{"10⁸ samples, drift of 10⁶ deviations", 0, 1e6}})
     out.push_back(stress_cell("oadev, streamed", one.name, [&](StressCell& cell) {
       stress_long_stream(one.offset, one.drift, options.seed, progress, cell);
     }));

@@ -207,7 +207,7 @@ void add_hurt(const StressArray& plain, std::vector<StressArray>& all) {
   add("one bit", [](MatrixXd& y) { y = (y.array() > 0).select(MatrixXd::Ones(y.rows(), y.cols()), -1); });
   add("saturated", [](MatrixXd& y) { y = y.cwiseMax(-1).cwiseMin(1); });
   add("float32", [](MatrixXd& y) { y = y.cast<float>().cast<double>().eval(); });
-  add("one spike of 1e300", [](MatrixXd& y) { y(2, 450) = 1e300; });
+  add("one spike of 10³⁰⁰", [](MatrixXd& y) { y(2, 450) = 1e300; });
   add("one infinite sample", [](MatrixXd& y) { y(2, 450) = std::numeric_limits<double>::infinity(); });
   add("first and last sample missing", [](MatrixXd& y) { y(0, 0) = y(1, y.cols() - 1) = kMissing; });
   add("burst of missing samples in one", [](MatrixXd& y) { y.row(4).segment(300, 150).setConstant(kMissing); });
@@ -228,8 +228,8 @@ void add_tilts(std::uint64_t seed, std::vector<StressArray>& all) {
     y.middleCols(300, 50).setConstant(kMissing);
   }));
   all.push_back(hurt(plain, "tilt, accelerometers at zero", [](MatrixXd& y) { y.bottomRows(2).setZero(); }));
-  all.push_back(hurt(plain, "tilt, accelerations of 1e-310", [](MatrixXd& y) { y.bottomRows(2) *= 1e-310; }));
-  all.push_back(hurt(plain, "tilt, accelerations of 1e99", [](MatrixXd& y) { y.bottomRows(2) *= 1e98; }));
+  all.push_back(hurt(plain, "tilt, accelerations of 10⁻³¹⁰", [](MatrixXd& y) { y.bottomRows(2) *= 1e-310; }));
+  all.push_back(hurt(plain, "tilt, accelerations of 10⁹⁹", [](MatrixXd& y) { y.bottomRows(2) *= 1e98; }));
   all.push_back(hurt(plain, "tilt, 1 instant", [](MatrixXd& y) { y = y.leftCols(1).eval(); }));
   all.back().truth = all.back().truth.leftCols(1).eval();
 }
@@ -241,15 +241,15 @@ std::vector<StressArray> stress_arrays(std::uint64_t seed) {
   std::vector<StressArray> all;
   add_hurt(plain, all);
   all.insert(all.begin(), plain);
-  all.push_back(moved(plain, "offset 1e8 (2^27)", 0x1p27));
-  all.push_back(scaled(plain, "scale 1e95", 315));
-  all.push_back(scaled(plain, "scale 1e-95", -315));
+  all.push_back(moved(plain, "offset 2²⁷", 0x1p27));
+  all.push_back(scaled(plain, "scale 10⁹⁵", 315));
+  all.push_back(scaled(plain, "scale 10⁻⁹⁵", -315));
   all.push_back(reversed(plain));
   all.push_back(noisy("two channels", VectorXd::LinSpaced(2, 1, 2), seed));
   all.push_back(noisy("200 channels", VectorXd::LinSpaced(200, 0.3, 2), seed));
-  all.push_back(noisy("deviations of 1 : 1e12", (VectorXd(4) << 1e-6, 1, 1e6, 2).finished(), seed));
+  all.push_back(noisy("deviations of 1 : 10¹²", (VectorXd(4) << 1e-6, 1, 1e6, 2).finished(), seed));
   all.back().exact_weights = true;
-  all.push_back(correlated("covariance of condition 1e12", 1e5, seed));
+  all.push_back(correlated("covariance of condition 10¹²", 1e5, seed));
   all.push_back(changed(plain, "constant reference", [](StressArray& a) { a.learning_truth.setConstant(1); }));
   all.push_back(changed(plain, "3 instants to learn from", [](StressArray& a) {
     a.learning = a.learning.leftCols(3).eval();
@@ -258,7 +258,7 @@ std::vector<StressArray> stress_arrays(std::uint64_t seed) {
   }));
   all.push_back(lever("two inputs", VectorXd::LinSpaced(8, 0, -5), seed));
   all.push_back(
-      lever("two inputs told apart by 1e-15", VectorXd::Ones(8) + 1e-15 * VectorXd::LinSpaced(8, -1, 1), seed));
+      lever("two inputs that differ by 10⁻¹⁵", VectorXd::Ones(8) + 1e-15 * VectorXd::LinSpaced(8, -1, 1), seed));
   add_tilts(seed, all);
   return all;
 }

@@ -44,8 +44,8 @@ std::vector<StressCell> stress_simulators(const StressBenchOptions& options) {
     int power;
   };
   std::vector<StressCell> out;
-  for (const Scale& scale : {Scale{"scale 1e90", 300}, Scale{"scale 1e-90", -300}, Scale{"scale 1e200", 664},
-                             Scale{"scale 1e-200", -664}, Scale{"denormal (1e-310)", -1030}})
+  for (const Scale& scale : {Scale{"scale 10⁹⁰", 300}, Scale{"scale 10⁻⁹⁰", -300}, Scale{"scale 10²⁰⁰", 664},
+                             Scale{"scale 10⁻²⁰⁰", -664}, Scale{"denormal (10⁻³¹⁰)", -1030}})
     for (const Kind& kind : kKinds)
       out.push_back(stress_cell(kind.name, scale.name, [&](StressCell& cell) {
         std::vector<Exact> expected;

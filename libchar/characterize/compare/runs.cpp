@@ -8,6 +8,7 @@
 #include "libchar/characterize/compare/runs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,7 @@ void check_channels(const Characterization& first, const Characterization& run) 
   for (const ChannelResult& c : run.channels)
     if (find_channel(first, c.channel.name) == nullptr)
       throw input_error("E0761", run.log.file)
-          .says("has a channel {}, which {} has not: runs of one sensor have the same channels", c.channel.name,
+          .says("has a channel {}, which is not in {}: runs of one sensor have the same channels", c.channel.name,
                 first.log.file)
           .hint("`channels` takes those that all have");
 }
@@ -226,7 +227,7 @@ std::string consistency_sentence(const PooledChannel& c, std::span<const Charact
                        c.runs.size() == 2 ? "both runs" : fmt::format("all {} runs", c.runs.size()), figures);
   const std::string named = files_of(c, runs);
   return fmt::format("The runs do not have one set of coefficients ({}); {}.", figures,
-                     named.empty() ? "none stands out alone" : "not like the rest: " + named) +
+                     named.empty() ? "no run differs alone" : "not like the rest: " + named) +
          (c.rest_alike ? " The coefficients are those of the rest." : " The common ones are a mean of unlike runs.");
 }
 

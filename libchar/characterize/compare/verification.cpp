@@ -202,7 +202,7 @@ ChannelVerification compared(const ChannelResult& recorded, ChannelResult simula
                   std::count_if(out.terms.begin(), out.terms.end(), [](const TermVerification& t) { return t.agrees; }),
                   out.terms.size()));
   if (recorded.fit->term[0].status == Status::misfit && out.agrees)
-    out.sentences.front() += " That is no proof of its coefficients, which are a misfit.";
+    out.sentences.front() += " That does not prove its coefficients, which are a misfit.";
   if (!disagreements.empty() && !recorded.lines.empty())
     disagreements.push_back(
         recorded.lines.size() == 1

@@ -32,8 +32,8 @@ struct CurveTableFit {
   std::vector<ChannelFit> channels;
 };
 
-/// Reads a table whose header names its curves, or one whose first column is the averaging time or the frequency and every other one
-/// a curve, and fits each. Throws as read_log and fit_curve, Error(input) for fewer than two columns, Error(usage) where no curve has
+/// Reads a table whose header names its curves, or one whose first column is the averaging time or the frequency and whose others
+/// are curves, and fits each. Throws as read_log and fit_curve, Error(input) for fewer than two columns, Error(usage) where no curve has
 /// the names wanted.
 CurveTableFit fit_curve_table(const std::string& path, const CurveTableOptions& options = {},
                               Progress& progress = no_progress());

@@ -117,10 +117,10 @@ void ChannelStages::find_temperature(const LogInfo& so_far) {
   const auto known = find_unit(unit);
   if (known && known->quantity != Quantity::temperature)
     throw usage_error("E0702", so_far.file)
-        .says("the channel {} is in {}, which is no temperature", name, unit)
+        .says("the channel {} is in {}, which is not a temperature", name, unit)
         .hint("choose a channel in degC, K or degF, or one without a unit, which is taken for degC");
   if (channels.size() < 2)
-    throw usage_error("E0702", so_far.file).says("{} is the only channel: there is none that it could move", name);
+    throw usage_error("E0702", so_far.file).says("{} is the only channel: no other channel can depend on it", name);
   temperature_options_ = options_;
   temperature_options_.data = SampleKind::rate;
 }

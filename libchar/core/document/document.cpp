@@ -105,7 +105,7 @@ class Builder : public YAML::EventHandler {
   void add_key(const YAML::Mark& mark, Level& level, const std::string& key) {
     if (key.size() > kMaxKey) throw refusal(mark).says("a key is longer than {} characters", kMaxKey).got(key);
     if (level.node->map.size() >= kMaxKeys) throw refusal(mark).says("a map has more than {} keys", kMaxKeys).got(key);
-    if (level.node->find(key) != nullptr) throw refusal(mark).says("a key stands twice").got(key);
+    if (level.node->find(key) != nullptr) throw refusal(mark).says("a key is repeated").got(key);
     level.node->map.push_back({key, mark.line + 1, mark.column + 1, {}});
     level.awaits_value = true;
   }
@@ -206,7 +206,7 @@ Document parse_yaml_document(std::string_view text, const std::string& file) {
   } catch (const YAML::Exception& error) {
     if (const int line = line_indented_by_tab(text); line > 0 && line <= error.mark.line + 1)
       throw input_error("E0522", fmt::format("{}:{}:1", file, line))
-          .says("is not valid YAML: a line is indented with a tab, blanks are wanted");
+          .says("is not valid YAML: a line is indented with a tab; YAML needs spaces");
     throw input_error("E0522", fmt::format("{}:{}:{}", file, error.mark.line + 1, error.mark.column + 1))
         .says("is not valid YAML: " + error.msg);
   }
@@ -256,7 +256,7 @@ std::string read_document_text(const std::string& path) {
   if (::fstat(descriptor, &status) != 0)
     throw input_error("E0551", path).says(std::string("cannot be read: ") + std::strerror(errno));
   if (S_ISDIR(status.st_mode)) throw input_error("E0551", path).says("is a folder, a file was expected");
-  if (!S_ISREG(status.st_mode)) throw input_error("E0551", path).says("is no regular file");
+  if (!S_ISREG(status.st_mode)) throw input_error("E0551", path).says("is not a regular file");
   if (static_cast<std::size_t>(status.st_size) > kMaxDocumentBytes)
     throw input_error("E0551", path)
         .says("{} bytes exceed the limit of {}", status.st_size, kMaxDocumentBytes)

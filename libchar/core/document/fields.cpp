@@ -1,6 +1,7 @@
 #include "libchar/core/document/fields.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <iterator>

@@ -178,7 +178,8 @@ Slot parts_slot_of(V& value) {
   PartsSlot slot{&value, nullptr, nullptr, nullptr, &usual};
   if constexpr (std::is_same_v<V, std::optional<Part>>) {
     slot.size = [](const void* at) { return std::size_t{static_cast<const V*>(at)->has_value() ? 1U : 0U}; };
-    slot.resize = [](void* at, std::size_t) { static_cast<V*>(at)->emplace(Part{}); };
+    // Not emplace(): clang 14 and 19 ask it too early whether a nested Part can be made.
+    slot.resize = [](void* at, std::size_t) { *static_cast<V*>(at) = Part{}; };
     slot.part = [](void* at, std::size_t) -> void* { return &**static_cast<V*>(at); };
   } else {
     slot.size = [](const void* at) { return static_cast<const V*>(at)->size(); };

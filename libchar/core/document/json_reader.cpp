@@ -113,7 +113,7 @@ class Guard : public nlohmann::json_sax<Json> {
   bool key(string_t& name) override {
     const std::size_t start = start_of_text();
     if (!keys_.back().insert(name).second)
-      throw refusal("E0603", start).says("a key stands twice in one object").got(name);
+      throw refusal("E0603", start).says("a key is repeated in one object").got(name);
     const Place place = places_.at(start);
     stack_.back()->map.push_back({name, place.line, place.column, {}});
     return true;

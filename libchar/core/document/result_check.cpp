@@ -123,7 +123,7 @@ std::vector<std::string> detail::result_documents(const std::string& folder_or_d
   if (out.empty())
     throw input_error("E0556", folder_or_document)
         .says(folder ? "holds no document that names its files (report.json, runs.json, lot.json)"
-                     : "is no document that names its files (report.json, runs.json, lot.json)")
+                     : "is not a document that names its files (report.json, runs.json, lot.json)")
         .hint("name a folder that characterize or replay has written");
   return out;
 }

@@ -1,6 +1,7 @@
 #include "libchar/core/document/schema.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -244,7 +245,7 @@ const std::vector<Document>& MapReader::list(std::string_view key, std::size_t l
   const std::vector<Document>& elements = list(key);
   if (elements.size() == length) return elements;
   throw input_error("E0982", where(require(key)))
-      .says("{}: {} values, {} expected: one a point of the curve", path_of(key), elements.size(), length)
+      .says("{}: {} values, {} expected: one per point of the curve", path_of(key), elements.size(), length)
       .hint("was the report edited? write it again");
 }
 
@@ -284,7 +285,7 @@ void check_format(const Document& document, const std::string& file, std::string
       fmt::format("a {} file begins with \"format: {}\" and \"version: {}\"", format, format, version);
   if (document.kind != Document::Kind::map)
     throw input_error("E0546", document.line > 0 ? at(document) : file)
-        .says("is no " + std::string(format))
+        .says("is not a " + std::string(format))
         .got(shown(document))
         .hint(begin);
   const DocumentEntry* kind = document.find("format");

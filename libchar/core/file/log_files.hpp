@@ -1,5 +1,5 @@
 #pragma once
-// The files that one log consists of: a recording of rosbag2 is a folder of parts, which its metadata.yaml lists in their order.
+// The files of one log: rosbag2 records into a folder of parts, which its metadata.yaml lists in order.
 // Readers read them, and whoever asks whether a log is still what it was takes the digest of them all.
 
 #include <filesystem>

@@ -23,7 +23,7 @@ double binomial_tail(double k, double trials, double each);
 
 // The chi-square distribution at fractional and huge degrees of freedom.
 
-/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability < 1; 1e-12 relative.
+/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability < 1; relative error 10⁻¹².
 double chi_square_quantile(double probability, double dof);
 /// The value exceeded with probability `tail`: the same quantile with no digits lost in 1 - tail.
 double chi_square_upper_quantile(double tail, double dof);

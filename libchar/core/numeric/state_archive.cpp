@@ -104,7 +104,7 @@ std::string StateWriter::finish() {
 StateReader::StateReader(std::string_view bytes, std::string name, std::string_view kind, std::uint32_t version)
     : name_(std::move(name)) {
   if (!bytes.starts_with(kMagic))
-    throw input_error("E0723", name_).says(bytes.empty() ? "is empty" : "is no partial state").hint(kAgain);
+    throw input_error("E0723", name_).says(bytes.empty() ? "is empty" : "is not a partial state").hint(kAgain);
   if (bytes.size() < kHead + kDigest)
     throw input_error("E0723", name_).says("is cut: {} bytes", bytes.size()).hint(kAgain);
   const std::uint64_t found = little(bytes.substr(kMagic.size(), 4));
@@ -136,7 +136,7 @@ void StateReader::refuse(std::string_view what) const {
 }
 
 void StateReader::finish() const {
-  if (!rest_.empty()) refuse("more stands in it than was expected");
+  if (!rest_.empty()) refuse("it holds more than was expected");
 }
 
 std::uint64_t StateReader::number() { return little(take(8)); }

@@ -7,10 +7,10 @@
 
 namespace libchar {
 
-/// Shortest decimal that reads back to the same double ("0.1", "1e-05", "nan", "inf").
+/// Shortest decimal that reads back to the same double (`0.1`, `1e-05`, `nan`, `inf`).
 std::string shortest(double value);
 
-/// As `shortest`, with a decimal point always present ("200.0", "1.0e-05"): YAML 1.1 readers take "1e-05" for a string.
+/// As `shortest`, with a decimal point always present (`200.0`, `1.0e-05`): YAML 1.1 readers take `1e-05` for a string.
 std::string shortest_yaml(double value);
 
 /// To so many significant digits; what is not finite as it is.

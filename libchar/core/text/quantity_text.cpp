@@ -120,7 +120,7 @@ double parse_rate_hz(std::string_view text) {
                      expected);
   };
   const double value = rate();
-  if (!(value >= 1e-9 && value <= 1e9)) refuse(text, expected + " between 1e-9 and 1e9 Hz");
+  if (!(value >= 1e-9 && value <= 1e9)) refuse(text, expected + " between 1 nHz and 1 GHz");
   return value;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Numbers and quantities with units as one types them: strict where a slip would go unseen ("-1" is
-// no count, "010" neither eight nor ten, "nan" and "1e400" are no numbers). Each throws
+// Numbers and quantities with units as one types them: strict where a slip would go unseen (`-1` is
+// not a count, `010` neither eight nor ten, `nan` and `1e400` not numbers). Each throws
 // Error(usage) with one sentence that says what would have been right.
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace libchar {
 double parse_number(std::string_view text, double lowest = -std::numeric_limits<double>::max(),
                     double highest = std::numeric_limits<double>::max());
 
-/// A whole number in [lowest, highest], decimal digits only ("1e6" and "1_000_000" are not counts).
+/// A whole number in [lowest, highest], decimal digits only (`1e6` and `1_000_000` are not counts).
 std::uint64_t parse_count(std::string_view text, std::uint64_t lowest = 0,
                           std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
 

@@ -3,7 +3,7 @@
 //
 // With an interval: as many digits as it supports (`digits_for`, core/term_cells.hpp). In a
 // sentence: `brief_text`, two or three digits. Times and sizes in the unit that fits. Never
-// "1e-05". What is read back is written by core/decimal.hpp.
+// `1e-05`. What is read back is written by core/decimal.hpp.
 
 #include <cstdint>
 #include <optional>
@@ -46,7 +46,7 @@ std::string coefficient_text(const Coefficient& coefficient, double factor = 1);
 /// The value, or the upper limit with "≤" in front, or "–".
 std::string value_text(const Coefficient& coefficient, double factor = 1);
 
-/// A place in a record, in seconds from its start, without an exponent: "2153.67", "1290550".
+/// A place in a record, in seconds from its start, without an exponent: `2153.67`, `1290550`.
 std::string place_text(double seconds);
 
 /// Of a value by its 95 % interval; three where it has none.

@@ -233,7 +233,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
     out.steady_sd = kSteadyOverB * b;
     out.driving = out.steady_sd * std::sqrt(2 / out.correlation_s);
     out.origin = fmt::format(
-        "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, steady state 1.0760 "
+        "bias_instability {} as the maximum of a Gauss-Markov bias at tau {} s: Tc = tau/1.8926, steady state 1.076 "
         "B{}",
         shortest(rounded(b, 4)), shortest(rounded(out.correlation_s * kPeakTau, 4)),
         k > 0 ? "; random_walk is left out" : "");
@@ -246,7 +246,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
   out.origin = k > 0 ? fmt::format("random_walk with a correlation time of {}{}",
                                    options.correlation_s ? "your choice"
                                    : record > 0          ? "ten records"
-                                                         : "1e6 s, for the length of the record is unknown",
+                                                         : "10⁶ s, for the length of the record is unknown",
                                    b > 0 ? "; bias_instability is left out" : "")
                      : "neither bias_instability nor random_walk was detected: no varying bias";
   return out;

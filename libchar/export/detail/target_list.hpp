@@ -26,6 +26,7 @@
   TARGET(pegasus) \
   TARGET(carla) \
   TARGET(mujoco) \
+  TARGET(webots) \
   TARGET(kf_gins) \
   TARGET(navego) \
   TARGET(matlab) \

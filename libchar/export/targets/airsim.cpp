@@ -48,7 +48,7 @@ Export write_airsim(const SensorGroup& group, const ExportOptions& options) {
     out.notes.push_back(std::string("no ") + (group.gyroscope ? "accelerometer" : "gyroscope") +
                         " was given: AirSim's own (an MPU-6000) stays");
   Json head = head_json(group, options,
-                        "AngularRandomWalk = white_noise 60 180/pi; VelocityRandomWalk = white_noise 1e3/9.80665; "
+                        "AngularRandomWalk = white_noise 60 180/pi; VelocityRandomWalk = white_noise 1000/9.80665; "
                         "BiasStability = random_walk sqrt(tau), in deg/h and ug (not bias_instability)");
   if (!writer.comments.empty()) head["comments"] = writer.comments;
   Json document;

@@ -21,6 +21,29 @@ Export write_kalibr(const SensorGroup& group, const ExportOptions& options) {
   return out;
 }
 
+// The sensor.yaml of a EuRoC data set: the same four numbers, in a data set folder.
+Export write_euroc(const SensorGroup& group, const ExportOptions& options) {
+  Export out;
+  const ImuFigures f = imu_figures(group, options, "a EuRoC data set", out.notes);
+  out.text =
+      commented(head_lines(group, options,
+                           "density = white_noise, walk = random_walk (roots of two-sided, continuous densities)"),
+                "# ");
+  out.text +=
+      "sensor_type: imu\n"
+      "comment: noise by sensorchar\n"
+      "T_BS:  # pose of the sensor in the body frame: not known from a recording at rest\n"
+      "  cols: 4\n  rows: 4\n"
+      "  data: [1.0, 0.0, 0.0, 0.0,\n"
+      "         0.0, 1.0, 0.0, 0.0,\n"
+      "         0.0, 0.0, 1.0, 0.0,\n"
+      "         0.0, 0.0, 0.0, 1.0]\n";
+  out.text += yaml_line("rate_hz", f.gyroscope_rate_hz, "Hz", "");
+  out.text += row_lines("kalibr", f);
+  out.notes.emplace_back("T_BS is the identity: a recording at rest does not say where the sensor sits");
+  return out;
+}
+
 }  // namespace
 
 ExportTarget kalibr_target() {
@@ -32,6 +55,17 @@ ExportTarget kalibr_target() {
           "NK",
           {.topic = true},
           write_kalibr};
+}
+
+ExportTarget euroc_target() {
+  return {"euroc",
+          "EuRoC data sets",
+          "continuous densities: N and K as for Kalibr",
+          "sensor.yaml",
+          ExportNeeds::gyroscope_and_accelerometer,
+          "NK",
+          {},
+          write_euroc};
 }
 
 }  // namespace libchar

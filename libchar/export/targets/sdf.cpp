@@ -67,7 +67,7 @@ std::string barometer_element(const SensorModel& m, const ExportOptions& options
   SensorTriad triad{"barometer", "Pa", {}, true};
   if (!unit || unit->quantity != Quantity::pressure)
     throw input_error("E0583", m.channel)
-        .says("its unit is none of pressure, which a barometer needs")
+        .says("its unit is not one of pressure, which a barometer needs")
         .got(m.unit)
         .hint("write unit: Pa into the model file");
   triad.axis.fill(PlacedModel{&m, unit->to_si});

@@ -75,7 +75,7 @@ Faces faces_of(Findings& warnings) {
   out.bold = face_of(true, bold);
   if (plain != kFigureFont)
     warnings.add("figure_font",
-                 fmt::format("the font {} is not installed (Debian's package fonts-liberation2): text stands in {}, "
+                 fmt::format("the font {} is not installed (Debian's package fonts-liberation2): text is set in {}, "
                              "whose letters are not as wide as the layout takes them to be",
                              kFigureFont, plain));
   return out;
@@ -298,7 +298,7 @@ std::string png_of(const Drawing& drawing, double dpi, Findings& warnings) {
   const double width = std::ceil(drawing.width * scale), height = std::ceil(drawing.height * scale);
   if (!(width >= 1 && height >= 1 && width * height <= kMostPixels && width < 32000 && height < 32000))
     throw usage_error("E0981")
-        .says("a picture of {:.0f} × {:.0f} pixels is none that can be drawn", width, height)
+        .says("a picture of {:.0f} × {:.0f} pixels cannot be drawn", width, height)
         .hint("a lower resolution (dpi) gives fewer; an SVG or PDF has none");
   const Faces faces = faces_of(warnings);
   const Surface surface(

@@ -127,7 +127,7 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   }
   if (chosen.size() > detail::kMostCurves)
     throw usage_error("E0984")
-        .says("{} curves: more than {} cannot be told apart in one figure", chosen.size(), detail::kMostCurves)
+        .says("{} curves: more than {} cannot be distinguished in one figure", chosen.size(), detail::kMostCurves)
         .hint("choose some with `channels`");
 }
 

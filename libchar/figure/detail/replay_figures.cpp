@@ -114,7 +114,7 @@ Chart cost_figure(std::span<const FigureSource> sources, const FigureOptions& op
   const std::vector<CostPoint> points = cost_points(replay, options, kind);
   if (points.empty())
     throw kind_refusal(sources[0], kind.kind)
-        .says("no method has both an error and this cost (a replay measures costs unless it is told not to)");
+        .says("no method has both an error and this cost (this replay measured no costs)");
   Chart out;
   Extent x(true), y(true);
   for (const CostPoint& p : points) {
@@ -141,7 +141,7 @@ Chart cost_figure(std::span<const FigureSource> sources, const FigureOptions& op
 
 Chart front_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   return cost_figure(sources, options,
-                     {"front", "Run time [ns a sample]", [](const auto& a) { return a.ns_per_sample; },
+                     {"front", "Run time [ns per sample]", [](const auto& a) { return a.ns_per_sample; },
                       &ReplayReport::Algorithm::on_time_front});
 }
 

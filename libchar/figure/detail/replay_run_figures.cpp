@@ -222,7 +222,7 @@ Chart sensors_over_time(std::span<const FigureSource> sources, const FigureOptio
     throw kind_refusal(sources[0], kind)
         .says(options.algorithm.empty() ? "no method has any" : options.algorithm + " has none");
   if (!variances && tracked->weights.size() > 1)
-    throw kind_refusal(sources[0], kind).says("of several inputs there is more than one weight a sensor");
+    throw kind_refusal(sources[0], kind).says("of several inputs there is more than one weight per sensor");
   const std::vector<double>& last = variances ? tracked->variances : tracked->weights[0];
   const Timeline& track = variances ? tracked->variance_track : tracked->weight_track;
   Chart out;

@@ -12,7 +12,7 @@ namespace libchar {
 std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta, double rate_hz, double samples,
                                                      const TermSet& fitted);
 
-/// Record length at which the bound of `term` is `relative_sd`, at the same rate; nothing when 1e12 s do not do.
+/// Record length at which the bound of `term` is `relative_sd`, at the same rate; nothing when 10¹² s do not do.
 std::optional<double> seconds_for(Term term, double relative_sd, const Mixture& theta, double rate_hz,
                                   const TermSet& fitted);
 

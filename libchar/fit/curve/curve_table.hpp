@@ -34,7 +34,7 @@ struct CurveTable {
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
 
 /// "allan", "psd" or "allan or psd" where the header of a file can only be that of such a table ("x" and "value" may be a log's); empty
-/// otherwise, and for what is no regular file. Throws nothing about the file.
+/// otherwise, and for what is not a regular file. Throws nothing about the file.
 std::string curve_in_header(const std::string& path);
 
 }  // namespace libchar

@@ -58,7 +58,7 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
   for (const Rail& rail : faults.rails)
     faults.findings.push_back(finding(
         "rail",
-        fmt::format("{} of the samples stand at the {} value, {}: clipped, and the noise comes out too small.",
+        fmt::format("{} of the samples are at the {} value, {}: clipped, and the noise comes out too small.",
                     percent_text(rail.share), rail.high ? "largest" : "smallest", with_unit(rail.value, unit))));
   if (faults.staircase)
     faults.findings.push_back(finding(

@@ -66,7 +66,7 @@ std::string event_sentence(const Event& event, std::string_view unit) {
     text = fmt::format("A straight drift of {} over the record ({}{} /s)", size,
                        number_text(event.slope, digits_for(relative)), unit.empty() ? "" : " " + std::string(unit));
   for (std::size_t i = 0; i < event.not_told_from.size(); ++i)
-    text += fmt::format("{} a {}", i == 0 ? ", not told from" : " or", event_name(event.not_told_from[i]));
+    text += fmt::format("{} a {}", i == 0 ? ", not distinguished from" : " or", event_name(event.not_told_from[i]));
   return text + ".";
 }
 

@@ -439,8 +439,8 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
         longest_without_steps(found.events, search.series.start_s,
                               search.instant(search.series.start_s + duration_s) - search.series.start_s);
     Finding many = finding("events_left_in",
-                           fmt::format("There are more than {} steps and drifts: the record is no noise with a few of "
-                                       "them, but handled, moved, or shaken by what happens around it; they stay in. "
+                           fmt::format("There are more than {} steps and drifts: the sensor was moved or shaken; "
+                                       "they were not removed. "
                                        "The longest stretch without a step that was found is from {} to {} s.",
                                        search.options.most, place_text(quiet.low), place_text(quiet.high)));
     many.help.push_back({"Use the longest stretch without a step.",

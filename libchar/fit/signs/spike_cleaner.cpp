@@ -213,7 +213,7 @@ std::string spike_sentence(const SpikeCount& count) {
   switch (judge_spikes(count)) {
     case SpikeVerdict::too_many:
       return fmt::format(
-          "{} of the samples stand out of their neighbours: too many for spikes (at most 1 %), and all were kept.",
+          "{} of the samples differ from their neighbours: too many for spikes (at most 1 %), and all were kept.",
           percent_text(static_cast<double>(count.left_out) / static_cast<double>(count.samples)));
     case SpikeVerdict::heavy_tails:
       return fmt::format(

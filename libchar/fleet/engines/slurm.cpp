@@ -1,6 +1,7 @@
 // sbatch takes at most MaxArraySize elements (1001 unless a site says otherwise) in an array:
 // longer lists go as several arrays.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

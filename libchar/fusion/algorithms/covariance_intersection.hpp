@@ -23,8 +23,7 @@ struct CovarianceIntersection {
       .source = "Julier & Uhlmann 1997",
       .complexity = "O(n r)",
       .needs = {.min_channels = 2, .noise_levels = true, .observation_matrix = true, .accepts_missing = true}};
-  static constexpr std::array options{
-      Option{"fast", "", 0, 0, 1, "1: shares as 1/v instead of those of the least bound", true}};
+  static constexpr std::array options{Option{"fast", "", 0, 0, 1, "1: shares as 1/v instead of the least bound", true}};
   CovarianceIntersection(const Array& array, const Settings& settings);
   Estimate step(const Sample& y);
   Eigen::MatrixXd weights() const { return mean_->weights(); }

@@ -159,7 +159,7 @@ void KalmanTakensFilter::remark(std::string_view name, Findings& warnings) const
   if (given_q_ > 0 || !(error_weight_ > kPriorErrors) || !(q < fused)) return;
   warnings.add("input_repeats", std::string(name) +
                                     " predicts the input from its past better than the sensors measure it: the input "
-                                    "repeats itself or stands still; one that does not would not be estimated as well");
+                                    "repeats itself or is constant; another input would not be estimated as well");
 }
 
 void KalmanTakensTaught::finish_learning() {

@@ -124,7 +124,7 @@ std::vector<Eigen::Index> WeightLearner::originals(const Eigen::MatrixXd& error,
     if (std::find(learnt.without_signal.begin(), learnt.without_signal.end(), i) == learnt.without_signal.end())
       used.push_back(i);
   if (used.empty()) throw numeric_error("E0856").says("no channel follows the reference in the learning window");
-  const Eigen::MatrixXd own = error(Eigen::all, used);
+  const Eigen::MatrixXd own = error(Eigen::indexing::all, used);
   for (const auto& [copy, original] : copies_of(own, own.colwise() + truth, rounding_of_rows(triangle_.rows())))
     learnt.copies.emplace_back(static_cast<int>(used[static_cast<std::size_t>(copy)]),
                                static_cast<int>(used[static_cast<std::size_t>(original)]));
@@ -200,7 +200,7 @@ LearntWeights WeightLearner::weights(const LeastSquaresForm& form) {
   const Eigen::MatrixXd error = form.calibrate ? calibrate(upper, learnt) : Eigen::MatrixXd(upper.middleCols(1, n_));
   const Eigen::VectorXd truth = upper.col(n_ + 1) + origin_ * upper.col(0);
   const std::vector<Eigen::Index> used = originals(error, truth, learnt);
-  const Eigen::MatrixXd own = error(Eigen::all, used);
+  const Eigen::MatrixXd own = error(Eigen::indexing::all, used);
   const Eigen::VectorXd lengths = column_lengths(upper, learnt)(used);
   if (form.non_negative || form.shrinkage != 0)
     solve_regularized(form, own, used, lengths, learnt);

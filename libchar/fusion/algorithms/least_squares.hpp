@@ -151,7 +151,7 @@ struct LeastSquaresOf : ReferenceWeightedMean {
                                                                .learning_complexity = "O(n^2)"};
   static constexpr std::array options{
       Option{"calibrate", "", 1, 0, 1, "1: gain and bias of each channel are learnt first", true},
-      Option{"constant", "", 0, 0, 1, "1: the weighted sum has a constant besides (uncalibrated channels)", true}};
+      Option{"constant", "", 0, 0, 1, "1: the weighted sum has a constant as well (uncalibrated channels)", true}};
 
   LeastSquaresOf(const Array& array, const Settings& settings)
       : ReferenceWeightedMean({settings["calibrate"] != 0, !kPublished, settings["constant"] != 0}, array.channels,

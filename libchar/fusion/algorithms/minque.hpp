@@ -36,7 +36,7 @@ struct Minque {
           "1: channels that fail are taken out or re-weighted, by cumulative sums; 2: by the second moment; 0: neither",
           true},
       Option{"false_alarm_s", "s", 1e5, 1, 1e15,
-             "mean time between two false alarms of the array (detection 1; without a rate: per 2e7 samples)"},
+             "mean time between two false alarms of the array (detection 1; without a rate: per 20 million samples)"},
       Option{"recovery_window", "samples", 0, 0, 1e9,
              "own samples that must agree with the others before a channel comes in again (0: 200, or those of 2 s "
              "where they are fewer) (detection 1)",

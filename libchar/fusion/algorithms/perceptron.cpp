@@ -98,7 +98,7 @@ void Perceptron::finish_learning() {
   standardise();
   if (!std::isfinite(target_.deviation))
     throw numeric_error("E0864")
-        .says("the reference stands still in the learning window: a network would learn one number and no sensor")
+        .says("the reference is constant in the learning window: there is nothing to learn")
         .hint("learn where the input moves");
   const TrainingRows training_rows{window_.data(), training};
   const TrainingRows rest{window_.data() + training * (network_.inputs + 1), held_out};

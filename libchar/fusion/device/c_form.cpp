@@ -1,6 +1,7 @@
 #include "libchar/fusion/device/c_form.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -284,7 +284,7 @@ class Matlab5File final : public ArrayContainer {
     const Tag tag = read_tag(from, end);
     const auto number = number_type_of(tag.type);
     const std::uint64_t count = elements_of(head);
-    if (!number) from.refuse(fmt::format("has an array of type {}, which is no number", tag.type));
+    if (!number) from.refuse(fmt::format("has an array of type {}, which is not a number", tag.type));
     if (count > tag.bytes || count * size_of(*number) != tag.bytes)
       from.refuse(
           fmt::format("has an array {} whose shape does not fit its {} bytes", printable(head.name), tag.bytes));
@@ -321,7 +321,7 @@ class Matlab5File final : public ArrayContainer {
       for (std::uint64_t f = 0; f < fields; ++f) {
         if (from.position() >= end) from.refuse("has a struct that ends before its fields do");
         tag = read_tag(from, end);
-        if (tag.type != kMatrix) from.refuse("has a struct with a field that is no array");
+        if (tag.type != kMatrix) from.refuse("has a struct with a field that is not an array");
         const std::uint64_t field_end = from.position() + tag.bytes;
         const std::string_view field(names.data() + f * each, each);
         add_matrix(from, field_end, elements == 1 ? path : fmt::format("{}_{}", path, e), depth + 1,

@@ -64,7 +64,7 @@ class NpzFile final : public ArrayContainer {
         group_and_name(array ? member.name.substr(0, member.name.size() - kArraySuffix.size()) : member.name);
     PackedArray packed{member.stretch, printable(member.name), 0, 0, member.crc, false};
     if (!array)
-      seen.why_not = "is no .npy array";
+      seen.why_not = "is not a .npy array";
     else if (!member.why_not.empty())
       seen.why_not = member.why_not;
     else

@@ -1,6 +1,7 @@
 #include "libchar/log/arrays/table_plan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -60,8 +60,7 @@ std::uint64_t find_end(const BinaryFile& file) {
     if (at + kEndBytes > text.size()) continue;
     if (Bytes(text).u16(at + 20) == text.size() - at - kEndBytes) return file.size() - tail + at;
   }
-  throw zip_refusal(file, file.size())
-      .says("is cut: its directory, which stands at the end of a ZIP archive, is missing");
+  throw zip_refusal(file, file.size()).says("is cut: the directory at the end of the ZIP archive is missing");
 }
 
 // Counts above 16 and 32 bits stand in a record of their own (ZIP64), which a locator before the end record points to.

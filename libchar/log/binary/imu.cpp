@@ -4,6 +4,7 @@
 // mean step of the times); value = increment · rate · scale.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -49,7 +50,7 @@ const Preset& find_preset(const std::string& path, const std::string& wanted) {
   const std::string all = preset_names(NumberType::i32, true);
   if (wanted.empty())
     throw usage_error("E0468", path)
-        .says("has no header, and which instrument wrote it must be told")
+        .says("has no header; say which instrument wrote it")
         .hint("`preset` one of " + all);
   throw usage_error("E0468", path).says("no preset of .imu files").got(wanted).hint("use one of " + all);
 }
@@ -95,7 +96,7 @@ double rate_of(const BinaryFile& file, const Preset& preset) {
   const double rate = std::round(static_cast<double>(rows - 1) / span);
   if (!(rate >= 1))
     throw input_error("E0469", file.path())
-        .says("its times say less than half a record a second; increments need their whole rate");
+        .says("its times say less than half a record per second; increments need their whole rate");
   return rate;
 }
 

@@ -29,7 +29,7 @@ class Literal {
                    : key == "fortran_order" ? order
                    : key == "shape"         ? shape
                                             : refuse_key(key, at);
-      if (seen) throw refusal("E0406", at).says("a key stands twice in the header").got(key);
+      if (seen) throw refusal("E0406", at).says("a key is repeated in the header").got(key);
       seen = true;
       expect(':');
       if (key == "descr")
@@ -45,8 +45,7 @@ class Literal {
     }
     ++position_;
     skip_blanks();
-    if (position_ != text_.size())
-      throw refusal("E0407", position_).says("text stands behind the header's }").got(word());
+    if (position_ != text_.size()) throw refusal("E0407", position_).says("text follows the header's }").got(word());
     if (!descr || !order || !shape)
       throw refusal("E0407", 0)
           .says("the header has no key \"{}\"", !descr   ? "descr"
@@ -221,7 +220,7 @@ class Literal {
   void read_field(NpyHeader& header) {
     expect('(');
     if (peek() == '(')
-      throw refusal("E0409", position_).says("a field has a title besides its name, which is not read").got(word());
+      throw refusal("E0409", position_).says("a field has a title as well as a name, which is not read").got(word());
     NpyField field;
     field.name = string();
     expect(',');
@@ -230,7 +229,7 @@ class Literal {
       throw refusal("E0409", at, field.name)
           .says("is a record within a record, which is not read")
           .got(word())
-          .hint("save it flat, one field a channel");
+          .hint("save it flat, one field per channel");
     const std::string type = string();
     if (peek() == ',') ++position_;
     if (peek() != ')') {

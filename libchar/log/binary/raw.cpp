@@ -34,7 +34,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
         .hint("copy it again, or correct the sidecar's rows");
   if (!sidecar.rows && sidecar.planar && present % record != 0)
     throw input_error("E0422", path)
-        .says("{} bytes are no whole number of rows of {} bytes, so the planes cannot be found", present, record)
+        .says("{} bytes are not a whole number of rows of {} bytes, so the planes cannot be found", present, record)
         .hint("give rows in the sidecar");
   if (present > needed)
     warnings.add("trailing_bytes", "bytes behind the last row were left out",
@@ -45,8 +45,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
 std::unique_ptr<RowSource> open_raw(const std::string& path, const ReadOptions& options) {
   auto file = std::make_unique<BinaryFile>(path);
   const std::string beside = find_sidecar(path);
-  if (beside.empty() && file->size() == 0)
-    throw input_error("E0422", path).says("is empty, and no sidecar stands beside it");
+  if (beside.empty() && file->size() == 0) throw input_error("E0422", path).says("is empty and has no sidecar");
   if (beside.empty())
     throw input_error("E0422", path)
         .says("is raw binary and has no sidecar that says what it holds")

@@ -1,6 +1,7 @@
 #include "libchar/log/binary/sidecar.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <limits>
@@ -127,7 +128,7 @@ void read_offset(const MapReader& at, std::string_view key, Sidecar& sidecar) {
   if (node->kind != Document::Kind::number || !node->whole || node->number < 0)
     throw key_refusal(at, key, "E0541")
         .says("expected the number of bytes to skip, a whole number not below 0")
-        .hint("the offset of a channel's values stands within channels");
+        .hint("the offset of a channel's values belongs into channels");
   sidecar.offset = at.count(key);
 }
 

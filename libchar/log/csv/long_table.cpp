@@ -167,7 +167,7 @@ void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, D
   dialect.groups = values_of(rows, column);
   if (dialect.groups.size() > kMostKinds)
     throw usage_error("E0328", info.file)
-        .says("more than {} values stand in the column of `group_by`", kMostKinds)
+        .says("more than {} values in the column of `group_by`", kMostKinds)
         .got(options.kinds.group_by)
         .hint("a column of names of sensors was expected");
   std::size_t changes = 0;

@@ -276,7 +276,7 @@ std::unique_ptr<TopicReader> open_dataflash(const std::string& path, const ReadO
   // Of a log that begins as one, what it lost says why (E0426).
   if (reader->topics().empty() && !surely_dataflash(BinaryFile(path).head(kDataflashFmtLength)))
     throw input_error("E0485", path)
-        .says("is no DataFlash log: it defines no message, or has none of those it defines");
+        .says("is not a DataFlash log: it defines no message, or has none of those it defines");
   return reader;
 }
 

@@ -116,7 +116,7 @@ void DataflashWalk::pass_over_damage() {
   else if (is_front(from) && whole_length(from) == 0)
     losses_->add("unknown_message", "messages of types that the log does not define were left out", place);
   else
-    losses_->add("damaged_bytes", "bytes that are no message were left out, and messages among them are lost", place,
+    losses_->add("damaged_bytes", "bytes that are not a message were left out, and messages among them are lost", place,
                  bytes);
 }
 

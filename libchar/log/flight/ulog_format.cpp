@@ -141,7 +141,7 @@ void UlogFormats::add(std::string_view text) {
     Member member;
     if (one.empty()) continue;
     if (!parse_member(one, member)) {
-      definition.why_not = fmt::format("its format has a field that is none: {}", printable(one, 40));
+      definition.why_not = fmt::format("its format has a field that cannot be read: {}", printable(one, 40));
       break;
     }
     definition.members.push_back(std::move(member));

@@ -189,7 +189,7 @@ void UlogWalk::pass_over_damage() {
                  fmt::format("the log ends inside a message: its last {} bytes were left out", end_ - from),
                  at_byte(from));
   else
-    losses_->add("damaged_bytes", "bytes that are no message were left out, and messages among them are lost",
+    losses_->add("damaged_bytes", "bytes that are not a message were left out, and messages among them are lost",
                  at_byte(from), position_ - from);
 }
 

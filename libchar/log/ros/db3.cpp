@@ -2,6 +2,7 @@
 // common types. Source: ros2/rosbag2, rosbag2_storage_sqlite3 (tables topics, messages, message_definitions).
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -187,8 +188,8 @@ class Db3Reader final : public MessageTopics {
       std::error_code none;
       const auto bytes = std::filesystem::file_size(path + end, none);
       if (!none && bytes > 0)
-        found_early().add("open_recording",
-                          "the recording was not closed: what stands in the file beside it is not read", path + end);
+        found_early().add("open_recording", "the recording was not closed: what is in the file next to it is not read",
+                          path + end);
     }
   }
 

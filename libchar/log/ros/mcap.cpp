@@ -226,7 +226,7 @@ void add_schema(std::span<const std::byte> content, McapCatalog& catalog, Findin
   if (added) return;
   const McapSchema& known = at->second;
   if (known.name != read->second.name || known.text != read->second.text)
-    warnings.add("definition_changed", "a schema or channel stands twice and differs: the first is used",
+    warnings.add("definition_changed", "a schema or channel is repeated and differs: the first is used",
                  printable(known.name));
 }
 
@@ -237,7 +237,7 @@ void add_channel(std::span<const std::byte> content, McapCatalog& catalog, Findi
   const auto [at, added] = catalog.channels.try_emplace(id, std::move(read->second));
   if (added) return catalog.order.push_back(id);
   if (at->second.topic != read->second.topic || at->second.schema != read->second.schema)
-    warnings.add("definition_changed", "a schema or channel stands twice and differs: the first is used",
+    warnings.add("definition_changed", "a schema or channel is repeated and differs: the first is used",
                  printable(at->second.topic));
 }
 

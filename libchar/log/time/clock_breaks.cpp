@@ -55,7 +55,7 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns, std::int64_t stamp_ns
   if (clock.local) {
     const double step = back + static_cast<double>(kHour);
     if (step > 0 && step < 2.5 * interval_ns && back < 0)
-      return ClockWrap{kHour, "an hour stands twice, as at the end of summer time", true};
+      return ClockWrap{kHour, "an hour is repeated, as at the end of summer time", true};
   }
   // Of several the one with the shortest step.
   std::optional<ClockWrap> found;

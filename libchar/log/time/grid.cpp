@@ -283,7 +283,7 @@ void TimeGrid::judge_rate_change() {
     throw input_error("E0334", source_.info().file)
         .says("the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds both", at,
               brief_text(before, 5), brief_text(after, 5))
-        .hint("`to_s` {} reads what stands before it, `from_s` {} what follows", at, at);
+        .hint("`to_s` {} reads what is before it, `from_s` {} what follows", at, at);
   }
   if (odd.rows > 0)
     warnings_.add("rate_change",

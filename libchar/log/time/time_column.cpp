@@ -1,6 +1,7 @@
 #include "libchar/log/time/time_column.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -215,7 +215,7 @@ void TimeGrid::refuse_backward() const {
   std::string hint = fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
                                  step_.ns > 0 ? shortest(rounded(1e9 / step_.ns, 6)) : "HZ");
   if (backward_.restarted() && last_.stamp > last_.first)
-    hint = fmt::format("`to_s` {} reads what stands before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
+    hint = fmt::format("`to_s` {} reads what is before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
   if (!log.topics.empty() && options_.time_source != "log")
     hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
   throw input_error("E0317", backward_.place)

@@ -1,6 +1,7 @@
 #include "libchar/log/topics/topic_rows.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +146,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics, const ReadOpt
     std::erase_if(*common, [&](std::size_t t) { return found.count(t) == 0; });
     if (common->empty())
       throw usage_error("E0425", file)
-          .says("these channels are of several topics, each of which has a clock of its own")
+          .says("these channels are of several topics, and each topic has its own clock")
           .got("{}", fmt::join(options.channels, ","))
           .hint("read one topic at a time");
   }

@@ -18,7 +18,7 @@ namespace {
 const std::string& with_place_beside(const std::string& path) {
   if (writes_through(path))
     throw output_error("E0518", path)
-        .says("raw data need a sidecar, and beside a pipe or device there is no place for it")
+        .says("raw data need a sidecar file, which a pipe or device cannot have")
         .hint("write to a file, or another format");
   return path;
 }

@@ -27,7 +27,7 @@ ValueWriter::ValueWriter(WholeFile& file, std::size_t channels, NumberFormat num
   if (!column_major_) return;
   pending_.resize(channels);
   spool_ = open_nameless(std::filesystem::path(file.path()).parent_path());
-  if (spool_ < 0) fail("create a temporary file beside it");
+  if (spool_ < 0) fail("create a temporary file next to it");
 }
 
 ValueWriter::~ValueWriter() {
@@ -78,7 +78,7 @@ void ValueWriter::spill() {
     for (std::size_t done = 0; done < column.size();) {
       const ssize_t n = ::write(spool_, column.data() + done, column.size() - done);
       if (n < 0 && errno == EINTR) continue;
-      if (n < 0) fail("write a temporary file beside it");
+      if (n < 0) fail("write a temporary file next to it");
       done += static_cast<std::size_t>(n);
     }
     column.clear();

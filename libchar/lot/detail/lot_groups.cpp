@@ -1,6 +1,7 @@
 #include "libchar/lot/detail/lot_groups.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "libchar/model/detail/noise_term.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -64,7 +65,7 @@ Conversion conversion(const MapReader& at, std::string_view unit_key, std::size_
     const auto found = find_noise_unit(term, *unit, channel_unit);
     if (!found)
       at.refuse(unit_key,
-                fmt::format("is no unit of {} for a channel in {}", kTermNames[t].key,
+                fmt::format("is not a unit of {} for a channel in {}", kTermNames[t].key,
                             channel_unit.empty() ? "an unnamed unit" : channel_unit),
                 fmt::format("such as {}", fmt::join(noise_unit_examples(term, channel_unit), ", ")));
     understood = *found;

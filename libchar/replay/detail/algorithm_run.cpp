@@ -208,7 +208,7 @@ void AlgorithmRun::learn(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& 
   learnt_ += static_cast<std::uint64_t>(samples.cols());
   guarded([&] {
     if (some_left_out())
-      runner_->learn(samples(*frame_->live, Eigen::all).eval(), truth);
+      runner_->learn(samples(*frame_->live, Eigen::indexing::all).eval(), truth);
     else
       runner_->learn(samples, truth);
   });
@@ -220,7 +220,7 @@ void AlgorithmRun::look(const Eigen::MatrixXd& samples) {
   const double before = learning_s_;
   guarded([&] {
     if (some_left_out())
-      runner_->look(samples(*frame_->live, Eigen::all).eval());
+      runner_->look(samples(*frame_->live, Eigen::indexing::all).eval());
     else
       runner_->look(samples);
   });
@@ -265,7 +265,7 @@ void AlgorithmRun::timed_run(const Eigen::MatrixXd& samples, bool noted) {
   x_.resize(frame_->array->inputs(), samples.cols());
   variance_.resize(x_.rows(), x_.cols());
   Eigen::MatrixXd given;
-  if (some_left_out()) given = samples(*frame_->live, Eigen::all);
+  if (some_left_out()) given = samples(*frame_->live, Eigen::indexing::all);
   const Eigen::MatrixXd& all = some_left_out() ? given : samples;
   double seconds = 0;
   for (Eigen::Index done = 0, part = 0; done < all.cols(); done += part) {
@@ -359,7 +359,7 @@ std::optional<Eigen::MatrixXd> AlgorithmRun::weights() const {
   auto given = runner_->weights();
   if (!given || !some_left_out()) return given;
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(frame_->array->channels, given->cols());
-  all(*frame_->live, Eigen::all) = *given;
+  all(*frame_->live, Eigen::indexing::all) = *given;
   return all;
 }
 

@@ -68,7 +68,7 @@ void BlindRun::look(std::int64_t first, const Eigen::MatrixXd& samples) {
   find_columns(first, samples.cols());
   for_each_part([&](Part& part) {
     for (const Columns& columns : run_) {
-      part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::all);
+      part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::indexing::all);
       part.runner->look(part_);
     }
   });
@@ -96,7 +96,7 @@ bool BlindRun::step(Part& part, const Eigen::MatrixXd& samples, Eigen::MatrixXd&
   x.resize(array_->inputs(), samples.cols());
   variance_.resize(x.rows(), x.cols());
   for (const Columns& columns : run_) {
-    part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::all);
+    part_ = samples.middleCols(columns.from, columns.count)(part.channels, Eigen::indexing::all);
     part.runner->run(part_, x.middleCols(columns.from, columns.count),
                      variance_.middleCols(columns.from, columns.count));
     steps_ += static_cast<std::uint64_t>(columns.count);

@@ -35,7 +35,7 @@ struct Presence {
 /// value so often, and a quantity that rests between coarse steps does so for all.
 bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t samples);
 
-inline constexpr const char* kFrozenMissing = "sensors that stand still where the others move: missing there";
+inline constexpr const char* kFrozenMissing = "sensors that are frozen while the others move: missing there";
 /// "NAME from 120 to 240 s".
 std::string still_words(const std::string& name, const Presence& at, double rate_hz);
 

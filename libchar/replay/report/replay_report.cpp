@@ -88,7 +88,7 @@ ReplayReport parse_replay_report(const Document& document, const std::string& fi
   std::set<std::string> labels;
   for (std::size_t i = 0; i < algorithms.size(); ++i) {
     complete(algorithms[i], out.algorithms[i]);
-    if (!labels.insert(out.algorithms[i].label).second) algorithms[i].refuse("label", "stands twice in this report");
+    if (!labels.insert(out.algorithms[i].label).second) algorithms[i].refuse("label", "is repeated in this report");
   }
   return out;
 }

@@ -122,7 +122,7 @@ std::string figures(const ReplayResult& r, const AlgorithmResult& a) {
 
 std::string costs_of(const AlgorithmResult& a) {
   std::string out;
-  if (std::isfinite(a.ns_per_sample)) out += ", " + duration_text(1e-9 * a.ns_per_sample) + " a sample";
+  if (std::isfinite(a.ns_per_sample)) out += ", " + duration_text(1e-9 * a.ns_per_sample) + " per sample";
   if (a.peak_bytes) out += ", " + bytes_text(a.peak_bytes) + " of memory";
   return out;
 }
@@ -147,10 +147,10 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out = fmt::format("Within one per cent of it, or not told from it by this record: {}.", list_of(equals));
+  std::string out = fmt::format("Within 1 % of it, or not distinguished from it by this record: {}.", list_of(equals));
   const AlgorithmResult* cheap = cheapest_equal(r);
   if (costs && cheap != nullptr && cheap->label != best.label && cheap->ns_per_sample < 0.8 * best.ns_per_sample)
-    out += fmt::format(" Of these {} is the cheapest, {} a sample.", cheap->label,
+    out += fmt::format(" Of these {} is the cheapest, {} per sample.", cheap->label,
                        duration_text(1e-9 * cheap->ns_per_sample));
   return out;
 }

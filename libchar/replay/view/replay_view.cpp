@@ -158,6 +158,9 @@ ReplayFigures figures_of(const ReplayResult& r) {
   out.sensors = sensors_can_be_drawn(r.sensors);
   out.ranking = any([](const auto& a) { return a.rmse > 0; });
   out.availability = any([](const auto& a) { return a.availability < kNearlyAlways; });
+  out.bias = r.has_reference && any([](const auto& a) {
+               return !a.bound && !a.inputs.empty() && std::abs(a.inputs[0].error.bias) > 0.5 * a.rmse;
+             });
   out.run = !r.tracks.whole.inputs.empty();
   out.deviations = !r.tracks.whole.deviations.empty();
   out.time_matters = any([&](const auto& a) { return 1e-9 * a.ns_per_sample * r.rate_hz > kCoreThatMatters; });

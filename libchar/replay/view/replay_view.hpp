@@ -74,6 +74,7 @@ struct ReplayFigures {
   bool run = false;           ///< an estimate over time
   bool deviations = false;    ///< of the sensors from their median
   bool availability = false;  ///< of a method below 0.999: worth a column
+  bool bias = false;          ///< more than half of a method's RMSE: offsets decide
   /// run time can decide between methods: one of them takes more than `kCoreThatMatters` of a core
   bool time_matters = false;
 };

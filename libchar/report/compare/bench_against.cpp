@@ -39,7 +39,7 @@ std::vector<Named> figures_in(const BenchReport& report) {
       for (const TermAccuracy& term : method.terms)
         add(out, fmt::format("{}RMSE of {}", who, kTermNames[static_cast<std::size_t>(term.term)].key), false,
             term.error);
-      add(out, who + "ns a sample", true, method.ns_per_sample);
+      add(out, who + "ns per sample", true, method.ns_per_sample);
     }
   for (const FusionBenchRow& method : report.fusion ? report.fusion->rows : std::vector<FusionBenchRow>{}) {
     const std::string who = "fusion: " + method.label + ", ";
@@ -47,7 +47,7 @@ std::vector<Named> figures_in(const BenchReport& report) {
     // As a ratio: an excess of zero has none.
     excess.value += 1, excess.ci95.low += 1, excess.ci95.high += 1;
     add(out, who + "RMSE over yardstick", false, excess);
-    add(out, who + "ns an instant", true, method.ns_per_sample);
+    add(out, who + "ns per instant", true, method.ns_per_sample);
   }
   for (const ScalingSeries& series : report.scaling ? report.scaling->series : std::vector<ScalingSeries>{})
     if (!series.points.empty())
@@ -97,7 +97,7 @@ BenchChanges bench_changes(const BenchReport& was, const BenchReport& now, const
     out.figures.push_back(std::move(change));
   }
   if (out.figures.empty())
-    throw input_error("E0968", file).says("no figure of this run stands in it").hint("run the same files and parts");
+    throw input_error("E0968", file).says("no figure of this run is in it").hint("run the same files and parts");
   return out;
 }
 
@@ -106,8 +106,7 @@ std::string changes_text(const BenchChanges& changes, double tolerance) {
   std::string out = table.rows.empty() ? table.title + "\n" : terminal_table(table);
   out += fmt::format("  {} of {} figures: no difference resolved\n", changes.figures.size() - table.rows.size(),
                      changes.figures.size());
-  if (!changes.missing.empty())
-    out += fmt::format("  {} figures stand in the older run only\n", changes.missing.size());
+  if (!changes.missing.empty()) out += fmt::format("  {} figures are in the older run only\n", changes.missing.size());
   if (!changes.same_machine) out += "  another machine: times are shown and judge nothing\n";
   return out + fmt::format("  worse by more than {} %: {}\n\n", 100 * tolerance, changes.worse(tolerance).size());
 }
@@ -137,7 +136,7 @@ std::string section_html(const BenchSection& section, std::size_t number) {
       fmt::format("<section class=\"channel\" id=\"part-{}\">\n<h2>{}</h2>\n", number, html_text(section.title));
   for (const std::string& sentence : section.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
   for (const BenchChart& chart : section.charts) out += points_figure(chart, section.title);
-  if (!section.table.columns.empty()) out += html_table(section.table, {.css = "many"});
+  if (!section.table.columns.empty()) out += html_table(section.table, {.css = "many cards", .cards = true});
   for (const std::string& note : section.notes) out += "<p class=\"note\">" + html_text(note) + "</p>\n";
   return out + "</section>\n";
 }
@@ -169,7 +168,7 @@ std::string bench_markdown(const BenchReport& report) {
   return out;
 }
 
-std::string bench_html(const BenchReport& report) {
+std::string bench_html(const BenchReport& report, const std::vector<std::string>& next) {
   const std::vector<BenchSection> sections = bench_view(report);
   std::string body = "<div class=\"verdict\">\n", contents, parts;
   for (const std::string& sentence : detail::bench_verdict(report)) body += "<p>" + html_text(sentence) + "</p>\n";
@@ -177,7 +176,7 @@ std::string bench_html(const BenchReport& report) {
     contents += fmt::format("<li><a href=\"#part-{}\">{}</a></li>\n", i + 1, html_text(sections[i].title));
     parts += section_html(sections[i], i + 1);
   }
-  body += "</div>\n<ul class=\"contents\">\n" + contents + "</ul>\n" + parts;
+  body += "</div>\n" + next_part(next) + "<ul class=\"contents\">\n" + contents + "</ul>\n" + parts;
   body += "<section class=\"channel\">\n<h2>Provenance</h2>\n<p><code>" + html_text(command_line(report.command)) +
           "</code></p>\n</section>\n";
   return html_page({"Benchmarks", report.quick ? "quick" : "run time against error",
@@ -185,8 +184,9 @@ std::string bench_html(const BenchReport& report) {
                    body, json_in_script(document_of(bench_fields(), report)));
 }
 
-std::vector<OutputFile> bench_files(const BenchReport& report, const std::filesystem::path& folder) {
-  std::vector<OutputFile> out = {{(folder / "bench.html").string(), bench_html(report)},
+std::vector<OutputFile> bench_files(const BenchReport& report, const std::filesystem::path& folder,
+                                    const std::vector<std::string>& next) {
+  std::vector<OutputFile> out = {{(folder / "bench.html").string(), bench_html(report, next)},
                                  {(folder / "bench.json").string(), ""},
                                  {(folder / "bench.md").string(), bench_markdown(report)}};
   Json document = document_of(bench_fields(), report);

@@ -65,7 +65,7 @@ std::string comparison_html(const CharacterizationComparison& comparison, const 
 // A run of benchmarks against an older one: what is better or worse beyond both intervals.
 
 struct BenchChange {
-  std::string what;  ///< "noise coefficients, white noise alone: sensorchar, ns a sample"
+  std::string what;  ///< "noise coefficients, white noise alone: sensorchar, ns per sample"
   bool is_time = false;
   Figure was, now;
   double ratio = 1;       ///< now over was
@@ -90,9 +90,11 @@ Json changes_json(const BenchChanges& changes, double tolerance);
 
 std::string bench_text(const BenchReport& report);
 std::string bench_markdown(const BenchReport& report);
-std::string bench_html(const BenchReport& report);
+/// `next`: what to type next.
+std::string bench_html(const BenchReport& report, const std::vector<std::string>& next = {});
 
 /// The page, the document and the Markdown, named bench, in this folder.
-std::vector<OutputFile> bench_files(const BenchReport& report, const std::filesystem::path& folder);
+std::vector<OutputFile> bench_files(const BenchReport& report, const std::filesystem::path& folder,
+                                    const std::vector<std::string>& next = {});
 
 }  // namespace libchar

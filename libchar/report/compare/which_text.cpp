@@ -260,8 +260,8 @@ namespace {
 std::string figure_html(const ComparedGroup& group, bool with_sentence) {
   const Chart chart = detail::compared_chart(group);
   if (chart.series.empty()) return "";
-  return "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 160, .shape = 0.5}) + "<figcaption>" +
-         html_text(with_sentence ? group.name + ": " + group.sentence : group.name) + "</figcaption></figure>\n";
+  return drawn_figure(chart, {.width_mm = 160, .shape = 0.5},
+                      with_sentence ? group.name + ": " + group.sentence : group.name);
 }
 
 std::string sides_html(const CharacterizationComparison& c, const std::vector<std::string>& command) {
@@ -269,8 +269,8 @@ std::string sides_html(const CharacterizationComparison& c, const std::vector<st
   for (const ReportedCharacterization& side : c.sides) facts.add({side.name, side.file, side.recording});
   Table program("|");
   add_program(program, command);
-  return "<section class=\"channel\">\n<h2>Where the numbers come from</h2>\n" + html_table(facts) +
-         html_table(program) + "</section>\n";
+  return "<section class=\"channel\">\n<h2>Where the numbers come from</h2>\n" +
+         html_table(facts, {.css = "cards", .cards = true}) + html_table(program) + "</section>\n";
 }
 
 }  // namespace
@@ -281,17 +281,17 @@ std::string detail::comparison_html(const CharacterizationComparison& c, const J
   for (const std::string& line : lines_of(c.verdict)) body += "<p class=\"verdict\">" + html_text(line) + "</p>\n";
   body += bullet_list(c.known, "cautions") + "</section>\n";
   body += "<section class=\"channel\">\n<h2>Which is lowest</h2>\n" +
-          html_table(detail::comparison_table(c), {.css = "many"}) + "</section>\n";
+          html_table(detail::comparison_table(c), {.css = "many cards", .cards = true}) + "</section>\n";
   std::string first, rest;
   for (const ComparedGroup& group : c.groups) {
     const bool folds = group.within;
     (folds ? rest : first) += figure_html(group, folds);
   }
   body += "<section class=\"channel\">\n<h2>Allan deviation</h2>\n" + first +
-          (rest.empty()
-               ? ""
-               : folded("Each axis",
-                        html_table(detail::comparison_table(c, detail::TableGroups::axes), {.css = "many"}) + rest)) +
+          (rest.empty() ? ""
+                        : folded("Each axis", html_table(detail::comparison_table(c, detail::TableGroups::axes),
+                                                         {.css = "many cards", .cards = true}) +
+                                                  rest)) +
           "</section>\n";
   if (!c.remarks.empty())
     body += "<section class=\"channel\">\n<h2>What differs otherwise</h2>\n" + bullet_list(c.remarks, "plain") +

@@ -13,14 +13,17 @@
 namespace libchar {
 namespace {
 
-std::string drawn(const Chart& chart, const DrawingOptions& options, const std::string& caption) {
-  return "<figure class=\"curves\">\n" + draw_figure(chart, options) + "<figcaption>" + html_text(caption) +
-         "</figcaption>\n</figure>\n";
+/// An SVG of a page begins with its tag.
+std::string with_class(const std::string& svg, const char* css) {
+  return fmt::format("<svg class=\"{}\"", css) + svg.substr(4);
 }
+
+/// A window of 390 pixels has 350 for a drawing with letters of ten.
+constexpr double kNarrowMm = 86;
 
 /// Over the whole page; two side by side.
 const DrawingOptions kWide{.width_mm = 165, .shape = 0.5, .legend = LegendPlace::below};
-const DrawingOptions kHalf{.width_mm = 115, .shape = 0.36, .legend = LegendPlace::none};
+const DrawingOptions kHalf{.width_mm = kNarrowMm, .shape = 0.42, .legend = LegendPlace::none};
 
 /// An axis on which quotients and differences are numbers.
 FigureAxis axis_between(const std::string& title, bool log, double low, double high) {
@@ -55,6 +58,16 @@ FigureSeries series_of(Ink ink, std::size_t dash, std::vector<double> x, std::ve
 }
 
 }  // namespace
+
+std::string drawn_figure(const Chart& chart, const DrawingOptions& options, const std::string& caption) {
+  DrawingOptions narrow = options;
+  narrow.width_mm = kNarrowMm;
+  narrow.shape = std::max(options.shape, 0.6);
+  const bool once = options.width_mm <= kNarrowMm;
+  return "<figure class=\"curves\">\n" + with_class(draw_figure(chart, options), once ? "any" : "wide") +
+         (once ? "" : with_class(draw_figure(chart, narrow), "narrow")) + "<figcaption>" + html_text(caption) +
+         "</figcaption>\n</figure>\n";
+}
 
 FigureSeries allan_series(const AllanCurve& allan, std::size_t k, const std::string& name, bool strong, double factor) {
   // Dashes repeat more slowly than colours.
@@ -91,7 +104,7 @@ std::string curves_figure(std::vector<FigureSeries> curves, const std::string& y
   chart.x = x.axis("averaging time τ, s");
   chart.y = y.axis(y_title);
   chart.series = std::move(curves);
-  return drawn(chart, kWide, more > 0 ? fmt::format("{} more have no name here.", more) : "");
+  return drawn_figure(chart, kWide, more > 0 ? fmt::format("{} more have no name here.", more) : "");
 }
 
 namespace {
@@ -140,10 +153,11 @@ std::string points_figure(const BenchChart& bench, const std::string& about) {
   chart.x = x.axis(bench.x);
   chart.y = y.axis(bench.y);
   chart.series = {front_line(bench, false), front_line(bench, true)};
-  return drawn(chart, kWide,
-               "Lower and further left is better. Dashed: the front, on which nobody is better in both; large: on it. "
-               "Lines: 95 % intervals. Blue: this program; orange: recipes of others. Open: told which terms there "
-               "are, with a front of their own.");
+  return drawn_figure(
+      chart, kWide,
+      "Lower and further left is better. Dashed: the front, on which nobody is better in both; large: on it. "
+      "Lines: 95 % intervals. Blue: this program; orange: recipes of others. Open: given the terms, "
+      "with a front of their own.");
 }
 
 namespace {
@@ -267,7 +281,7 @@ std::string histogram_figure(const Histogram& h, const LotAxis& axis, const std:
   upright(axis.limit, Ink::vermilion, "limit");
   std::string caption = beyond_text(axis, chart.x) + "How many devices have which value";
   if (h.below + h.above > 0) caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
-  return drawn(chart, kHalf, caption + ".");
+  return drawn_figure(chart, kHalf, caption + ".");
 }
 
 std::string control_figure(const ControlChart& control, std::size_t values, const LotAxis& axis,
@@ -302,7 +316,7 @@ std::string control_figure(const ControlChart& control, std::size_t values, cons
   }
   chart.series.push_back(charted(control, axis));
   add_beyond(chart, control, axis, beyond);
-  return drawn(chart, kHalf, beyond_text(axis, chart.y) + zones_text(control, values));
+  return drawn_figure(chart, kHalf, beyond_text(axis, chart.y) + zones_text(control, values));
 }
 
 }  // namespace libchar

@@ -9,11 +9,15 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/table/table.hpp"
+#include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/figure.hpp"
 #include "libchar/lot/control_chart.hpp"
 #include "libchar/report/html/fleet_report.hpp"
 
 namespace libchar {
+
+/// A chart with its caption, drawn once more for small windows.
+std::string drawn_figure(const Chart& chart, const DrawingOptions& options, const std::string& caption);
 
 /// The points of the curve that can be relied on, times a factor; the k-th of many, told apart.
 FigureSeries allan_series(const AllanCurve& allan, std::size_t k, const std::string& name, bool strong,

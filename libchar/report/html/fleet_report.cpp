@@ -29,7 +29,7 @@ std::vector<std::string> known_words(const FleetLot& lot) {
 std::string facts(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   return "<p class=\"verdict\">" + html_text(lot.verdict) + "</p>\n" + bullet_list(lot.notes, "cautions") +
-         bullet_list(known_words(lot), "cautions");
+         bullet_list(known_words(lot), "cautions") + next_part(report.next);
 }
 
 std::string recordings_part(const FleetReport& report, const std::vector<std::size_t>& recordings,
@@ -76,23 +76,23 @@ std::string worst_part(const FleetReport& report) {
   if (count > open) out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
   return out +
          "<p class=\"note\">By how improbable the reason is: so large a deviation from the others, of any device of "
-         "the fleet; or so high a value of a device that stands at its limit.</p>\n</section>\n";
+         "the fleet; or so high a value of a device that is at its limit.</p>\n</section>\n";
 }
 
 std::string quantities_part(const FleetLot& lot) {
-  constexpr PageTable kLook{.css = "many"};
+  constexpr PageTable kLook{.css = "many cards", .cards = true};
   const Table kinds = quantities_table(lot, true), channels = quantities_table(lot, false);
   const bool has_kinds = !kinds.rows.empty();
   std::string out = "<h2>What the devices have in common</h2>\n";
   if (has_kinds || !channels.rows.empty()) out += html_table(has_kinds ? kinds : channels, kLook);
   if (has_kinds) out += folded("The same of each channel", html_table(channels, kLook));
   return out +
-         "<p class=\"note\">Means of coefficients are geometric. Spread: from device to device, what the uncertainty "
-         "of each alone would make is taken out; ≤: none beyond that, 97.5 % limit. In brackets: 95 % intervals. 95 % "
-         "of devices: their values as they were measured. A mean \"of\" more devices than are counted is also of those "
-         "not detected or doubtful, by what their records show of the square; else only what was detected counts, no "
-         "mean is given where that is under two thirds, and too large by up to: at most that, if the others are the "
-         "smallest.</p>\n";
+         "<p class=\"note\">Means of coefficients are geometric. In brackets: 95 % intervals. Spread between devices, "
+         "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \"of\" "
+         "more devices than are counted includes undetected or doubtful ones, by the square that their records show. "
+         "Otherwise only detected values count: no mean is given if fewer than two thirds of the devices were "
+         "detected, "
+         "and “too large by up to” is the bias if all others are smaller.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {
@@ -122,8 +122,7 @@ std::string figures_part(const FleetReport& report) {
   if (out.empty()) return "";
   if (left_out > 0)
     out += fmt::format(
-        "<p class=\"note\">Figures of {} more quantities are left out; their numbers stand in lot.json.</p>\n",
-        left_out);
+        "<p class=\"note\">Figures of {} more quantities are left out; their numbers are in lot.json.</p>\n", left_out);
   return "<section id=\"channels\">\n<h2>Distributions and control charts</h2>\n" + out + "</section>\n";
 }
 
@@ -146,15 +145,15 @@ std::string devices_part(const FleetLot& lot) {
     if (shown) devices.columns.push_back({head});
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, batch\"></label>\n"
-         "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option value=\"1\">that stand "
-         "out</option><option value=\"2\">that fail a limit</option><option value=\"4\">not "
+         "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option value=\"1\">"
+         "outliers</option><option value=\"2\">that fail a limit</option><option value=\"4\">not "
          "characterized</option><option value=\"8\">without a result yet</option></select></label>\n<button "
          "type=\"button\" id=\"device-before\">‹ before</button><button type=\"button\" id=\"device-next\">next "
          "›</button>\n<span id=\"device-place\" class=\"dim\"></span>\n"
          "</div>\n<div id=\"devices\">" +
          html_table(devices, {.css = "devices"}) +
-         "</div>\n<p class=\"note\">Every coefficient of every device stands in coefficients.csv and coefficients.npz "
-         "beside this page.</p>\n</section>\n";
+         "</div>\n<p class=\"note\">Every coefficient of every device is in coefficients.csv and coefficients.npz, "
+         "next to this page.</p>\n</section>\n";
 }
 
 /// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.
@@ -219,7 +218,7 @@ std::string channels_part(const FleetReport& report) {
   const Table channels = all_channels(report);
   return channels.rows.empty() ? ""
                                : "<section class=\"channel\">\n<h2>Each device</h2>\n" +
-                                     html_table(channels, {.css = "many"}) + "</section>\n";
+                                     html_table(channels, {.css = "many cards", .cards = true}) + "</section>\n";
 }
 
 std::string curves_part(const FleetReport& report) {

@@ -39,6 +39,7 @@ struct FleetReport {
   /// That the records were made of, one each, where they are still in memory: their Allan curves
   /// are drawn, their logs and settings named.
   std::span<const Characterization> recordings;
+  std::vector<std::string> next{};  ///< what to type next: commands
 };
 
 /// index.html, coefficients.csv, coefficients.npz and lot.json.

@@ -169,8 +169,7 @@ Table quality_table(const ChannelView& view) {
 std::string consumers(const ChannelView& view, double rate_hz) {
   if (view.consumers.empty()) return "";
   Table out("for|name there|formula|value|unit");
-  out.note =
-      "f = " + brief_text(rate_hz, 6) + " Hz. ≤ stands before an upper 95 % limit of a term that was not detected.";
+  out.note = "f = " + brief_text(rate_hz, 6) + " Hz. ≤ marks an upper 95 % limit of a term that was not detected.";
   const std::string* before = nullptr;
   for (const ConsumerNumber& row : view.consumers) {
     const bool repeated = before != nullptr && *before == row.consumer;
@@ -213,8 +212,8 @@ std::string channel_section(const ChannelView& view, const LogInfo& log, std::si
                                     : " <span class=\"unit\">" + html_text(view.shown_unit) + "</span>");
   out += "<p class=\"sentence\">" + html_text(view.summary) + "</p>\n";
   out += findings_list(view.judgement.findings) + bullet_list(view.beside_terms, "plain");
-  if (layout.trace) out += trace_plot(view, index, log);
   out += curve_plots(view, index);
+  if (layout.trace) out += trace_plot(view, index, log);
   if (c.fit) out += numbers_table(view, rate_hz) + folded(trust_summary(*c.fit), trust(view, index));
   if (c.verification) out += verification_section(view);
   out += folded("Data quality", html_table(quality_table(view), {.css = "facts"}) + lines_table(view) +
@@ -226,7 +225,7 @@ std::string facts(const CharacterizationView& view) {
   const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   std::string out = "<p class=\"facts\">";
-  out += fmt::format("<b>{}</b> {} · <b>{}</b> samples a channel", result.channels.size(),
+  out += fmt::format("<b>{}</b> {} · <b>{}</b> samples per channel", result.channels.size(),
                      result.channels.size() == 1 ? "channel" : "channels", count_text(log.samples));
   if (log.time.rate_hz > 0) {
     out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>", brief_text(log.time.rate_hz, 6),
@@ -317,7 +316,7 @@ constexpr std::size_t kTracesInGroup = 6;
 
 std::string group_part(const CharacterizationView& view, const ChannelGroup& group) {
   std::string out = "<div class=\"plots group\">\n";
-  if (view.channels.size() > 1) out += group_plot(view, group);
+  out += group_plot(view, group);
   if (group.channels.size() <= kTracesInGroup) {
     out += group.channels.size() > 3 ? "<div class=\"traces many\">\n" : "<div class=\"traces\">\n";
     for (const std::size_t i : group.channels)
@@ -363,7 +362,9 @@ std::string overview(const CharacterizationView& view) {
                     html_text(view.verdict) + "</p>\n" + facts(view);
   const std::size_t channels = view.channels.size();
   out += channels > kUnfoldedRows ? folded("All coefficients in a table", overview_table(view)) : overview_table(view);
-  out += channels > 1 ? folded("Each channel in words", sentences(view)) : sentences(view);
+  // The only channel follows unfolded, with its sentence and its plots.
+  if (channels == 1) return out + next_part(view.result->next) + "</section>\n";
+  out += folded("Each channel in words", sentences(view));
   for (const ChannelGroup& group : view.groups) out += group_part(view, group);
   return out + next_part(view.result->next) + "</section>\n";
 }
@@ -404,12 +405,14 @@ std::string html_report(const CharacterizationView& view, const Json& without_ti
   const Characterization& result = *view.result;
   std::string body = overview(view);
   if (result.limits) body += limits_section(*result.limits);
-  body += "<section id=\"channels\">\n<h2>Channel by channel</h2>\n" + which_in_detail(view);
+  const bool alone = view.channels.size() == 1;
+  body +=
+      "<section id=\"channels\">\n" + std::string(alone ? "" : "<h2>Channel by channel</h2>\n") + which_in_detail(view);
   for (const ChannelGroup& group : view.groups)
     for (const std::size_t i : group.channels)
       if (view.channels[i].in_detail)
         body += channel_section(view.channels[i], result.log, i,
-                                {.open = view.channels.size() == 1, .trace = group.channels.size() > kTracesInGroup});
+                                {.open = alone, .trace = alone || group.channels.size() > kTracesInGroup});
   body += "</section>\n";
   body += provenance(result);
   return html_page(

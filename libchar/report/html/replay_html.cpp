@@ -103,10 +103,10 @@ std::string allan_plots(const ReplayView& view) {
 constexpr std::size_t kMostLines = 24;
 
 std::string lines_drawn(const ReplayResult& r, const char* which) {
-  return r.sensors.size() <= kMostLines ? "A line a sensor; band: smallest and largest in each bin."
+  return r.sensors.size() <= kMostLines ? "One line per sensor; shading: range in each bin."
                                         : fmt::format(
-                                              "A line a sensor, of {} sensors the {} with the {} at the end; band: "
-                                              "smallest and largest in each bin.",
+                                              "One line per sensor, of {} sensors the {} with the {} at the end; "
+                                              "shading: range in each bin.",
                                               r.sensors.size(), kMostLines, which);
 }
 
@@ -137,7 +137,7 @@ std::string cost_figures(const ReplayView& view) {
     plots += plot_figure("cost-time", 0,
                          {"Error against run time", name, unit,
                           "Lower and further left is better. Dashed: the Pareto front, on which no method is beaten in "
-                          "both; pale marks are. Large mark: the best. Bounds (triangles) are no methods."},
+                          "both; pale marks are. Large mark: the best. Bounds (triangles) cannot be deployed."},
                          view.title);
   if (view.figures.error_over_memory)
     plots += plot_figure(
@@ -225,7 +225,7 @@ std::string sensors_figure(const ReplayView& view) {
          plot_figure("sensors", 0,
                      {"Error of each sensor", "RMSE", unit,
                       "Filled: RMSE of the sensor over the run, with its 95 % interval. Hollow: noise of a sample as "
-                      "the algorithms were told. A sensor far above its noise failed, saturated or is not calibrated."},
+                      "given to the algorithms. A sensor far above its noise failed, saturated or is not calibrated."},
                      view.title) +
          "</div>\n";
 }

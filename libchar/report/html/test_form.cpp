@@ -100,7 +100,7 @@ std::string signatures() {
 std::string figures(const ReportedCharacterization& report, const FigureSource& source,
                     const std::vector<std::string>& channels) {
   std::vector<std::string> units;
-  std::string out;
+  std::string out = "<div class=\"figures\">\n";
   for (const ReportedChannel* first : detail::chosen_channels(report, channels)) {
     if (std::find(units.begin(), units.end(), first->unit) != units.end()) continue;
     units.push_back(first->unit);
@@ -109,14 +109,16 @@ std::string figures(const ReportedCharacterization& report, const FigureSource& 
     for (const ReportedChannel* c : detail::chosen_channels(report, channels))
       if (c->unit == first->unit && options.channels.size() < detail::kMostCurves) options.channels.push_back(c->name);
     const Chart chart = make_figure({&source, 1}, options);
-    out += "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 120, .shape = 0.5}) + "</figure>\n";
+    out += "<figure class=\"curves\">" + draw_figure(chart, {.width_mm = 90, .shape = 0.6}) + "</figure>\n";
   }
-  return out;
+  return out + "</div>\n";
 }
 
 constexpr const char* kStyle =
-    "\n.form h2 { font-size: 1.05rem; margin: 14px 0 2px; }\n.form figure { max-width: 620px; }\n"
-    "@media print { @page { size: A4; margin: 14mm; } .form figure { max-width: 9cm; }\n"
+    "\n.form h2 { font-size: 1.05rem; margin: 14px 0 2px; }\n.figures { display: flex; flex-wrap: wrap; gap: 4px 16px; "
+    "}\n.form figure { margin: 8px 0; flex: 1 1 300px; max-width: 520px; }\n"
+    "@media print { @page { size: A4; margin: 11mm 12mm; } .form figure { flex: none; width: 8.8cm; margin: 2px 0; }\n"
+    "  .form h2 { margin: 7px 0 1px; }\n"
     "  .form ul.cautions li { font-size: 7.5pt; line-height: 1.2; margin: 1px 0; padding: 1px 6px; } }\n";
 
 }  // namespace

@@ -206,8 +206,7 @@ Json schemas() {
   add_document(all, "models", "Sensor models",
                of_format("models", {{"models", list_of_schema({{"$ref", file_of("sensor-model")}})}}));
   add_file(all, "noise-limits", "What a data sheet allows (docs/recordings.md)", limits_schema());
-  add_file(all, "sidecar", "What stands beside a raw binary log: LOG.json or LOG.yaml (docs/formats.md)",
-           sidecar_schema());
+  add_file(all, "sidecar", "The sidecar of a raw binary log: LOG.json or LOG.yaml (docs/formats.md)", sidecar_schema());
   add_file(all, "device-record", "A line of a fleet's results: what a lot needs to know of one characterized device",
            schema_of(device_record_fields().rows));
   add_file(all, "scene", "A scene: a recording, or a simulation, and what is known of it (docs/scenes.md)",

@@ -52,7 +52,7 @@ std::string algorithms_text() {
     for (const fusion::Option& option : entry.options.first(entry.own_options)) text += option_text(option);
   }
   if (watched.empty()) return text;
-  text += fmt::format("\n  beside their own options {} have\n", fmt::join(watched, ", "));
+  text += fmt::format("\n  as well as their own options {} have\n", fmt::join(watched, ", "));
   for (const fusion::Option& option : watching) text += option_text(option);
   return text;
 }

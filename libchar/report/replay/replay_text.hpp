@@ -46,7 +46,7 @@ std::string replay_html(const ReplayResult& result);
 /// What report.json says, as `read_replay_report` reads it back; its head is left empty.
 ReplayReport replay_report(const ReplayView& view);
 
-/// {"format":"replay-report","version":1,…}. What a clock or the heap measured stands at
+/// {"format":"replay-report","version":1,…}. What a clock or the heap measured is at
 /// "ns_per_sample", "learning_s" and "peak_bytes" of each algorithm and under "measured".
 Json replay_json(const ReplayView& view);
 /// The same with a view made for it alone.

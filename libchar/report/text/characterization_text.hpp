@@ -30,7 +30,7 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
 
 std::string limits_text(const LimitReport& report, const TextLook& look = {});
 
-/// What is in a log, in text, for a terminal: how it was read, what was guessed and repaired, and a line a channel.
+/// What is in a log, in text, for a terminal: how it was read, what was guessed and repaired, and one line per channel.
 std::string inspection_text(const Inspection& inspection, std::size_t width = 0);
 
 // What a simulation wrote, for a terminal and for scripts.

@@ -72,7 +72,7 @@ std::string coefficient_table(const ReportedCharacterization& report, const std:
 }
 
 std::string ranking_table(const ReplayReport& report, TableFormat format) {
-  Table out("algorithm||||regret|a sample|memory", "algorithm|bound||unit|regret|ns_per_sample|peak_bytes");
+  Table out("algorithm||||regret|time per sample|memory", "algorithm|bound||unit|regret|ns_per_sample|peak_bytes");
   const std::string unit = report.inputs.empty() ? "" : report.inputs[0].unit;
   out.columns[2] = score_column(report.reference.has_value(), unit);
   for (const ReplayReport::Algorithm* a : best_first(report)) {

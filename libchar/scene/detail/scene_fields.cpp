@@ -187,9 +187,8 @@ const Fields<SceneSensor>& sensor_fields() {
           "scale",
           {.meaning = "the recording's samples are multiplied by it on reading: a unit, or −1 for an axis turned round",
            .otherwise = "1"}),
-      field<&SceneSensor::unit>("unit",
-                                {.meaning = "of the samples after `scale`",
-                                 .otherwise = "the recording's, with the scale beside it where that is not 1 or −1"}),
+      field<&SceneSensor::unit>("unit", {.meaning = "of the samples after `scale`",
+                                         .otherwise = "the recording's, with its scale if that is not 1 or −1"}),
       field<&SceneSensor::noise>("noise", {.range = kPositive,
                                            .meaning = "standard deviation of a sample's noise",
                                            .otherwise = "said by the model, or measured"}),
@@ -232,10 +231,8 @@ const Fields<SceneReference>& reference_fields() {
                       "its stamp, or the mean over the interval in front of it, behind it or around it",
            .otherwise = "estimate: the most likely of the four"}),
       field<&SceneReference::teach>(
-          "teach",
-          {.meaning = "false: without a learning window nothing is learnt",
-           .otherwise =
-               "true: of a recording of which neither windows nor an alignment are given, the first half teaches"}),
+          "teach", {.meaning = "false: without a learning window nothing is learnt",
+                    .otherwise = "true: without windows and alignment, the first half of the recording teaches"}),
   };
   return rows;
 }
@@ -253,7 +250,7 @@ const Fields<SceneAlign>& align_fields() {
                                     .otherwise = "the reference, if there is one"}),
       field<&SceneAlign::interpolation>("interpolation",
                                         {.words = kInterpolations,
-                                         .meaning = "sinc is within 1e-4 up to 0.37 of the rate; cubic damps what is "
+                                         .meaning = "sinc is within 0.01 % up to 0.37 of the rate; cubic damps what is "
                                                     "faster than 0.12 of it, aliased vibration too",
                                          .otherwise = "sinc"}),
       field<&SceneAlign::choose>("choose",

@@ -118,7 +118,7 @@ class SensorsReader {
     if (at.has("model")) sensor.model = model(at);
     if (sensor.scale == 0) at.refuse("scale", "a scale of zero leaves nothing of the samples");
     if (!(std::abs(sensor.scale) >= 1e-100 && std::abs(sensor.scale) <= 1e100))
-      at.refuse("scale", "a scale beyond 1e100 or below 1e-100 leaves no room for squares");
+      at.refuse("scale", "a scale beyond 10¹⁰⁰ or below 10⁻¹⁰⁰ leaves no room for squares");
     check_simulated(at);
     if (at.has("count")) return devices(sensor, at, place);
     if (matched_ == nullptr || !at.has("name") || !at.has("channel")) return add_matched(sensor, place);

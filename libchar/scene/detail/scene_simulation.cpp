@@ -1,6 +1,7 @@
 // The blocks `recording` and `simulate` of a scene file.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +74,7 @@ std::size_t earlier_signal(const MapReader& at, const std::vector<std::string>& 
   }
   if (earlier.empty())
     throw scene_refusal("E0738", at, "of").says("is to name a signal before this one, and there is none");
-  return index_of_name(at, "of", at.text("of"), earlier, "a signal that stands before this one");
+  return index_of_name(at, "of", at.text("of"), earlier, "a signal before this one");
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ SensorFault parse_fault(const std::string& text, const std::vector<std::string>&
     const auto value = parse_double(word);
     if (!value) throw usage_error("E0722", "`fault`").says("expected a number in " + form).got(word);
     if (std::abs(*value) > kLargestSample)
-      throw usage_error("E0722", "`fault`").says("a sample beyond " + shortest(kLargestSample) + " is none").got(word);
+      throw usage_error("E0722", "`fault`").says("a sample cannot be beyond " + shortest(kLargestSample)).got(word);
     return *value;
   };
   const bool valueless = fault.kind == FaultKind::stuck || fault.kind == FaultKind::dropout;

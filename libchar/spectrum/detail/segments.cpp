@@ -313,7 +313,7 @@ void Average::check_powers() const {
   for (const double p : power_) largest = std::max(largest, std::isfinite(p) ? p : HUGE_VAL);
   if (std::isfinite(largest) && (largest >= kSmallest || moves_ || !moves_little_)) return;
   throw numeric_error("E0420")
-      .says("the squares of the samples do not fit into a double (deviations from 1e-100 to 1e100 do)")
+      .says("the squares of the samples do not fit into a double (deviations from 10⁻¹⁰⁰ to 10¹⁰⁰ do)")
       .hint("give them in another unit");
 }
 

@@ -408,7 +408,7 @@ class Algorithm(_Result):
     why: Optional[str]  #: it was skipped
     rmse: Optional[float]  #: error of the fused quantity, in its unit; None without a reference
     regret: Optional[float]  #: rmse above the best weights that knew the truth, as a fraction
-    ns_per_sample: Optional[float]  #: run time, ns a sample instant
+    ns_per_sample: Optional[float]  #: run time, ns per sample instant
     document: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
 
     def to_dict(self) -> dict[str, Any]:

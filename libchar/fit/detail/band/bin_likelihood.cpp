@@ -33,7 +33,7 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
                    kSmallestPower = 1e-140;  // so are their products and profiles
   if (largest > 0 && !(largest > kSmallestPower && largest < kLargestPower))
     throw numeric_error("E0420")
-        .says("the squares of the samples do not fit into a double (deviations from 1e-70 to 1e70 do)")
+        .says("the squares of the samples do not fit into a double (deviations from 10⁻⁷⁰ to 10⁷⁰ do)")
         .hint("give them in another unit");
   if (!(largest > 0)) {
     throw numeric_error("E0412").says(

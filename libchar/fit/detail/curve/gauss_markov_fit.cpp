@@ -437,7 +437,7 @@ void report_joint_bounds(const Mixture& log_theta, NoiseFit& fit) {
     term.status = Status::undetermined;
     fit.findings.push_back(finding(
         "too_short",
-        fmt::format("The record is too short for {} beside a Gauss-Markov process: at best it is known to {} (1 sd).",
+        fmt::format("The record is too short for {} next to a Gauss-Markov process: at best it is known to {} (1 sd).",
                     long_name(static_cast<Term>(i)), percent_text(*term.bound))));
   }
 }

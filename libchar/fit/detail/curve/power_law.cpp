@@ -164,7 +164,7 @@ void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {
       "power_law",
       fmt::format(
           "The slow noise follows 1/f^{:.2f} (95 % interval {:.2f} to {:.2f}), which is neither flicker nor a random "
-          "walk (2 ln L {:.0f}): B and K stand in for it within this recording and mean nothing beyond it.",
+          "walk (2 ln L {:.0f}): B and K replace it within this recording and mean nothing beyond it.",
           law.exponent, law.exponent - kNormal95 * law.exponent_sd, law.exponent + kNormal95 * law.exponent_sd,
           law.likelihood_ratio),
       fmt::format("the slow noise follows 1/f^{:.2f}, neither flicker nor walk", law.exponent)));

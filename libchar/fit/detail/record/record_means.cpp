@@ -77,6 +77,28 @@ void report_temperature(const TemperatureEffect& effect, const FitOptions& optio
   }
 }
 
+/// Eight steps are one remedy with eight places.
+void add_event_remedy(EventKind kind, NoiseFit& fit) {
+  const Event* weakest = nullptr;
+  std::uint64_t count = 0;
+  std::vector<double> at;
+  for (const Event& event : fit.events) {
+    if (event.kind != kind) continue;
+    if (weakest == nullptr || event.score / event.threshold < weakest->score / weakest->threshold) weakest = &event;
+    if (kind == EventKind::step) at.push_back(event.at_s);
+    ++count;
+  }
+  if (count == 0) return;
+  std::sort(at.begin(), at.end());
+  std::string places;
+  for (const double place : at) places += (places.empty() ? ", at " : ", ") + place_text(place);
+  if (!places.empty()) places += " s";
+  fit.remedies.push_back({std::string(event_name(kind)),
+                          fmt::format("{}score {}, above {} by chance in 0.3 % of records", count > 1 ? "lowest " : "",
+                                      brief_text(weakest->score), brief_text(weakest->threshold)),
+                          "taken out of the record before the noise was fitted" + places, count});
+}
+
 void report_events(const RecordMeans& means, NoiseFit& fit) {
   const EventSearch& search = means.search;
   fit.findings.insert(fit.findings.end(), search.findings.begin(), search.findings.end());
@@ -94,11 +116,7 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   }
   if (!means.events_taken) return;
   fit.events = search.events;
-  for (const Event& event : fit.events)
-    fit.remedies.push_back({std::string(event_name(event.kind)),
-                            fmt::format("score {}, above {} by chance in 0.3 % of records", brief_text(event.score),
-                                        brief_text(event.threshold)),
-                            "taken out of the record before the noise was fitted", 1});
+  for (const EventKind kind : {EventKind::step, EventKind::warm_up, EventKind::ramp}) add_event_remedy(kind, fit);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ void BiasSmoother::look(const Sample& y) {
     if (static_cast<double>(count_ + kKeptTogether) * bytes > most_bytes_)
       throw numeric_error("E0868")
           .says("virtual-sensor with smoothed=1 keeps " + std::to_string(clamped_whole<long>(std::round(bytes))) +
-                " bytes an instant, and this run has more than fit into most_mb")
+                " bytes per instant, and this run has more than fit into most_mb")
           .got(std::to_string(clamped_whole<std::int64_t>(std::round(most_bytes_ / 1e6))) + " MB")
           .hint("set most_mb higher, or evaluate a shorter part");
     kept_.emplace_back(channels_ + inputs_, kKeptTogether);

@@ -187,7 +187,7 @@ class JsonDecoder final : public MessageDecoder {
 DecoderOrReason json_decoder(const MessageFormat& format) {
   if (format.example.empty()) return {nullptr, "no message to see its fields in"};
   auto decoder = std::make_unique<JsonDecoder>(format);
-  if (!decoder->valid()) return {nullptr, "its messages are no JSON"};
+  if (!decoder->valid()) return {nullptr, "its messages are not JSON"};
   if (decoder->fields().empty()) return {nullptr, "no numbers"};
   return {std::move(decoder), ""};
 }

@@ -66,7 +66,7 @@ Eigen::VectorXd non_negative(const Eigen::MatrixXd& unscaled, const Eigen::Vecto
     std::vector<int> in;
     for (int c = 0; c < columns; ++c)
       if ((set >> c & 1) != 0) in.push_back(c);
-    const Eigen::MatrixXd part = design(Eigen::all, in);
+    const Eigen::MatrixXd part = design(Eigen::indexing::all, in);
     const Eigen::VectorXd x = part.colPivHouseholderQr().solve(target);
     const double rest = (part * x - target).squaredNorm();
     if (!(x.minCoeff() >= 0) || !(rest < least)) continue;

@@ -225,7 +225,7 @@ Eigen::VectorXd weights_of(const Scene& scene, const Instants& instants) {
     throw input_error("E0911", scene.file)
         .says("align: sensors are aligned to one true input")
         .got("{} inputs", instants.info().input_names.size())
-        .hint("one scene an axis; cross: [CHANNEL, …] names the other axes of each device");
+        .hint("one scene per axis; cross: [CHANNEL, …] names the other axes of each device");
   const Eigen::MatrixXd h = observations(scene, 1);
   if (h.size() == 0) return Eigen::VectorXd::Ones(static_cast<Eigen::Index>(scene.sensors.size()));
   return h.col(0);

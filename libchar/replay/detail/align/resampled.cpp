@@ -113,7 +113,7 @@ ResampledLog read_resampled(const std::string& path, const ReadOptions& reading,
   if (!reading.names.empty())
     throw input_error("E0907", path)
         .says("recording: names and resample_hz do not go together")
-        .hint("say channel: beside each sensor");
+        .hint("give each sensor its channel:");
   ReadOptions whole = reading;
   whole.from_s.reset();
   whole.to_s.reset();

@@ -275,7 +275,7 @@ void DetectionSweep::push(const Eigen::MatrixXd& samples) {
   if (settings_.empty()) return;
   Eigen::MatrixXd live;
   const bool all = static_cast<Eigen::Index>(sensors_.size()) == samples.rows();
-  if (!all) live = samples(sensors_, Eigen::all);
+  if (!all) live = samples(sensors_, Eigen::indexing::all);
   for (const Setting& setting : settings_) {
     x_.resize(inputs_, samples.cols());
     variance_.resize(inputs_, samples.cols());

@@ -128,7 +128,7 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene, const Instants& insta
       const bool whole = inside >= kMostFrozen * (to - from);
       plan.warnings.add(
           "frozen_sensor",
-          whole ? "sensors that stand still where the others move were left out of everything" : kFrozenMissing,
+          whole ? "sensors that are frozen while the others move were left out of everything" : kFrozenMissing,
           still_words(scene.sensors[i].name, at, source.rate_hz));
       if (whole) continue;
     }
@@ -249,7 +249,7 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
     out.push_back(planned(algorithm, times[algorithm.name] > 1, scene));
     if (!labels.insert(out.back().label).second)
       throw input_error("E0904", scene.file)
-          .says("an algorithm stands twice with the same options")
+          .says("an algorithm is listed twice with the same options")
           .got(out.back().label);
   }
   if (asked.empty() || options.no_skip)
@@ -377,7 +377,8 @@ fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>
   fusion::Array part = array;
   if (channels.empty()) return part;
   part.channels = static_cast<Eigen::Index>(channels.size());
-  if (array.observation_matrix.size() > 0) part.observation_matrix = array.observation_matrix(channels, Eigen::all);
+  if (array.observation_matrix.size() > 0)
+    part.observation_matrix = array.observation_matrix(channels, Eigen::indexing::all);
   if (array.noise_levels.size() > 0) part.noise_levels = array.noise_levels(channels);
   if (!array.noise_models.empty()) {
     part.noise_models.clear();

@@ -1,6 +1,7 @@
 #include "libchar/replay/detail/plan/plan_sentences.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -265,7 +265,7 @@ const Fields<ReplayReport::Algorithm>& ReplayReport::Algorithm::fields() {
       field<&T::learning_s>("learning_s"),
       field<&T::peak_bytes>("peak_bytes"),
       custom<AlgorithmResult, read_weights, write_weights>(
-          "weights", "", {.meaning = "at the end, one a sensor; of several inputs a list a sensor"}),
+          "weights", "", {.meaning = "at the end, one per sensor; of several inputs one list per sensor"}),
       field_or_null<&T::variances>("variances"),
       list_of<&T::found>("faults", ReplayReport::Fault::found_fields()),
       field<&T::faults_not_kept>("faults_not_kept"),

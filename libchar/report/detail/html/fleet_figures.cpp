@@ -223,18 +223,19 @@ std::string left_out_sentence(const QuantityLot& q) {
   if (!in_logarithm(q.quantity))
     return what + fmt::format("They are about zero: the mean of all may be up to {} % nearer to zero, in {}.",
                               number_text(100 * left.share, 2), of_all);
-  return what + fmt::format(
-                    "If those are the smallest, the mean is too large by up to {} %: that of all is in {}, and their "
-                    "spread is at most {} %. Ppk is of those that count.",
-                    number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
+  return what +
+         fmt::format(
+             "If those are the smallest, the mean is too large by up to {} %: the mean of all is in {}, and their "
+             "spread is at most {} %. Ppk counts the same devices.",
+             number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
 }
 
 /// Whom the mean is of where not all have a value.
 std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
-      "Mean and spread are of {} of {} devices: of those that are not detected or doubtful too, by what their records "
+      "Mean and spread are of {} of {} devices: undetected or doubtful ones too, by what their records "
       "show of the square, as values of a lognormal distribution. Not counted: {}. Histogram, comparison of batches, "
-      "chart and outliers are of the {} that count.",
+      "chart and outliers use the {} that count.",
       count_text(q.effects->count), count_text(q.counts.members), not_counted(q.counts), count_text(q.counts.counted));
 }
 
@@ -310,7 +311,7 @@ void add_curve(const FleetReport& report, std::size_t recording, std::size_t cha
   AllanFigure& figure = figure_of(result.channel, unit, figures);
   figure.deviation = name_of(result.allan.type);
   const bool strong = stands_out(*report.lot, recording, channel);
-  const std::string device = report.records[recording].device + (strong ? " (stands out)" : "");
+  const std::string device = report.records[recording].device + (strong ? " (outlier)" : "");
   const std::size_t known = figure.devices.size(), k = place_in(figure.devices, device);
   const bool alone = report.recordings.size() == 1;  // then a colour a channel
   FigureSeries& curve = figure.curves.emplace_back(allan_series(result.allan, alone ? figure.curves.size() : k,

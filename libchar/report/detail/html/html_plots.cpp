@@ -1,6 +1,7 @@
 // The figures of one channel's section: titles, axes, captions that say what is drawn. page.js draws into them.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -95,7 +96,7 @@ std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo
                         log.rate_hz_of(c.channel) > 0
                             ? " (" + duration_text(static_cast<double>(c.trace.block) / log.rate_hz_of(c.channel)) + ")"
                             : "");
-  const std::string marked = view.marks.empty() ? "" : " Marked: what was found in it and is no noise.";
+  const std::string marked = view.marks.empty() ? "" : " Marked: what was found in it and is not noise.";
   return plot_figure("trace", index, {c.channel.name, "", view.trace_unit, what + marked}, c.channel.name);
 }
 

@@ -122,7 +122,7 @@ std::string html_table(const Table& table, const PageTable& look) {
   out += "</tbody></table></div>\n";
   if (rows < count)
     out +=
-        fmt::format("<p class=\"note\">The first {} of {}; all stand in {}.</p>\n", rows, count_text(count), look.rest);
+        fmt::format("<p class=\"note\">The first {} of {}; all are in {}.</p>\n", rows, count_text(count), look.rest);
   return table.note.empty() ? out : out + "<p class=\"note\">" + html_text(table.note) + "</p>\n";
 }
 
@@ -221,7 +221,7 @@ std::string command_line(const std::vector<std::string>& command) {
 std::string next_part(const std::vector<std::string>& commands) {
   std::string out;
   for (const std::string& command : commands) out += html_text(command) + "\n";
-  return out.empty() ? "" : "<h3>What next</h3>\n<pre class=\"next\">" + out + "</pre>\n";
+  return out.empty() ? "" : "<div class=\"next\">\n<h3>What next</h3>\n<pre>" + out + "</pre>\n</div>\n";
 }
 
 std::string settings_details(const Json& document) {
@@ -272,7 +272,7 @@ std::string html_page(const PageParts& parts, const std::string& body, const std
   if (parts.all_numbers) out += "<button id=\"download\" type=\"button\" hidden>Download the numbers (JSON)</button>\n";
   out +=
       "</header>\n"
-      "<noscript><p class=\"noscript\">The plots need JavaScript. Every number stands in the "
+      "<noscript><p class=\"noscript\">The plots need JavaScript. Every number is in the "
       "tables.</p></noscript>\n<main>\n";
   out += body;
   out += "</main>\n<footer>Written by sensorchar " + std::string(version()) +

@@ -86,7 +86,7 @@ std::string limits_section(const LimitReport& report) {
          (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
          html_text(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
          html_text(report.file) +
-         ". A term passes or fails when its whole 95 % interval is within or above the limit; one that stands at the "
+         ". A term passes or fails when its whole 95 % interval is within or above the limit; one that is at the "
          "limit does either by chance in at most 2.5 % of recordings, and passes in 5 % where only an upper limit is "
          "known.</p>\n</section>\n";
 }

@@ -65,15 +65,17 @@ Cell share_cell(double share) { return Cell::shown(percent_text(share, 4), share
 // The scores, then what each costs; what seldom decides is folded at first.
 Table algorithm_columns(const ReplayView& view) {
   const bool reference = view.result->has_reference;
-  Table out(reference ? "algorithm||regret|× best method|bias|maximum|converged|available|a sample|memory|learning"
-                      : "algorithm||× best method|split-array RMS|available|a sample|memory|learning");
+  Table out(reference
+                ? "algorithm||regret|× best method|bias|maximum|converged|available|time per sample|memory|learning"
+                : "algorithm||× best method|split-array RMS|available|time per sample|memory|learning");
   out.columns[1] = score_column(reference, score_unit(*view.result));
   for (Table::Column& column : out.columns) {
     const auto is = [&](const auto&... heads) { return ((column.head == heads) || ...); };
     if (is("× best method", "converged", "learning")) column.doors = Table::kPage;
     if (is("bias", "maximum", "split-array RMS", "available")) column.doors = Table::kDocument | Table::kPage;
-    column.folded = is("bias", "maximum", "converged", "memory", "learning") ||
-                    (is("available") && !view.figures.availability) || (is("a sample") && !view.figures.time_matters);
+    column.folded = (is("bias") && !view.figures.bias) || is("maximum", "converged", "memory", "learning") ||
+                    (is("available") && !view.figures.availability) ||
+                    (is("time per sample") && !view.figures.time_matters);
   }
   return out;
 }
