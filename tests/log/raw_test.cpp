@@ -254,3 +254,29 @@ TEST_CASE("numbers in a sidecar beyond a double are refused as such, with their 
   CHECK_THAT(message, Catch::Contains("E0602") && Catch::Contains("out of range") && Catch::Contains("1e400") &&
                           Catch::Contains(":1:"));
 }
+
+TEST_CASE("places of odd values are the first in the order of the rows, whatever blocks they were read in") {
+  std::string bytes;
+  for (int row = 0; row < 40; ++row)
+    for (int column = 0; column < 3; ++column) {
+      double value = row + 0.5;
+      if (row % 5 == 2 - column) value = std::nan("");
+      if (row % 7 == 5 - column) value = HUGE_VAL;
+      char raw[sizeof value];
+      std::memcpy(raw, &value, sizeof value);
+      bytes.append(raw, sizeof value);
+    }
+  const Raw raw(bytes, R"({"dtype": "f64", "endian": "little", "rate_hz": 10,
+                           "channels": [{"name": "a"}, {"name": "b"}, {"name": "c"}]})");
+  const auto said_of = [&](std::size_t block) {
+    ReadOptions options;
+    options.block_bytes = block;
+    std::string text;
+    for (const Finding& one : test::read_rows("raw", raw.path, options, true).warnings.list())
+      text += one_line(one, "") + "\n";
+    return text;
+  };
+  const std::string whole = said_of(std::size_t{1} << 20U);
+  CHECK(whole.find("row 0 ") != std::string::npos);  // of c: a and b have theirs later
+  for (const std::size_t block : {std::size_t{1}, std::size_t{50}, std::size_t{200}}) CHECK(said_of(block) == whole);
+}

@@ -30,6 +30,21 @@ struct Wanted {
   std::vector<double> probe;  // its first values, as stored
 };
 
+// The first places of odd values in the order of the rows, whatever blocks they were read in.
+struct OddPlaces {
+  static constexpr std::size_t kShown = 3;
+  std::vector<std::pair<std::uint64_t, std::size_t>> first;  // row, channel
+  std::uint64_t count = 0;
+
+  void add(std::uint64_t row, std::size_t channel) {
+    ++count;
+    const std::pair place(row, channel);
+    if (first.size() == kShown && !(place < first.back())) return;
+    first.insert(std::upper_bound(first.begin(), first.end(), place), place);
+    if (first.size() > kShown) first.pop_back();
+  }
+};
+
 class BinaryRows final : public RowSource {
  public:
   BinaryRows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info, const ReadOptions& options)
@@ -107,14 +122,12 @@ class BinaryRows final : public RowSource {
   }
 
   void finish(Findings& warnings) override {
-    std::uint64_t count = 0;
-    for (const std::uint64_t n : missing_per_channel_) count += n;
-    if (count == 0) return;
     // Of a part it says no counts a channel: they would be those of the first part.
-    const std::string message =
-        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_);
-    for (const std::string& place : missing_places_) warnings.add("missing_cell", message, place);
-    if (count > missing_places_.size()) warnings.add("missing_cell", message, "", count - missing_places_.size());
+    say(odd_.missing, "missing_cell",
+        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_), warnings);
+    say(odd_.infinite, "infinite_value", kInfiniteValues, warnings);
+    say(odd_.too_small, "number_too_small", kNumbersTooSmall, warnings);
+    say(odd_.out_of_range, "number_out_of_range", kNumbersOutOfRange, warnings);
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
@@ -145,6 +158,14 @@ class BinaryRows final : public RowSource {
     return bytes_.data();
   }
 
+  void say(const OddPlaces& odd, const char* code, std::string_view message, Findings& warnings) const {
+    for (const auto& [row, channel] : odd.first)
+      warnings.add(code, std::string(message), place_of(values_[channel].column, row));
+    if (odd.count > odd.first.size()) warnings.add(code, std::string(message), "", odd.count - odd.first.size());
+  }
+
+  std::size_t channel_of(const Wanted& wanted) const { return static_cast<std::size_t>(&wanted - values_.data()); }
+
   std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
     return fmt::format("row {} (byte {}, field {})", row, column.first_byte + row * column.stride, column.name);
   }
@@ -157,42 +178,36 @@ class BinaryRows final : public RowSource {
       warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
                    fmt::format("{} from row {}", column.name, next_row_), rounded);
     probe_byte_order(wanted, out, warnings);
-    if (is_float(column.number.type)) drop_non_finite(wanted, out, warnings);
-    if (column.scale != 1 || column.offset != 0) to_unit(column, out, warnings);
+    if (is_float(column.number.type)) drop_non_finite(channel_of(wanted), out);
+    if (column.scale != 1 || column.offset != 0) to_unit(column, channel_of(wanted), out);
   }
 
   // number * scale + offset may leave the range of a double at either end, like a number of a text.
-  void to_unit(const BinaryColumn& column, std::vector<double>& out, Findings& warnings) const {
+  void to_unit(const BinaryColumn& column, std::size_t channel, std::vector<double>& out) {
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double stored = out[i], scaled = stored * column.scale;
       out[i] = scaled + column.offset;
-      if (scaled == 0 && stored != 0)
-        warnings.add("number_too_small", kNumbersTooSmall, place_of(column, next_row_ + i));
+      if (scaled == 0 && stored != 0) odd_.too_small.add(next_row_ + i, channel);
       if (!std::isinf(out[i])) continue;
       if (!overflow_as_missing_)
         throw input_error("E0312", fmt::format("{} {}", file_->path(), place_of(column, next_row_ + i)))
             .says("number out of range: with its scale and offset no double can hold it")
             .got(shortest(stored))
             .hint("`overflow_as_missing` counts it as missing");
-      warnings.add("number_out_of_range", kNumbersOutOfRange, place_of(column, next_row_ + i));
+      odd_.out_of_range.add(next_row_ + i, channel);
       out[i] = kMissing;
     }
   }
 
   // Infinity is no sample; every NaN becomes the one that means "missing".
-  void drop_non_finite(const Wanted& wanted, std::vector<double>& out, Findings& warnings) {
+  void drop_non_finite(std::size_t channel, std::vector<double>& out) {
     std::size_t odd = 0;
     for (const double x : out) odd += !(std::abs(x) <= std::numeric_limits<double>::max());
     if (odd == 0) return;
-    const BinaryColumn& column = wanted.column;
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (std::isfinite(out[i])) continue;
-      if (std::isinf(out[i])) {
-        warnings.add("infinite_value", kInfiniteValues, place_of(column, next_row_ + i));
-      } else {
-        ++missing_per_channel_[static_cast<std::size_t>(&wanted - values_.data())];
-        if (missing_places_.size() < 3) missing_places_.push_back(place_of(column, next_row_ + i));
-      }
+      if (!std::isinf(out[i])) ++missing_per_channel_[channel];
+      (std::isinf(out[i]) ? odd_.infinite : odd_.missing).add(next_row_ + i, channel);
       out[i] = kMissing;
     }
   }
@@ -256,7 +271,9 @@ class BinaryRows final : public RowSource {
   std::uint64_t next_row_ = 0, end_row_ = 0, bytes_read_ = 0;
   std::vector<std::byte> bytes_;
   std::vector<std::uint64_t> missing_per_channel_;
-  std::vector<std::string> missing_places_;
+  struct {
+    OddPlaces missing, infinite, too_small, out_of_range;
+  } odd_;
   bool overflow_as_missing_ = false, restricted_ = false;
   ChannelRange channels_;  ///< to be read
   FileHash hash_;
