@@ -68,6 +68,7 @@ TEST_CASE("slips on the command line are exit code 2, one line on stderr, with t
   const std::vector<Slip> slips = {{{}, "which verb?"},
                                    {{"inspcet", "a.csv"}, "did you mean inspect?"},
                                    {{"--verison"}, "did you mean --version?"},
+                                   {{"folder/absent.csv"}, "no verb and no file has this name"},
                                    {{"inspect"}, "LOG is required"},
                                    {{"inspect", "a.csv", "--time-unt", "s"}, "did you mean --time-unit?"},
                                    {{"inspect", "a.csv", "--time-unit", "sec"}, "expected one of auto, s, ms, us, ns"},

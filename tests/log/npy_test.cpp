@@ -121,7 +121,7 @@ TEST_CASE("integers come over exactly, and are counted where a double cannot hol
 }
 
 TEST_CASE("half precision is exact, infinity and NaN are missing, infinity is counted") {
-  const auto got = read("half.npy");
+  const auto got = test::read_rows("npy", test::fixture("npy/half.npy"), {}, true);
   const ColumnValues& x = got.columns[0];
   CHECK(ColumnValues(x.begin(), x.begin() + 6) == ColumnValues{0, 1, -2, 65504, 0x1p-24, 0x1p-14});
   CHECK((x[6] == 0 && std::signbit(x[6])));
