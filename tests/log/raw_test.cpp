@@ -272,8 +272,8 @@ TEST_CASE("places of odd values are the first in the order of the rows, whatever
     ReadOptions options;
     options.block_bytes = block;
     std::string text;
-    for (const Finding& one : test::read_rows("raw", raw.path, options, true).warnings.list())
-      text += one_line(one, "") + "\n";
+    const test::Rows rows = test::read_rows("raw", raw.path, options, true);
+    for (const Finding& one : rows.warnings.list()) text += one_line(one, "") + "\n";
     return text;
   };
   const std::string whole = said_of(std::size_t{1} << 20U);
