@@ -234,7 +234,7 @@ with tempfile.TemporaryDirectory() as folder:
     expect("missing_mark" in found and "--missing -999" in said, f"array: marks are not said: {said}")
     three[1][::60] = [-999.0] * len(three[1][::60])
     said, found = replay()
-    expect("a: -999 stands 150 times" in said and "b: -999 stands 100 times" in said,
+    expect("a: -999 occurs 150 times" in said and "b: -999 occurs 100 times" in said,
            f"array: each sensor has its own count: {said}")
     said, found = replay("--missing", "-999")
     expect("missing_mark" not in found and "missing_value" in found, f"array: --missing is not heard: {said}")

@@ -67,7 +67,7 @@ TEST_CASE("limits that cannot be used are refused at their line and column") {
              Contains("sheet.yaml:4:45") && Contains("unknown key"));
   CHECK_THAT(
       limits_refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: mg}}\n"),
-      Contains("sheet.yaml:4:") && Contains("no unit of white_noise for a channel in deg/s") && Contains("deg/√h"));
+      Contains("sheet.yaml:4:") && Contains("not a unit of white_noise for a channel in deg/s") && Contains("deg/√h"));
   CHECK_THAT(limits_refusal("  - {kind: angular_rate, white_noise: {value: 1, unit: deg/s/√Hz}}\n"),
              Contains("one-sided or two-sided"));
   CHECK_THAT(limits_refusal("  - {channels: [gx, gz], bias_instability: {value: 1, unit: deg/h}}\n"),

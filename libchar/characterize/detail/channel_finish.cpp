@@ -375,7 +375,7 @@ void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
   const bool time = known->quantity == Quantity::time;
   if ((time || known->quantity == Quantity::frequency) &&
       found_.standard_deviation < kClockScatter * std::abs(found_.mean))
-    return doubt_frequency(result);
+    return found_.standard_deviation > 0 ? doubt_frequency(result) : void();
   if (!time && (known->quantity != Quantity::angle || !detail::names_angular_rate(result.channel.name))) return;
   const bool increments = !time && found_.difference_sd > found_.standard_deviation;
   const char* const what = time ? "as the time error of a clock the samples are a phase, and no fractional frequency"

@@ -122,12 +122,12 @@ class BinaryRows final : public RowSource {
   }
 
   void finish(Findings& warnings) override {
-    // Of a part it says no counts a channel: they would be those of the first part.
-    say(odd_.missing, "missing_cell",
-        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_), warnings);
     say(odd_.infinite, "infinite_value", kInfiniteValues, warnings);
     say(odd_.too_small, "number_too_small", kNumbersTooSmall, warnings);
     say(odd_.out_of_range, "number_out_of_range", kNumbersOutOfRange, warnings);
+    // Of a part it says no counts a channel: they would be those of the first part.
+    say(odd_.missing, "missing_cell",
+        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_), warnings);
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {

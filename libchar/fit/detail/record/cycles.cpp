@@ -29,6 +29,8 @@ constexpr double kStandsOut = 32;  ///< a peak over the median beside it
 /// Squares in the window, without the sine and with it: noise alone reaches that once in 10^7 windows (F of 3 and 30),
 /// and a peak of it has to stand out before.
 constexpr double kReduction = 4;
+/// From here on it is worth taking out although its period is not steady and leaves something at the peak.
+constexpr double kPure = 30;
 
 /// A sine at coefficient `place` (half periods in the record) and its two columns.
 struct Sine {
@@ -99,6 +101,20 @@ struct Window {
     return (values - columns * sine.size).squaredNorm();
   }
 };
+
+/// Whether what is left at the peak is noise as it is beside: a steady sine leaves nothing.
+bool is_steady(const Window& window, const Sine& sine) {
+  constexpr double kNear = 3, kMost = 4;  ///< of the mean squares: F of 7 and 26
+  const Columns sines(sine.place, window.head.length);
+  double near = 0, far = 0, near_n = 0, far_n = 0;
+  for (std::size_t k = window.from; k < window.to; ++k) {
+    const bool at_peak = std::abs(static_cast<double>(k) - sine.place) <= kNear;
+    const double left = window.weight(k) * (window.head.rest[k] - sines.at(k).dot(sine.size.transpose()));
+    (at_peak ? near : far) += left * left;
+    (at_peak ? near_n : far_n) += 1;
+  }
+  return near * far_n < kMost * far * near_n;
+}
 
 /// The best sine within a coefficient and a half of the peak; by the step of the places where none is near.
 Sine fitted_sine(const Window& window, double peak, double& left) {
@@ -213,7 +229,9 @@ std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, 
     const Window window(head, *peak);
     double left = 0;
     const Sine sine = fitted_sine(window, static_cast<double>(*peak), left);
-    if (!(window.squares() > kReduction * left) || !reaches_the_end(sine, window, left)) continue;
+    const double reduction = window.squares() / left;
+    if (!(reduction > kReduction) || !reaches_the_end(sine, window, left)) continue;
+    if (!(reduction > kPure) && !is_steady(window, sine)) continue;
     add(sine, -1, head);
     found.push_back(sine);
   }
