@@ -372,10 +372,11 @@ void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
   const std::string& unit = result.channel.unit;
   const auto known = find_unit(unit);
   if (options_.data != SampleKind::rate || !known || found_.samples < 2) return;
+  if (!(found_.difference_sd > 1e-9 * found_.standard_deviation)) return;  // constant, or a counter
   const bool time = known->quantity == Quantity::time;
   if ((time || known->quantity == Quantity::frequency) &&
       found_.standard_deviation < kClockScatter * std::abs(found_.mean))
-    return found_.standard_deviation > 0 ? doubt_frequency(result) : void();
+    return doubt_frequency(result);
   if (!time && (known->quantity != Quantity::angle || !detail::names_angular_rate(result.channel.name))) return;
   const bool increments = !time && found_.difference_sd > found_.standard_deviation;
   const char* const what = time ? "as the time error of a clock the samples are a phase, and no fractional frequency"
@@ -388,7 +389,7 @@ void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
     help.options = {{"channel_scale", fmt::format("{}={}", result.channel.name, shortest(rounded(rate_hz, 9)))},
                     {"channel_unit", fmt::format("{}={}/s", result.channel.name, unit)}};
   else
-    help.options = {{"data", "phase"}};
+    help.options = {{"data", "phase"}, {"channels", result.channel.name}};  // not of the others
   result.findings.push_back(std::move(integral));
 }
 
@@ -398,6 +399,7 @@ void Finish::doubt_frequency(ChannelResult& result) const {
   constexpr double kMostOff = 0.01;
   if (found_.samples == 0) return;
   const double nominal = options_.nominal_frequency;
+  if (found_.standard_deviation == 0) return;
   if (nominal == 0 && found_.standard_deviation < kClockScatter * std::abs(found_.mean)) {
     Finding whole =
         finding("frequency_mean", fmt::format("The values scatter by {} of their mean, {}: they look like frequencies "
