@@ -110,6 +110,16 @@ class Gates(unittest.TestCase):
             self.write("libchar/fit/more.hpp", f"namespace libchar {{\n{more}\n}}\n")
             self.refused("names", "libchar")
 
+    def test_top(self):
+        self.write("README.md", "")
+        self.write("curves.npy", "")
+        self.write(".gitignore", "")
+        for words in (["init", "-q"], ["add", "README.md", ".gitignore"]):
+            subprocess.run(["git", "-C", self.root, *words], check=True)
+        self.accepted()  # what is not kept is nobody's
+        subprocess.run(["git", "-C", self.root, "add", "-f", "curves.npy"], check=True)
+        self.refused("top", "curves.npy")
+
     def test_twice(self):
         self.write("libchar/fit/one.hpp", "namespace libchar { struct One { int a; }; struct Two; }")
         self.write("libchar/fit/two.cpp", "namespace libchar { namespace { struct One { int b; }; } struct Two {}; }")
