@@ -509,8 +509,8 @@ std::optional<double> grid_step(std::vector<double> values) {
   for (std::size_t i = 1; i < values.size(); ++i) {
     double a = values[i] - values[i - 1], b = step;
     for (int round = 0; b > tolerance && round < 64; ++round) {
-      double rest = std::fmod(a, b);
-      if (b - rest < tolerance) rest = 0;
+      double rest = a - std::floor(a / b) * b;  // as fmod, whose loop is long where a/b is large
+      if (rest < 0 || b - rest < tolerance) rest = 0;
       a = b;
       b = rest;
     }
