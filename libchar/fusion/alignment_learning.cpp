@@ -10,8 +10,8 @@
 // is there to damp it: least squares on the own slope and its second derivative (Newton) find the smallest rest.
 // Blind, noise v_i of the channels in x is taken out of both sides (errors in variables):
 //   sum x^2 - rows mean(v)/n,   sum e_i x - rows (v_i - mean(v))/n,   v by MINQUE of the residuals.
-// Delays start from the peak of the correlation below a tenth of the rate. Normal equations of
-// centred regressors scaled to one. Standard errors: delete-one jackknife over stretches.
+// Delays start from the peak of the correlation below a tenth of the rate, within 8 samples; where it lies at their end,
+// or there is none, within twice as many. Normal equations of centred regressors scaled to one. Standard errors: delete-one jackknife over stretches.
 #include "libchar/fusion/alignment_learning.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/whole.hpp"
@@ -44,6 +46,11 @@ constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
 constexpr double kResolved = 3;         // standard errors that a delay is from zero, at least
 constexpr double kBound = 2;            // standard errors beyond what was found, of a delay that is not resolved
 constexpr double kEndOfSearch = 0.5;    // samples: nearer to it a delay is an end, no estimate
+constexpr double kFirstReach = 8;       // samples of delay that are searched at first
+constexpr double kSurelyLike = 0.8;     // correlation at which no longer search is made, and which it must find
+constexpr double kMuchMoreLike = 0.1;   // than within a shorter search
+constexpr double kInstantsPerLag = 40;  // at least, for a longer search: chance makes slow parts alike, too
+constexpr Index kCorrelated = 1 << 16;  // instants that a longer search looks at, at most
 constexpr double kQuarter = 0.25;       // samples: where the slope of the interpolator's noise is largest
 constexpr double kMostShared = 0.1;
 constexpr double kVibrates = -0.15;  // correlation of neighbours
@@ -97,9 +104,10 @@ struct Equations {
 
 class Learner {
  public:
-  Learner(const AlignmentData& data, const AlignmentOptions& options)
+  Learner(const AlignmentData& data, const AlignmentOptions& options, double reach)
       : data_(data),
         options_(options),
+        reach_(reach),
         n_(data.channels),
         further_(data.samples.rows() / data.channels - 1),
         m_(data.samples.cols()),
@@ -118,6 +126,16 @@ class Learner {
     return out_;
   }
 
+  /// A delay may lie beyond the search, and the stretch is long enough for twice of it.
+  bool asks_for_more() const {
+    const bool moves = !blind() || delays_.likest > kLikeEnough;
+    return options_.delay && moves && (delays_.ends > 0 || delays_.least_like < kSurelyLike) &&
+           2 * reach_ <= kMostDelay && static_cast<double>(out_.instants) > kInstantsPerLag * 2 * reach_;
+  }
+  bool finds_more_than(const Learner& nearer) const {
+    return delays_.ends < nearer.delays_.ends || delays_.least_like > nearer.delays_.least_like + kMuchMoreLike;
+  }
+
  private:
   void prepare() {
     out_.interpolation = options_.interpolation;
@@ -127,14 +145,13 @@ class Learner {
       channel.cross_se.assign(static_cast<std::size_t>(further_), kUnknownValue);
     }
     interior_.assign(static_cast<std::size_t>(m_), false);
+    const Index margin = kAlignmentMargin + static_cast<Index>(reach_ - kFirstReach);
     for (std::size_t s = 0; s < data_.starts.size(); ++s) {
       const Index end = s + 1 < data_.starts.size() ? data_.starts[s + 1] : m_;
-      for (Index t = data_.starts[s] + kAlignmentMargin; t < end - kAlignmentMargin; ++t)
-        interior_[static_cast<std::size_t>(t)] = true;
+      for (Index t = data_.starts[s] + margin; t < end - margin; ++t) interior_[static_cast<std::size_t>(t)] = true;
     }
     if (std::count(interior_.begin(), interior_.end(), true) < kFewestInstants)
-      throw refusal("the stretch is too short")
-          .got("{} instants; {} are needed", m_, kFewestInstants + 2 * kAlignmentMargin);
+      throw refusal("the stretch is too short").got("{} instants; {} are needed", m_, kFewestInstants + 2 * margin);
     for (Index c = 0; c < raw_.cols(); ++c) {
       out_.limits.push_back(limits_of(raw_.col(c)));
       for (Index t = 0; t < m_; ++t)
@@ -168,37 +185,76 @@ class Learner {
     }
   }
 
+  struct Lag {
+    double likeness = 0, delay = 0;
+  };
+
+  /// The peak of the correlation with the others.
+  Lag lag_of(const Eigen::VectorXd& own, const Eigen::VectorXd& others) const {
+    const auto lags = static_cast<Index>(reach_);
+    const Index looked = reach_ > kFirstReach ? std::min(m_, kCorrelated) : m_, skipped = (m_ - looked) / 2;
+    const Eigen::VectorXd a = own.segment(skipped, looked), b = others.segment(skipped, looked);
+    Eigen::VectorXd like(2 * lags + 1);
+    for (Index lag = -lags; lag <= lags; ++lag) like(lag + lags) = correlation(a, b, lag);
+    Index best = 0;
+    Lag out{like.maxCoeff(&best), static_cast<double>(best - lags)};
+    if (best > 0 && best < 2 * lags) {
+      const double bend = like(best - 1) - 2 * like(best) + like(best + 1);
+      if (bend < 0) out.delay += 0.5 * (like(best - 1) - like(best + 1)) / bend;
+    }
+    return out;
+  }
+
+  bool is_like(const Lag& lag) const { return lag.likeness > (reach_ > kFirstReach ? kSurelyLike : kLikeEnough); }
+
+  void start_delay(std::size_t k, const Lag& lag) {
+    can_delay_[k] = is_like(lag);
+    delays_.least_like = k == 0 ? lag.likeness : std::min(delays_.least_like, lag.likeness);
+    delays_.likest = k == 0 ? lag.likeness : std::max(delays_.likest, lag.likeness);
+    if (can_delay_[k]) of(k).delay = std::clamp(lag.delay, -reach_, reach_);
+  }
+
+  /// Far apart, the mean of the others is like none: the first channel that most others are like.
+  void start_from_one(const Eigen::MatrixXd& slow) {
+    for (Index from = 0; from < slow.cols(); ++from) {
+      std::vector<Lag> lags;
+      for (Index k = 0; k < slow.cols(); ++k)
+        lags.push_back(k == from ? Lag{1, 0} : lag_of(slow.col(k), slow.col(from)));
+      const auto like = std::count_if(lags.begin(), lags.end(), [&](const Lag& lag) { return is_like(lag); });
+      if (2 * like <= slow.cols()) continue;
+      for (std::size_t k = 0; k < lags.size(); ++k) start_delay(k, lags[k]);
+      return settle_gauge();
+    }
+  }
+
   // Correlations of the slow parts, where aliased vibration and noise say little.
   void start_delays() {
     Eigen::MatrixXd slow(m_, static_cast<Index>(used_.size()));
     for (std::size_t k = 0; k < used_.size(); ++k) slow.col(static_cast<Index>(k)) = low_passed(raw_.col(used_[k]));
-    Eigen::VectorXd truth;
-    if (!blind()) truth = low_passed(data_.truth.transpose());
+    if (!blind()) {
+      const Eigen::VectorXd truth = low_passed(data_.truth.transpose());
+      for (std::size_t k = 0; k < used_.size(); ++k) start_delay(k, lag_of(slow.col(static_cast<Index>(k)), truth));
+      return;
+    }
     Eigen::MatrixXd moved = slow;
-    constexpr Index kLags = 8;
+    const auto move = [&](std::size_t k) {
+      const DelayTaps taps(of(k).delay, Interpolation::cubic);
+      const auto column = static_cast<Index>(k);
+      for (Index t = 0; t < m_; ++t) moved(t, column) = taps.at(slow.col(column).data(), 1, m_, t);
+    };
+    if (reach_ > kFirstReach) start_from_one(slow);
+    for (std::size_t k = 0; k < used_.size(); ++k) move(k);
+    // Each in turn: of two sensors that are moved at once either goes to where the other was.
     for (int round = 0; round < 4; ++round) {
       for (std::size_t k = 0; k < used_.size(); ++k) {
         const auto column = static_cast<Index>(k);
-        Eigen::VectorXd others = truth;
-        if (blind()) others = (moved.rowwise().sum() - moved.col(column)) / static_cast<double>(moved.cols() - 1);
-        Eigen::VectorXd like(2 * kLags + 1);
-        for (Index lag = -kLags; lag <= kLags; ++lag) like(lag + kLags) = correlation(slow.col(column), others, lag);
-        Index best = 0;
-        can_delay_[k] = like.maxCoeff(&best) > kLikeEnough;
-        if (!can_delay_[k]) continue;
-        double delay = static_cast<double>(best - kLags);
-        if (best > 0 && best < 2 * kLags) {
-          const double bend = like(best - 1) - 2 * like(best) + like(best + 1);
-          if (bend < 0) delay += 0.5 * (like(best - 1) - like(best + 1)) / bend;
-        }
-        of(k).delay = std::clamp(delay, -kMostDelay, kMostDelay);
+        const Eigen::VectorXd others =
+            (moved.rowwise().sum() - moved.col(column)) / static_cast<double>(moved.cols() - 1);
+        start_delay(k, lag_of(slow.col(column), others));
+        move(k);
       }
       settle_gauge();
-      for (std::size_t k = 0; k < used_.size(); ++k) {
-        const DelayTaps taps(of(k).delay, Interpolation::cubic);
-        const auto column = static_cast<Index>(k);
-        for (Index t = 0; t < m_; ++t) moved(t, column) = taps.at(slow.col(column).data(), 1, m_, t);
-      }
+      for (std::size_t k = 0; k < used_.size(); ++k) move(k);
     }
   }
 
@@ -351,7 +407,7 @@ class Learner {
     to.gain = std::max(scale * (1 + gain), 0.02) - 1;
     if (can_delay_[k]) {
       const double step = std::clamp(change(next), -kLargestDelayStep, kLargestDelayStep);
-      to.delay = std::clamp(to.delay + step, -kMostDelay, kMostDelay);
+      to.delay = std::clamp(to.delay + step, -reach_, reach_);
       size = std::max(size, std::abs(step));
     }
     return size;
@@ -374,7 +430,7 @@ class Learner {
       for (std::size_t a = 0; a < mean.cross.size(); ++a) mean.cross[a] += of(k).cross[a] / n;
     }
     for (std::size_t k = 0; k < used_.size(); ++k) {
-      if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -kMostDelay, kMostDelay);
+      if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -reach_, reach_);
       of(k).bias -= mean.bias;
       of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
@@ -418,7 +474,7 @@ class Learner {
 
   Delay delay_of(std::size_t k) const {
     const ChannelAlignment& channel = out_.channels[static_cast<std::size_t>(used_[k])];
-    if (std::abs(channel.delay) > kMostDelay - kEndOfSearch) return Delay::end;
+    if (std::abs(channel.delay) > reach_ - kEndOfSearch) return Delay::end;
     if (!(channel.delay_se > 0 && channel.delay_se < kDoubtfulDelay)) return Delay::unknown;
     return std::abs(channel.delay) > kResolved * channel.delay_se ? Delay::resolved : Delay::within_its_error;
   }
@@ -455,7 +511,7 @@ class Learner {
                        brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)
       note(fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are searched: left at zero",
-                       delays_.ends, used_.size(), kMostDelay));
+                       delays_.ends, used_.size(), reach_));
     if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
       note(fmt::format("{} of {} other axes hardly move within the stretch: misalignment with them is not estimated",
@@ -657,6 +713,7 @@ class Learner {
 
   const AlignmentData& data_;
   const AlignmentOptions& options_;
+  const double reach_;  // samples of delay that are searched
   Index n_, further_, m_;
   Alignment out_;
   std::vector<Index> used_;
@@ -666,12 +723,13 @@ class Learner {
   Eigen::MatrixXd z_, slope_;    // a column a used channel: aligned, and its derivative
   Eigen::VectorXd x_, residual_power_;
   struct {
-    bool vibrates = false;        // more than it is noisy
-    Eigen::MatrixXd bend;         // second derivative of z_, where it vibrates
-    Eigen::VectorXd truth_slope;  // empty: the reference does not tell it
-    Eigen::VectorXd white;        // variance of the white noise of a used channel
-    std::vector<double> bounds;   // of delays that are not resolved, in samples
-    std::size_t ends = 0;         // delays at the end of the search
+    bool vibrates = false;              // more than it is noisy
+    Eigen::MatrixXd bend;               // second derivative of z_, where it vibrates
+    Eigen::VectorXd truth_slope;        // empty: the reference does not tell it
+    Eigen::VectorXd white;              // variance of the white noise of a used channel
+    std::vector<double> bounds;         // of delays that are not resolved, in samples
+    std::size_t ends = 0;               // delays at the end of the search
+    double least_like = 0, likest = 0;  // of the channels' correlations with the others, each at its best lag
   } delays_;
   std::vector<Index> rows_;
   bool strict_ = true;  // samples whose interpolation misses a tap are left out
@@ -686,7 +744,25 @@ class Learner {
 }  // namespace
 
 Alignment learn_alignment(const AlignmentData& data, const AlignmentOptions& options) {
-  return Learner(data, options).learn();
+  auto nearer = std::make_unique<Learner>(data, options, kFirstReach);
+  Alignment out = nearer->learn();
+  for (double reach = 2 * kFirstReach; nearer->asks_for_more(); reach *= 2) {
+    auto further = std::make_unique<Learner>(data, options, reach);
+    try {
+      Alignment found = further->learn();
+      if (further->finds_more_than(*nearer)) out = std::move(found);
+    } catch (const Error&) {  // too little is left between the margins
+      break;
+    }
+    nearer = std::move(further);
+  }
+  return out;
+}
+
+Index margin_of(const Alignment& alignment) {
+  double most = kFirstReach;
+  for (const ChannelAlignment& channel : alignment.channels) most = std::max(most, std::abs(channel.delay));
+  return kAlignmentMargin + clamped_whole<Index>(std::ceil(most - kFirstReach));
 }
 
 }  // namespace libchar::fusion

@@ -22,9 +22,11 @@ struct AlignmentData {
   std::vector<Eigen::Index> starts;  ///< first column of each stretch
 };
 
-/// Instants that the interpolation looks at on either side, a delay of at most kMostDelay included.
-inline constexpr double kMostDelay = 8;
+/// Samples. Searched are 8 of them and, while a delay lies beyond and the stretch is long enough, twice as many.
+inline constexpr double kMostDelay = 128;
+/// Instants that the interpolation looks at on either side, for delays of at most 8 samples or those of an alignment.
 inline constexpr Eigen::Index kAlignmentMargin = 21;
+Eigen::Index margin_of(const Alignment& alignment);
 
 /// Blind: sum of delays, of biases and of gains zero. Throws Error(numeric) when fewer than two
 /// channels (with a truth: one) have samples, or when there are fewer than 64 instants.

@@ -175,6 +175,46 @@ TEST_CASE("alignment: several samples of delay, two sensors") {
   for (std::size_t i = 0; i < 2; ++i) CHECK(learnt.channels[i].delay == Approx(array.delay[i]).margin(0.02));
 }
 
+TEST_CASE("alignment: delays of many samples, blind and with a reference, all of one sign") {
+  for (const double size : {4.0, 10.0, 60.0}) {
+    const AlignedArray two = simulated_array(32, {.sensors = 2, .instants = 20000, .delay = size});
+    const Alignment found = fusion::learn_alignment(two.data, {});
+    for (std::size_t i = 0; i < 2; ++i) {
+      INFO(size << " " << two.delay[i]);
+      CHECK(found.channels[i].delay == Approx(two.delay[i]).margin(0.02));
+    }
+  }
+  const AlignedArray apart = simulated_array(36, {.sensors = 5, .instants = 20000, .delay = 20});
+  const Alignment blind = fusion::learn_alignment(apart.data, {});
+  for (std::size_t i = 0; i < 5; ++i) CHECK(blind.channels[i].delay == Approx(apart.delay[i]).margin(0.02));
+  double most = 0;
+  for (const fusion::ChannelAlignment& c : blind.channels) most = std::max(most, std::abs(c.delay));
+  CHECK(fusion::margin_of(blind) == 13 + static_cast<Eigen::Index>(std::ceil(most)));
+
+  AlignedArray late = simulated_array(33, {.sensors = 3, .instants = 20000, .delay = 6});
+  constexpr Eigen::Index kLate = 90;
+  late.data.truth = late.x.transpose();
+  const Eigen::Index kept = late.data.samples.cols() - kLate;
+  late.data.samples = late.data.samples.leftCols(kept).eval();
+  late.data.truth = late.data.truth.tail(kept).eval();
+  const Alignment taught = fusion::learn_alignment(late.data, {});
+  for (std::size_t i = 0; i < 3; ++i) {
+    INFO(i);
+    CHECK(taught.channels[i].delay == Approx(late.delay[i] + kLate).margin(0.02));
+    CHECK(taught.channels[i].gain == Approx(late.gain[i]).margin(0.003));
+  }
+}
+
+TEST_CASE("alignment: beyond the longest search a delay stays at zero, and a short stretch is not searched far") {
+  AlignedArray far = simulated_array(34, {.sensors = 2, .instants = 20000, .delay = 0});
+  far.data.truth = far.x.transpose().tail(19700).eval();
+  far.data.samples = far.data.samples.leftCols(19700).eval();
+  for (const fusion::ChannelAlignment& c : fusion::learn_alignment(far.data, {}).channels) CHECK(c.delay == 0);
+  const AlignedArray brief = simulated_array(35, {.sensors = 2, .instants = 600, .delay = 40});
+  for (const fusion::ChannelAlignment& c : fusion::learn_alignment(brief.data, {}).channels)
+    CHECK(std::abs(c.delay) <= 8);
+}
+
 TEST_CASE("alignment: an array that needs none is left as it is, and no worse") {
   const AlignedArray array = simulated_array(41, {.delay = 0, .gain = 0, .bias = 0, .noise = 0.1});
   const Alignment learnt = fusion::learn_alignment(array.data, {});

@@ -17,7 +17,12 @@ class HeldBack {
  public:
   HeldBack(const SceneAlignment& alignment, std::int64_t from, std::int64_t to, std::int64_t count,
            const AlignedInstant& one)
-      : alignment_(alignment), aligner_(alignment.alignment), next_(from), to_(to), one_(one) {
+      : alignment_(alignment),
+        aligner_(alignment.alignment),
+        margin_(fusion::margin_of(alignment.alignment)),
+        next_(from),
+        to_(to),
+        one_(one) {
     // Between its first and its last sample every sensor has a value of its own time.
     last_whole_ = count - 1;
     for (const fusion::ChannelAlignment& channel : alignment.alignment.channels) {
@@ -37,8 +42,8 @@ class HeldBack {
     samples_.rightCols(fresh.cols()) = fresh;
     truth_.conservativeResize(truth.rows(), kept + truth.cols());
     truth_.rightCols(truth.cols()) = truth;
-    give(base_ + samples_.cols() - fusion::kAlignmentMargin);
-    const auto drop = static_cast<Eigen::Index>(std::max<std::int64_t>(0, next_ - fusion::kAlignmentMargin - base_));
+    give(base_ + samples_.cols() - margin_);
+    const auto drop = static_cast<Eigen::Index>(std::max<std::int64_t>(0, next_ - margin_ - base_));
     if (drop == 0) return;
     samples_ = samples_.rightCols(samples_.cols() - drop).eval();
     truth_ = truth_.rightCols(truth_.cols() - drop).eval();
@@ -59,7 +64,7 @@ class HeldBack {
 
   const SceneAlignment& alignment_;
   fusion::Aligner aligner_;
-  std::int64_t base_ = 0, next_, to_, first_whole_ = 0, last_whole_;
+  std::int64_t margin_, base_ = 0, next_, to_, first_whole_ = 0, last_whole_;
   const AlignedInstant& one_;
   Eigen::MatrixXd samples_, truth_;
   Eigen::VectorXd aligned_;
@@ -70,8 +75,9 @@ class HeldBack {
 void each_aligned(const Instants& instants, const SceneAlignment& alignment, std::int64_t from, std::int64_t to,
                   Progress& progress, const AlignedInstant& one) {
   HeldBack held(alignment, from, to, instants.info().count, one);
-  instants.pass_recorded(std::max<std::int64_t>(0, from - fusion::kAlignmentMargin),
-                         std::min(instants.info().count, to + fusion::kAlignmentMargin), kAlignedBlock, progress,
+  const std::int64_t margin = fusion::margin_of(alignment.alignment);
+  instants.pass_recorded(std::max<std::int64_t>(0, from - margin), std::min(instants.info().count, to + margin),
+                         kAlignedBlock, progress,
                          [&](const InstantBlock& b) { held.take(b.first, b.samples, b.truth); });
   held.finish();
 }

@@ -59,9 +59,10 @@ Eigen::MatrixXd errors(const fusion::AlignmentData& data, const fusion::Alignmen
   Eigen::MatrixXd out(static_cast<Index>(used.size()), samples.cols());
   Index filled = 0;
   Eigen::VectorXd column;
+  const Index margin = alignment != nullptr ? fusion::margin_of(*alignment) : fusion::kAlignmentMargin;
   for (std::size_t s = 0; s < data.starts.size(); ++s) {
     const Index end = s + 1 < data.starts.size() ? data.starts[s + 1] : samples.cols();
-    for (Index t = data.starts[s] + fusion::kAlignmentMargin; t < end - fusion::kAlignmentMargin; ++t) {
+    for (Index t = data.starts[s] + margin; t < end - margin; ++t) {
       if (aligner)
         aligner->column(samples, t, column);
       else
