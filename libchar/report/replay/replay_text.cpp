@@ -24,7 +24,8 @@ std::string replay_text(const ReplayView& view, std::size_t width) {
   text += "\n" + terminal_table(algorithms_table(view), {width}, "") + kStarNote + "\n";
   for (const std::string& skipped : skipped_words(view)) text += "skipped " + printable(skipped) + "\n";
   text += alignment_text(view, {width});
-  text += "\n" + printable(fmt::format("{}", fmt::join(view.shown_verdict, " "))) + "\n";
+  text += "\n";
+  for (const std::string& sentence : view.shown_verdict) text += printable(sentence) + "\n";
   return text;
 }
 
