@@ -107,11 +107,12 @@ class Learner {
   Learner(const AlignmentData& data, const AlignmentOptions& options, double reach)
       : data_(data),
         options_(options),
-        reach_(reach),
         n_(data.channels),
         further_(data.samples.rows() / data.channels - 1),
         m_(data.samples.cols()),
-        raw_(data.samples.transpose()) {}
+        raw_(data.samples.transpose()) {
+    delays_.reach = reach;
+  }
 
   Alignment learn() {
     prepare();
@@ -130,7 +131,7 @@ class Learner {
   bool asks_for_more() const {
     const bool moves = !blind() || delays_.likest > kLikeEnough;
     return options_.delay && moves && (delays_.ends > 0 || delays_.least_like < kSurelyLike) &&
-           2 * reach_ <= kMostDelay && static_cast<double>(out_.instants) > kInstantsPerLag * 2 * reach_;
+           2 * delays_.reach <= kMostDelay && static_cast<double>(out_.instants) > kInstantsPerLag * 2 * delays_.reach;
   }
   bool finds_more_than(const Learner& nearer) const {
     return delays_.ends < nearer.delays_.ends || delays_.least_like > nearer.delays_.least_like + kMuchMoreLike;
@@ -145,7 +146,7 @@ class Learner {
       channel.cross_se.assign(static_cast<std::size_t>(further_), kUnknownValue);
     }
     interior_.assign(static_cast<std::size_t>(m_), false);
-    const Index margin = kAlignmentMargin + static_cast<Index>(reach_ - kFirstReach);
+    const Index margin = kAlignmentMargin + static_cast<Index>(delays_.reach - kFirstReach);
     for (std::size_t s = 0; s < data_.starts.size(); ++s) {
       const Index end = s + 1 < data_.starts.size() ? data_.starts[s + 1] : m_;
       for (Index t = data_.starts[s] + margin; t < end - margin; ++t) interior_[static_cast<std::size_t>(t)] = true;
@@ -191,8 +192,8 @@ class Learner {
 
   /// The peak of the correlation with the others.
   Lag lag_of(const Eigen::VectorXd& own, const Eigen::VectorXd& others) const {
-    const auto lags = static_cast<Index>(reach_);
-    const Index looked = reach_ > kFirstReach ? std::min(m_, kCorrelated) : m_, skipped = (m_ - looked) / 2;
+    const auto lags = static_cast<Index>(delays_.reach);
+    const Index looked = delays_.reach > kFirstReach ? std::min(m_, kCorrelated) : m_, skipped = (m_ - looked) / 2;
     const Eigen::VectorXd a = own.segment(skipped, looked), b = others.segment(skipped, looked);
     Eigen::VectorXd like(2 * lags + 1);
     for (Index lag = -lags; lag <= lags; ++lag) like(lag + lags) = correlation(a, b, lag);
@@ -205,13 +206,15 @@ class Learner {
     return out;
   }
 
-  bool is_like(const Lag& lag) const { return lag.likeness > (reach_ > kFirstReach ? kSurelyLike : kLikeEnough); }
+  bool is_like(const Lag& lag) const {
+    return lag.likeness > (delays_.reach > kFirstReach ? kSurelyLike : kLikeEnough);
+  }
 
   void start_delay(std::size_t k, const Lag& lag) {
     can_delay_[k] = is_like(lag);
     delays_.least_like = k == 0 ? lag.likeness : std::min(delays_.least_like, lag.likeness);
     delays_.likest = k == 0 ? lag.likeness : std::max(delays_.likest, lag.likeness);
-    if (can_delay_[k]) of(k).delay = std::clamp(lag.delay, -reach_, reach_);
+    if (can_delay_[k]) of(k).delay = std::clamp(lag.delay, -delays_.reach, delays_.reach);
   }
 
   /// Far apart, the mean of the others is like none: the first channel that most others are like.
@@ -242,7 +245,7 @@ class Learner {
       const auto column = static_cast<Index>(k);
       for (Index t = 0; t < m_; ++t) moved(t, column) = taps.at(slow.col(column).data(), 1, m_, t);
     };
-    if (reach_ > kFirstReach) start_from_one(slow);
+    if (delays_.reach > kFirstReach) start_from_one(slow);
     for (std::size_t k = 0; k < used_.size(); ++k) move(k);
     // Each in turn: of two sensors that are moved at once either goes to where the other was.
     for (int round = 0; round < 4; ++round) {
@@ -407,7 +410,7 @@ class Learner {
     to.gain = std::max(scale * (1 + gain), 0.02) - 1;
     if (can_delay_[k]) {
       const double step = std::clamp(change(next), -kLargestDelayStep, kLargestDelayStep);
-      to.delay = std::clamp(to.delay + step, -reach_, reach_);
+      to.delay = std::clamp(to.delay + step, -delays_.reach, delays_.reach);
       size = std::max(size, std::abs(step));
     }
     return size;
@@ -430,7 +433,7 @@ class Learner {
       for (std::size_t a = 0; a < mean.cross.size(); ++a) mean.cross[a] += of(k).cross[a] / n;
     }
     for (std::size_t k = 0; k < used_.size(); ++k) {
-      if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -reach_, reach_);
+      if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -delays_.reach, delays_.reach);
       of(k).bias -= mean.bias;
       of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
@@ -474,7 +477,7 @@ class Learner {
 
   Delay delay_of(std::size_t k) const {
     const ChannelAlignment& channel = out_.channels[static_cast<std::size_t>(used_[k])];
-    if (std::abs(channel.delay) > reach_ - kEndOfSearch) return Delay::end;
+    if (std::abs(channel.delay) > delays_.reach - kEndOfSearch) return Delay::end;
     if (!(channel.delay_se > 0 && channel.delay_se < kDoubtfulDelay)) return Delay::unknown;
     return std::abs(channel.delay) > kResolved * channel.delay_se ? Delay::resolved : Delay::within_its_error;
   }
@@ -511,7 +514,7 @@ class Learner {
                        brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)
       note(fmt::format("the delay of {} of {} sensors may be beyond the {} samples that are searched: left at zero",
-                       delays_.ends, used_.size(), reach_));
+                       delays_.ends, used_.size(), delays_.reach));
     if (options_.gain && !gain_) note("the input hardly moves within the stretch: gains are left at one");
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
       note(fmt::format("{} of {} other axes hardly move within the stretch: misalignment with them is not estimated",
@@ -713,7 +716,6 @@ class Learner {
 
   const AlignmentData& data_;
   const AlignmentOptions& options_;
-  const double reach_;  // samples of delay that are searched
   Index n_, further_, m_;
   Alignment out_;
   std::vector<Index> used_;
@@ -723,6 +725,7 @@ class Learner {
   Eigen::MatrixXd z_, slope_;    // a column a used channel: aligned, and its derivative
   Eigen::VectorXd x_, residual_power_;
   struct {
+    double reach = kFirstReach;         // samples that are searched
     bool vibrates = false;              // more than it is noisy
     Eigen::MatrixXd bend;               // second derivative of z_, where it vibrates
     Eigen::VectorXd truth_slope;        // empty: the reference does not tell it

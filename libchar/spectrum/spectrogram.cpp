@@ -1,5 +1,6 @@
 // Short-time spectra: the periodograms whose mean is Welch's spectrum, segments.cpp.
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/numeric/whole.hpp"
@@ -32,7 +33,8 @@ void check_cells(std::uint64_t samples, const Layout& layout) {
 Spectrogram spectrogram(std::span<const double> record, double rate_hz, const WelchOptions& options) {
   check_options(options);
   check_rate(rate_hz);
-  const Layout layout = layout_of(options.segment, options.overlap);
+  const std::uint64_t quarter = std::max<std::uint64_t>(kShortestSegment, record.size() / 4);
+  const Layout layout = layout_of(options.segment == 0 ? quarter : options.segment, options.overlap);
   check_cells(record.size(), layout);
   const std::vector<double> window = window_values(options.window, layout.segment);
   double amplitude = 0, energy = 0;

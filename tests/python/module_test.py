@@ -214,6 +214,30 @@ class TakesWhatPeopleHave(unittest.TestCase):
         self.assertEqual(libchar.fit(x, 100, units="deg/s").unit, "deg/s")
         self.assertEqual(libchar.psd(x, 100).segments, libchar.psd({"x": x}, 100)[0].segments)
 
+    def test_a_rate_has_two_names(self):
+        x, table = noise(), {"a": noise(seed=4), "b": noise(seed=5)}
+        for one, other in (
+                (libchar.fit(x, 100), libchar.fit(x, rate=100)), (libchar.psd(x, 100), libchar.psd(x, rate=100)),
+                (libchar.characterize(x, 100).channels[0].fit, libchar.characterize(x, rate=100).channels[0].fit)):
+            self.assertEqual(one.to_dict(), other.to_dict())
+        one, other = libchar.cross_spectrum(table, "a", "b", 100), libchar.cross_spectrum(table, "a", "b", rate=100)
+        self.assertEqual(one["coherence"].tolist(), other["coherence"].tolist())
+        self.assertEqual(libchar.inspect(x, rate=100)["rate_hz"], 100)
+        with tempfile.TemporaryDirectory() as folder:  # of a file it is the program's option
+            path = pathlib.Path(folder) / "x.csv"
+            path.write_text("a\n" + "\n".join(map(str, x[:500])))
+            self.assertEqual(libchar.inspect(path, rate_hz=50)["rate_hz"], 50)
+            self.assertEqual(libchar.inspect(path, rate="50Hz")["rate_hz"], 50)
+
+    def test_a_terminal_shows_a_table(self):
+        x = noise()
+        shown = repr(libchar.fit(x, 100))
+        self.assertRegex(shown, r"coefficient +value +low95")
+        self.assertRegex(shown, r"white_noise +0\.\d+ +0\.\d+ +0\.\d+ .*detected")
+        self.assertLess(max(len(repr(one).splitlines()) for one in (
+            libchar.characterize(x, 100), libchar.characterize(x, 100)["c0"], libchar.read(IMU), libchar.psd(x, 100),
+            libchar.fit(x, 100), libchar.allan(x, 100))), 20)
+
     def test_the_longer_axis_is_the_time(self):
         across = np.random.default_rng(3).normal(size=(3, 20000))
         down = np.asfortranarray(across.T)

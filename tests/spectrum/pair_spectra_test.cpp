@@ -203,6 +203,10 @@ TEST_CASE("pair spectra: what is not possible is refused in a sentence") {
   CHECK(test::code_of([&] { cross_spectrum(x, x, 0, options); }) == "E0402");
   WelchOptions longer;
   longer.segment = 301;
+  const Spectrogram quarters = spectrogram(x, 1, {});  // as Welch's spectrum has them
+  CHECK(quarters.segment == x.size() / 4);
+  CHECK(quarters.value.size() == 6);  // of 75, whose halves are 38
+  CHECK(test::code_of([&] { spectrogram(std::span(x).first(5), 1, {}); }) == "E0875");
   CHECK(test::code_of([&] { spectrogram(x, 1, longer); }) == "E0875");
   WelchOptions crowded;
   crowded.segment = 20000;

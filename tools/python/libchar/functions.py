@@ -117,6 +117,15 @@ def _one_or_all(source: Source, results: list[Any]) -> Any:
     return results[0] if one and np.ndim(source) == 1 else results
 
 
+def _rate_of(sources: Sequence[Any], rate_hz: Optional[float], options: dict[str, Any]) -> Optional[float]:
+    """The rate of what is in memory; that of files is an option of the program."""
+    rate: Optional[float] = options.pop("rate", None) if rate_hz is None else rate_hz
+    if rate is None or any(_path(one) is None for one in sources):
+        return rate
+    options["rate"] = rate
+    return None
+
+
 @contextlib.contextmanager
 def _on_disk(source: Any, rate_hz: Optional[float] = None, names: Names = None, units: Names = None,
              name: str = "recording") -> Iterator[str]:
@@ -231,7 +240,7 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
           tau_min_s: Optional[float] = None, tau_max_s: Optional[float] = None, full_overlap: bool = False,
           data: str = "rate",
           nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
-          rate: Optional[float] = None, threads: Optional[int] = None) -> Any:
+          threads: Optional[int] = None, rate: Optional[float] = None) -> Any:
     """Deviations of the Allan family, one AllanCurve per channel, with chi-square intervals (`sensorchar allan`): a
     list, or one curve where `source` is one array. `taus, devs, errs, ns = allan(x, rate=100)` unpacks it as allantools
     does.
@@ -244,8 +253,8 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
 
     Deviations are in the unit of the channel. Raises NumericError when no channel has enough samples.
     """
-    reading = {"rate_hz": rate if rate_hz is None else rate_hz, "channels": channels, "names": names, "units": units,
-               "threads": threads}
+    rate_hz = rate if rate_hz is None else rate_hz
+    reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
     options = {"only": "allan", "type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus],
                "tau_min_s": tau_min_s,
                "tau_max_s": tau_max_s, "full_overlap": full_overlap, "data": data,
@@ -261,7 +270,7 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
         segment_s: Optional[float] = None,
         overlap: float = 0.5, window: str = "hann", detrend: str = "constant", sides: str = "one", scaling: str = "psd",
         bins: int = 0, channels: Names = None, names: Names = None, units: Names = None,
-        threads: Optional[int] = None) -> Any:
+        threads: Optional[int] = None, rate: Optional[float] = None) -> Any:
     """Power spectra by Welch's method, one Spectrum per channel (`sensorchar psd`): a list, or one where `source` is
     one array.
 
@@ -272,6 +281,7 @@ def psd(source: Source, rate_hz: Optional[float] = None, *, segment: Optional[in
     sides, scaling      one, two; psd U²/Hz, ps U², lsd U/√Hz, ls U
     bins                averaged into at most so many on a logarithmic axis of frequency; 0: not averaged
     """
+    rate_hz = rate if rate_hz is None else rate_hz
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
     options = {"segment": segment, "segment_s": segment_s, "overlap": overlap, "window": window, "detrend": detrend,
                "sides": sides,
@@ -286,7 +296,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
         remedies: bool = True,
         second_opinion: bool = True, still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
         nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None, units: Names = None,
-        threads: Optional[int] = None) -> Any:
+        threads: Optional[int] = None, rate: Optional[float] = None) -> Any:
     """Noise coefficients with 95 % intervals, one NoiseFit per channel (`sensorchar fit`): a list, or one where
     `source` is one array.
 
@@ -300,6 +310,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
 
     Coefficients are roots of two-sided densities, in U·√s (N), U (B), U/√s (K).
     """
+    rate_hz = rate if rate_hz is None else rate_hz
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
     options = {"only": "fit", "terms": None if terms is None else list(terms), "threshold": threshold,
                "remedies": remedies,
@@ -318,11 +329,12 @@ def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str =
                  still: Optional[str] = None, temperature: Optional[str] = None, data: str = "rate",
                  nominal_frequency: Optional[float] = None, channels: Names = None, names: Names = None,
                  units: Names = None,
-                 threads: Optional[int] = None) -> Characterization:
+                 threads: Optional[int] = None, rate: Optional[float] = None) -> Characterization:
     """Everything about a recording: curves, coefficients, models, a page (`sensorchar characterize`).
 
-    Arguments as of `allan` and `fit`: times in s, rate_hz in Hz, samples in the unit of their channel.
+    Arguments as of `allan` and `fit`: times in s, rate_hz (or rate) in Hz, samples in the unit of their channel.
     """
+    rate_hz = rate if rate_hz is None else rate_hz
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
     options = {"type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus],
                "terms": None if terms is None else list(terms), "threshold": threshold, "remedies": remedies,
@@ -363,7 +375,7 @@ def replay(source: Source, *, sensors: Names = None, reference: Union[None, str,
            models_folder: Optional[str] = None, allan: bool = True, budget_s: Optional[float] = None,
            timing: bool = True,
            allow_outside: bool = False, rate_hz: Optional[float] = None, names: Names = None,
-           units: Names = None) -> ReplayResult:
+           units: Names = None, rate: Optional[float] = None) -> ReplayResult:
     """Every fusion algorithm that has what it needs, compared on one recording (`sensorchar replay`).
 
     source      scene file, path of a log, Recording, or arrays; what is in memory is written once to a
@@ -373,6 +385,7 @@ def replay(source: Source, *, sensors: Names = None, reference: Union[None, str,
     learning, evaluation, rest   windows (from, to) in s
     algorithms  these only (`sensorchar replay --list`)
     """
+    rate_hz = rate if rate_hz is None else rate_hz
     listed = [reference] if isinstance(reference, str) else reference
     options = {"sensors": None if sensors is None else list(sensors),
                "reference": None if listed is None else list(listed),
@@ -392,7 +405,7 @@ def inspect(source: Source, rate_hz: Optional[float] = None, **options: Any) -> 
     """What is in a log, what was guessed and what was repaired (`sensorchar inspect --json`): the keys of its
     recording, and its findings. rate_hz in Hz, of samples in memory; times in s; options are those of the program:
     topic="imu"."""
-    with _on_disk(source, rate_hz) as log:
+    with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
         made = program.document("inspect", [log, *program.words_of(options)])
     return Document({**made["recordings"][0], "findings": made["findings"]})
 
@@ -407,6 +420,7 @@ def compare(*sources: Any, rate_hz: Optional[float] = None, labels: Names = None
     labels    a name for each; channels: those to compare, by name or pattern
     Times are in s; further options are those of the program, such as limits="sheet.yaml".
     """
+    rate_hz = _rate_of(sources, rate_hz, options)
     with contextlib.ExitStack() as kept:
         paths = [kept.enter_context(_on_disk(one, rate_hz, name=f"input {k + 1}")) for k, one in enumerate(sources)]
         page = kept.enter_context(program.folder()) / "compared.html"
@@ -419,6 +433,7 @@ def compare(*sources: Any, rate_hz: Optional[float] = None, labels: Names = None
 def lot(*sources: Any, rate_hz: Optional[float] = None, **options: Any) -> Document:
     """Devices of one kind, one log each: mean, spread and outliers of each term (`sensorchar characterize --lot`), and
     the page as `html`. rate_hz in Hz, of arrays; times in s."""
+    rate_hz = _rate_of(sources, rate_hz, options)
     with contextlib.ExitStack() as kept:
         paths = [kept.enter_context(_on_disk(one, rate_hz, name=f"device {k + 1}")) for k, one in enumerate(sources)]
         place = kept.enter_context(program.folder()) / "lot"
@@ -431,14 +446,14 @@ def lot(*sources: Any, rate_hz: Optional[float] = None, **options: Any) -> Docum
 def cross_spectrum(source: Source, a: str, b: str, rate_hz: Optional[float] = None, **options: Any) -> Document:
     """Cross spectrum and coherence of two channels (`sensorchar psd --cross A,B`): arrays frequency_hz in Hz, real,
     imaginary, phase_rad, coherence… Options are those of the program, such as segment="20s"."""
-    with _on_disk(source, rate_hz) as log:
+    with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
         return Document(program.document("psd", [log, f"--cross={a},{b}", *program.words_of(options)]))
 
 
 def cornered_hat(source: Source, rate_hz: Optional[float] = None, *, pairs: bool = False, **options: Any) -> Document:
     """The deviation of each of three or more devices from their differences (`sensorchar allan --hat`): `channels` with
     arrays tau_s in s, deviation, variance, variance_sd. pairs: the channels are the differences a - b, b - c, c - a."""
-    with _on_disk(source, rate_hz) as log:
+    with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
         words = [log, "--hat-pairs" if pairs else "--hat", *program.words_of(options)]
         return Document(program.document("allan", words))
 
@@ -451,7 +466,7 @@ def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options
     rate_hz  sampling rate in Hz, of arrays; times are in s
     Further options are those of the program, such as algorithm="minque", map=["gyro1=wx"].
     """
-    with _on_disk(source, rate_hz) as log, program.folder() as place:
+    with _on_disk(source, _rate_of([source], rate_hz, options)) as log, program.folder() as place:
         if isinstance(learnt, ReplayResult):
             (place / "fusion.yaml").write_text(learnt.fusion_yaml())
             learnt = place / "fusion.yaml"

@@ -40,14 +40,33 @@ def frame(columns: Mapping[str, Any], index: Any = None) -> Any:
 
 
 def _cell(value: Any) -> str:
-    return html.escape("" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value))
+    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def table(rows: Sequence[Mapping[str, Any]], above: str = "") -> str:
-    """Rows of equal keys as HTML."""
-    head = "".join(f"<th>{_cell(key)}</th>" for key in (rows[0] if rows else {}))
-    body = "".join("<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row.values()) + "</tr>" for row in rows)
-    return (f"<p>{html.escape(above)}</p>" if above else "") + f"<table><tr>{head}</tr>{body}</table>"
+class _Shown:
+    """A result that is a table: a terminal prints it as text, a notebook as HTML."""
+
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
+        """A heading, and rows of equal keys."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        above, rows = self._table()
+        cells = [list(rows[0])] + [[_cell(value) for value in row.values()] for row in rows] if rows else []
+        widths = [max(map(len, column)) for column in zip(*cells)]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in cells]
+        return "\n".join([above] * bool(above) + lines)
+
+    def _repr_html_(self) -> str:
+        above, rows = self._table()
+        head = "".join(f"<th>{html.escape(key)}</th>" for key in (rows[0] if rows else {}))
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(_cell(value))}</td>" for value in row.values()) + "</tr>"
+                       for row in rows)
+        return (f"<p>{html.escape(above)}</p>" if above else "") + f"<table><tr>{head}</tr>{body}</table>"
+
+
+def _range(values: Array) -> str:
+    return f"{len(values)} values from {values[0]:.4g} to {values[-1]:.4g}" if len(values) else "no values"
 
 
 class Figure:
@@ -156,8 +175,8 @@ class Document(dict):  # type: ignore[type-arg]
         return _plain_document(self)
 
 
-@dataclasses.dataclass(frozen=True)
-class Recording(_Result):
+@dataclasses.dataclass(frozen=True, repr=False)
+class Recording(_Shown, _Result):
     """Named channels on one time base: sample k is k / rate_hz seconds after the first."""
 
     names: list[str]
@@ -197,14 +216,14 @@ class Recording(_Result):
         out.index.name = "t[s]"
         return out
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
         rows = [{"channel": name, "unit": unit, "samples": int(np.isfinite(x).sum()), "missing": int(np.isnan(x).sum()),
                  "mean": float(np.nanmean(x)) if np.isfinite(x).any() else None} for name, unit, x in
                 zip(self.names, self.units, self.samples)]
-        return table(rows, f"{self.file}: {len(self)} samples at {self.rate_hz:.10g} Hz")
+        return f"{self.file}: {len(self)} samples at {self.rate_hz:.10g} Hz", rows
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class AllanCurve(_Drawn):
     """A deviation of the Allan family. `taus, devs, errs, ns = curve` is what allantools returns: errs is one standard
     deviation, from the degrees of freedom."""
@@ -219,6 +238,10 @@ class AllanCurve(_Drawn):
     terms: npt.NDArray[np.int64]  #: differences that were averaged
     findings: list[dict[str, Any]] = dataclasses.field(default_factory=list)  #: about the samples of the channel
     document: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
+
+    def __repr__(self) -> str:
+        return (f"{self.type} of {self.name} in {self.unit or '1'}: {_range(self.deviation)} at {self.tau_s[0]:.4g} to "
+                f"{self.tau_s[-1]:.4g} s")
 
     def __iter__(self) -> Iterator[Any]:
         return iter((self.tau_s, self.deviation, self.deviation / np.sqrt(2 * self.edf), self.terms))
@@ -238,7 +261,7 @@ class AllanCurve(_Drawn):
         return self.plot().svg
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Spectrum(_Drawn):
     """A power spectrum by Welch's method."""
 
@@ -256,6 +279,10 @@ class Spectrum(_Drawn):
     ci95: Array  #: rows low, high; NaN where they are not known
     notes: list[str] = dataclasses.field(default_factory=list)
     findings: list[dict[str, Any]] = dataclasses.field(default_factory=list)  #: about the samples of the channel
+
+    def __repr__(self) -> str:
+        return (f"{self.scaling} of {self.name}, {self.sides}-sided, {self.segments} segments of {self.segment}: "
+                f"{_range(self.value)} up to {self.frequency_hz[-1]:.4g} Hz")
 
     def to_dataframe(self) -> Any:
         """A pandas.DataFrame, one row per frequency."""
@@ -285,8 +312,8 @@ class NoiseTerm(_Result):
         return _plain_document(self.document)
 
 
-@dataclasses.dataclass(frozen=True)
-class NoiseFit(_Result):
+@dataclasses.dataclass(frozen=True, repr=False)
+class NoiseFit(_Shown, _Result):
     """Noise coefficients of a channel (docs/theory/fit.md)."""
 
     name: str
@@ -320,14 +347,14 @@ class NoiseFit(_Result):
         """The coefficients by their names."""
         return {name: value for name, value in vars(self).items() if isinstance(value, NoiseTerm)}
 
-    def _repr_html_(self) -> str:
-        return table([{"coefficient": name, "value": term.value, "low95": term.ci95[0] if term.ci95 else None,
-                       "high95": term.ci95[1] if term.ci95 else None, "upper95": term.upper95, "unit": term.unit,
-                       "status": term.status} for name, term in self.terms().items() if term.status != "not_fitted"],
-                     self.name)
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
+        return self.name, [
+            {"coefficient": name, "value": term.value, "low95": term.ci95[0] if term.ci95 else None,
+             "high95": term.ci95[1] if term.ci95 else None, "upper95": term.upper95, "unit": term.unit,
+             "status": term.status} for name, term in self.terms().items() if term.status != "not_fitted"]
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class ChannelReport(_Result):
     """A channel of a characterization; what is None could not be had, and `findings` says why."""
 
@@ -337,9 +364,13 @@ class ChannelReport(_Result):
     allan: Optional[AllanCurve]
     findings: list[dict[str, Any]]
 
+    def __repr__(self) -> str:
+        said = [f"{one['severity']}: {one['sentence']}" for one in self.findings]
+        return "\n".join([repr(self.fit) if self.fit else self.name, *([repr(self.allan)] if self.allan else []), *said])
 
-@dataclasses.dataclass(frozen=True)
-class Characterization(_Drawn):
+
+@dataclasses.dataclass(frozen=True, repr=False)
+class Characterization(_Shown, _Drawn):
     """Everything about a recording: what `sensorchar characterize` writes."""
 
     verdict: str
@@ -383,9 +414,9 @@ class Characterization(_Drawn):
     def _drawn(self) -> tuple[str, dict[str, Any]]:
         return "characterization", self.document
 
-    def _repr_html_(self) -> str:
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
         shown = ("channel", "unit", "rating", "white_noise", "bias_instability", "random_walk")
-        return table([{key: row.get(key) for key in shown} for row in self._rows()], self.verdict)
+        return self.verdict, [{key: row.get(key) for key in shown} for row in self._rows()]
 
     def html(self) -> str:
         """The report as one self-contained page."""
@@ -415,8 +446,8 @@ class Algorithm(_Result):
         return _plain_document(self.document)
 
 
-@dataclasses.dataclass(frozen=True)
-class ReplayResult(_Drawn):
+@dataclasses.dataclass(frozen=True, repr=False)
+class ReplayResult(_Shown, _Drawn):
     """Every fusion algorithm that had what it needs, on one recording."""
 
     verdict: str
@@ -460,5 +491,6 @@ class ReplayResult(_Drawn):
     def _drawn(self) -> tuple[str, dict[str, Any]]:
         return "replay-report", self.document
 
-    def _repr_html_(self) -> str:
-        return table([row for row in self._rows() if row["status"] == "ran"], self.verdict)
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
+        shown = ("name", "rmse", "regret", "ns_per_sample")
+        return self.verdict, [{key: row[key] for key in shown} for row in self._rows() if row["status"] == "ran"]
