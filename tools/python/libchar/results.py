@@ -365,8 +365,8 @@ class ChannelReport(_Result):
     findings: list[dict[str, Any]]
 
     def __repr__(self) -> str:
-        said = [f"{one['severity']}: {one['sentence']}" for one in self.findings]
-        return "\n".join([repr(self.fit) if self.fit else self.name, *([repr(self.allan)] if self.allan else []), *said])
+        shown = [repr(self.fit) if self.fit else self.name] + [repr(self.allan)] * (self.allan is not None)
+        return "\n".join(shown + [f"{one['severity']}: {one['sentence']}" for one in self.findings])
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
