@@ -10,8 +10,9 @@
 // is there to damp it: least squares on the own slope and its second derivative (Newton) find the smallest rest.
 // Blind, noise v_i of the channels in x is taken out of both sides (errors in variables):
 //   sum x^2 - rows mean(v)/n,   sum e_i x - rows (v_i - mean(v))/n,   v by MINQUE of the residuals.
-// Delays start from the peak of the correlation below a tenth of the rate, within 8 samples; where it lies at their end,
-// or there is none, within twice as many. Normal equations of centred regressors scaled to one. Standard errors: delete-one jackknife over stretches.
+// Delays start from the peak of the correlation below a tenth of the rate, within 8 samples; where it lies at
+// their end, or there is none, within twice as many. Normal equations of centred regressors scaled to one.
+// Standard errors: delete-one jackknife over stretches.
 #include "libchar/fusion/alignment_learning.hpp"
 
 #include <fmt/format.h>
