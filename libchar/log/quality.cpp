@@ -565,9 +565,6 @@ struct Beginning {
   }
 };
 
-/// Values in a row: no noise of many levels repeats so often.
-constexpr std::uint64_t kFrozenRun = 8;
-
 /// Samples that are exactly zero, and how near the others come to it.
 struct ZeroWatch {
   std::uint64_t count = 0, repeats = 0;  // repeats: of a zero right before
@@ -889,30 +886,42 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   return true;
 }
 
-/// Runs of one value, where values do not repeat anyway, as they do between coarse steps. What repeats outside of them
-/// gives the chance of a run among these samples; a record that holds all of its values has a rhythm,
-/// and a quantity that changes little from sample to sample may rest.
+/// What repeats outside of the runs gives the chance of a run among these samples; a record that holds all of its values
+/// has a rhythm, and a quantity that changes little from sample to sample may rest.
+struct FrozenRuns {
+  explicit FrozenRuns(const ChannelQuality& q) {
+    constexpr double kHeld = 0.5;
+    const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
+    const double repeats = (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
+    const bool held = q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
+    const auto by_chance = [&](std::uint64_t run) { return samples * std::pow(repeats, static_cast<double>(run - 1)); };
+    rare = q.saturated == 0 && !held && is_restless(q) && by_chance(kFrozenRun) < kChance;
+    // Where values repeat anyway, as between coarse steps, runs of them are no sign.
+    const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
+    if (q.distinct_values > 16 && q.longest_stuck >= (rare ? kFrozenRun : 100)) found = true;
+    if (found && !held && by_chance(run) < kChance) fewest = run;
+  }
+  static constexpr double kChance = 1e-3;
+  bool found = false, rare = false;  ///< rare: the shortest that are counted
+  std::uint64_t fewest = 0;          ///< samples of a run that chance does not give; 0: not known
+};
+
+/// Runs of one value, where values do not repeat anyway, as they do between coarse steps.
 void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
-  constexpr double kMuch = 0.01, kChance = 1e-3, kHeld = 0.5;
-  if (q.distinct_values <= 16) return;
+  constexpr double kMuch = 0.01;
+  const FrozenRuns runs(q);
+  if (!runs.found) return;
   const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
-  const double repeats = (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
-  const bool held = q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
-  const bool noisy = is_restless(q);
-  const bool rare = q.saturated == 0 && !held && noisy && samples * std::pow(repeats, kFrozenRun - 1) < kChance;
-  if (q.longest_stuck < (rare ? kFrozenRun : 100)) return;
   Finding stuck = finding(
       "stuck",
-      q.signs.frozen_runs < 2 || !rare
+      q.signs.frozen_runs < 2 || !runs.rare
           ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
           : fmt::format(
                 "one value {} to {} times in a row in {} stretches, {} of the samples: the sensor or the link hung",
                 kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
-  if ((rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
-  // Where values repeat anyway, as between coarse steps, runs of them are no sign.
-  const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
-  if (!held && samples * std::pow(repeats, run - 1) < kChance)
-    stuck.help.push_back({"Take frozen values as missing.", {{"frozen", fmt::format("{}", run)}}});
+  if ((runs.rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
+  if (runs.fewest > 0)
+    stuck.help.push_back({"Take frozen values as missing.", {{"frozen", fmt::format("{}", runs.fewest)}}});
   stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
   out.push_back(std::move(stuck));
 }
@@ -1130,6 +1139,8 @@ void QualityMeter::read_state(StateReader& from) {
   if (!(s.values.n >= 0 && s.values.n <= kExact)) from.refuse("the number of its samples");
   *state_ = std::move(s);
 }
+
+std::uint64_t detail::frozen_run(const ChannelQuality& quality) { return FrozenRuns(quality).fewest; }
 
 ChannelQuality QualityMeter::finish(double rate_hz) const {
   State state = *state_;

@@ -281,9 +281,10 @@ void Fusing::check_rate() {
 void Fusing::tell_frozen() {
   const SourceInfo& source = instants_->source().info();
   result_.warnings.merge(source.samples_say);
-  for (const std::size_t i : source.frozen)
-    result_.warnings.add("frozen_sensor", kFrozenMissing,
-                         still_words(scene_.sensors[i].name, source.presence[i], source.rate_hz));
+  for (std::size_t i = 0; i < std::min(source.frozen.size(), scene_.sensors.size()); ++i)
+    if (!source.frozen[i].empty())
+      result_.warnings.add("frozen_sensor", kFrozenMissing,
+                           frozen_words(scene_.sensors[i].name, source.frozen[i], source));
 }
 
 void Fusing::prepare_instants() {

@@ -419,6 +419,27 @@ TEST_CASE("replay: a sensor that freezes near the end has its weight until then"
   CHECK(frozen.sensors[2].missing == Approx(0.1));
 }
 
+TEST_CASE("replay: a sensor that hangs again and again is missing while it does, beside one other too") {
+  const test::SceneBench bench;
+  const auto hangs = [](int i, int k) {
+    return i == 2 && k % 200 < 20 ? fmt::format("0.{:04}1", k / 200) : std::string("keep");
+  };
+  bench.put("five.csv", five_sensors(4000, hangs));
+  for (const char* const sensors : {"[a, b, c, d, e]", "[a, c]"}) {
+    const ReplayResult hung =
+        replay(bench.read(fmt::format("format: scene\nversion: 1\nrecording: five.csv\nsensors: {}\n", sensors)));
+    REQUIRE(hung.warnings.find("frozen_sensor") != nullptr);
+    CHECK(hung.warnings.find("frozen_sensor")->where.rows.at(0) ==
+          "c in 20 stretches of 20 samples, 10 % of the recording");
+    CHECK(hung.warnings.find("stuck") == nullptr);
+    for (const auto& sensor : hung.sensors) CHECK(sensor.missing == Approx(sensor.name == "c" ? 0.1 : 0));
+  }
+  const ReplayResult taught = replay(bench.read(
+      "format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, d, e]\nreference: {channels: [c]}\n"));
+  REQUIRE(taught.warnings.find("stuck") != nullptr);
+  CHECK_THAT(taught.warnings.find("stuck")->where.rows.at(0), Catch::StartsWith("c in 20 stretches"));
+}
+
 TEST_CASE("replay: a sensor that repeats another one is named") {
   const test::SceneBench bench;
   bench.put("five.csv", five_sensors(3000, [](int, int) { return std::string("keep"); }));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "libchar/core/numeric/median.hpp"
@@ -22,10 +23,10 @@ constexpr std::size_t kSimulatedRows = 4096, kKeptRows = 4096;
 constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
-// Of sensors that are compared (is_frozen) one that hangs is missing there anyway.
-void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, bool compared, Findings& to) {
+// One that hangs is missing there (hides: hide_frozen).
+void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, bool hides, Findings& to) {
   for (const Finding& one : quality.findings)
-    if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !compared))
+    if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !hides))
       to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help = one.help;
 }
 
@@ -77,31 +78,48 @@ std::size_t position(const std::vector<std::string>& names, const std::string& n
 // What the sensors of one pass go through on their way.
 class SensorPath {
  public:
-  SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, double rate_hz) : scene_(scene) {
+  SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, const SourceInfo& source)
+      : scene_(scene), hidden_(source.frozen) {
     const std::uint64_t seed = scene.simulated ? scene.simulated->seed : 1;
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
       std::vector<SensorFault> own;
       for (const SensorFault& fault : faults)
         if (fault.sensor == i) own.push_back(fault);
-      injectors_.emplace_back(std::move(own), rate_hz, seed, i);
+      injectors_.emplace_back(std::move(own), source.rate_hz, seed, i);
     }
-    changed_.resize(scene.sensors.size());
+    changed_.resize(std::max(scene.sensors.size(), hidden_.size()));
+    next_.resize(hidden_.size(), 0);
   }
-  std::span<const double> operator()(std::size_t sensor, std::span<const double> y) {
-    const double scale = scene_.sensors[sensor].scale;
-    if (scale == 1 && injectors_[sensor].idle()) return y;
-    std::vector<double>& out = changed_[sensor];
+  /// Samples `first` and on of a channel: of the sensors, then of the others.
+  std::span<const double> operator()(std::size_t channel, std::uint64_t first, std::span<const double> y) {
+    const bool sensor = channel < injectors_.size(), hides = channel < hidden_.size() && !hidden_[channel].empty();
+    const double scale = sensor ? scene_.sensors[channel].scale : 1;
+    if (scale == 1 && !hides && (!sensor || injectors_[channel].idle())) return y;
+    std::vector<double>& out = changed_[channel];
     out.assign(y.begin(), y.end());
     if (scale != 1)
       for (double& value : out) value *= scale;
-    if (!injectors_[sensor].idle()) injectors_[sensor].apply(out);
+    if (sensor && !injectors_[channel].idle()) injectors_[channel].apply(out);
+    if (hides) hide(channel, first, out);
     return out;
   }
 
  private:
+  void hide(std::size_t channel, std::uint64_t first, std::span<double> y) {
+    const std::vector<Presence::Run>& runs = hidden_[channel];
+    const std::uint64_t end = first + y.size();
+    for (std::size_t& next = next_[channel]; next < runs.size() && runs[next].from < end; ++next) {
+      const std::uint64_t from = std::max(first, runs[next].from), to = runs[next].from + runs[next].count;
+      for (std::uint64_t k = from; k < std::min(end, to); ++k) y[detail::in_memory(k - first)] = kMissing;
+      if (to > end) return;
+    }
+  }
+
   const Scene& scene_;
+  const std::vector<std::vector<Presence::Run>>& hidden_;
   std::vector<FaultInjector> injectors_;
   std::vector<std::vector<double>> changed_;
+  std::vector<std::size_t> next_;  // run of each channel
 };
 
 }  // namespace
@@ -139,20 +157,20 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
       read_even(progress);
     else
       scan(progress);
-    if (scene.faults.empty() && !scene.tilt) hide_frozen();  // else it is to be found
+    if (hides_frozen()) hide_frozen();
   }
 }
 
-// What a sensor repeats while it hangs is no measurement.
+// What a sensor repeats while it hangs is no measurement: runs that chance does not give, which `scan` has found, or the
+// longest one of a sensor beside others.
 void SceneSource::hide_frozen() {
-  for (std::size_t i = 0; i < info_.presence.size(); ++i) {
-    if (!is_frozen(info_.presence, i, info_.samples)) continue;
-    const Presence& at = info_.presence[i];
-    info_.frozen.push_back(i);
-    injected_.push_back({i, FaultKind::dropout, 0, static_cast<double>(at.still_from) / info_.rate_hz,
-                         static_cast<double>(at.still_from + at.still) / info_.rate_hz});
-  }
+  info_.frozen.resize(own_);
+  for (std::size_t i = 0; i < info_.presence.size(); ++i)
+    if (is_frozen(info_.presence, i, info_.samples) && info_.frozen[i].empty())
+      info_.frozen[i].push_back({info_.presence[i].still_from, info_.presence[i].still});
 }
+
+bool SceneSource::hides_frozen() const { return scene_->faults.empty() && !scene_->tilt; }  // else it is to be found
 
 void SceneSource::want_channels() {
   for (const SceneSensor& sensor : scene_->sensors) wanted_.push_back(sensor.channel);
@@ -204,6 +222,21 @@ void SceneSource::read_even(Progress& progress) {
   for (std::size_t k = 0; k < scene_->sensors.size(); ++k) info_.presence.emplace_back().push(0, kept_[k]);
 }
 
+void SceneSource::say_of(std::size_t k, const ChannelQuality& quality, const std::vector<Presence::Run>& runs) {
+  const bool sensor = k < scene_->sensors.size();
+  const std::uint64_t fewest = detail::frozen_run(quality);
+  info_.frozen.resize(own_);
+  if (hides_frozen() && fewest > 0 && runs.size() < Presence::kMostRuns)
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(info_.frozen[k]),
+                 [&](const Presence::Run& run) { return run.count >= fewest; });
+  if (!sensor && !info_.frozen[k].empty())
+    info_.samples_say.add("stuck", "the reference is frozen: missing there",
+                          frozen_words(wanted_[k], info_.frozen[k], info_));
+  const bool compared = sensor && scene_->sensors.size() >= 3 && !scene_->tilt;
+  note_bad_samples(quality, sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
+                   compared || !info_.frozen[k].empty(), info_.samples_say);
+}
+
 void SceneSource::scan(Progress& progress) {
   reading_ = scene_->reading;
   // Half of the usual: blocks on their way are most of what a replay holds.
@@ -226,23 +259,21 @@ void SceneSource::scan(Progress& progress) {
     if (scene_->file == scene_->recording) throw;  // a recording whose options were said, no scene
     throw of_scene(error, scene_->recording);
   }
+  info_.rate_hz = log.time.rate_hz;
+  info_.samples = log.samples;
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const std::size_t column = column_of(log, wanted_[k], scene_->file, "recording");
     columns_.push_back(column);
     if (k >= own_) continue;
     const bool sensor = k < scene_->sensors.size(), seen = column < first.channels.size();
     if (sensor) info_.presence.push_back(seen ? first.channels[column] : Presence{});
-    if (seen)
-      note_bad_samples(first.meters[column].finish(), sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
-                       sensor && scene_->sensors.size() >= 3 && !scene_->tilt, info_.samples_say);
+    if (seen) say_of(k, first.meters[column].finish(), first.channels[column].runs);
     (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(log.channels[column].unit);
   }
   if (!(log.time.rate_hz > 0))
     throw input_error("E0901", scene_->file)
         .says("the recording {} states no sampling rate", scene_->recording)
         .hint("recording: {file: …, rate_hz: …}");
-  info_.rate_hz = log.time.rate_hz;
-  info_.samples = log.samples;
   info_.logs.push_back(std::move(log));
   if (first.keeps) kept_ = std::move(first.kept);
   info_.kept = !kept_.empty();
@@ -271,14 +302,14 @@ std::vector<std::vector<double>> SceneSource::reference_columns(Progress& progre
 }
 
 void SceneSource::stream_kept(std::uint64_t until, const SourceBlock& block) const {
-  SensorPath path(*scene_, injected_, info_.rate_hz);
+  SensorPath path(*scene_, injected_, info_);
   std::vector<std::span<const double>> out(columns_.size());
   const std::uint64_t end = std::min(until, info_.samples);
   for (std::uint64_t done = 0; done < end;) {
     const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(kKeptRows, end - done));
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const std::span<const double> column(kept_[columns_[k]].data() + done, rows);
-      out[k] = k < scene_->sensors.size() ? path(k, column) : column;
+      out[k] = path(k, done, column);
     }
     block(done, out);
     done += rows;
@@ -293,14 +324,14 @@ void SceneSource::stream_recording(std::uint64_t until, const SourceBlock& block
     const double end_s = reading.from_s.value_or(0) + static_cast<double>(until + 1) / info_.rate_hz;
     reading.to_s = std::min(reading.to_s.value_or(end_s), end_s);
   }
-  SensorPath path(*scene_, injected_, info_.rate_hz);
+  SensorPath path(*scene_, injected_, info_);
   std::vector<std::span<const double>> out(columns_.size());
   Forward forward([&](const SampleBlock& samples) {
     if (samples.first >= until) return;
     const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(samples.rows, until - samples.first));
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const std::span<const double> column(samples.channels[columns_[k]], rows);
-      out[k] = k < scene_->sensors.size() ? path(k, column) : column;
+      out[k] = path(k, samples.first, column);
     }
     block(samples.first, out);
   });
@@ -329,6 +360,8 @@ void Presence::push(std::uint64_t at, std::span<const double> values) {
       run_from = at + k;
     }
     value = values[k];
+    if (run + 1 == detail::kFrozenRun && runs.size() < kMostRuns) runs.push_back({run_from, 0});
+    if (run + 1 >= detail::kFrozenRun && runs.back().from == run_from) runs.back().count = at + k + 1 - run_from;
     const bool longest = run_from == still_from;
     if (++run <= still) {
       if (!longest) next_still = std::max(next_still, run);
@@ -351,9 +384,19 @@ bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t 
          std::max({kShortest, kShareOfRun * static_cast<double>(samples), kLonger * usual});
 }
 
-std::string still_words(const std::string& name, const Presence& at, double rate_hz) {
-  return fmt::format("{} from {} to {} s", name, place_text(static_cast<double>(at.still_from) / rate_hz),
-                     place_text(static_cast<double>(at.still_from + at.still) / rate_hz));
+std::string frozen_words(const std::string& name, const std::vector<Presence::Run>& runs, const SourceInfo& source) {
+  const auto time = [&](std::uint64_t at) { return place_text(static_cast<double>(at) / source.rate_hz); };
+  if (runs.size() == 1)
+    return fmt::format("{} from {} to {} s", name, time(runs[0].from), time(runs[0].from + runs[0].count));
+  std::uint64_t shortest = source.samples, longest = 0, all = 0;
+  for (const Presence::Run& run : runs) {
+    shortest = std::min(shortest, run.count);
+    longest = std::max(longest, run.count);
+    all += run.count;
+  }
+  return fmt::format("{} in {} stretches of {}{} samples, {} of the recording", name, runs.size(),
+                     shortest < longest ? fmt::format("{} to ", shortest) : "", longest,
+                     percent_text(static_cast<double>(all) / static_cast<double>(source.samples)));
 }
 
 }  // namespace libchar

@@ -19,6 +19,8 @@ namespace libchar {
 
 // Where the sensors of an array have samples, and which of them stands still where the others move.
 
+struct ChannelQuality;
+
 /// Where a channel has samples.
 struct Presence {
   std::uint64_t first = 0, last = 0, samples = 0;  ///< grid points; samples 0: nowhere
@@ -26,6 +28,11 @@ struct Presence {
   std::uint64_t next_still = 0;                    ///< the longest but that
   std::uint64_t run_from = 0, run = 0;             ///< of the last value
   double value = 0;                                ///< the last one
+  struct Run {
+    std::uint64_t from = 0, count = 0;
+  };
+  static constexpr std::size_t kMostRuns = 1 << 17;
+  std::vector<Run> runs;  ///< of one value, of detail::kFrozenRun samples and more; so many at most
 
   /// Consecutive samples, the first of them at a grid point.
   void push(std::uint64_t at, std::span<const double> values);
@@ -35,10 +42,6 @@ struct Presence {
 /// value so often, and a quantity that rests between coarse steps does so for all.
 bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t samples);
 
-inline constexpr const char* kFrozenMissing = "sensors that are frozen while the others move: missing there";
-/// "NAME from 120 to 240 s".
-std::string still_words(const std::string& name, const Presence& at, double rate_hz);
-
 struct SourceInfo {
   double rate_hz = 0;
   std::uint64_t samples = 0;
@@ -47,10 +50,15 @@ struct SourceInfo {
   std::size_t further_axes = 0;              ///< that each sensor names beside its own
   std::vector<LogInfo> logs;                 ///< the recording; empty for a simulation
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
-  std::vector<std::size_t> frozen;           ///< sensors that are missing where they stand still
-  Findings samples_say;                      ///< what makes the samples of sensors doubtful
-  bool kept = false;                         ///< in memory, not read again for each pass
+  /// of the sensors, then of the references in this source: where they stand still, and are missing
+  std::vector<std::vector<Presence::Run>> frozen;
+  Findings samples_say;  ///< what makes the samples of sensors doubtful
+  bool kept = false;     ///< in memory, not read again for each pass
 };
+
+inline constexpr const char* kFrozenMissing = "sensors that are frozen while the others move: missing there";
+/// "NAME from 120 to 240 s", "NAME in 12 stretches of 8 to 50 samples, 3.1 % of the recording".
+std::string frozen_words(const std::string& name, const std::vector<Presence::Run>& runs, const SourceInfo& source);
 
 /// Of a recording or a reference (`role`) that the scene names. Throws Error(input).
 std::size_t column_of(const LogInfo& log, const std::string& channel, const std::string& scene, const char* role);
@@ -80,7 +88,10 @@ class SceneSource {
   void describe_simulation();
   void scan(Progress& progress);
   void read_even(Progress& progress);
+  /// What is odd about the samples of a channel, of all but the further axes.
+  void say_of(std::size_t k, const ChannelQuality& quality, const std::vector<Presence::Run>& runs);
   void hide_frozen();
+  bool hides_frozen() const;
   void stream_kept(std::uint64_t until, const SourceBlock& block) const;
   void stream_recording(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
   void stream_simulation(std::uint64_t until, const SourceBlock& block, Progress& progress) const;

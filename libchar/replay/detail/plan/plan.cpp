@@ -122,14 +122,17 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene, const Instants& insta
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
-    if (std::find(source.frozen.begin(), source.frozen.end(), i) != source.frozen.end()) {
-      const auto still = static_cast<double>(at.still_from);
-      const double inside = std::min(to, still + static_cast<double>(at.still)) - std::max(from, still);
+    if (i < source.frozen.size() && !source.frozen[i].empty()) {
+      double inside = 0;
+      for (const Presence::Run& run : source.frozen[i]) {
+        const auto begin = static_cast<double>(run.from), end = static_cast<double>(run.from + run.count);
+        inside += std::max(0.0, std::min(to, end) - std::max(from, begin));
+      }
       const bool whole = inside >= kMostFrozen * (to - from);
       plan.warnings.add(
           "frozen_sensor",
           whole ? "sensors that are frozen while the others move were left out of everything" : kFrozenMissing,
-          still_words(scene.sensors[i].name, at, source.rate_hz));
+          frozen_words(scene.sensors[i].name, source.frozen[i], source));
       if (whole) continue;
     }
     const double overlap =
