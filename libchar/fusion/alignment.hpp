@@ -10,6 +10,9 @@
 
 namespace libchar::fusion {
 
+/// Samples. Searched are 8 of them and, while a delay lies beyond and the stretch is long enough, twice as many.
+inline constexpr double kMostDelay = 128;
+
 /// One channel against the common input x:  y(t) = bias + (1 + gain) x(t - delay) + sum m_k c_k(t).
 struct ChannelAlignment {
   double delay = 0;           ///< in samples; positive: the channel is late

@@ -22,8 +22,6 @@ struct AlignmentData {
   std::vector<Eigen::Index> starts;  ///< first column of each stretch
 };
 
-/// Samples. Searched are 8 of them and, while a delay lies beyond and the stretch is long enough, twice as many.
-inline constexpr double kMostDelay = 128;
 /// Instants that the interpolation looks at on either side, for delays of at most 8 samples or those of an alignment.
 inline constexpr Eigen::Index kAlignmentMargin = 21;
 Eigen::Index margin_of(const Alignment& alignment);

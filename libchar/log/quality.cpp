@@ -886,8 +886,8 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   return true;
 }
 
-/// What repeats outside of the runs gives the chance of a run among these samples; a record that holds all of its values
-/// has a rhythm, and a quantity that changes little from sample to sample may rest.
+/// What repeats outside of the runs gives the chance of a run among these samples; a record that holds all of its
+/// values has a rhythm, and a quantity that changes little from sample to sample may rest.
 struct FrozenRuns {
   explicit FrozenRuns(const ChannelQuality& q) {
     constexpr double kHeld = 0.5;
@@ -1140,7 +1140,10 @@ void QualityMeter::read_state(StateReader& from) {
   *state_ = std::move(s);
 }
 
-std::uint64_t detail::frozen_run(const ChannelQuality& quality) { return FrozenRuns(quality).fewest; }
+std::uint64_t detail::frozen_run(const ChannelQuality& quality) {
+  const FrozenRuns runs(quality);
+  return runs.found && runs.rare ? runs.fewest : 0;
+}
 
 ChannelQuality QualityMeter::finish(double rate_hz) const {
   State state = *state_;

@@ -114,7 +114,7 @@ class TraceMeter {
 namespace detail {
 /// Values in a row: no noise of many levels repeats so often.
 inline constexpr std::uint64_t kFrozenRun = 8;
-/// Samples of a run of one value from which on the sensor or the link hung; 0: none, or not known.
+/// Samples of a run of one value from which on the sensor or the link hung; 0: none, or of a quantity that may rest.
 std::uint64_t frozen_run(const ChannelQuality& quality);
 /// `fewest` and more equal samples in a row are missing.
 void forget_frozen(std::span<double> samples, std::uint64_t fewest);

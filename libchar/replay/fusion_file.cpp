@@ -11,6 +11,7 @@
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/fusion/alignment.hpp"
 
 namespace libchar {
 namespace {
@@ -41,9 +42,10 @@ const Fields<LearntTilt> kLearntTiltFields = {
 };
 
 const Fields<LearntAlignment> kLearntAlignmentFields = {
-    field<&LearntAlignment::delay_samples>(
-        "delay_samples",
-        {.range = {-8, 8}, .meaning = "the sensor is so late, in samples at `rate_hz`", .otherwise = "0"}),
+    field<&LearntAlignment::delay_samples>("delay_samples",
+                                           {.range = {-fusion::kMostDelay, fusion::kMostDelay},
+                                            .meaning = "the sensor is so late, in samples at `rate_hz`",
+                                            .otherwise = "0"}),
     field<&LearntAlignment::bias>("bias", {.meaning = "in units of the input", .otherwise = "0"}),
     field<&LearntAlignment::gain>(
         "gain", {.range = {-1, std::numeric_limits<double>::max(), true}, .meaning = "beyond one", .otherwise = "0"}),

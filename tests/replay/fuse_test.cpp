@@ -27,6 +27,7 @@ struct LogOptions {
   double rate_hz = 100, fault = 0, noise = 0.02;
   double noisy = 1;  // the first has so many times the noise
   std::uint64_t seed = 7;
+  double late = 0.4;  // of b, in samples at 100 Hz
   std::string head = "t[s],a[deg/s],b[deg/s],c[deg/s],d[deg/s],x[deg/s]";
 };
 
@@ -38,7 +39,7 @@ std::string four_sensors(const LogOptions& o = {}) {
     return 3 * std::sin(0.031 * t) + 2 * std::sin(0.0123 * t + 1) + std::sin(0.0471 * t);
   };
   for (int k = 0; k < o.rows; ++k) {
-    const double t = k, late = 0.4 * o.rate_hz / 100;
+    const double t = k, late = o.late * o.rate_hz / 100;
     const double a = motion(t) + o.noise * o.noisy * gauss() + (2 * k >= o.rows ? o.fault : 0);
     const double b = 1.03 * motion(t - late) + o.noise * gauss();
     const double c = motion(t) + 0.5 + o.noise * gauss(), d = motion(t) + 3 * o.noise * gauss();
@@ -308,6 +309,20 @@ TEST_CASE("fuse: at another rate delays keep their seconds") {
   for (std::size_t k = 100; k < 7900; ++k)
     largest = std::max(largest, std::abs(kept.columns[0][k] - fast.samples[4][k]));
   CHECK(largest < 0.01);
+}
+
+TEST_CASE("fuse: a sensor that is many samples late is waited for, and at the ends there is no array") {
+  const FuseBench bench(kScene + "reference: x\nalign: {learn: [0, 35]}\nevaluation: [36, end]\n",
+                        four_sensors({.late = 30}));
+  REQUIRE(bench.learnt.sensors[1].alignment.delay_samples == Approx(30).margin(0.02));
+  KeptColumns kept;
+  bench.fuse_log(kept, by("mean"));
+  const Recording log = read_recording(bench.bench.path("log.csv"));
+  double largest = 0;
+  for (std::size_t k = 100; k < 3900; ++k)
+    largest = std::max(largest, std::abs(kept.columns[0][k] - log.samples[4][k]));
+  CHECK(largest < 0.2);
+  CHECK(std::isnan(kept.columns[0][log.samples[0].size() - 10]));
 }
 
 TEST_CASE("fuse: the file names what is wrong with it, and where") {

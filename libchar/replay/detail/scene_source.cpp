@@ -161,8 +161,8 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
   }
 }
 
-// What a sensor repeats while it hangs is no measurement: runs that chance does not give, which `scan` has found, or the
-// longest one of a sensor beside others.
+// What a sensor repeats while it hangs is no measurement: runs that its noise does not give, which `scan` has found, or
+// the longest one of a sensor beside others.
 void SceneSource::hide_frozen() {
   info_.frozen.resize(own_);
   for (std::size_t i = 0; i < info_.presence.size(); ++i)
