@@ -890,12 +890,13 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
 /// values has a rhythm, and a quantity that changes little from sample to sample may rest.
 struct FrozenRuns {
   explicit FrozenRuns(const ChannelQuality& q) {
-    constexpr double kHeld = 0.5;
+    constexpr double kHeld = 0.5, kAtEnds = 4;
     const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
     const double repeats = (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
     const bool held = q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
     const auto by_chance = [&](std::uint64_t run) { return samples * std::pow(repeats, static_cast<double>(run - 1)); };
-    rare = q.saturated == 0 && !held && is_restless(q) && by_chance(kFrozenRun) < kChance;
+    const bool saturated = kAtEnds * static_cast<double>(q.saturated) > frozen;  // rather than hung at an extreme
+    rare = !saturated && !held && is_restless(q) && by_chance(kFrozenRun) < kChance;
     // Where values repeat anyway, as between coarse steps, runs of them are no sign.
     const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
     if (q.distinct_values > 16 && q.longest_stuck >= (rare ? kFrozenRun : 100)) found = true;
@@ -1219,6 +1220,7 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
     q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
                   (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
+  if (FrozenRuns(q).rare) q.saturated = 0;
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
   q.findings = findings_of(q, rate_hz);

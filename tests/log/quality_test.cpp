@@ -124,6 +124,14 @@ TEST_CASE("short runs of one value are frozen stretches where values do not repe
   CHECK(q.signs.frozen >= 99 * 19);
   REQUIRE(has(q.findings, "stuck"));
   CHECK(worst_of(q.findings) == Severity::bad);
+  std::vector<double> at_top = frozen;  // one that hangs at an extreme is not saturated
+  std::fill_n(at_top.begin() + 1000, 20, 6.0);
+  CHECK(has(meter(at_top).findings, "stuck"));
+  CHECK(meter(at_top).saturated == 0);
+  std::vector<double> cut = x;  // and one that is cut and hangs once is
+  for (double& v : cut) v = std::min(v, 1.2);
+  std::fill_n(cut.begin() + 1000, 20, cut[1000]);
+  CHECK(meter(cut).saturated > 100);
   QualityMeter first, second;  // joined inside a run
   first.push(std::span(frozen).first(1007));
   second.push(std::span(frozen).subspan(1007));
