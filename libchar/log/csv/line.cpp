@@ -151,6 +151,13 @@ std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::
   constexpr std::size_t kLongest = 48;
   std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return std::nullopt;
+  if (lead == ",") {  // the comma of the seconds
+    constexpr std::size_t kComma = 19, kLength = 23;
+    if (line.size() <= kLength || line[kComma] != ',' || line[kLength] != ' ' || begin > 0) return std::nullopt;
+    after = std::min(line.find_first_not_of(" \t-", kLength), line.size());
+    if (after < line.size() && after > 0 && line[after - 1] == '-') --after;  // a sign
+    return Field{std::string(line.substr(0, kLength)), 0, false};
+  }
   if (lead == ")") {
     if (line[begin] < 'A' || line[begin] > 'Z' || line.substr(begin + 1, 2) != " (") return std::nullopt;
     begin += 3;
