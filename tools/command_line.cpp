@@ -295,10 +295,12 @@ Option VerbOptions::add_texts(const std::string& names, std::vector<std::string>
   return added(app_->add_option(names, values, help));
 }
 
-Option VerbOptions::add_parsed(const std::string& names, const std::string& value_name,
-                               std::function<void(const std::string&)> read, const std::string& help) {
-  const std::string name = names.substr(names.rfind(',') + 1);
-  const auto named = [read = std::move(read), name](const std::string& text) {
+namespace {
+
+// What `read` refuses is told of the option.
+std::function<void(const std::string&)> named_reading(const std::string& names,
+                                                      std::function<void(const std::string&)> read) {
+  return [read = std::move(read), name = names.substr(names.rfind(',') + 1)](const std::string& text) {
     try {
       read(text);
     } catch (const Error& error) {
@@ -307,8 +309,23 @@ Option VerbOptions::add_parsed(const std::string& names, const std::string& valu
       throw Error(problem);
     }
   };
-  CLI::Option* option = app_->add_option_function<std::string>(names, named, help);
+}
+
+}  // namespace
+
+Option VerbOptions::add_parsed(const std::string& names, const std::string& value_name,
+                               std::function<void(const std::string&)> read, const std::string& help) {
+  CLI::Option* option = app_->add_option_function<std::string>(names, named_reading(names, std::move(read)), help);
   return added(option->type_name(value_name));
+}
+
+Option VerbOptions::add_parsed_each(const std::string& names, const std::string& value_name,
+                                    std::function<void(const std::string&)> read, const std::string& help) {
+  const auto each = [one = named_reading(names, std::move(read))](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) one(text);
+  };
+  CLI::Option* option = app_->add_option_function<std::vector<std::string>>(names, each, help);
+  return added(option->type_name(value_name)).separated_by_commas().one_value_each();
 }
 
 Option VerbOptions::add_number(const std::string& names, std::optional<double>& value, const std::string& help,

@@ -85,6 +85,9 @@ class VerbOptions {
   /// `read` gets the text; `value_name` stands for it in the help.
   Option add_parsed(const std::string& names, const std::string& value_name,
                     std::function<void(const std::string&)> read, const std::string& help);
+  /// The same for each of several values, given one after the other or separated by commas.
+  Option add_parsed_each(const std::string& names, const std::string& value_name,
+                         std::function<void(const std::string&)> read, const std::string& help);
   Option add_number(const std::string& names, std::optional<double>& value, const std::string& help,
                     double lowest = -std::numeric_limits<double>::max(),
                     double highest = std::numeric_limits<double>::max());

@@ -35,13 +35,19 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_duration("--to", options.to_s,
                     "first instant not to use, after the first stamp (s, or 10min, 2h…; default: all)")
       .group("Reading");
-  verb.add_parsed(
+  verb.add_parsed_each(
           "--rate", "RATE",
           [&options](const std::string& text) {
-            options.rate_hz = libchar::parse_rate_hz(text, options.unsaid.rate_uncertainty_hz);
+            if (text.find('=') != std::string::npos)
+              options.unsaid.channel_rate.push_back(text);
+            else if (options.rate_hz)
+              throw libchar::usage_error("E0205").says("two rates for all channels").got(text);
+            else
+              options.rate_hz = libchar::parse_rate_hz(text, options.unsaid.rate_uncertainty_hz);
           },
           "sampling rate (Hz, 1.5kHz, 1/300…), with its uncertainty if it has one (200±0.5Hz, 200Hz±0.1%), of a log "
-          "without stamps and without a rate")
+          "without stamps and without a rate; 'gyro*=200Hz,temp=10Hz' of channels of unlike rates, by name or pattern")
+      .once_each()
       .group("Reading");
   verb.add_parsed(
           "--interval", "TIME",
@@ -89,7 +95,7 @@ void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
                 "column whose values become channels of their own (default: none)")
       .value_name("COLUMN")
       .group(csv);
-  verb.add_choice("--date-order", options.date_order, {"auto", "day", "month"},
+  verb.add_choice("--date-order", options.date_order, {"auto", "day", "month", "year"},
                   "first number in 05/01/2024 (default: auto)")
       .group(csv);
 }
@@ -226,6 +232,7 @@ std::string reading_flags(const libchar::ReadOptions& options, const libchar::Lo
                          libchar::shortest(options.unsaid.rate_uncertainty_hz));
   else
     number("--rate", options.rate_hz, "Hz");
+  list("--rate", options.unsaid.channel_rate);
   const bool guessed = info.time.unit_guessed && !info.time.column.empty();
   word("--time-column", guessed ? info.time.column : options.time_column, usual.time_column);
   word("--time-unit", guessed ? info.time.unit : options.time_unit, usual.time_unit);

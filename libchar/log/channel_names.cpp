@@ -40,6 +40,7 @@ std::vector<std::string> names_in_log(const std::string& path, const ReadOptions
   plain.units.clear();
   plain.channel_scale.clear();
   plain.channel_unit.clear();
+  plain.unsaid.channel_rate.clear();
   return names_in_head(path, plain);
 }
 
@@ -75,6 +76,7 @@ std::vector<std::vector<std::string>> channel_names(const std::string& path, con
   head.channels.clear();
   head.channel_scale.clear();
   head.channel_unit.clear();
+  head.unsaid.channel_rate.clear();
   head.units.clear();  // one a channel that is chosen: not known yet
   head.hash = false;
   const std::vector<std::string> all = options.names.empty() ? names_in_head(path, head) : options.names;

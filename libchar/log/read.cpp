@@ -21,6 +21,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
@@ -33,6 +34,7 @@
 #include "libchar/log/detail/unused_options.hpp"
 #include "libchar/log/quality.hpp"
 #include "libchar/log/reading_fields.hpp"
+#include "libchar/log/time/channel_rates.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -101,12 +103,6 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
       .hint("`format` {}, or write FILE.json (docs: raw binary)", fmt::join(words.begin() + 1, words.end(), "|"));
 }
 
-std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
-  const Format& format = format_of(path, options);
-  refuse_unused_options(format.about, options);
-  return open_rows(format, path, options);
-}
-
 // What the user knows of the channels and the log does not say.
 void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   const auto refuse = [&](const char* flag, std::size_t count) {
@@ -126,7 +122,7 @@ void name_channels(std::vector<Channel>& channels, const ReadOptions& options) {
   }
 }
 
-// "NAME=VALUE" of `channel_scale` and `channel_unit`: the value of the last word that fits the channel.
+// "NAME=VALUE" of `channel_scale`, `channel_unit` and `channel_rate`: the value of the last word that fits the channel.
 std::optional<std::string> value_for(const std::vector<std::string>& words, const std::string& channel) {
   std::optional<std::string> found;
   for (const std::string& word : words) {
@@ -139,6 +135,43 @@ std::optional<std::string> value_for(const std::vector<std::string>& words, cons
     if (matches(word.substr(0, sign), channel)) found = word.substr(sign + 1);
   }
   return found;
+}
+
+// The rows of a log whose channels have rates of their own.
+std::unique_ptr<RowSource> with_stated_rates(std::unique_ptr<RowSource> rows, const ReadOptions& options) {
+  const auto rate_of = [](const std::string& text) {
+    double uncertainty = 0;
+    const double rate = parse_rate_hz(text, uncertainty);
+    if (uncertainty > 0) throw usage_error("E0331", "`channel_rate`").says("a rate without uncertainty").got(text);
+    return rate;
+  };
+  double fastest = options.rate_hz.value_or(0);
+  for (const std::string& word : options.unsaid.channel_rate)
+    fastest = std::max(fastest, rate_of(word.substr(word.rfind('=') + 1)));
+  std::vector<Channel> channels = rows->info().channels;
+  name_channels(channels, options);
+  std::vector<double> rates;
+  for (const std::string& word : options.unsaid.channel_rate)  // rates of channels that are not read say what rows are
+    if (options.channels.empty() && std::none_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+          return matches(word.substr(0, word.rfind('=')), channel.name);
+        }))
+      throw usage_error("E0331", "`channel_rate`").says("no channel has this name").got(word);
+  for (const Channel& channel : channels) {
+    const auto stated = value_for(options.unsaid.channel_rate, channel.name);
+    if (!stated && !options.rate_hz)
+      throw usage_error("E0331", "`channel_rate`")
+          .says("no rate is given for {}", printable(channel.name))
+          .hint("`rate_hz` HZ is that of all others, `channels` '!{}' leaves it out", printable(channel.name));
+    rates.push_back(stated ? rate_of(*stated) : *options.rate_hz);
+  }
+  return with_rates(std::move(rows), std::move(rates), fastest);
+}
+
+std::unique_ptr<RowSource> open_log(const std::string& path, const ReadOptions& options) {
+  const Format& format = format_of(path, options);
+  refuse_unused_options(format.about, options);
+  std::unique_ptr<RowSource> rows = open_rows(format, path, options);
+  return options.unsaid.channel_rate.empty() ? std::move(rows) : with_stated_rates(std::move(rows), options);
 }
 
 using ScaleNotes = std::map<std::string, std::vector<std::string>>;  // what was done, to which channels

@@ -26,6 +26,8 @@ struct ReadOptions {
     std::string preset;              ///< which instrument wrote a .imu file: "IMAR", "LN200"…
     std::string msg;                 ///< folder of .msg files that define types of messages (ROS 2 before Iron)
     double rate_uncertainty_hz = 0;  ///< of `rate_hz`
+    /// "gyro*=200Hz": rates of channels of a log without stamps, by name or pattern; the others have `rate_hz`
+    std::vector<std::string> channel_rate;
   };
 
   /// Rows of several kinds in one table (CSV).
@@ -49,7 +51,7 @@ struct ReadOptions {
   std::vector<std::string> channel_unit;  ///< "gx=deg/s": units of channels, likewise
   Kinds kinds;
   Unsaid unsaid;
-  std::string date_order = "auto";  ///< "auto", "day", "month": which comes first in 05/01/2024 (CSV)
+  std::string date_order = "auto";  ///< "auto", "day", "month", "year": which comes first in 05/01/24 (CSV)
   std::optional<double> from_s;     ///< first instant to use, seconds after the first stamp
   std::optional<double> to_s;       ///< first instant not to use
   std::optional<double>

@@ -11,7 +11,7 @@ constexpr Word kDecimals[] = {{"auto"}, {"point"}, {"comma"}};
 constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"auto"}, {"utf-8"}, {"latin1"}, {"cp1252"}};
 constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
-constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}};
+constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}, {"year"}};
 constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}, {"min"}, {"h"}, {"d"}};
 
 // auto and the names of the table of formats.
@@ -42,6 +42,9 @@ Fields<ReadOptions> table_fields() {
       field<&ReadOptions::unsaid, &ReadOptions::Unsaid::rate_uncertainty_hz>(
           "rate_uncertainty_hz",
           {.unit = "Hz", .range = kNotNegative, .meaning = "of the stated sampling rate", .otherwise = "0"}),
+      field<&ReadOptions::unsaid, &ReadOptions::Unsaid::channel_rate>(
+          "channel_rate", {.meaning = "rates of channels of a log without stamps, NAME=200Hz, by name or pattern",
+                           .otherwise = "rate_hz for all"}),
       field<&ReadOptions::delimiter>("delimiter",
                                      {.meaning = "auto, tab, space or one character (CSV)", .otherwise = "auto"}),
       field<&ReadOptions::decimal>("decimal",

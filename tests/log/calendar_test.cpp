@@ -24,10 +24,30 @@ std::int64_t ns(std::string_view text, DateOrder order = DateOrder::day_first) {
 
 TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
   const std::int64_t noon = 1714564800 * kBillion;  // 2024-05-01T12:00:00Z
-  for (const char* text :
-       {"2024-05-01T12:00:00Z", "2024-05-01 12:00:00", "2024-05-01T14:00:00+02:00", "2024-05-01T04:30:00-0730",
-        "2024/05/01 12:00", "01.05.2024 12:00:00", "1.5.2024, 12:00:00", "01/05/24 12:00:00 PM", "1 May 2024 12:00:00",
-        "01-May-2024 12:00:00", "May 1, 2024 12:00:00 p.m.", "20240501T120000Z", "2024-05-01 12:00:00 UTC"}) {
+  for (const char* text : {"2024-05-01T12:00:00Z",
+                           "2024-05-01 12:00:00",
+                           "2024-05-01T14:00:00+02:00",
+                           "2024-05-01T04:30:00-0730",
+                           "2024/05/01 12:00",
+                           "01.05.2024 12:00:00",
+                           "1.5.2024, 12:00:00",
+                           "01/05/24 12:00:00 PM",
+                           "1 May 2024 12:00:00",
+                           "01-May-2024 12:00:00",
+                           "May 1, 2024 12:00:00 p.m.",
+                           "20240501T120000Z",
+                           "2024-05-01 12:00:00 UTC",
+                           "Wed May  1 12:00:00 2024",
+                           "Wed May 1 12:00:00 UTC 2024",
+                           "Wed, 1 May 2024 12:00:00 +0000",
+                           "2024-122T12:00:00",
+                           "2024:122:12:00:00",
+                           "2024:05:01 12:00:00",
+                           "2024-05-01-12-00-00",
+                           "2024-05-01_12-00-00",
+                           "20240501_120000",
+                           "2024-05-01 14:00:00.000+0200 [Europe/Berlin]",
+                           "2024-05-01T12:00:00Z[UTC]"}) {
     INFO(text);
     CHECK(ns(text) == noon);
   }
@@ -39,12 +59,51 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
   CHECK(ns("1969-12-31T23:59:59Z") == -kBillion);
   CHECK(ns("12:30:01.5") == (12 * 3600 + 30 * 60 + 1) * kBillion + 500000000);
   CHECK(ns("12:00:00 AM") == 0);
+  for (const char* text : {"2024-05-01_12-00-00-042", "20240501_120000_042", "2024-05-01 12:00:00.042,000"}) {
+    INFO(text);
+    CHECK(ns(text) == noon + 42000000);
+  }
+  CHECK(ns("12:5:7") == (12 * 3600 + 5 * 60 + 7) * kBillion);
+  CHECK(ns("1 day, 2:03:04") == (26 * 3600 + 3 * 60 + 4) * kBillion);
+  CHECK(ns("0 days 00:00:01.5") == 1500000000);
+  CHECK(ns("24-05-01 12:00", DateOrder::year_first) == noon);
+  for (const char* text : {"20240501120000", "202405011200", "2024050112", "240501120000"}) {
+    INFO(text);
+    const auto stamp = read_date_digits(text);
+    REQUIRE(stamp);
+    CHECK(stamp->ns == noon);
+  }
+  CHECK(read_date_digits("20240501120000.25")->ns == noon + 250000000);
+  CHECK(read_date_digits("20240501")->ns == noon - 43200 * kBillion);
+  for (const char* text : {"20241301120000", "20240501250000", "2024050112000", "2024050.5", "20240501.5", "x"}) {
+    INFO(text);
+    CHECK_FALSE(read_date_digits(text));
+  }
 }
 
 TEST_CASE("what is no day or no time of day is refused") {
-  for (const char* text : {"2024-02-30", "2023-02-29 00:00", "2024-13-01", "2024-05-01 25:00:00", "2024-05-01 12:60",
-                           "2024-05-01 12:00:0x", "2024-05-01x", "1.2.3", "20240501", "192.168.1.1", "13:00 PM", "12",
-                           "1,234.5", "", "node-07x"}) {
+  for (const char* text : {"2024-02-30",
+                           "2023-02-29 00:00",
+                           "2024-13-01",
+                           "2024-05-01 25:00:00",
+                           "2024-05-01 12:60",
+                           "2024-05-01 12:00:0x",
+                           "2024-05-01x",
+                           "1.2.3",
+                           "20240501",
+                           "192.168.1.1",
+                           "13:00 PM",
+                           "12",
+                           "1,234.5",
+                           "",
+                           "node-07x",
+                           "2024-366x",
+                           "2024-367",
+                           "1:2",
+                           "Sat",
+                           "Mon 5",
+                           "12:5",
+                           "2024-05-01 12:00:00-042 x"}) {
     INFO(text);
     CHECK_FALSE(read_calendar(text, DateOrder::day_first));
   }
@@ -59,6 +118,40 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
   CHECK(date_style({"05/01/2024"}, true).order == DateOrder::day_first);
   CHECK(date_style({"05.01.2024"}, false).order == DateOrder::day_first);
   CHECK_FALSE(date_style({"2024-05-01"}, false).ambiguous);
+  CHECK(date_style({"24-03-14", "24-03-15"}, false).order == DateOrder::year_first);  // a day, not a year
+  CHECK(date_style({"14-03-24", "15-03-24"}, false).order == DateOrder::day_first);
+  CHECK(date_style({"99/12/31", "00/01/01"}, false).order == DateOrder::year_first);
+  CHECK_FALSE(date_style({"14.03.24", "15.03.24"}, false).ambiguous);
+}
+
+TEST_CASE("dates in digits are read, in one column or in two, whatever they are called") {
+  const auto tm_of = [](int second) {  // from 2024-03-14T23:40:12 on
+    const int s = 85212 + second, day = 14 + s / 86400, of_day = s % 86400;
+    return fmt::format("{}",
+                       20240300000000 + day * 1000000LL + of_day / 3600 * 10000 + of_day / 60 % 60 * 100 + of_day % 60);
+  };
+  for (const int part : {0, 1, 2, 3, 4}) {
+    std::string text = part == 0   ? "stamp,x\n"
+                       : part == 1 ? "MESS_DATUM;x\n"
+                       : part == 2 ? "DATE,TIME,x\n"
+                       : part == 3 ? "timestamp,x\n"
+                                   : "x,t\n";
+    const int step = part == 1 ? 600 : 1;
+    for (int i = 0; i < 2000; ++i) {
+      const std::string t = tm_of(step * i);
+      if (part == 0) text += fmt::format("{},{}\n", t, i % 7);
+      if (part == 1) text += fmt::format("{};{}\n", t.substr(0, 12), i % 7);
+      if (part == 2) text += fmt::format("{},{},{}\n", t.substr(0, 8), t.substr(8), i % 7);
+      if (part == 3) text += fmt::format("{},{}\n", t.substr(2), i % 7);
+      if (part == 4) text += fmt::format("{},{}.{}\n", i % 7, tm_of(i / 4), 25 * (i % 4));
+    }
+    INFO(text.substr(0, 60));
+    const Recording r = test::read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(part == 1 ? 1.0 / 600 : part == 4 ? 4 : 1).epsilon(1e-6));
+    CHECK(r.info.channels.size() == 1);
+    CHECK(r.info.time.missing_samples == 0);
+    CHECK(r.info.time.start_ns.value_or(0) / 60000000000 == 1710459612 / 60);
+  }
 }
 
 TEST_CASE("times of day as digits, hhmmss, are told from numbers by their even steps") {

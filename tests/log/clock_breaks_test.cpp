@@ -61,3 +61,11 @@ TEST_CASE("first rows of another run are no rows of this one") {
   for (int i = 0; i < 6; ++i) stamps.insert(stamps.begin(), (12990 - 1000 * i) * kS);  // a slow start
   CHECK(wild_start(stamps, clock_in(kS)) == 0);
 }
+
+TEST_CASE("a first zero is no stamp where the next one is far away") {
+  std::vector<std::int64_t> stamps = {0};
+  for (int i = 0; i < 100; ++i) stamps.push_back((1700 + i) * kS);
+  CHECK(wild_start(stamps, clock_in(kS)) == 1);
+  stamps[0] = 1600 * kS;
+  CHECK(wild_start(stamps, clock_in(kS)) == 0);
+}

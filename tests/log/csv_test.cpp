@@ -495,6 +495,7 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"\xB5\x62\x01\x07\x5C\0"s, "pyubx2"},
       {"H Product:Blackbox flight data recorder\n"s, "blackbox_decode"},
       {"weather,place=roof temperature=21.5,humidity=40i 1465839830100400200\n"s, "influx -execute"},
+      {"{'t': 0.0, 'x': 1.5}\n{'t': 0.1, 'x': 1.5}\n"s, "> log.jsonl"},
       {"MDF     4.10    "s + std::string(200, 0), "asammdf"},
       {"$GPGGA,123519,4807.038,N\n"s, "gpsbabel"},
       {"\0\x05\xE9\x5C\x6F\x10\x20\x30\xFE\x09\0\x01"s, "mavlogdump"},
@@ -503,6 +504,17 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s, "gfzrnx"},
   };
   for (const auto& [text, way] : contents) CHECK_THAT(failure(text), Catch::Contains("E0301") && Catch::Contains(way));
+}
+
+TEST_CASE("a column of labels that is left out names no source: all rows are read") {
+  std::string text = "t [s],type,x\n";
+  for (int i = 0; i < 200; ++i) text += fmt::format("{:.1f},{},{}\n", 0.1 * i, i < 150 ? "rest" : "walk", i % 7);
+  CHECK_THAT(failure(text), Catch::Contains("E0327") && Catch::Contains("'!type' reads all rows"));
+  ReadOptions options;
+  options.channels = {"!type"};
+  const Recording r = read_text(text, options);
+  CHECK(r.samples.at(0).size() == 200);
+  CHECK(r.info.time.rate_hz == Approx(10));
 }
 
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {

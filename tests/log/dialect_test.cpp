@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <functional>
 #include <string>
 
 #include "libchar/log/csv/head/candidates.hpp"
@@ -109,4 +110,51 @@ TEST_CASE("text with control characters in a fiftieth of its first 4096 bytes is
   CHECK_THAT(failure(text_with(82, 4095)),
              Catch::Contains("E0301") && Catch::Contains("82 control characters in the first 4096 bytes"));
   CHECK_THAT(failure(text_with(81, 4095)), !Catch::Contains("E0301"));
+}
+
+namespace {
+
+std::string forty(const std::function<std::string(int)>& line) {
+  std::string text;
+  for (int k = 0; k < 40; ++k) text += line(k);
+  return text;
+}
+
+std::string names_of(const Recording& r) {
+  std::string out;
+  for (const Channel& c : r.info.channels) out += c.name + "[" + c.unit + "] ";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a line of names is told from a damaged row, and is found between other signs than the rows") {
+  const auto commas = [](int k) { return fmt::format("{:.1f},{}.5,2\n", 0.1 * k, k); };
+  const auto blanks = [](int k) { return fmt::format("2024-05-01 12:00:{:02d} {}.5\n", k, k); };
+  CHECK_THAT(failure("ERR,0.1,2\n" + forty(commas)), Catch::Contains("E0311"));
+  CHECK(names_of(read_text("t,0.5,1.0\n" + forty(commas))) == "0.5[] 1.0[] ");  // depths of a chain
+  CHECK(names_of(read_text("t,1,2\n" + forty(commas))) == "1[] 2[] ");
+  CHECK(names_of(read_text("t;a;b\n" + forty(commas))) == "a[] b[] ");
+  CHECK(names_of(read_text("t a b\n" + forty(commas))) == "a[] b[] ");
+  CHECK(names_of(read_text("t,a [V]\n" + forty([](int k) { return fmt::format("{:.1f};{}.5\n", 0.1 * k, k); }))) ==
+        "a[V] ");
+  CHECK(names_of(read_text("Date; Time; BC1\n" + forty(blanks))) == "BC1[] ");
+  const Recording kept = read_text("a note\n" + forty(commas));  // no name for each
+  CHECK(count(kept, "no_header") == 1);
+}
+
+TEST_CASE("a line of units is told by the unit of the time alone") {
+  const Recording r = read_text("Time,a,b\nsec,counts,flurbs\n" +
+                                forty([](int k) { return fmt::format("{:.1f},{}.5,2\n", 0.1 * k, k); }));
+  CHECK(names_of(r) == "a[counts] b[flurbs] ");
+  CHECK(r.info.time.rate_hz == Approx(10));
+  CHECK(r.info.time.unit == "s");
+}
+
+TEST_CASE("one comma in each line, and always as many digits behind it: decimals, not a second column") {
+  const auto decimals = [](int k) { return fmt::format("19,{:03d}\n", 37 * k % 1000); };
+  const Recording one = read_text(forty(decimals));
+  REQUIRE(one.samples.size() == 1);
+  CHECK(one.samples[0][1] == 19.037);
+  CHECK(read_text(forty([](int k) { return fmt::format("19,{}\n", 37 * k); })).samples.size() == 2);
 }

@@ -737,6 +737,88 @@ std::string chrony_tracking(int rows) {
   });
 }
 
+/// Rows as loggers and languages print them.
+std::vector<Export> printed_rows() {
+  std::vector<Export> out;
+  const auto add = [&](const char* name, const std::function<std::string(int)>& line, const char* channels, double rate,
+                       std::int64_t start, std::vector<double> first, const char* said) {
+    out.push_back({name, lines(40, line), channels, rate, start, std::move(first), said});
+  };
+  const auto esp = [](int k) { return fmt::format("I ({}) imu: {}.5 -2\n", 300 + 50 * k, k); };
+  const auto colour = [&](int k) { return "\x1B[0;32m" + esp(k).substr(0, esp(k).size() - 1) + "\x1B[0m\n"; };
+  add("ESP-IDF", esp, "imu[] c2[]", 20, 300000000, {0.5, -2}, "up to )");
+  add(
+      "ESP-IDF, commas", [](int k) { return fmt::format("I ({}) MPU: {}.5,-2\n", 300 + 50 * k, k); }, "MPU[] c1[]", 20,
+      300000000, {0.5, -2}, "up to )");
+  add("ESP-IDF with colours", colour, "imu[] c2[]", 20, 300000000, {0.5, -2}, "colours");
+  add(
+      "dmesg", [](int k) { return fmt::format("[{:12.6f}] iio: {}.5 -2\n", 12.25 + 0.05 * k, k); }, "iio[] c2[]", 20,
+      12250000000, {0.5, -2}, "up to ]");
+  add(
+      "dmesg -T", [](int k) { return fmt::format("[Wed May  1 12:00:{:02d} 2024] iio: {}.5 -2\n", k, k); },
+      "iio[] c2[]", 1, std::int64_t{1714564800} * 1000000000, {0.5, -2}, "up to ]");
+  add(
+      "Zephyr", [](int k) { return fmt::format("[00:00:{:02d}.250,000] <inf> imu: {}.5 -2\n", k, k); }, "imu[] c3[]", 1,
+      250000000, {0.5, -2}, "up to ]");
+  add(
+      "rospy.loginfo", [](int k) { return fmt::format("[INFO] [{:.6f}]: {}.5 -2\n", 1714564800 + 0.05 * k, k); },
+      "c0[] c1[]", 20, std::int64_t{1714564800} * 1000000000, {0.5, -2}, "up to ]");
+  add(
+      "Fortran, blanks", [](int k) { return fmt::format("  {:.2f}D+00  {}.5D+01  -2.D0\n", 0.05 * k, k); }, "c0[] c1[]",
+      20, 0, {5, -2}, "Fortran");
+  add(
+      "Fortran, small letters", [](int k) { return fmt::format("{:.2f}d+00,{}.5d-01,-2.5d0\n", 0.05 * k, k); },
+      "c0[] c1[]", 20, 0, {0.05, -2.5}, "Fortran");
+  add(
+      "lists of Python", [](int k) { return fmt::format("[{:.2f}, {}.5, -2]\n", 0.05 * k, k); }, "c0[] c1[]", 20, 0,
+      {0.5, -2}, "brackets");
+  add(
+      "tuples of Python", [](int k) { return fmt::format("({:.2f}, {}.5, -2),\n", 0.05 * k, k); }, "c0[] c1[]", 20, 0,
+      {0.5, -2}, "brackets");
+  add(
+      "an array of NumPy, printed",
+      [](int k) { return fmt::format("{} {:.2f} {}.5 -2.  ]\n", k == 0 ? "[[" : " [", 0.05 * k, k); }, "c0[] c1[]", 20,
+      0, {0.5, -2}, "brackets");
+  add(
+      "arrays of C", [](int k) { return fmt::format("{{{}, {}.5, -2}},\r\n", 50 * k, k); }, "c0[] c1[]", 20, 0,
+      {0.5, -2}, "brackets");
+  add(
+      "a sentence with a checksum", [](int k) { return fmt::format("$IMU,{},{}.5,-2*5C\n", 50 * k, k); }, "c1[] c2[]",
+      20, 0, {0.5, -2}, "checksum");
+  add(
+      "thousands behind narrow blanks",
+      [](int k) {
+        return (k == 0 ? "t [s];x\n" : "") + fmt::format("{},{:02d};1\xE2\x80\xAF{:03d},5\n", k / 20, k % 20 * 5, k);
+      },
+      "x[]", 20, 0, {1000.5}, "typesetting");
+  add(
+      "logging of Python", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 INFO:{}.5,-2\n", k, k); },
+      "INFO[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {0.5, -2}, "in front of the lines");
+  add(
+      "logging of Python, blanks", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 -1.5 {}.5\n", k, k); },
+      "c0[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {-1.5, 0.5}, "in front of the lines");
+  add(
+      "columns that pandas numbered",
+      [](int k) { return (k == 0 ? "0,1,2\n" : "") + fmt::format("{:.2f},{}.5,-2.0\n", 0.05 * k, k); }, "1[] 2[]", 20,
+      0, {0.5, -2}, "header in line 1");
+  add(
+      "a count of rows in front of the stamps", [](int k) { return fmt::format("{},{},{}.5\n", k, 50 * k, k); },
+      "c0[] c1[]", 20, 0, {0, 0.5}, "c1");
+  add(
+      "a minimum is no minute",
+      [](int k) {
+        return (k == 0 ? "TIMESTAMP,Batt_volt_Min\n" : "") + fmt::format("2024-05-01 12:{:02d}:00,12.5\n", k);
+      },
+      "Batt_volt_Min[]", 1.0 / 60, std::int64_t{1714564800} * 1000000000, {12.5}, "calendar");
+  add(
+      "stamps of accelerometers of the biobank",
+      [](int k) {
+        return (k == 0 ? "time,enmo\n" : "") + fmt::format("2024-05-01 14:{:02d}:00.000+0200 [Europe/Berlin],0.5\n", k);
+      },
+      "enmo[]", 1.0 / 60, std::int64_t{1714564800} * 1000000000, {0.5}, "with their time zone");
+  return out;
+}
+
 std::vector<Export> clock_exports() {
   constexpr std::int64_t kDay = std::int64_t{86400} * 1000000000,
                          kStart = (std::int64_t{1680307200} + 14400) * 1000000000;
@@ -933,6 +1015,10 @@ TEST_CASE("robots: files of their exporters are read right at the first try") {
 
 TEST_CASE("clocks: logs of daemons and counters are read right at the first try") {
   for (const Export& e : clock_exports()) check_export(e);
+}
+
+TEST_CASE("rows that loggers and languages print are read right at the first try") {
+  for (const Export& e : printed_rows()) check_export(e);
 }
 
 TEST_CASE("microcontrollers and their loggers: files are read right at the first try") {

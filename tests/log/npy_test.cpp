@@ -62,7 +62,7 @@ TEST_CASE("64-bit integers are said to be rounded where a double does not hold t
     std::string data(values.size() * 8, '\0');
     std::memcpy(data.data(), values.data(), data.size());
     std::ofstream(path, std::ios::binary) << npy(literal, data);
-    const test::Rows rows = test::read_rows("npy", path);
+    const test::Rows rows = test::read_rows("npy", path, {}, true);
     const Finding* warning = rows.warnings.find("rounded_integer");
     return warning == nullptr ? 0 : warning->count;
   };
@@ -111,11 +111,11 @@ TEST_CASE("C order, Fortran order, byte order and header version change nothing"
 TEST_CASE("integers come over exactly, and are counted where a double cannot hold them") {
   CHECK(read("int16.npy").columns == std::vector<ColumnValues>{{-32768, 0}, {32767, -1}});
   CHECK(read("int16.npy").info.channels[0].integer);
-  const auto large = read("int64.npy");
+  const auto large = test::read_rows("npy", test::fixture("npy/int64.npy"), {}, true);
   CHECK(large.columns[0] == ColumnValues{0x1p53, 0x1p53, -0x1p63, 0x1p63});
   REQUIRE(large.warnings.find("rounded_integer"));
   CHECK(large.warnings.find("rounded_integer")->count == 2);  // 2^53 + 1 and 2^63 - 1
-  const auto natural = read("uint64.npy");
+  const auto natural = test::read_rows("npy", test::fixture("npy/uint64.npy"), {}, true);
   CHECK(natural.columns[0] == ColumnValues{0, 0x1p53, 0x1p64});
   CHECK(natural.warnings.find("rounded_integer")->count == 2);
 }

@@ -280,3 +280,27 @@ TEST_CASE("places of odd values are the first in the order of the rows, whatever
   CHECK(whole.find("row 0 ") != std::string::npos);  // of c: a and b have theirs later
   for (const std::size_t block : {std::size_t{1}, std::size_t{50}, std::size_t{200}}) CHECK(said_of(block) == whole);
 }
+
+TEST_CASE("the place of rounded integers does not depend on the blocks they were read in") {
+  std::string bytes;
+  for (std::int64_t row = 0; row < 40; ++row)
+    for (std::int64_t column = 0; column < 4; ++column) {
+      const std::int64_t value = row < 20 - 3 * column ? row : (std::int64_t{1} << 53U) + 1 + 2 * row;
+      char raw[sizeof value];
+      std::memcpy(raw, &value, sizeof value);
+      bytes.append(raw, sizeof value);
+    }
+  const Raw raw(bytes, R"({"dtype": "i64", "endian": "little", "rate_hz": 10,
+                           "channels": [{"name": "a"}, {"name": "b"}, {"name": "c"}, {"name": "d"}]})");
+  for (const std::size_t block : {std::size_t{1}, std::size_t{70}, std::size_t{300}, std::size_t{1} << 20U}) {
+    ReadOptions options;
+    options.block_bytes = block;
+    const test::Rows rows = test::read_rows("raw", raw.path, options, true);
+    const Finding* said = rows.warnings.find("rounded_integer");
+    REQUIRE(said);
+    CHECK(said->count == 20 + 23 + 26 + 29);
+    REQUIRE(said->where.rows.size() == 3);
+    CHECK(said->where.rows[0].starts_with("row 11 "));  // of d, then c and b
+    CHECK(said->where.rows[2].starts_with("row 17 "));
+  }
+}

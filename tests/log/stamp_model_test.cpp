@@ -1,6 +1,8 @@
 #include "libchar/log/time/stamp_model.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
 
 using namespace libchar;
 
@@ -109,4 +111,29 @@ TEST_CASE("in a longer log two rounded stamps may be up to two ticks apart from 
   };
   CHECK(found(16) == Approx(4.2e6).epsilon(0.002));  // sixteen odd steps
   CHECK(found(10) == Approx(4.2e6).epsilon(0.002));
+}
+
+TEST_CASE("samples that beat with the clock's step are no missing ones, and lost samples are no beat") {
+  for (const double interval : {1.0102, 1.007, 0.992, 1.018}) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> late(0, 0.01);
+    std::vector<std::int64_t> stamps;
+    for (int i = 0; i < 1025; ++i)
+      stamps.push_back(1000000000 * static_cast<std::int64_t>(std::floor(0.3 + interval * i + late(random))));
+    INFO(interval);
+    CHECK(model_of_stamps(stamps).ns == Approx(1e9 * interval).epsilon(5e-4));
+  }
+  std::vector<std::int64_t> hundredth;  // of 50 Hz each hundredth row is lost
+  for (int i = 0; hundredth.size() < 1025; ++i)
+    if (i % 100 != 5) hundredth.push_back(std::int64_t{20000000} * i);
+  CHECK(model_of_stamps(hundredth).ns == Approx(2e7).epsilon(1e-6));
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random(seed);
+    std::bernoulli_distribution lost(0.012);
+    std::vector<std::int64_t> stamps;
+    for (int i = 0; stamps.size() < 1025; ++i)
+      if (!lost(random)) stamps.push_back(std::int64_t{1000000000} * i);
+    INFO(seed);
+    CHECK(model_of_stamps(stamps).ns == Approx(1e9).epsilon(1e-6));
+  }
 }

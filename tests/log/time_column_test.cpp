@@ -319,6 +319,17 @@ TEST_CASE("a temperature that rises and a row counter are no time") {
   CHECK(with_stamps("T", [&](int i) { return fmt::format("{:.2f}", 20 + 0.001 * i); }).info.time.column.empty());
   CHECK(
       with_stamps("temperature", [&](int i) { return fmt::format("{:.2f}", 20 + 0.01 * i); }).info.time.column.empty());
+  for (const char* name : {"T", "T1", "TC2", "T_air"}) {  // however evenly: it begins far from zero
+    INFO(name);
+    CHECK(with_stamps(name, [&](int i) { return fmt::format("{:.2f}", 20 + 0.01 * i); }).info.time.column.empty());
+    CHECK(with_stamps(name, [&](int i) {
+            return fmt::format("{:.4f}", 21.5 + 0.01 * i + 0.03 * noise(random));
+          }).info.time.column.empty());
+    CHECK(with_stamps(name, [&](int i) { return fmt::format("{:.2f}", 0.01 * i); }).info.time.rate_hz == Approx(100));
+  }
+  CHECK(with_stamps("T", [&](int i) { return std::to_string(4000 + 10 * i); }).info.time.rate_hz == Approx(100));
+  CHECK(with_stamps("T [s]", [&](int i) { return fmt::format("{:.2f}", 20 + 0.01 * i); }).info.time.rate_hz ==
+        Approx(100));
   CHECK(with_stamps("sample", [](int i) { return std::to_string(i); }).info.time.column.empty());
   ReadOptions rate;
   rate.rate_hz = 100;  // who knows the rate looks for no clock

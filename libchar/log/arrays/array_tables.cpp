@@ -9,6 +9,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/arrays/table_plan.hpp"
 #include "libchar/log/binary/stamps.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 
 namespace libchar {
 namespace {
@@ -88,7 +89,7 @@ class ArrayTables final : public TopicReader {
     unit_ = unit;
   }
 
-  bool next(RowBlock& block, std::size_t most, Findings& warnings) override {
+  bool next(RowBlock& block, std::size_t most, Findings&) override {
     const std::uint64_t left = table_->topic.rows - row_;
     const auto rows = static_cast<std::size_t>(std::min({static_cast<std::uint64_t>(most), most_, left}));
     block.rows = rows;
@@ -97,15 +98,22 @@ class ArrayTables final : public TopicReader {
     for (std::size_t i = 0; i < readings_.size(); ++i) {
       const OpenArray& array = open_[readings_[i].array];
       block.columns[i].resize(rows);
-      const std::uint64_t rounded = read_numbers(first_of(array, readings_[i]), array.pieces[readings_[i].piece].stride,
-                                                 readings_[i].field.number, block.columns[i]);
-      if (rounded > 0)
-        warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
-                     fmt::format("{} from row {}", printable(names_[i]), row_), rounded);
+      const Rounded rounded = read_numbers(first_of(array, readings_[i]), array.pieces[readings_[i].piece].stride,
+                                           readings_[i].field.number, block.columns[i]);
+      rounded_.add_block(row_ + rounded.first, i, rounded.count);
     }
     if (time_) read_times(block);
     row_ += rows;
     return true;
+  }
+
+  void finish(Findings& warnings) override {
+    rounded_.say(
+        "rounded_integer", kRoundedIntegers,
+        [this](std::uint64_t row, std::size_t channel) {
+          return fmt::format("{} from row {}", printable(names_[channel]), row);
+        },
+        warnings);
   }
 
  private:
@@ -157,6 +165,7 @@ class ArrayTables final : public TopicReader {
   std::string time_name_;
   std::vector<std::string> names_;
   StampUnit unit_{1};
+  OddPlaces rounded_;
   std::uint64_t row_ = 0, most_ = 1;
 };
 

@@ -90,7 +90,7 @@ T load(const std::byte* from) {
 }
 
 template <typename T, bool swap>
-std::uint64_t read_as(const std::byte* first, std::size_t stride, std::span<double> out) {
+Rounded read_as(const std::byte* first, std::size_t stride, std::span<double> out) {
   const std::size_t n = out.size();
   double* const to = out.data();
   if (stride == sizeof(T)) {  // a constant stride lets the compiler use wide loads
@@ -98,7 +98,7 @@ std::uint64_t read_as(const std::byte* first, std::size_t stride, std::span<doub
   } else {
     for (std::size_t i = 0; i < n; ++i) to[i] = to_double(load<T, swap>(first + i * stride));
   }
-  std::uint64_t rounded = 0;
+  Rounded rounded;
   if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
     constexpr double kEdge = 9007199254740992.0;  // 2^53: below it every integer is exact
     for (std::size_t i = 0; i < n; ++i) {
@@ -106,7 +106,8 @@ std::uint64_t read_as(const std::byte* first, std::size_t stride, std::span<doub
       const T value = load<T, swap>(first + i * stride);
       // 2^63 or 2^64 came out of rounding up: converting it back would overflow.
       const bool fits = to[i] < std::ldexp(1.0, std::is_signed_v<T> ? 63 : 64);
-      rounded += !fits || static_cast<T>(to[i]) != value;
+      if (fits && static_cast<T>(to[i]) == value) continue;
+      if (rounded.count++ == 0) rounded.first = i;
     }
   }
   return rounded;
@@ -171,10 +172,10 @@ std::optional<NumberType> find_number_type(std::string_view name) {
   return std::nullopt;
 }
 
-std::uint64_t read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out) {
+Rounded read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out) {
   if (format.type == NumberType::f64 && !format.big_endian && stride == sizeof(double)) {
     if (!out.empty()) std::memcpy(out.data(), first, out.size_bytes());
-    return 0;
+    return {};
   }
   return with_type(format.type, [&](auto example) {
     using T = decltype(example);

@@ -22,9 +22,14 @@ std::string_view name_of(NumberType type);  ///< "f64", "i16"…
 std::optional<NumberType> find_number_type(std::string_view name);
 bool is_float(NumberType type);
 
-/// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed). Returns how many of
-/// them a double cannot hold exactly (64-bit integers above 2^53), which were rounded to nearest.
-std::uint64_t read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out);
+/// Numbers that a double cannot hold exactly (64-bit integers above 2^53) and that were rounded to nearest.
+struct Rounded {
+  std::uint64_t count = 0;
+  std::size_t first = 0;  ///< position of the first of them
+};
+
+/// Reads out.size() numbers that stand `stride` bytes apart from `first` (no alignment needed).
+Rounded read_numbers(const std::byte* first, std::size_t stride, NumberFormat format, std::span<double> out);
 
 /// The same as exact 64-bit integers, for stamps; only for integer types. Returns the position of
 /// the first u64 that does not fit, or nothing.

@@ -30,21 +30,6 @@ struct Wanted {
   std::vector<double> probe;  // its first values, as stored
 };
 
-// The first places of odd values in the order of the rows, whatever blocks they were read in.
-struct OddPlaces {
-  static constexpr std::size_t kShown = 3;
-  std::vector<std::pair<std::uint64_t, std::size_t>> first;  // row, channel
-  std::uint64_t count = 0;
-
-  void add(std::uint64_t row, std::size_t channel) {
-    ++count;
-    const std::pair place(row, channel);
-    if (first.size() == kShown && !(place < first.back())) return;
-    first.insert(std::upper_bound(first.begin(), first.end(), place), place);
-    if (first.size() > kShown) first.pop_back();
-  }
-};
-
 class BinaryRows final : public RowSource {
  public:
   BinaryRows(std::unique_ptr<BinaryFile> file, BinaryLayout layout, LogInfo info, const ReadOptions& options)
@@ -122,12 +107,18 @@ class BinaryRows final : public RowSource {
   }
 
   void finish(Findings& warnings) override {
-    say(odd_.infinite, "infinite_value", kInfiniteValues, warnings);
-    say(odd_.too_small, "number_too_small", kNumbersTooSmall, warnings);
-    say(odd_.out_of_range, "number_out_of_range", kNumbersOutOfRange, warnings);
+    const auto say = [&](const OddPlaces& odd, const char* code, std::string_view sentence) {
+      odd.say(
+          code, sentence,
+          [this](std::uint64_t row, std::size_t channel) { return place_of(values_[channel].column, row); }, warnings);
+    };
+    say(odd_.rounded, "rounded_integer", kRoundedIntegers);
+    say(odd_.infinite, "infinite_value", kInfiniteValues);
+    say(odd_.too_small, "number_too_small", kNumbersTooSmall);
+    say(odd_.out_of_range, "number_out_of_range", kNumbersOutOfRange);
     // Of a part it says no counts a channel: they would be those of the first part.
     say(odd_.missing, "missing_cell",
-        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_), warnings);
+        restricted_ ? missing_cells({}, {}) : missing_cells(info_.channels, missing_per_channel_));
   }
 
   std::string place(const RowBlock&, std::size_t i, std::uint64_t rows_before) const override {
@@ -158,12 +149,6 @@ class BinaryRows final : public RowSource {
     return bytes_.data();
   }
 
-  void say(const OddPlaces& odd, const char* code, std::string_view message, Findings& warnings) const {
-    for (const auto& [row, channel] : odd.first)
-      warnings.add(code, std::string(message), place_of(values_[channel].column, row));
-    if (odd.count > odd.first.size()) warnings.add(code, std::string(message), "", odd.count - odd.first.size());
-  }
-
   std::size_t channel_of(const Wanted& wanted) const { return static_cast<std::size_t>(&wanted - values_.data()); }
 
   std::string place_of(const BinaryColumn& column, std::uint64_t row) const {
@@ -172,11 +157,9 @@ class BinaryRows final : public RowSource {
 
   void read_values(Wanted& wanted, std::vector<double>& out, std::size_t rows, Findings& warnings) {
     const BinaryColumn& column = wanted.column;
-    const std::uint64_t rounded =
+    const Rounded rounded =
         read_numbers(locate(column, rows), static_cast<std::size_t>(column.stride), column.number, out);
-    if (rounded > 0)
-      warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
-                   fmt::format("{} from row {}", column.name, next_row_), rounded);
+    odd_.rounded.add_block(next_row_ + rounded.first, channel_of(wanted), rounded.count);
     probe_byte_order(wanted, out, warnings);
     if (is_float(column.number.type)) drop_non_finite(channel_of(wanted), out);
     if (column.scale != 1 || column.offset != 0) to_unit(column, channel_of(wanted), out);
@@ -272,7 +255,7 @@ class BinaryRows final : public RowSource {
   std::vector<std::byte> bytes_;
   std::vector<std::uint64_t> missing_per_channel_;
   struct {
-    OddPlaces missing, infinite, too_small, out_of_range;
+    OddPlaces missing, infinite, too_small, out_of_range, rounded;
   } odd_;
   bool overflow_as_missing_ = false, restricted_ = false;
   ChannelRange channels_;  ///< to be read

@@ -37,8 +37,13 @@ std::optional<std::size_t> closing_quote(std::string_view text, std::size_t quot
 
 std::size_t row_end(std::string_view text, std::size_t from, char delimiter, bool* open) {
   const auto line_end = [&](std::size_t at) {
-    while (at < text.size() && text[at] != '\n' && text[at] != '\r') ++at;
-    return at;
+    constexpr std::size_t kWindow = 512;  // lines may end in CR alone
+    for (; at < text.size(); at += kWindow) {
+      const std::string_view window = text.substr(at, kWindow);
+      const std::size_t end = window.find('\n'), cr = window.substr(0, end).find('\r');
+      if (cr != std::string_view::npos || end != std::string_view::npos) return at + std::min(cr, end);
+    }
+    return text.size();
   };
   const std::string_view near = text.substr(0, std::min(text.size(), from + kMaxField));
   std::size_t end = line_end(from);
@@ -67,8 +72,9 @@ Line line_at(std::string_view head, std::size_t offset, std::uint64_t number) {
   const bool pair = head[end] == '\r' && end + 1 < head.size() && head[end + 1] == '\n';
   line.end = pair ? LineEnd::crlf : head[end] == '\r' ? LineEnd::cr : LineEnd::lf;
   line.after = end + (pair ? 2 : 1);
-  line.lines +=
-      static_cast<std::uint64_t>(std::count(line.text.begin(), line.text.end(), line.end == LineEnd::cr ? '\r' : '\n'));
+  const char sign = line.end == LineEnd::cr ? '\r' : '\n';
+  if (line.text.find(sign) != std::string_view::npos)
+    line.lines += static_cast<std::uint64_t>(std::count(line.text.begin(), line.text.end(), sign));
   return line;
 }
 
@@ -77,6 +83,8 @@ std::string at(const std::string& file, std::uint64_t line, std::uint64_t column
 }
 
 bool is_comment(std::string_view line, bool semicolons) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos || (line[first] >= '0' && line[first] <= '9')) return false;  // most lines
   line = trimmed(line);
   static constexpr std::string_view kChrony[] = {"=====", "Date (UTC) Time     "};  // every 32 rows
   if (line.starts_with(kChrony[0]) || line.starts_with(kChrony[1])) return true;
@@ -141,16 +149,30 @@ std::optional<Field> cell_at(std::string_view line, std::size_t column, char del
 
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {
   constexpr std::size_t kLongest = 48;
-  const std::size_t end = line.substr(0, kLongest).find(lead);
-  if (end == std::string_view::npos) return std::nullopt;
   std::size_t begin = line.find_first_not_of(" \t");
-  if (lead == "]") {
+  if (begin == std::string_view::npos) return std::nullopt;
+  if (lead == ",") {  // the comma of the seconds
+    constexpr std::size_t kComma = 19, kLength = 23;
+    if (line.size() <= kLength || line[kComma] != ',' || line[kLength] != ' ' || begin > 0) return std::nullopt;
+    after = std::min(line.find_first_not_of(" \t-", kLength), line.size());
+    if (after < line.size() && after > 0 && line[after - 1] == '-') --after;  // a sign
+    return Field{std::string(line.substr(0, kLength)), 0, false};
+  }
+  if (lead == ")") {
+    if (line[begin] < 'A' || line[begin] > 'Z' || line.substr(begin + 1, 2) != " (") return std::nullopt;
+    begin += 3;
+  } else if (lead == "]") {
     if (line[begin] != '[') return std::nullopt;
     ++begin;
+    const std::size_t level = line.find("] [", begin);  // "[INFO] [1711111111.25]: 1 2"
+    if (level != line.npos && line.substr(begin, level - begin).find_first_of("0123456789") == line.npos)
+      begin = level + 3;
   }
-  if (begin >= end) return std::nullopt;
+  const std::size_t end = line.substr(0, begin + kLongest).find(lead, begin);
+  if (end == std::string_view::npos || begin >= end) return std::nullopt;
   after = std::min(line.find_first_not_of(" \t,;:", end + lead.size()), line.size());
-  return Field{std::string(trimmed(line.substr(begin, end - begin))), begin, false};
+  const std::string_view stamp = trimmed(line.substr(begin, end - begin));
+  return Field{std::string(stamp), static_cast<std::size_t>(stamp.data() - line.data()), false};
 }
 
 }  // namespace libchar::csv

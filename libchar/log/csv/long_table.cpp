@@ -109,7 +109,8 @@ bool whole_numbers(const std::vector<std::string>& values) {
 [[noreturn]] void refuse(const std::string& name, const std::vector<std::string>& values, const LogInfo& info) {
   throw input_error("E0327", info.file)
       .says("the rows are of several kinds: {} is {}", name, first_names(values))
-      .hint("`where` {}={} reads one of them, `group_by` {} makes channels of each", name, values.front(), name);
+      .hint("`where` {}={} reads one of them, `group_by` {} makes channels of each, `channels` '!{}' reads all rows",
+            name, values.front(), name, name);
 }
 
 /// The column that "COLUMN=VALUE" or "COLUMN" names, by name, text or position c0, c1… among all. Throws Error(usage).
@@ -202,6 +203,8 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
     if (kinds[c] != (words ? ColumnKind::text : ColumnKind::number)) continue;
     const std::string name = column.name.empty() ? fmt::format("c{}", c) : column.name;
     if (static_cast<int>(c) == dialect.time.column || (column.text.empty() && (!words || dialect.has_header))) continue;
+    const auto& asked = options.channels;  // who leaves it out knows that it names no source
+    if (std::find(asked.begin(), asked.end(), "!" + name) != asked.end()) continue;
     const std::vector<std::string> values = values_of(rows, c, words ? kMostKinds : kMostNumbers);
     if (values.size() > kMostKinds) continue;
     if (values.size() == 1) {

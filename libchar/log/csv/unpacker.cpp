@@ -12,6 +12,7 @@
 #include "libchar/log/csv/lvm_rows.hpp"
 #include "libchar/log/csv/object_rows.hpp"
 #include "libchar/log/csv/sentence_rows.hpp"
+#include "libchar/log/csv/signs.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -227,60 +228,6 @@ class FromUtf16 final : public Unpacker {
   bool big_ = false, done_ = false;
 };
 
-// 'a','it''s': the same in quotes.
-class FromApostrophes final : public Unpacker {
- public:
-  explicit FromApostrophes(StoredBytes stored) : stored_(std::move(stored)) {}
-
-  std::size_t read(char* to, std::size_t n) override {
-    while (text_.empty() && !done_) decode();
-    const std::size_t taken = text_.copy(to, n);
-    text_.erase(0, taken);
-    return taken;
-  }
-  bool cut() const override { return false; }
-  std::string_view what() const override { return "cells in apostrophes"; }
-
- private:
-  void decode() {
-    done_ = !stored_.more();
-    for (std::size_t i = 0; !done_ && i < stored_.size(); ++i) take(stored_.data()[i]);
-    if (done_ && closing_) text_ += '"';
-  }
-
-  void take(char c) {
-    if (std::exchange(closing_, false)) {
-      if (c == '\'') {  // doubled
-        text_ += c;
-        return;
-      }
-      text_ += '"';
-      open_ = false;
-    }
-    if (c == '\'' && open_) {
-      closing_ = true;
-    } else if (c == '\'' && begins_) {
-      text_ += '"';
-      open_ = true;
-    } else {
-      text_ += c;
-      if (c == '"' && open_) text_ += c;
-    }
-    begins_ = !open_ && std::string_view(",;\t| \r\n").find(c) != std::string_view::npos;
-  }
-
-  StoredBytes stored_;
-  std::string text_;
-  bool open_ = false, closing_ = false, begins_ = true, done_ = false;
-};
-
-// The first line has cells in apostrophes, from its beginning to its end.
-bool in_apostrophes(std::string_view text) {
-  const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
-  const auto signs = static_cast<std::size_t>(std::count(line.begin(), line.end(), '\''));
-  return line.size() < text.size() && line.starts_with('\'') && line.ends_with('\'') && signs >= 4 && signs % 2 == 0;
-}
-
 }  // namespace
 
 Packing packing_of(std::string_view first_bytes) {
@@ -299,7 +246,8 @@ Packing packing_of(std::string_view first_bytes) {
   if (is_sentences(first_bytes)) return Packing::sentences;
   if (is_echo(first_bytes)) return Packing::echo;
   if (in_apostrophes(first_bytes)) return Packing::apostrophes;
-  return is_json_rows(first_bytes) ? Packing::json : Packing::none;
+  if (is_json_rows(first_bytes)) return Packing::json;
+  return signs_of(first_bytes).any() ? Packing::signs : Packing::none;
 }
 
 std::unique_ptr<Unpacker> make_unpacker(Packing packing,
@@ -318,7 +266,9 @@ std::unique_ptr<Unpacker> make_unpacker(Packing packing,
     case Packing::echo:
       return open_echo_rows(std::move(stored), file);
     case Packing::apostrophes:
-      return std::make_unique<FromApostrophes>(StoredBytes(std::move(stored), file));
+      return open_apostrophes(std::move(stored));
+    case Packing::signs:
+      return open_signs(std::move(stored));
     case Packing::lvm:
       return open_lvm_rows(std::move(stored), file);
     case Packing::gzip:

@@ -14,7 +14,7 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes, signs };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);

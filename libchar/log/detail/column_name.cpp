@@ -17,9 +17,7 @@ std::optional<std::string> unit_suffix(std::string_view name, std::string_view s
     const bool celsius = (suffix == "C" || suffix == "c") && ascii_lower(name).find("temp") != std::string::npos;
     return celsius ? std::optional<std::string>("degC") : std::nullopt;
   }
-  if (suffix == "none" || suffix == "min" || suffix == "rad" || suffix == "bar" || suffix == "volt") {
-    if (suffix == "none" || suffix == "min") return std::nullopt;  // "speed_min" is a minimum
-  }
+  if (suffix == "none" || ascii_lower(suffix) == "min") return std::nullopt;  // "speed_min" is a minimum
   if (find_unit(suffix)) return std::string(suffix);
   // deg_per_s, m_per_s2
   std::string spelled(suffix);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/core/text/decimal.hpp"
@@ -24,6 +25,27 @@ std::string missing_cells(const std::vector<Channel>& channels, const std::vecto
     message += fmt::format("{}{} {}", listed == 1 ? "" : ", ", channels[c].name, missing_per_channel[c]);
   }
   return message + ")";
+}
+
+void OddPlaces::add(std::uint64_t row, std::size_t channel) {
+  ++count;
+  const std::pair place(row, channel);
+  if (first.size() == kShown && !(place < first.back())) return;
+  first.insert(std::upper_bound(first.begin(), first.end(), place), place);
+  if (first.size() > kShown) first.pop_back();
+}
+
+void OddPlaces::add_block(std::uint64_t row, std::size_t channel, std::uint64_t n) {
+  const bool known =
+      std::any_of(first.begin(), first.end(), [&](const auto& place) { return place.second == channel; });
+  if (!known && n > 0) add(row, channel);
+  count += n - (!known && n > 0 ? 1 : 0);
+}
+
+void OddPlaces::say(std::string_view code, std::string_view sentence,
+                    const std::function<std::string(std::uint64_t, std::size_t)>& place_of, Findings& findings) const {
+  for (const auto& [row, channel] : first) findings.add(code, sentence, place_of(row, channel));
+  if (count > first.size()) findings.add(code, sentence, "", count - first.size());
 }
 
 void say_apart(const std::vector<std::string>& names, const Turns& turns, Findings& findings) {

@@ -16,6 +16,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/flight/dataflash_format.hpp"
 #include "libchar/log/flight/dataflash_listing.hpp"
 
@@ -174,8 +175,8 @@ class DataflashReader final : public TopicReader {
   double value_of(const DataflashChannel& channel, Body body, Findings& warnings) const {
     const DataflashField& field = log_.formats.kind(*log_.contents[topic_].kind).fields[channel.field];
     double value = 0;
-    if (read_numbers(body.data() + channel.byte, 0, {field.type, false}, {&value, 1}) > 0)
-      warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
+    if (read_numbers(body.data() + channel.byte, 0, {field.type, false}, {&value, 1}).count > 0)
+      warnings.add("rounded_integer", kRoundedIntegers,
                    fmt::format("{} of message {}", printable(field.name), messages_read_));
     return value * field.factor / field.divisor;
   }

@@ -13,6 +13,7 @@
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/format.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/flight/ulog_format.hpp"
 #include "libchar/log/flight/ulog_listing.hpp"
 
@@ -186,8 +187,8 @@ class UlogReader final : public TopicReader {
     for (std::size_t c = 0; c < chosen_.size(); ++c) {
       const UlogField& field = content.layout.fields[chosen_[c]];
       double value = 0;
-      if (read_numbers(data.data() + field.byte, 0, {field.type, false}, {&value, 1}) > 0)
-        warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded",
+      if (read_numbers(data.data() + field.byte, 0, {field.type, false}, {&value, 1}).count > 0)
+        warnings.add("rounded_integer", kRoundedIntegers,
                      fmt::format("{} of message {}", printable(field.name), message));
       block.columns[c].push_back(value);
     }

@@ -88,7 +88,27 @@ bool take_days(CalendarStamp& out, int year, int month, int day) {
   return true;
 }
 
-// "01-May-2024", "1 May 2024", "May 1, 2024"
+// "Wed", "Wednesday," in front of a date, which they do not change.
+void skip_weekday(DateScanner& at) {
+  for (const std::string_view day : {"mon", "tue", "wed", "thu", "fri", "sat", "sun"})
+    if (ascii_lower(at.rest.substr(0, day.size())) == day) {
+      while (std::isalpha(static_cast<unsigned char>(at.peek()))) at.rest.remove_prefix(1);
+      at.take(',');
+      at.blanks();
+    }
+}
+
+// The year behind the clock, "12:00:00 2024"; taken off the end.
+std::optional<int> year_at_the_end(DateScanner& at) {
+  const std::size_t blank = at.rest.rfind(' ');
+  DateScanner year{at.rest.substr(std::min(blank, at.rest.size()))};
+  year.blanks();
+  const auto number = year.number(4, 4);
+  if (number && year.rest.empty()) at.rest = at.rest.substr(0, blank);
+  return number;
+}
+
+// "01-May-2024", "1 May 2024", "May 1, 2024", "May 1 12:00:00 2024"
 bool worded_date(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   int month = month_word(s), day = 0;
@@ -110,8 +130,8 @@ bool worded_date(DateScanner& at, CalendarStamp& out) {
   }
   gap();
   const std::size_t n = s.digits_ahead();
-  const auto year = s.number(2, 4);
-  if (!year || !take_days(out, full_year(*year, n), month, day)) return false;
+  const auto year = n < 3 && s.peek(n) == ':' ? year_at_the_end(s) : s.number(2, 4);
+  if (!year || !take_days(out, full_year(*year, n < 3 && *year > 99 ? 4 : n), month, day)) return false;
   at = s;
   return true;
 }
@@ -128,8 +148,16 @@ bool numbered_date(DateScanner& at, DateOrder order, CalendarStamp& out) {
   const std::size_t first_digits = s.digits_ahead();
   const auto first = s.number(1, 4);
   const char sign = s.peek();
-  if (!first || (sign != '-' && sign != '/' && sign != '.') || first_digits == 3) return false;
+  const bool known = sign == '-' || sign == '/' || sign == '.' || (sign == ':' && first_digits == 4);
+  if (!first || !known || first_digits == 3) return false;
   s.take(sign);
+  if (first_digits == 4 && s.digits_ahead() == 3) {  // the day of the year
+    const int day = s.fixed(3);
+    if (s.rest.empty() || day < 1 || day > 366 || !take_days(out, *first, 1, 1)) return false;
+    out.ns += (day - 1) * kDayNs;
+    at = s;
+    return true;
+  }
   const auto second = s.number(1, 2);
   if (!second || !s.take(sign)) return false;
   const std::size_t third_digits = s.digits_ahead();
@@ -143,8 +171,13 @@ bool numbered_date(DateScanner& at, DateOrder order, CalendarStamp& out) {
     out.order_said = false;
     out.first = *first;
     out.second = *second;
+    out.short_year = third_digits == 2;
     const bool day = order == DateOrder::day_first;
-    if (!take_days(out, full_year(*third, third_digits), day ? *second : *first, day ? *first : *second)) return false;
+    const bool good =
+        order == DateOrder::year_first
+            ? out.short_year && take_days(out, full_year(*first, 2), *second, *third)
+            : take_days(out, full_year(*third, third_digits), day ? *second : *first, day ? *first : *second);
+    if (!good) return false;
   }
   at = s;
   return true;
@@ -162,14 +195,33 @@ std::int64_t second_fraction(DateScanner& at) {
   return ns;
 }
 
-// "12:00", "12:00:00.123", "12:00:00:123", "3:04:05 PM", "120000.5", and "59:58.0" without an hour
+// What stands behind whole seconds: ".123", ":123", ".123,456" of Zephyr, "-123" and "_123456" of file names.
+std::int64_t behind_seconds(DateScanner& at) {
+  const char sign = at.peek();
+  const bool digits = decimal_digit(at.peek(1));
+  DateScanner s{at.rest.substr(std::min<std::size_t>(1, at.rest.size()))};
+  const std::size_t n = s.digits_ahead();
+  const bool of_a_name = (sign == '-' || sign == '_') && (n == 3 || n == 6) && s.rest.size() == n;
+  if (!digits || (sign != '.' && sign != ',' && sign != ':' && !of_a_name)) return 0;
+  std::int64_t part = second_fraction(s);
+  if (DateScanner more = s; n == 3 && more.take(',') && more.digits_ahead() == 3) {
+    part += more.fixed(3) * 1000;
+    s = more;
+  }
+  at = s;
+  return part;
+}
+
+// "12:00", "12:00:00.123", "12:00:00:123", "12-00-00", "3:04:05 PM", "120000.5", and "59:58.0" without an hour
 bool clock_time(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const bool compact = out.date && (s.digits_ahead() == 6 || s.digits_ahead() == 4);
   const bool with_seconds = s.digits_ahead() == 6;
   const auto hour = compact ? std::optional(s.fixed(2)) : s.number(1, 2);
-  if (!hour || (!compact && !s.take(':'))) return false;
-  const auto minute = compact ? std::optional(s.fixed(2)) : s.number(2, 2);
+  const char sign = out.date && s.peek() == '-' ? '-' : ':';
+  if (!hour || (!compact && !s.take(sign))) return false;
+  const bool padded = s.digits_ahead() == 2 || s.peek(1) != ':';  // printf("%d:%d:%d")
+  const auto minute = compact ? std::optional(s.fixed(2)) : s.number(padded ? 2 : 1, 2);
   if (!minute) return false;
   int second = 0;
   std::int64_t part = 0;
@@ -180,14 +232,12 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
     at = s;
     return *hour < 60 && *minute < 60;
   }
-  if (compact ? with_seconds : s.peek() == ':') {
-    if (!compact) s.take(':');
-    if (s.digits_ahead() < 2 || (!compact && s.digits_ahead() > 2)) return false;
-    second = s.fixed(2);
-    if ((s.peek() == '.' || s.peek() == ',' || s.peek() == ':') && decimal_digit(s.peek(1))) {
-      s.rest.remove_prefix(1);
-      part = second_fraction(s);
-    }
+  if (compact ? with_seconds : s.peek() == sign) {
+    if (!compact) s.take(sign);
+    const std::size_t n = s.digits_ahead();
+    if (n == 0 || (!compact && n > 2)) return false;
+    second = s.fixed(std::min<std::size_t>(n, 2));
+    part = behind_seconds(s);
   }
   int hours = *hour;
   DateScanner half = s;
@@ -207,8 +257,9 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
   return true;
 }
 
-// "Z", "UTC", "+02:00", "-0730", "GMT+2"
+// "Z", "UTC", "+02:00", "-0730", "GMT+2", "+02:00[Europe/Berlin]"
 bool take_zone(DateScanner& at, CalendarStamp& out) {
+  if (const std::size_t name = at.rest.find('['); at.rest.ends_with(']')) at.rest = at.rest.substr(0, name);
   at.blanks();
   if (at.rest.empty()) return true;
   const bool named = at.word("z") || at.word("utc") || at.word("gmt");
@@ -236,6 +287,18 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
   return at.rest.empty();
 }
 
+// "0 days 00:00:01.5", "1 day, 2:03:04": durations of pandas and Python.
+void whole_days(DateScanner& at, CalendarStamp& out) {
+  DateScanner s = at;
+  const auto days = s.number(1, 5);
+  s.blanks();
+  if (!days || (!s.word("days") && !s.word("day"))) return;
+  s.take(',');
+  s.blanks();
+  out.ns = *days * kDayNs;
+  at = s;
+}
+
 }  // namespace
 
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order) {
@@ -246,16 +309,45 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
   if (at.rest.size() < kShortest || at.rest.size() > kLongest ||
       std::none_of(at.rest.begin(), at.rest.end(), decimal_digit))
     return std::nullopt;
+  skip_weekday(at);
   const bool dated = compact_date(at, out) || numbered_date(at, order, out) || worded_date(at, out);
   if (dated) {
-    if (!at.take('T') && !at.take('_')) {
+    if (!at.take('T') && !at.take('_') && !at.take('-') && !at.take(':')) {
       at.take(',');
       at.blanks();
     }
     if (at.rest.empty()) return out;
   }
+  if (!dated) whole_days(at, out);
   if (!clock_time(at, out) || !take_zone(at, out)) return std::nullopt;
   return out;
+}
+
+std::optional<CalendarStamp> read_calendar(std::string_view text) {
+  // Next to all cells are numbers, which need no further look.
+  const auto sign = [](char c) { return c == '-' || c == '/' || c == '.'; };
+  const auto clock = [](char c) {
+    return c == ':' || c == ',' || c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0;
+  };
+  if (std::none_of(text.begin(), text.end(), clock) && std::count_if(text.begin(), text.end(), sign) < 2)
+    return std::nullopt;
+  for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
+    if (const auto stamp = read_calendar(text, order)) return stamp;
+  return std::nullopt;
+}
+
+std::optional<CalendarStamp> read_date_digits(std::string_view text) {
+  constexpr std::size_t kDate = 8, kHour = 10, kMinute = 12, kSecond = 14;
+  const std::size_t n = DateScanner{text}.digits_ahead();
+  if ((n != kDate && n != kHour && n != kMinute && n != kSecond) || (n < kMinute && n < text.size()))
+    return std::nullopt;
+  const std::string date(text.substr(0, kDate));
+  if (n == kDate) return read_calendar(date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6));
+  std::string clock(text.substr(kDate));
+  if (n == kHour) clock += "00";
+  const auto stamp = read_calendar(date + "T" + clock, DateOrder::day_first);
+  if (stamp || n != kMinute) return stamp;
+  return read_calendar("20" + date.substr(0, 6) + "T" + std::string(text.substr(6)), DateOrder::day_first);
 }
 
 namespace {
@@ -276,23 +368,30 @@ std::int64_t longest_step(const std::vector<std::string_view>& texts, DateOrder 
 
 DateStyle date_style(const std::vector<std::string_view>& texts, bool european) {
   bool point = false, american = false, seen = false;
-  for (const std::string_view text : texts)
-    for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first}) {
-      const auto stamp = read_calendar(text, order);
-      if (!stamp || !stamp->date || stamp->order_said) continue;
-      if (stamp->first > 12) return {DateOrder::day_first, false};
-      if (stamp->second > 12) return {DateOrder::month_first, false};
-      seen = true;
-      point = point || stamp->separator == '.';
-      american = american || stamp->half_days || stamp->separator == '/';
-    }
+  std::vector<DateOrder> could_be = {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first};
+  const auto not_so = [&](DateOrder order) { std::erase(could_be, order); };
+  for (const std::string_view text : texts) {
+    const auto stamp = read_calendar(text);
+    if (!stamp || !stamp->date || stamp->order_said) continue;
+    if (!stamp->short_year || (stamp->separator != '-' && stamp->first <= 31)) not_so(DateOrder::year_first);
+    for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
+      if (could_be.size() > 1 && !read_calendar(text, order)) not_so(order);
+    seen = true;
+    point = point || stamp->separator == '.';
+    american = american || stamp->half_days || stamp->separator == '/';
+  }
   if (!seen) return {};
-  const std::int64_t by_day = longest_step(texts, DateOrder::day_first),
-                     by_month = longest_step(texts, DateOrder::month_first);
-  if (by_day < by_month / 4) return {DateOrder::day_first, true};
-  if (by_month < by_day / 4) return {DateOrder::month_first, true};
-  if (point) return {DateOrder::day_first, false};
-  return {american && !european ? DateOrder::month_first : DateOrder::day_first, true};
+  if (could_be.size() == 1) return {could_be.front(), false};
+  std::vector<std::int64_t> steps;
+  for (const DateOrder order : could_be) steps.push_back(longest_step(texts, order));
+  const auto least = std::min_element(steps.begin(), steps.end());
+  const auto longer = std::count_if(steps.begin(), steps.end(), [&](std::int64_t step) { return *least < step / 4; });
+  if (static_cast<std::size_t>(longer) + 1 == steps.size())
+    return {could_be[static_cast<std::size_t>(least - steps.begin())], true};
+  const bool day = could_be.front() == DateOrder::day_first;
+  if (day && point) return {DateOrder::day_first, false};
+  const bool month = day && american && !european && could_be[1] == DateOrder::month_first;
+  return {month ? DateOrder::month_first : could_be.front(), true};
 }
 
 }  // namespace libchar

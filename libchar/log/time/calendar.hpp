@@ -9,8 +9,8 @@
 
 namespace libchar {
 
-/// Which number of a date stands first, where its signs do not say so (05/01/2024).
-enum class DateOrder : std::uint8_t { day_first, month_first };
+/// Which number of a date stands first, where its signs do not say so (05/01/2024, 24-05-01).
+enum class DateOrder : std::uint8_t { day_first, month_first, year_first };
 
 struct CalendarStamp {
   std::int64_t ns = 0;  ///< since 1970, or since midnight where there is no date; in UTC where a zone is written
@@ -20,12 +20,19 @@ struct CalendarStamp {
   bool of_hour = false;       ///< minutes and seconds alone, "59:58.0"
   char separator = 0;         ///< between the numbers of the date, 0 for none
   int first = 0, second = 0;  ///< of a date whose order is not said
+  bool short_year = false;    ///< and whose year has two digits
 };
 
 /// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24
-/// 3:04 PM", "01-May-2024 12:00", "20240501T120000Z", a date alone or a clock time alone. Fractions
-/// are rounded to the nanosecond. Nothing when it is none of these, or no day of the calendar.
+/// 3:04 PM", "01-May-2024 12:00", "Wed May 1 12:00:00 2024", "2024-122T12:00:00", "20240501T120000Z", a date alone or a
+/// clock time alone. Fractions are rounded to the nanosecond. Nothing when it is none of these, or no day of the
+/// calendar.
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order);
+/// The same in the first order in which it is a date.
+std::optional<CalendarStamp> read_calendar(std::string_view text);
+
+/// Digits alone: "20240501120000.25", "202405011200", "2024050112", "20240501", and "240501120000".
+std::optional<CalendarStamp> read_date_digits(std::string_view text);
 
 /// How the dates of a log are written.
 struct DateStyle {

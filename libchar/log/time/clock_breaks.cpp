@@ -84,7 +84,7 @@ std::int64_t skipped_hour(std::int64_t before_ns, std::int64_t stamp_ns, const T
 
 std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clock) {
   constexpr std::size_t kMost = 64, kTimes = 4;
-  constexpr double kFar = 1e8;  // steps ahead: no pause is as long
+  constexpr double kFar = 1e8, kFromZero = 1e3;  // steps ahead: no pause is as long, nor one behind a first zero
   std::size_t wild = 0;
   for (std::size_t i = 1; i <= kMost && i + std::max<std::size_t>(kTimes * i, 4) <= stamps.size(); ++i) {
     std::vector<double> steps;
@@ -96,7 +96,8 @@ std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clo
     if (!rise) continue;
     const double usual = median_in_place(steps, Middle::lower);
     const double step = step_between(stamps[i - 1], stamps[i]);
-    if (step > kFar * usual || (step < -10 * usual && !find_wrap(stamps[i - 1], stamps[i], clock, usual))) wild = i;
+    const double far = i == 1 && stamps[0] == 0 ? kFromZero : kFar;
+    if (step > far * usual || (step < -10 * usual && !find_wrap(stamps[i - 1], stamps[i], clock, usual))) wild = i;
   }
   return wild;
 }

@@ -334,7 +334,8 @@ void TimeGrid::finish(LogInfo& info) {
   const double tolerance = options_.unsaid.rate_uncertainty_hz > 0
                                ? options_.unsaid.rate_uncertainty_hz / options_.rate_hz.value_or(1)
                                : 0.01;
-  if (options_.rate_hz && interval > 0 && std::abs(*options_.rate_hz * interval * 1e-9 - 1) > tolerance)
+  if (options_.rate_hz && options_.unsaid.channel_rate.empty() && interval > 0 &&
+      std::abs(*options_.rate_hz * interval * 1e-9 - 1) > tolerance)
     warnings_.add("rate_ignored", fmt::format("the stamps give {} Hz; the rate of {} Hz that was given is not used "
                                               "(`time_column` none ignores the stamps)",
                                               brief_text(1e9 / interval, 6), brief_text(*options_.rate_hz, 6)));

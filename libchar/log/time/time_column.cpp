@@ -68,6 +68,7 @@ constexpr std::array kTimeNames = {KnownName{"time"},
                                    KnownName{"elapsed seconds", 1000000000},
                                    KnownName{"sec", 1000000000},
                                    KnownName{"secs", 1000000000},
+                                   KnownName{"second", 1000000000},
                                    KnownName{"x value", 1000000000},  // LabVIEW measurement files
                                    KnownName{"millis", 1000000},
                                    KnownName{"milliseconds", 1000000},
@@ -88,6 +89,7 @@ constexpr std::array kClockNames = {KnownName{"ms", 1000000},
                                     KnownName{"ns", 1},
                                     KnownName{"ts"},
                                     KnownName{"tow", 1000000000},
+                                    KnownName{"itow", 1000000},
                                     KnownName{"mjd"},
                                     KnownName{"utc"},
                                     KnownName{"tick"},
@@ -140,6 +142,7 @@ std::optional<TimeName> time_name(std::string_view stem) {
   while (name.size() > 1 && (name[0] == '_' || name[0] == '%' || name[0] == '#' || name[0] == ' '))
     name.remove_prefix(1);
   if (name.ends_with("()")) name.remove_suffix(2);  // millis()
+  if (name.size() > 1 && name.ends_with('.')) name.remove_suffix(1);
   TimeName out;
   if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) || header_stamp(name))
     out.clock = Clock::device;
@@ -263,16 +266,30 @@ bool unit_of_time(const ColumnLabel& column) {
   return unit && unit->quantity == Quantity::time;
 }
 
+// "T", "T1", "TC2", "T_air": a temperature where its values are such and begin far from zero, however evenly they rise.
+bool like_a_temperature(const ColumnLabel& column, const FirstValues& first) {
+  constexpr double kColdest = -100, kHottest = 1500, kNearZero = 10;  // degrees, steps
+  const std::string name = stem_of(column);
+  if (!name.starts_with('T') || unit_of_time(column) ||
+      (name.size() > 1 && std::string_view("0123456789C_").find(name[1]) == name.npos) || first.integers ||
+      first.values.empty())
+    return false;
+  const double front = first.values.front();
+  return front > kColdest && front < kHottest && std::fabs(front) > kNearZero * usual_step(first.values);
+}
+
 // A temperature t goes up and down, or rises with noise.
 bool wanders(const TableFront& table, std::size_t column) {
-  const std::vector<double> values = table.first_values(column).values;
+  const FirstValues first = table.first_values(column);
+  const std::vector<double>& values = first.values;
   std::size_t down = 0, up = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  return values.size() >= 8 &&
-         (5 * std::min(up, down) > values.size() || (stem_of(table.columns[column]) == "T" && !steady_clock(values)));
+  return values.size() >= 8 && (5 * std::min(up, down) > values.size() ||
+                                (stem_of(table.columns[column]) == "T" &&
+                                 (!steady_clock(values) || like_a_temperature(table.columns[column], first))));
 }
 
 // The first column that is a clock by its values, one whose name speaks of time before others; said as
@@ -293,7 +310,8 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
       continue;
     named = std::any_of(kWords.begin(), kWords.end(),
                         [&](std::string_view word) { return name.find(word) != std::string::npos; });
-    if ((named || !found) && steady_clock(table.first_values(c).values))
+    const FirstValues first = table.first_values(c);
+    if ((named || !found) && steady_clock(first.values) && !like_a_temperature(column, first))
       found = c;
     else
       named = false;
@@ -383,10 +401,18 @@ void take_one_of_each(std::vector<double>& values) {
   if (m > 0 && std::fabs(n - std::round(n / m) * m) < n / m) values = std::move(once);
 }
 
-// Without names: a first column, behind words, that rises evenly or holds dates.
+// Counts the rows by ones.
+bool counts_rows(const std::vector<double>& values) {
+  return usual_step(values) == 1 && values.back() - values.front() == static_cast<double>(values.size() - 1);
+}
+
+// Without names: a first column, behind words and a count of the rows, that rises evenly or holds dates.
 std::optional<std::size_t> column_that_rises(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   std::size_t c = 0;
   while (c < table.columns.size() && table.columns[c].text) ++c;
+  if (table.text && c + 2 < table.columns.size() && !table.columns[c + 1].text &&
+      counts_rows(table.first_values(c).values))
+    if (const FirstValues next = table.first_values(c + 1); next.integers && steady_clock(next.values)) ++c;
   if (c + 1 >= table.columns.size()) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
   const FirstValues first = table.first_values(c);
@@ -394,13 +420,12 @@ std::optional<std::size_t> column_that_rises(const TableFront& table, const Read
   if (c > 0) take_one_of_each(values);
   const bool dates = table.text && counts_since_1970(first);
   if (!dates && !near_uniform_and_rising(values) && !(table.text && steady_clock(values))) return std::nullopt;
-  const bool counter =
-      !dates && usual_step(values) == 1 && values.back() - values.front() == static_cast<double>(values.size() - 1);
+  const bool counts = !dates && counts_rows(values);
   const std::string name = fmt::format("c{}", c);
-  if (counter || !table.text) {
-    if (!counter) info.time.candidate = name;
+  if (counts || !table.text) {
+    if (!counts) info.time.candidate = name;
     info.guesses.push_back(fmt::format("first column: {}, kept as a channel (`time_column` {} takes it as time)",
-                                       counter ? "counts the rows by ones" : "rises evenly", name));
+                                       counts ? "counts the rows by ones" : "rises evenly", name));
     return std::nullopt;
   }
   info.guesses.push_back(fmt::format("time column: {}, because it {} (`time_column` none keeps it as a channel)",

@@ -24,7 +24,11 @@ double worth_of(const Field& field, char decimal) {
   constexpr double kGrouped = 0.95;
   const std::string& text = field.text;
   if (decimal == ',' && text.ends_with(',')) return 0;
-  const CellKind kind = cell_kind(field, {decimal});
+  // A number with a point is nothing else under a comma than a thousand.
+  const bool pointed = decimal == ',' && !field.quoted && text.find('.') != std::string::npos &&
+                       text.find_first_not_of("+-0123456789.eE") == std::string::npos &&
+                       read_cell(text, '.').kind == Cell::value;
+  const CellKind kind = pointed ? CellKind::odd : cell_kind(field, {decimal});
   if (kind < CellKind::word) return 1;
   const std::string plain = without_thousands(text, {decimal, decimal == ',' ? '.' : ','});
   if (plain != text && read_cell(plain, decimal).kind == Cell::value)
@@ -137,6 +141,25 @@ bool counter_lines(const std::vector<Line>& lines, char group) {
   return grouped > 2 && 4 * grouped >= 3 * lines.size() && (unit || zeros);
 }
 
+// "19,4731", "19,0473": one comma a line, and behind it always as many digits, zeros in front of them among these.
+bool digits_behind_commas(const std::vector<Line>& lines) {
+  constexpr std::size_t kFewest = 3, kClock = 2;
+  std::size_t found = 0, digits = 0;
+  bool zeros = false;
+  for (const Line& line : lines) {
+    const std::string_view text = trimmed(line.text);
+    const std::size_t comma = text.find(',');
+    if (comma == std::string_view::npos) continue;
+    const std::string_view behind = text.substr(comma + 1);
+    if (behind.find_first_not_of("0123456789") != std::string_view::npos || (found > 0 && behind.size() != digits))
+      return false;
+    digits = behind.size();
+    zeros = zeros || behind.starts_with('0');
+    ++found;
+  }
+  return found >= kFewest && zeros && digits > kClock;
+}
+
 bool occurs(const std::vector<Line>& lines, char delimiter) {
   return std::any_of(lines.begin(), lines.end(),
                      [&](const Line& line) { return line.text.find(delimiter) != std::string_view::npos; });
@@ -160,6 +183,9 @@ std::vector<Candidate> candidates(const std::vector<Line>& lines, char delimiter
                                 [](const Candidate& one) { return one.delimiter == '\t' && one.columns > 1; });
   for (Candidate& one : out)
     if (one.delimiter == ' ' && tabs) one.score *= kTabsToo;
+  const bool padded = delimiter == 0 && decimal == 0 && digits_behind_commas(lines);
+  for (Candidate& one : out)
+    if (padded && one.delimiter == ',' && one.columns > 1) one.score *= kOneColumn * kOneColumn;
   std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
     return a.score != b.score ? a.score > b.score : a.columns > b.columns;
   });

@@ -137,8 +137,7 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
   const Cell cell = read_sampled(text, style);
   if (cell.kind == Cell::missing) return CellKind::blank;
   if (cell.kind != Cell::bad) return CellKind::number;
-  const auto day = read_calendar(text, DateOrder::day_first);
-  if (const auto stamp = day ? day : read_calendar(text, DateOrder::month_first))
+  if (const auto stamp = read_calendar(text))
     return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
   const bool word = field.quoted || (like_words(text) && !number_and_unit(text));
   return word ? CellKind::word : CellKind::odd;

@@ -43,7 +43,7 @@ struct StampPart {
   /// what the digits behind the mark count, where they are written without leading zeros ("12.5" is
   /// 12 s and 5 ns); 0 = a fraction
   std::int64_t fraction_ns = 0;
-  bool clock_digits = false;  ///< 125959.5 is 12:59:59.5
+  bool digits = false;  ///< 125959.5 is 12:59:59.5, 20240501125959 has its date too
 };
 
 /// Rows with another value in this column are left out, or (`must`) refused.
@@ -63,7 +63,7 @@ struct Dialect {
   char delimiter = ',';  ///< ' ' stands for runs of blanks and tabs
   char decimal = '.';
   char thousands = 0;  ///< between groups of three digits; 0 = none
-  std::string lead;    ///< what ends a stamp in front of the cells, "]" or "->"; "" = none
+  std::string lead;    ///< what ends a stamp in front of the cells (lead_of); "" = none
   LineEnd line_end = LineEnd::lf;
   LineForm lines;
   bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it

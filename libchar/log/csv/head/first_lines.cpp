@@ -12,6 +12,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/reading_fields.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
 
@@ -173,6 +174,15 @@ bool line_of_units(const Cells& line) {
   return units > 0 && units >= others;
 }
 
+// "Time,a" above "sec,counts": the unit of the time alone says that these are units.
+bool unit_of_the_time(const Cells& names, const Cells& units) {
+  for (std::size_t c = 0; c < std::min(names.size(), units.size()); ++c)
+    if (const auto unit = find_unit(units[c].text);
+        unit && unit->quantity == Quantity::time && called_time(names[c].text))
+      return true;
+  return false;
+}
+
 // Shimmer has a line between names and units that says what was done with the values.
 bool states_calibration(const Cells& line) {
   return std::all_of(line.begin(), line.end(), [](const Field& field) {
@@ -185,11 +195,35 @@ bool campbell(const std::vector<Cells>& lines) {
   return lines.size() > 4 && (lines[0][0].text == "TOA5" || lines[0][0].text == "TOACI1");
 }
 
+// "ERR,0.125,2": of a row with fractions one cell is no number, and none is a name of time.
+bool damaged(const Cells& line, NumberStyle style) {
+  bool fractions = false, named = false;
+  for (const Field& field : line) {
+    const Cell cell = read_styled(field.text, style);
+    fractions = fractions || (cell.kind == Cell::value && field.text.find(style.decimal) != std::string::npos);
+    named = named || (cell.kind == Cell::bad && (field.quoted || called_time(field.text)));
+  }
+  return fractions && !named;
+}
+
+// "0,1,2,3" above numbers with fractions: pandas numbers columns that have no names.
+bool numbers_columns(const std::vector<Cells>& lines, NumberStyle style) {
+  constexpr std::size_t kFewest = 3;
+  if (lines.size() < kFewest || lines[0].size() < kFewest) return false;
+  for (std::size_t c = 0; c < lines[0].size(); ++c)
+    if (lines[0][c].text != std::to_string(c)) return false;
+  return std::all_of(lines.begin() + 1, lines.end(), [&](const Cells& line) {
+    return std::all_of(line.begin() + 1, line.end(),
+                       [&](const Field& field) { return field.text.find(style.decimal) != std::string::npos; });
+  });
+}
+
 }  // namespace
 
 TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<ColumnKind>& kinds, NumberStyle style) {
   if (campbell(lines)) return {4, 1, 2};
   if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
+  if (numbers_columns(lines, style)) return {1, 0, {}};
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());
@@ -211,7 +245,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
     out.data = last;
     out.names = last - 1;
     const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
-    if (named_above && line_of_units(lines[last - 1]) && !line_of_units(lines[last - 2])) {
+    if (named_above && !line_of_units(lines[last - 2]) &&
+        (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]))) {
       out.units = last - 1;
       out.names = last - 2;
     }
@@ -221,6 +256,10 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.
   const auto fitting = std::find_if(census.begin() + static_cast<std::ptrdiff_t>(last), first_row,
                                     [](const LineCensus& line) { return line.fits; });
+  if (fitting != first_row && damaged(lines[static_cast<std::size_t>(fitting - census.begin())], style)) {
+    out.data = static_cast<std::size_t>(fitting - census.begin());
+    return out;
+  }
   if (fitting != first_row) {
     const auto at = static_cast<std::size_t>(fitting - census.begin());
     out.names = at;

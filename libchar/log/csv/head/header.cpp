@@ -11,6 +11,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/log/csv/head/candidates.hpp"
 #include "libchar/log/csv/head/first_lines.hpp"
 
 namespace libchar::csv {
@@ -70,6 +71,50 @@ bool named_by_comment(Study& study) {
   return true;
 }
 
+// A delimiter at the end of the first line, or of the first row, that has nothing behind it.
+void find_trailing(Study& study) {
+  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.trailing_delimiter; ++i) {
+    const Line& line = study.sample[i];
+    const std::size_t last = line.text.find_last_not_of(' ');
+    if (last == std::string_view::npos || line.text[last] != study.dialect.delimiter) continue;
+    const Cells fields = cells_in(study.dialect, line.text);
+    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
+        fields.back().quoted)
+      continue;
+    study.dialect.trailing_delimiter = true;
+    study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
+                            place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
+  }
+}
+
+// The last line in front of the rows has a name for each column, between other signs than the rows have.
+bool named_between_other_signs(Study& study) {
+  if (study.options.header != "auto" || study.columns < 2 || study.preamble.empty() || !study.dialect.lead.empty())
+    return false;
+  const Line& line = study.preamble.back();
+  for (const char sign : {';', '\t', ',', '|', ' '}) {
+    if (sign == study.dialect.delimiter) continue;
+    Cells names = split(line.text, sign);
+    if (names.back().text.empty()) names.pop_back();
+    if (names.size() != study.columns || std::any_of(names.begin(), names.end(), [&](const Field& name) {
+          return cell_kind(name, study.style()) != CellKind::word;
+        }))
+      continue;
+    for (const Field& name : names) {
+      Column& added = study.dialect.columns.emplace_back();
+      added.text = header_text(study, name, line, 0);
+      added.line = line.number;
+      added.position = name.offset + 1;
+    }
+    study.dialect.has_header = true;
+    study.dialect.header = std::string(line.text);
+    study.info.dialect.push_back(fmt::format("header in line {}, separated by {}", line.number, delimiter_name(sign)));
+    find_trailing(study);
+    return true;
+  }
+  return false;
+}
+
 // "ax=0.01 ay=0.02", "ax: 0.01, ay: 0.02", "ax: 0.01 ay: 0.02": every cell, or the one in front of it, says its name.
 bool named_by_labels(Study& study, const Cells& first) {
   bool any = false;
@@ -122,20 +167,6 @@ bool find_cell_units(Study& study) {
   return found;
 }
 
-// A delimiter at the end of the first line, or of the first row, that has nothing behind it.
-void find_trailing(Study& study) {
-  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.trailing_delimiter; ++i) {
-    const Line& line = study.sample[i];
-    const Cells fields = cells_in(study.dialect, line.text);
-    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
-        fields.back().quoted)
-      continue;
-    study.dialect.trailing_delimiter = true;
-    study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
-                            place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
-  }
-}
-
 }  // namespace
 
 void read_names(Study& study, const Line& line, std::string_view text) {
@@ -165,6 +196,12 @@ void read_names(Study& study, const Line& line, std::string_view text) {
     added.line = line.number + lines;
     added.position = newline == std::string_view::npos ? field.offset + indent + 1 : field.offset - newline;
   }
+  // "Date; Time; BC1" above rows between blanks
+  if (dialect.delimiter == ' ' && std::all_of(dialect.columns.begin(), dialect.columns.end() - 1, [](const Column& c) {
+        return c.text.size() > 1 && c.text.ends_with(';');
+      }))
+    for (Column& column : dialect.columns)
+      if (column.text.ends_with(';')) column.text.pop_back();
 }
 
 void read_units(Study& study, const Line& line) {
@@ -180,7 +217,7 @@ void read_units(Study& study, const Line& line) {
 }
 
 void do_without_names(Study& study) {
-  if (named_by_comment(study)) return;
+  if (named_by_comment(study) || named_between_other_signs(study)) return;
   const Line& first = study.sample[0];
   // What looks like the end of the first rows may be a column that is filled further on.
   const Cells all = cells_in(study.dialect, first.text);

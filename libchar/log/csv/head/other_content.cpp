@@ -138,6 +138,9 @@ void refuse_other_content(std::string_view head, const std::string& file) {
         .hint("influx -execute 'SELECT * FROM NAME' -database DATABASE -format csv exports it");
   if (head[front] == '<')
     throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
+  if (head.substr(front).starts_with("{'"))
+    throw refusal(file, "dictionaries of Python, not CSV")
+        .hint("quotes make them JSON: tr \\' '\"' < FILE > log.jsonl");
   if (head[front] == '{') throw refusal(file, "JSON, not CSV").hint("is this the sidecar of a raw log, or a result?");
 }
 

@@ -452,10 +452,12 @@ class CarefulLines {
 
   void refuse_kind(std::string_view text, const Span& span, const RowFilter& filter) {
     const std::string& name = to_.dialect.columns[static_cast<std::size_t>(filter.column)].name;
-    fail("E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
-         fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each", name, filter.value,
-                     name),
-         span.start);
+    fail(
+        "E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
+        fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each, `channels` '!{}' reads "
+                    "all rows",
+                    name, filter.value, name, name),
+        span.start);
   }
 
   bool note_group(std::string_view text, const Span& span) {
@@ -561,13 +563,17 @@ class CarefulLines {
       case StampDefect::malformed: {
         if ((to == Plan::kTime ? to_.dialect.time : to_.dialect.more_time).calendar) {
           fail("E0321", "no date or clock time like those before it", std::string(text),
-               "`date_order` day or month says which number of 05/01/2024 is the day", span.start);
+               read_calendar(text) ? "`date_order` day, month or year says which number of 05/01/24 comes first" : "",
+               span.start);
           break;
         }
         const Cell why = read_cell(text, to_.dialect.decimal);
         fail("E0311",
              fmt::format("{} in the time column", why.kind == Cell::bad ? why.reason : "a number was expected"),
-             std::string(text), "", span.from + (why.kind == Cell::bad ? why.offset : offset));
+             std::string(text),
+             "`drop_bad_rows` leaves such rows out; `time_column` none, `rate_hz` HZ and `channels` without the column "
+             "do without it",
+             span.from + (why.kind == Cell::bad ? why.offset : offset));
         break;
       }
       case StampDefect::out_of_range:
@@ -615,16 +621,16 @@ class CarefulLines {
   }
 
   std::string bad_hint(std::string_view text, std::size_t channel) const {
+    if (text.starts_with("\xE2\x88\x92")) return "sed 's/\xE2\x88\x92/-/g' FILE writes '-'";
     if (to_.dialect.decimal == '.' && read_cell(text, ',').kind == Cell::value)
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
     const bool word = !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
-    if (!word) return "";
     const auto column = std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
-    return fmt::format(
-        "`drop_bad_rows` leaves such rows out, `channels` '!{}' the column; `skip_rows`, if the table starts later",
-        to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name);
+    return fmt::format("`drop_bad_rows` leaves such rows out, `channels` '!{}' the column{}",
+                       to_.dialect.columns[static_cast<std::size_t>(column - to_.plan.target.begin())].name,
+                       word ? "; `skip_rows`, if the table starts later" : "");
   }
 
   Filling& to_;

@@ -65,6 +65,47 @@ bool epoch_and_rest(const std::vector<Cells>& rows) {
   return rows.size() > 2 && largest >= 1000000;
 }
 
+/// "125959.50" as nanoseconds of the day; nothing where it is no time of day.
+std::optional<std::int64_t> clock_of_digits(std::int64_t digits_ns) {
+  constexpr std::int64_t kSecond = 1000000000;
+  const std::int64_t digits = digits_ns / kSecond, minutes = digits / 100 % 100;
+  if (digits_ns < 0 || digits >= 240000 || minutes >= 60 || digits % 100 >= 60) return std::nullopt;
+  return (digits / 10000 * 3600 + minutes * 60 + digits % 100) * kSecond + digits_ns % kSecond;
+}
+
+/// "20240501" in all rows, or such dates with their clock times, which rise.
+bool dates_in_digits(const StampStudy& study, std::size_t column, bool with_clock) {
+  constexpr std::size_t kDate = 8, kFewest = 3;
+  constexpr std::int64_t kYear = std::int64_t{31556952} * 1000000000;
+  std::int64_t first = 0, last = 0;
+  std::size_t rows = 0;
+  for (const Cells& row : study.rows) {
+    if (column >= row.size() || row[column].text.empty()) continue;
+    const auto date = read_date_digits(row[column].text);
+    if (!date || (!with_clock && row[column].text.size() != kDate)) return false;
+    if (date->ns < 10 * kYear || date->ns > 110 * kYear || (rows > 0 && date->ns < last)) return false;
+    first = rows++ == 0 ? date->ns : first;
+    last = date->ns;
+  }
+  return rows >= kFewest && (!with_clock || last > first);
+}
+
+/// "DATE" and "TIME" of digits, side by side.
+bool digits_in_two(const StampStudy& study, const Dialect& dialect, std::size_t column) {
+  const std::string date = ascii_lower(dialect.columns[column].text),
+                    time = ascii_lower(dialect.columns[column + 1].text);
+  const bool named = date.find("dat") != std::string::npos &&
+                     (time.find("time") != std::string::npos || time.find("utc") != std::string::npos);
+  return named && dates_in_digits(study, column, false) &&
+         std::all_of(study.rows.begin(), study.rows.end(), [&](const Cells& row) {
+           std::int64_t ns = 0;
+           std::size_t offset = 0;
+           return column + 1 < row.size() &&
+                  read_stamp(row[column + 1].text, study.style.decimal, 1000000000, ns, offset) == StampDefect::none &&
+                  clock_of_digits(ns);
+         });
+}
+
 std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& dialect) {
   const auto place = [&](ColumnKind kind) {
     return std::find(study.kinds.begin(), study.kinds.end(), kind) - study.kinds.begin();
@@ -76,6 +117,7 @@ std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& diale
     for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c) {
       const std::string &first = dialect.columns[c].text, &second = dialect.columns[c + 1].text;
       if (seconds_and_nanoseconds(first, second)) return StampPair{c, c + 1, false};
+      if (digits_in_two(study, dialect, c)) return StampPair{c, c + 1, true};
       if (days_and_seconds(first, second) && !study.rows.empty() && whole_number(study.rows.front(), c))
         return StampPair{c, c + 1, false, true};
     }
@@ -97,15 +139,6 @@ FirstValues first_numbers(const StampStudy& study, std::size_t column) {
   return first;
 }
 
-// Seconds after the first, so that a double holds them.
-/// "125959.50" as nanoseconds of the day; nothing where it is no time of day.
-std::optional<std::int64_t> clock_of_digits(std::int64_t digits_ns) {
-  constexpr std::int64_t kSecond = 1000000000;
-  const std::int64_t digits = digits_ns / kSecond, minutes = digits / 100 % 100;
-  if (digits_ns < 0 || digits >= 240000 || minutes >= 60 || digits % 100 >= 60) return std::nullopt;
-  return (digits / 10000 * 3600 + minutes * 60 + digits % 100) * kSecond + digits_ns % kSecond;
-}
-
 /// How many steps are far from the usual one.
 std::size_t odd_steps(const std::vector<double>& values) {
   const double usual = usual_step(values);
@@ -115,7 +148,7 @@ std::size_t odd_steps(const std::vector<double>& values) {
   return odd;
 }
 
-/// NMEA's hhmmss.ss, and the like: all are times of day, and as such they step more evenly than as numbers.
+/// YYYYMMDDhhmmss, NMEA's hhmmss.ss, and the like: all are dates, or times of day that step more evenly than numbers.
 bool is_clock_digits(const StampStudy& study, std::size_t column, const std::string& named_so) {
   const auto times = [&](const std::vector<Cells>& rows, std::size_t at, auto&& take) {
     for (const Cells& row : rows) {
@@ -131,6 +164,7 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
   };
   if (study.kinds[column] != ColumnKind::number || study.rows.empty() || column >= study.rows.front().size())
     return false;
+  if (dates_in_digits(study, column, true)) return true;
   std::vector<double> numbers, clocks;
   bool rises = true;
   const auto collect = [&](double number, double clock) {
@@ -153,6 +187,7 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
   return odd_steps(clocks) < odd_steps(numbers);
 }
 
+// Seconds after the first, so that a double holds them.
 FirstValues first_stamps(const StampStudy& study, const Dialect& dialect, const StampPart& part,
                          const StampPart& more) {
   FirstValues first;
@@ -196,32 +231,41 @@ void choose_date_order(const StampStudy& study, const ReadOptions& options, Dial
     style = date_style(texts, study.style.decimal == ',');
   }
   if (options.date_order != "auto")
-    style = {options.date_order == "day" ? DateOrder::day_first : DateOrder::month_first, false};
+    style = {options.date_order == "day"     ? DateOrder::day_first
+             : options.date_order == "month" ? DateOrder::month_first
+                                             : DateOrder::year_first,
+             false};
   dialect.date_order = style.order;
   if (style.ambiguous)
-    info.guesses.push_back(fmt::format("dates: {} is read with the {} first (`date_order` day or month decides)",
-                                       printable(example, 40), style.order == DateOrder::day_first ? "day" : "month"));
+    info.guesses.push_back(fmt::format("dates: {} is read with the {} first (`date_order` day, month or year decides)",
+                                       printable(example, 40),
+                                       style.order == DateOrder::day_first     ? "day"
+                                       : style.order == DateOrder::month_first ? "month"
+                                                                               : "year"));
 }
 
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   const auto main = static_cast<std::size_t>(dialect.time.column);
-  bool zone = false, of_hour = false;
+  bool zone = false, of_hour = false, date_digits = false;
   for (const Cells& row : study.rows)
     for (const StampPart* part : {&dialect.time, &dialect.more_time})
       if (part->column >= 0 && static_cast<std::size_t>(part->column) < row.size())
-        if (const auto stamp = read_calendar(row[static_cast<std::size_t>(part->column)].text, dialect.date_order)) {
+        if (const std::string& text = row[static_cast<std::size_t>(part->column)].text;
+            const auto stamp = part->digits ? read_date_digits(text) : read_calendar(text, dialect.date_order)) {
           zone = zone || stamp->zone;
           of_hour = of_hour || stamp->of_hour;
+          date_digits = date_digits || part->digits;
         }
   constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
   const bool clock_only =
-      dialect.time.clock_digits || (study.kinds[main] == ColumnKind::clock && dialect.more_time.column < 0);
+      !date_digits && dialect.more_time.column < 0 && (dialect.time.digits || study.kinds[main] == ColumnKind::clock);
   dialect.clock_period_ns = clock_only ? (of_hour ? kHour : 24 * kHour) : 0;
-  info.dialect.push_back(of_hour                     ? "stamps are minutes and seconds of an hour"
-                         : dialect.time.clock_digits ? "stamps are times of day, hhmmss"
-                         : clock_only                ? "stamps are times of day"
-                         : zone                      ? "calendar stamps, with their time zone"
-                                                     : "calendar stamps, as written, without a time zone");
+  info.dialect.push_back(of_hour               ? "stamps are minutes and seconds of an hour"
+                         : date_digits         ? "stamps are dates in digits, YYYYMMDDhhmmss"
+                         : dialect.time.digits ? "stamps are times of day, hhmmss"
+                         : clock_only          ? "stamps are times of day"
+                         : zone                ? "calendar stamps, with their time zone"
+                                               : "calendar stamps, as written, without a time zone");
   info.time.unit = "ns";
   info.time.unit_ns = 1;
   info.time.local = !zone;
@@ -311,7 +355,11 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
 
 StampDefect read_part(std::string_view text, const StampPart& part, const Dialect& dialect, std::int64_t& out,
                       std::size_t& offset) {
-  if (part.clock_digits) {
+  if (part.digits) {
+    if (const auto date = read_date_digits(text)) {
+      out = date->ns;
+      return StampDefect::none;
+    }
     const StampDefect defect = read_stamp(text, dialect.decimal, 1000000000, out, offset);
     if (defect != StampDefect::none) return defect;
     const auto clock = clock_of_digits(out);
@@ -341,12 +389,15 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
 void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   choose_date_order(study, options, dialect, info);
   const auto pair = find_pair(study, dialect);
+  const bool led = !dialect.lead.empty() && options.time_column == "auto";
+  if (dialect.lead == ")" && dialect.columns[0].text.empty()) dialect.columns[0].unit_below = "ms";  // ESP-IDF
   TableFront table = front_of(study, dialect, pair);
   const auto part_of = [&](std::size_t column) {
     const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
     StampPart part{static_cast<int>(column), calendar};
-    part.clock_digits = table.columns[column].calendar && !calendar && (!pair || column != pair->first);
-    part.calendar = part.calendar || part.clock_digits;
+    part.digits = table.columns[column].calendar && !calendar && (!pair || pair->calendar || column != pair->first);
+    if (pair && pair->calendar && column == pair->second) part.digits = !calendar;
+    part.calendar = part.calendar || part.digits;
     if (!pair || pair->calendar) return part;
     constexpr std::int64_t kSecond = 1000000000;
     if (column == pair->first) part.unit_ns = pair->days ? 86400 * kSecond : kSecond;
@@ -361,7 +412,7 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
     return table.columns[column].calendar ? first_stamps(study, dialect, part_of(column), partner_of(column))
                                           : first_numbers(study, column);
   };
-  auto index = find_time_column(table, options, info);
+  auto index = led ? std::optional<std::size_t>(0) : find_time_column(table, options, info);
   if (!index) return;
   if (pair && *index == pair->second) index = pair->first;
   dialect.time = part_of(*index);

@@ -9,6 +9,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/ros/messages/message_definition.hpp"
 
 namespace libchar {
@@ -168,9 +169,7 @@ bool MessageTopics::row_of(const RawMessage& message, Findings& warnings) {
                  "messages with a longer or shorter array than in the first one: elements beyond it are left out, "
                  "those they lack are missing",
                  place(message));
-  if (rounded > 0)
-    warnings.add("rounded_integer", "64-bit integers above 2^53 do not fit a double and were rounded", place(message),
-                 rounded);
+  if (rounded > 0) warnings.add("rounded_integer", kRoundedIntegers, place(message), rounded);
   if (!time_field_) return true;
   const double ns = row_.back() * static_cast<double>(unit_ns_);
   if (!(std::abs(ns) < 0x1p62)) {

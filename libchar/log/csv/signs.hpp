@@ -1,0 +1,25 @@
+#pragma once
+// Signs around and inside of cells that are no part of a number, and that a text loses on its way: apostrophes that
+// stand for quotes; brackets of printed lists, codes of a terminal's colours, checksums behind '*', exponents of
+// Fortran (1.5D+03), narrow blanks between thousands.
+
+#include <functional>
+#include <memory>
+
+#include "libchar/log/csv/unpacker.hpp"
+
+namespace libchar::csv {
+
+/// The first line has cells in apostrophes, from its beginning to its end.
+bool in_apostrophes(std::string_view front);
+std::unique_ptr<Unpacker> open_apostrophes(std::function<std::size_t(char*, std::size_t)> stored);
+
+/// Which of the other signs the first lines hold.
+struct Signs {
+  bool colours = false, brackets = false, checksums = false, exponents = false, typeset = false;
+  bool any() const { return colours || brackets || checksums || exponents || typeset; }
+};
+Signs signs_of(std::string_view front);
+std::unique_ptr<Unpacker> open_signs(std::function<std::size_t(char*, std::size_t)> stored);
+
+}  // namespace libchar::csv
