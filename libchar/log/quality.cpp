@@ -90,6 +90,8 @@ struct Extreme {
     constexpr double kApart = 3;
     return count >= kFewest && others > 0 && value - next > kApart * others;
   }
+  /// Nothing lies on the way to it: a range that ends is reached through what is below.
+  bool is_apart(double others) const { return saturated() > 0 && value - next > 0.5 * others; }
   /// Two marks side by side; `others`: the range of what is neither.
   bool are_marks(double others) const {
     constexpr std::uint64_t kFewest = 3;
@@ -998,9 +1000,17 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
         share > kMostSaturated ? "much_saturated" : "saturated",
         fmt::format("{} samples ({}) are at the end of the range ({} or {}): saturated, use a larger full scale",
                     q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
-    cut.count = q.saturated;
-    if (q.minimum == 0 || q.maximum == 0)
+    if (!q.signs.apart.empty()) {
+      std::vector<std::string> texts;
+      for (const double end : q.signs.apart) texts.push_back(shortest(end));
+      cut.sentence =
+          fmt::format("{} samples ({}) are {}, and no value comes near: a mark for missing values, or saturated",
+                      q.saturated, percent_text(share), fmt::join(texts, " or "));
+      cut.help.push_back({"Take the value as missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
+    } else if (q.minimum == 0 || q.maximum == 0) {
       cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
+    }
+    cut.count = q.saturated;
     out.push_back(std::move(cut));
   }
   // One long run is a sensor that froze; a dead band is entered again and again.
@@ -1221,6 +1231,8 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
     q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
                   (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
   if (FrozenRuns(q).rare) q.saturated = 0;
+  if (q.saturated > 0 && state.bottom.is_apart(others)) q.signs.apart.push_back(q.minimum);
+  if (q.saturated > 0 && state.top.is_apart(others)) q.signs.apart.push_back(q.maximum);
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
   q.findings = findings_of(q, rate_hz);
