@@ -195,7 +195,7 @@ def flight_files():
         "A", bytes([0]) + struct.pack("<H", 0) + b"f") + said("D", struct.pack("<H", 0) + bytes(60_000)) * 150
     yield "ulg", "many subscriptions", begin + said("F", b"f:uint64_t timestamp;float x;") + b"".join(
         said("A", bytes([k % 256]) + struct.pack("<H", k % 65536) + b"f") for k in range(500_000))
-    yield "ulg", "parameters", begin + said("P", b"\x07float a" + bytes(4)) * 700_000
+    yield "ulg", "parameters", begin + said("P", b"\x07float a" + bytes(4)) * 650_000
     yield "ulg", "nothing after the head", begin + bytes(9_000_000)
     form = lambda kind, name: (b"\xa3\x95\x80" + bytes([kind, 89]) + name.ljust(4, b"\0") + b"Q".ljust(16, b"\0")
                                + b"TimeUS".ljust(64, b"\0"))
