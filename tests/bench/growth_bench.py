@@ -2,18 +2,19 @@
 
 Each row is one command with ever more samples, channels, sensors, points, devices or files. Time is the processor's
 (user and system), memory the peak. The exponent is the slope of the logarithms of what was added to the smallest size,
-by least squares: 1 is linear, 2 quadratic. Needs numpy (/usr/bin/python3). Prints a table in Markdown; asserts nothing.
+by least squares: 1 is linear, 2 quadratic. Prints a table in Markdown; asserts nothing.
 """
 import argparse
 import math
 import os
 import pathlib
+import random
 import shutil
+import statistics
+import struct
 import subprocess
 import sys
 import tempfile
-
-import numpy as np
 
 
 def measured(words, folder):
@@ -27,7 +28,14 @@ def measured(words, folder):
 
 
 def noise(folder, name, *shape, seed=7):
-    np.save(folder / name, np.random.default_rng(seed).standard_normal(shape))
+    """White noise of whole numbers. Written in pieces: a child's peak begins with the memory of this process."""
+    with open(folder / name, "wb") as file:
+        head = f"{{'descr': '<i2', 'fortran_order': False, 'shape': {shape}, }}"
+        head += " " * (-(len(head) + 11) % 64) + "\n"
+        file.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode())
+        numbers, left = random.Random(seed), 2 * math.prod(shape)
+        while left > 0:
+            left -= file.write(numbers.randbytes(min(left, 1 << 16)))
 
 
 def samples(folder, n):
@@ -47,8 +55,10 @@ def sensors(folder, n):
 
 
 def points(folder, n):
-    tau = np.geomspace(0.01, 1e4, n)
-    np.savetxt(folder / "curve.csv", np.column_stack([tau, tau**-0.5]), header="tau_s,adev", comments="", delimiter=",")
+    with open(folder / "curve.csv", "w") as file:
+        file.write("tau_s,adev\n")
+        for k in range(n):
+            file.write(f"{0.01 * 10**(6 * k / n)},{10**(-3 * k / n)}\n")
     return ["plot", "curve.csv", "-o", "out.svg"]
 
 
@@ -79,10 +89,9 @@ ROWS = [("samples (of 3 channels)", samples, "characterize", [250_000, 500_000, 
 
 
 def exponent(sizes, values):
-    """Least squares in logarithms over the sizes behind the first, of what came on top of the first."""
     x = [math.log(size - sizes[0]) for size in sizes[1:]]
     y = [math.log(max(value - values[0], 1e-3)) for value in values[1:]]
-    return float(np.polyfit(x, y, 1)[0])
+    return statistics.linear_regression(x, y).slope
 
 
 def main():
