@@ -89,9 +89,12 @@ ROWS = [("samples (of 3 channels)", samples, "characterize", [250_000, 500_000, 
 
 
 def exponent(sizes, values):
+    """What grows by less than a quarter over all sizes has none."""
+    if values[-1] < 1.25 * values[0]:
+        return "–"
     x = [math.log(size - sizes[0]) for size in sizes[1:]]
     y = [math.log(max(value - values[0], 1e-3)) for value in values[1:]]
-    return statistics.linear_regression(x, y).slope
+    return f"{statistics.linear_regression(x, y).slope:.2f}"
 
 
 def main():
@@ -116,7 +119,7 @@ def main():
                 shutil.rmtree(folder)
         seconds, peaks = zip(*rows)
         print(f"| {name} | {command} | {sizes[0]:,} | {sizes[-1]:,} | {seconds[0]:.2f} … {seconds[-1]:.2f} | "
-              f"{exponent(sizes, seconds):.2f} | {peaks[0]:.0f} … {peaks[-1]:.0f} | {exponent(sizes, peaks):.2f} |",
+              f"{exponent(sizes, seconds)} | {peaks[0]:.0f} … {peaks[-1]:.0f} | {exponent(sizes, peaks)} |",
               flush=True)
 
 

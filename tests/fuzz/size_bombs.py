@@ -40,6 +40,8 @@ def csv_files():
     yield "quoted header of a million lines", b'"' + b"\n" * MILLION + b'",b\n1,2\n2,3\n'
     yield "quoted cells of many lines", b'a,b\n' + (b'"' + b"\n" * 1000 + b'",2\n') * 5000
     yield "one long name", b"a" * 9_000_000 + b",b\n1,2\n2,3\n"
+    yield "columns like clocks", (",".join(f"utc{k}" for k in range(20_000)) + "\n"
+                                  + (",".join(["120000"] * 20_000) + "\n") * 60).encode()
     yield "names of 100 kB", b",".join(b"a" * 100_000 for _ in range(90)) + b"\n" + b"1," * 89 + b"1\n"
     yield "nothing but line ends", b"\n" * 10_000_000
     yield "nothing but commas", b"," * 10_000_000
