@@ -267,6 +267,8 @@ def table_files():
     yield "xlsx", "a column far out", workbook([(b'<row r="1"><c r="XFD1"><v>1</v></c></row>' * 25_000, 80)])
     yield "xlsx", "columns of many letters", workbook([
         (b'<row r="1"><c r="' + b"Z" * 60_000 + b'1"><v>1</v></c></row>', 1000)])
+    wide = b"".join(b"<c><v>%d</v></c>" % k for k in range(16_384)) + b"</row>"
+    yield "xlsx", "as many columns as there are", workbook([(b'<row r="%d">' % r + wide, 1) for r in range(1, 22)])
     yield "xlsx", "rows far down", workbook([(b'<row r="1"><c r="A1"><v>1</v></c></row><row r="999999999999">'
                                               b'<c r="A999999999999"><v>1</v></c></row>', 1)])
     yield "xlsx", "tags in tags", workbook([(b"<a>" * 250_000, 100)])
@@ -327,6 +329,7 @@ def document_files():
     yield "sensor.yaml", "many keys", ["model"], (head + "".join(f"k{k}: 1\n" for k in range(500_000))).encode()
     yield "sensor.yaml", "deep", ["model"], (head + "white_noise: " + "[" * 1_000_000).encode()
     yield "sensor.yaml", "long text", ["model"], (head + "note: " + "x" * 9_000_000).encode()
+    yield "sensor.yaml", "a list of millions", ["model"], (head + "l: [" + "1," * 4_900_000 + "1]").encode()
     yield "sensor.yaml", "many lines of nothing", ["model"], (head + "\n" * 9_000_000).encode()
     model = "model: {unit: m, white_noise: {value: 1}, density: two-sided}"
     scene = ("format: scene\nversion: 1\nname: s\nsimulate: {{rate_hz: 100, samples: {}, truth: {{name: l, kind: sine, "
@@ -339,6 +342,8 @@ def document_files():
             b'"k%d":1' % k for k in range(700_000)) + b"}"), ("many files", b'{"format":"characterization","files":['
                                                               + b'"a",' * 2_000_000 + b'"b"]}')):
         yield "json", name, ["report"], content
+    yield "json", "millions of empty channels", ["report", "--form"], (
+        b'{"format":"characterization","version":1,"tool":{},"allan":{"channels":[' + b"{}," * 3_000_000 + b"{}]}}")
     said = b'{"tool":{},"files":[],"a":[%s]}'
     for name, piece in (("objects", b'{},'), ("arrays", b"[],"), ("numbers", b"1,"), ("keys", b'{"a":1},')):
         yield "json", f"results of {name}", ["verify"], said % (piece * (9_000_000 // len(piece)) + b"1")
