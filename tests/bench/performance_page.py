@@ -35,6 +35,8 @@ SECTIONS = [
      False),
     ("Replay", "Every algorithm on 12 sensors of 10⁶ samples that stream from CSV.",
      ["python3", "tests/bench/replay_bench.py", "--program", "{build}/tools/sensorchar"], False),
+    ("Growth", "Processor time and peak memory of one command with ever more of something; 1 is linear.",
+     ["python3", "tests/bench/growth_bench.py", "{build}/tools/sensorchar"], True),
 ]
 
 

@@ -65,6 +65,11 @@ TEST_CASE("document: text that is no UTF-8, and text of the largest size, are to
   CHECK_THAT(refusal(std::string(kMaxDocumentBytes, ' ')), Catch::Contains("is empty"));
   CHECK_THAT(refusal(std::string(kMaxDocumentBytes + 1, ' ')),
              Catch::Contains("16777217 bytes exceeds the limit of 16777216"));
+  std::string list = "[";
+  for (std::size_t k = 1; k < kMaxDocumentBytes / 24; ++k) list += k > 1 ? ",1" : "1";  // the list is a value, too
+  CHECK(parse_json_document(list + "]", "f").list.size() == 699'049);
+  CHECK_THROWS_WITH(parse_json_document(list + ",1]", "f"), Catch::Contains("more than 699050 values"));
+  CHECK_THAT(refusal(list + ",1]"), Catch::Contains("more than 699050 values"));
 }
 
 TEST_CASE("document: whole numbers of either sign stay whole") {

@@ -1,5 +1,7 @@
 #include "libchar/figure/draw_figure.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
@@ -206,6 +208,15 @@ TEST_CASE("a page without room for a plot is refused") {
     options.height_mm = height;
     CHECK_THROWS_WITH(svg_of_chart(chart, options), Contains("E0981"));
   }
+}
+
+TEST_CASE("a series without points is not in a script for gnuplot") {
+  Chart chart = allan_of({test::figure_curve("a", "deg/s")});
+  const std::size_t there = chart.series.size();
+  chart.series.emplace_back().name = "empty";
+  const std::string script = figure_gnuplot(chart, {});
+  for (std::size_t k = 0; k < there; ++k) CHECK_THAT(script, Contains(fmt::format("$series{} ", k)));
+  CHECK_THAT(script, !Contains(fmt::format("$series{} ", there)));
 }
 
 TEST_CASE("the numbers of a figure, as a table and as a script that gnuplot runs") {

@@ -37,6 +37,17 @@ TEST_CASE("a curve in a terminal is as wide as it, has decades at both axes and 
     CHECK_THAT(text, !Contains("\x1b"));
     CHECK_THAT(text, Contains("Overlapping Allan deviation [deg/s]") && Contains("Averaging time"));
     CHECK_THAT(text, Contains("0.01 ┤") && Contains("┤") && Contains("┬"));
+    // The axis stands one blank behind the longest label.
+    std::size_t longest = 0, shortest_gap = columns;
+    for (const std::string& line : terminal_lines(text)) {
+      const std::size_t axis = line.find("┤");
+      if (axis == std::string::npos) continue;
+      const std::string label = line.substr(0, axis);
+      longest = std::max(longest, label.find_last_not_of(' ') + 1);
+      shortest_gap = std::min(shortest_gap, label.size() - label.find_last_not_of(' ') - 1);
+    }
+    CHECK(longest > 0);
+    CHECK(shortest_gap == 1);
   }
 }
 

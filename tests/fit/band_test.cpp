@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/fit/curve/shaped_curves.hpp"
+#include "libchar/fit/detail/band/named_shape.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/simulate/detail/noise_generator.hpp"
 #include "tests/support/noise.hpp"
@@ -262,4 +263,14 @@ TEST_CASE("white noise beside a fast process, or behind a shelf: N is undetermin
     INFO("seed " << seed << " N " << white.value.value_or(0));
     CHECK((white.status != Status::detected || white.ci95.low < 0.1));
   }
+}
+
+TEST_CASE("a named shape says its family and corners") {
+  using Family = NamedShape::Family;
+  CHECK(named_shape_text({Family::high_pass, 0.5, 0, 1, 0}) == "a high-pass at 0.5 Hz");
+  CHECK(named_shape_text({Family::shelf, 8, 2, 1, 0}) == "a shelf, 4 times between 2 Hz and 8 Hz");
+  CHECK(named_shape_text({Family::shelf, 2, 8, 1, 0}) == "a shelf, 0.25 times between 2 Hz and 8 Hz");
+  CHECK(named_shape_text({Family::second_order, 10, 0, 0.7, 0}) == "a second-order low-pass at 10 Hz, damping 0.7");
+  CHECK(named_shape_text({Family::loop, 10, 3, 0.7, 0}) ==
+        "a second-order low-pass at 10 Hz, damping 0.7, with a zero at 3 Hz");
 }

@@ -131,6 +131,7 @@ TEST_CASE("Allan variance and spectrum of a Gauss-Markov process") {
 TEST_CASE("a Gauss-Markov process of 200 correlation times is found, not read as a walk") {
   const double rate = 10, q = 5e-3, sigma = 0.02, tau = 60;
   int covered = 0, passes = 0;
+  double stated = 0, squares = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     const NoiseFit fit = fit_of(white_and_process(seed, 120000, rate, q, sigma, tau), rate);
@@ -141,6 +142,8 @@ TEST_CASE("a Gauss-Markov process of 200 correlation times is found, not read as
     CHECK(*process.tau_s.value == Approx(tau).epsilon(0.5));
     CHECK(*fit[Term::white].value == Approx(q).epsilon(0.02));
     CHECK(fit[Term::ramp].status == Status::not_fitted);
+    stated += process.sigma.relative_sd / 20;
+    squares += std::pow(std::log(*process.sigma.value / sigma), 2) / 20;
     covered += process.sigma.ci95.low <= sigma && sigma <= process.sigma.ci95.high;
     covered += process.tau_s.ci95.low <= tau && tau <= process.tau_s.ci95.high;
     passes += fit.goodness.p > 1e-3 && fit.band.whole;
@@ -149,6 +152,7 @@ TEST_CASE("a Gauss-Markov process of 200 correlation times is found, not read as
     CHECK(shaped_allan_variance(fit, 1200, 0.1) ==
           Approx(q * q / 120 + sigma * sigma * gauss_markov_allan_variance(tau, 1200, 0.1)).epsilon(0.5));
   }
+  CHECK(stated == Approx(std::sqrt(squares)).epsilon(0.6));
   CHECK(covered >= 31);  // of 40; 38 expected, and sigma and tau of a record miss together
   CHECK(passes >= 19);
 }

@@ -40,6 +40,8 @@ def csv_files():
     yield "quoted header of a million lines", b'"' + b"\n" * MILLION + b'",b\n1,2\n2,3\n'
     yield "quoted cells of many lines", b'a,b\n' + (b'"' + b"\n" * 1000 + b'",2\n') * 5000
     yield "one long name", b"a" * 9_000_000 + b",b\n1,2\n2,3\n"
+    yield "columns like clocks", (",".join(f"utc{k}" for k in range(20_000)) + "\n"
+                                  + (",".join(["120000"] * 20_000) + "\n") * 60).encode()
     yield "names of 100 kB", b",".join(b"a" * 100_000 for _ in range(90)) + b"\n" + b"1," * 89 + b"1\n"
     yield "nothing but line ends", b"\n" * 10_000_000
     yield "nothing but commas", b"," * 10_000_000
@@ -195,7 +197,7 @@ def flight_files():
         "A", bytes([0]) + struct.pack("<H", 0) + b"f") + said("D", struct.pack("<H", 0) + bytes(60_000)) * 150
     yield "ulg", "many subscriptions", begin + said("F", b"f:uint64_t timestamp;float x;") + b"".join(
         said("A", bytes([k % 256]) + struct.pack("<H", k % 65536) + b"f") for k in range(500_000))
-    yield "ulg", "parameters", begin + said("P", b"\x07float a" + bytes(4)) * 700_000
+    yield "ulg", "parameters", begin + said("P", b"\x07float a" + bytes(4)) * 650_000
     yield "ulg", "nothing after the head", begin + bytes(9_000_000)
     form = lambda kind, name: (b"\xa3\x95\x80" + bytes([kind, 89]) + name.ljust(4, b"\0") + b"Q".ljust(16, b"\0")
                                + b"TimeUS".ljust(64, b"\0"))
@@ -265,6 +267,8 @@ def table_files():
     yield "xlsx", "a column far out", workbook([(b'<row r="1"><c r="XFD1"><v>1</v></c></row>' * 25_000, 80)])
     yield "xlsx", "columns of many letters", workbook([
         (b'<row r="1"><c r="' + b"Z" * 60_000 + b'1"><v>1</v></c></row>', 1000)])
+    wide = b"".join(b"<c><v>%d</v></c>" % k for k in range(16_384)) + b"</row>"
+    yield "xlsx", "as many columns as there are", workbook([(b'<row r="%d">' % r + wide, 1) for r in range(1, 22)])
     yield "xlsx", "rows far down", workbook([(b'<row r="1"><c r="A1"><v>1</v></c></row><row r="999999999999">'
                                               b'<c r="A999999999999"><v>1</v></c></row>', 1)])
     yield "xlsx", "tags in tags", workbook([(b"<a>" * 250_000, 100)])
@@ -325,6 +329,7 @@ def document_files():
     yield "sensor.yaml", "many keys", ["model"], (head + "".join(f"k{k}: 1\n" for k in range(500_000))).encode()
     yield "sensor.yaml", "deep", ["model"], (head + "white_noise: " + "[" * 1_000_000).encode()
     yield "sensor.yaml", "long text", ["model"], (head + "note: " + "x" * 9_000_000).encode()
+    yield "sensor.yaml", "a list of millions", ["model"], (head + "l: [" + "1," * 4_900_000 + "1]").encode()
     yield "sensor.yaml", "many lines of nothing", ["model"], (head + "\n" * 9_000_000).encode()
     model = "model: {unit: m, white_noise: {value: 1}, density: two-sided}"
     scene = ("format: scene\nversion: 1\nname: s\nsimulate: {{rate_hz: 100, samples: {}, truth: {{name: l, kind: sine, "
@@ -337,6 +342,8 @@ def document_files():
             b'"k%d":1' % k for k in range(700_000)) + b"}"), ("many files", b'{"format":"characterization","files":['
                                                               + b'"a",' * 2_000_000 + b'"b"]}')):
         yield "json", name, ["report"], content
+    yield "json", "millions of empty channels", ["report", "--form"], (
+        b'{"format":"characterization","version":1,"tool":{},"allan":{"channels":[' + b"{}," * 3_000_000 + b"{}]}}")
     said = b'{"tool":{},"files":[],"a":[%s]}'
     for name, piece in (("objects", b'{},'), ("arrays", b"[],"), ("numbers", b"1,"), ("keys", b'{"a":1},')):
         yield "json", f"results of {name}", ["verify"], said % (piece * (9_000_000 // len(piece)) + b"1")

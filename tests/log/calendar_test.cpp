@@ -182,4 +182,13 @@ TEST_CASE("times of day as digits, hhmmss, are told from numbers by their even s
   }
   CHECK(test::read_text(seconds).samples[0].size() == 900);
   CHECK(test::read_text(hundreds).samples[0].size() == 900);
+  // In front of many columns that could be times of day as well.
+  std::string wide = "time", row;
+  for (int k = 0; k < 300; ++k) wide += fmt::format(",utc{}", k), row += fmt::format(",{}", 120000 + k % 40);
+  wide += "\n";
+  for (int i = 0; i < 900; ++i) wide += fmt::format("{:06}{}\n", 120000 + i / 60 * 100 + i % 60, row);
+  const Recording r = test::read_text(wide);
+  CHECK(r.info.time.column == "time");
+  CHECK(r.info.time.rate_hz == Approx(1));
+  CHECK(r.samples.size() == 300);
 }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "libchar/core/error.hpp"
+#include "libchar/log/ros/messages/message_topics.hpp"
 #include "libchar/log/topics/joined_topics.hpp"
 #include "tests/support/shared.hpp"
 
@@ -364,4 +365,38 @@ TEST_CASE("instances in a flight log are one recording, the channels of one of t
   CHECK(both.samples[1] == read_recording(log, options).samples[0]);
   options = asking({"IMU 1/GyrX"}, "IMU*");
   CHECK(both.samples[1] == read_recording(log, options).samples[0]);
+}
+
+TEST_CASE("topics of one name and type are one, those of another type get it in their name") {
+  const auto topic = [](const char* name, const char* type, const char* definition, std::uint64_t rows,
+                        std::int64_t first_ns, std::int64_t last_ns) {
+    RawTopic out;
+    out.name = name;
+    out.format.type = type;
+    out.format.definition = definition;
+    out.rows = rows;
+    out.first_ns = first_ns;
+    out.last_ns = last_ns;
+    return out;
+  };
+  RawTopics topics;
+  CHECK(topics.add(topic("/a", "T", "x", 0, 0, 0)) == 0);
+  CHECK(topics.add(topic("/a", "U", "x", 1, 5, 5)) == 1);
+  CHECK(topics.add(topic("/a", "T", "y", 1, 6, 6)) == 2);  // another definition is another type
+  CHECK(topics.add(topic("/b", "T", "x", 1, 7, 7)) == 3);
+  CHECK(topics.add(topic("/a", "T", "x", 2, 30, 40)) == 0);
+  CHECK(topics.add(topic("/a", "T", "x", 2, 20, 35)) == 0);
+  CHECK(topics.add(topic("/a", "U", "x", 3, 1, 9)) == 1);  // by the name that it was given
+  const std::vector<RawTopic> found = topics.take();
+  REQUIRE(found.size() == 4);
+  CHECK(found[0].name == "/a");
+  CHECK(found[0].rows == 4);
+  CHECK(found[0].first_ns == 20);
+  CHECK(found[0].last_ns == 40);
+  CHECK(found[1].name == "/a (U)");
+  CHECK(found[1].rows == 4);
+  CHECK(found[1].first_ns == 1);
+  CHECK(found[1].last_ns == 9);
+  CHECK(found[2].name == "/a (T)");
+  CHECK(found[3].name == "/b");
 }

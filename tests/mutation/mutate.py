@@ -3,11 +3,12 @@
 
 usage: tests/mutation/mutate.py [--mutants 400] [--seed 1] [--only PATTERN] [--build build] [--results FILE]
 
-A mutant is one source with one line rewritten (sites.py) from the list in targets.py; a hash of seed, file
-and line chooses it, so that an edit elsewhere does not change the choice. It is compiled by the command of a
-build in which every source is compiled alone (build-mutation, -O1, with the assertions of the standard
-library as `.ci/gates sanitize` has them), and linked in front of the objects of that build with the test
-objects of an ordinary build (`--build`, whose test programs must be up to date). The floor's cases run, quick
+A mutant is one source of the library with one line rewritten (sites.py); a hash of seed, file and line chooses it,
+each place with the same probability: the share of killed ones is that of the whole library, within the interval
+that is printed, and an edit elsewhere does not change the choice. It is compiled alone, and linked in front of a
+build of the library whose functions are not inlined into each other (build-mutation, -O1, with the assertions of
+the standard library as `.ci/gates sanitize` has them), with the test objects of an ordinary build (`--build`, whose
+test programs must be up to date). The floor's cases run, then those of the floors that use it (targets.py), quick
 ones first, until one fails; a case that takes longer than --slowest seconds without a mutation is left out.
 
 Results: killed (and by which case), timed out (10 times the time of the sound program; counts as killed),
@@ -19,6 +20,7 @@ import collections
 import fnmatch
 import hashlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -31,11 +33,14 @@ import tempfile
 import time
 
 from sites import mutants
-from targets import TARGETS
+from targets import USERS
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 LIBRARY = ROOT / "build-mutation"
+ARCHIVES = ("libchar.a", "libcharcurves.a")
+# Without inlining a function into others of its piece, and without what the compiler concludes of its body there.
+FLAGS = "-O1 -fPIC -fsemantic-interposition -D_GLIBCXX_ASSERTIONS -w"
 
 
 def run(command, **more):
@@ -45,33 +50,21 @@ def run(command, **more):
 # --- what is broken
 # -------------------------------------------------------------------------------------------------------------------
 
-def target_of(path):
-    return next((row for row in TARGETS if fnmatch.fnmatch(path, row[0]) and path.count("/") == row[0].count("/")),
-                None)
-
-
 def chosen(count, seed, only):
-    """The mutants, {path, floors, line, before, after, operator}: a hash orders those of a file, the files
-    take turns by their share."""
-    queues = []
+    """The first mutants, {path, floors, line, before, after, operator, nth}, of all places of the library in the
+    order of a hash: a random sample, which an edit elsewhere does not change."""
+    found = []
     for path in sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "libchar").rglob("*.cpp")):
-        row = target_of(path)
-        if not row or not fnmatch.fnmatch(path, only):
+        if not fnmatch.fnmatch(path, only):
             continue
-        seen, queue = collections.Counter(), []
+        floor, seen = path.split("/")[1], collections.Counter()
         for mutant in mutants((ROOT / path).read_text()):
             key = (path, mutant.before.strip(), mutant.after.strip())
             seen[key] += 1
             order = hashlib.sha256(repr((seed, key, seen[key])).encode()).hexdigest()
-            queue.append((order, {"path": path, "floors": row[1], "nth": seen[key], **mutant._asdict()}))
-        queue.sort(key=lambda entry: entry[0])
-        queues.append((row[2], [mutant for _, mutant in queue]))
-    found = []
-    while len(found) < count and any(queue for _, queue in queues):
-        for share, queue in queues:
-            for _ in range(min(share, len(queue))):
-                found.append(queue.pop(0))
-    return found[:count]
+            found.append((order, {"path": path, "floors": [floor, *USERS.get(floor, [])], "nth": seen[key],
+                                  **mutant._asdict()}))
+    return [mutant for _, mutant in sorted(found, key=lambda entry: entry[0])[:count]]
 
 
 def equivalents():
@@ -88,64 +81,44 @@ def equivalents():
 # --- how it is built
 # ------------------------------------------------------------------------------------------------------------------
 
-def build_objects(folders, scratch):
-    """Every source of the floors of these folders compiled alone; (commands, archive of the objects)."""
+def build_library():
+    """The library, each of whose functions the linker can take from a mutant instead; {source: (command without
+    source and object, folder)}."""
     made = run(["cmake", "-S", str(ROOT), "-B", str(LIBRARY), "-G", "Ninja", "--log-level=WARNING",
-                "-DCMAKE_BUILD_TYPE=Mutation",
-                "-DCMAKE_CXX_FLAGS_MUTATION=-O1 -D_GLIBCXX_ASSERTIONS -w", "-DLIBCHAR_UNITY=OFF", "-DLIBCHAR_TESTS=OFF",
+                "-DCMAKE_BUILD_TYPE=Mutation", f"-DCMAKE_CXX_FLAGS_MUTATION={FLAGS}", "-DLIBCHAR_TESTS=OFF",
                 "-DLIBCHAR_TOOLS=OFF", "-DLIBCHAR_BENCH=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"])
+    made = made if made.returncode else run(["ninja", "-C", str(LIBRARY), "-j2", *(f"libchar/{a}" for a in ARCHIVES)])
     if made.returncode:
-        sys.exit(made.stderr[-2000:])
-    commands, objects = compile_commands()
-    floors = {folder.split("/")[1] for folder in folders}
-    wanted = [built for path, built in objects.items() if path.split("/")[1] in floors]
-    made = run(["ninja", "-C", str(LIBRARY), *wanted])
-    if made.returncode:
-        sys.exit(made.stdout[-2000:])
-    archive = scratch / "alone.a"
-    run(["ar", "qcs", str(archive), *wanted], cwd=LIBRARY)
-    return commands, archive
-
-
-def compile_commands():
-    """{path: (command without source and object, folder)}, {path: object}"""
-    found, objects = {}, {}
+        sys.exit((made.stderr + made.stdout)[-2000:])
+    found = {}
     for entry in json.loads((LIBRARY / "compile_commands.json").read_text()):
         words = shlex.split(entry["command"])
         while not re.search(r"(?:\+\+|/g\+\+-\d+)$", words[0]):  # ccache before it
             words.pop(0)
-        path, at = os.path.relpath(entry["file"], ROOT), words.index("-o")
-        objects[path] = words[at + 1]
+        at = words.index("-o")
         del words[at:at + 2]
         del words[words.index("-c"):]
-        found[path] = (words, entry["directory"])
-    return found, objects
+        piece = pathlib.Path(entry["file"])
+        for source in re.findall(r'^#include "(.*)"', piece.read_text(), re.M) if "Unity" in piece.parts else [piece]:
+            found[os.path.relpath(source, ROOT)] = (words, entry["directory"])
+    return found
 
 
-def link_command(build, floor, archive, folders, scratch):
-    """The command that links a floor's tests, with the archive of objects compiled alone before those of
-    `build`; OBJECT and PROGRAM are to be replaced. Objects and archives are copied: `build` may be built
-    again while this runs."""
+def link_command(build, floor, scratch):
+    """The command that links a floor's tests with the library to break, whose functions a mutant before it replaces;
+    OBJECT and PROGRAM are to be replaced. Objects are copied: `build` may be built again while this runs."""
     commands = run(["ninja", "-C", str(build), "-t", "commands", f"tests/test_{floor}"]).stdout.strip().split("\n")
     words = shlex.split(re.sub(r"^: && | && (?:cd .*|:)$", "", commands[-1]))
     words[words.index("-o") + 1] = "PROGRAM"
-    for name in ("libchar.a", "libcharcurves.a"):
-        if not (scratch / name).exists():
-            shutil.copy(build / "libchar" / name, scratch / name)
-            # What is compiled alone must not come a second time, from the one object of its folder or floor.
-            floors = "|".join({folder.split("/")[1] for folder in folders})
-            members = run(["ar", "t", str(scratch / name)]).stdout.split()
-            twice = [member for member in members if re.fullmatch(rf"unity_(?:{floors})(?:_\w+)?_cxx\.cxx\.o", member)]
-            run(["ar", "d", str(scratch / name), *twice, *twice])  # two objects have that name
-    ours = [str(archive), str(scratch / "libchar.a"), str(scratch / "libcharcurves.a")]
     first = next(i for i, word in enumerate(words) if word.startswith("libchar/"))
     words = [word for word in words if not word.startswith("libchar/")]
-    words[first:first] = ["-Wl,--start-group", *ours, "-Wl,--end-group"]
+    words[first:first] = ["-Wl,--start-group", *(str(LIBRARY / "libchar" / a) for a in ARCHIVES), "-Wl,--end-group"]
     objects = [i for i, word in enumerate(words) if word.endswith(".o")]
     for i in objects:
         words[i] = shutil.copy(build / words[i], scratch / f"{floor}_{i}.o")
     first = objects[0]
-    return words[:first] + (["-fuse-ld=gold"] if shutil.which("ld.gold") else []) + ["OBJECT"] + words[first:]
+    return words[:first] + (["-fuse-ld=gold"] if shutil.which("ld.gold") else []) + [
+        "-Wl,-z,muldefs", "OBJECT"] + words[first:]
 
 
 def linked(command, build, program, mutant_object=None):
@@ -226,8 +199,8 @@ def quoted(name):
 class Floor:
     """The tests of a floor: how to link them, and in which groups to run them."""
 
-    def __init__(self, name, build, archive, folders, slowest, scratch):
-        self.link = link_command(build, name, archive, folders, scratch)
+    def __init__(self, name, build, slowest, scratch):
+        self.link = link_command(build, name, scratch)
         program = scratch / f"sound_{name}"
         done = linked(self.link, build, program)
         if done.returncode:
@@ -290,6 +263,14 @@ def shown(mutant):
     return f'{mutant["path"]}:{mutant["line"] + 1}\n- {mutant["before"].strip()}\n+ {mutant["after"].strip()}'
 
 
+def share(part, whole):
+    """In percent, with Wilson's interval."""
+    p, n, z = part / max(1, whole), max(1, whole), 1.96
+    middle, reach = p + z * z / (2 * n), z * math.sqrt(p * (1 - p) / n + (z / (2 * n)) ** 2)
+    low, high = (100 * (middle + side * reach) / (1 + z * z / n) for side in (-1, 1))
+    return f"{100 * p:.1f} % [{low:.1f}, {high:.1f}]"
+
+
 def summary(results):
     known = equivalents()
     count = collections.Counter(r["result"] for r in results)
@@ -304,8 +285,8 @@ def summary(results):
           f"{count['timed out']} timed out, "
           f"{len(survivors)} survived: {len(equal)} equivalent, {len(still_open)} open")
     if tried:
-        print(f"killed: {100 * killed / tried:.1f} % of all, {100 * killed / max(1, tried - len(equal)):.1f} % of "
-              f"those that are not equivalent")
+        print(f"killed: {share(killed, tried)} of all, {share(killed, tried - len(equal))} of those that are not "
+              f"equivalent (95 % intervals of the whole library's)")
     by_floor = collections.defaultdict(collections.Counter)
     for r in results:
         if r["result"] != "did not compile":
@@ -340,13 +321,12 @@ def remembered(path, again):
 def run_all(wanted, done, arguments, scratch):
     build = (ROOT / arguments.build).resolve()
     wanted = [mutant for mutant in wanted if key(mutant) not in done]
-    folders = sorted({os.path.dirname(mutant["path"]) for mutant in wanted})
-    commands, archive = build_objects(folders, scratch)
+    commands = build_library()
     floors = {}
     for i, mutant in enumerate(wanted):
         for name in mutant["floors"]:
             if name not in floors:
-                floors[name] = Floor(name, build, archive, folders, arguments.slowest, scratch)
+                floors[name] = Floor(name, build, arguments.slowest, scratch)
         begin = time.monotonic()
         result, by = judged(mutant, commands, floors, build, scratch)
         record = {**mutant, "result": result, "by": by, "seconds": round(time.monotonic() - begin, 1)}

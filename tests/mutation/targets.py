@@ -1,40 +1,11 @@
-"""What is broken and who should notice: rows of (pattern of sources, floors whose tests run, in order, share
-of the mutants)."""
-TARGETS = [
-    # Readers
-    ("libchar/log/csv/rows/number.cpp", ["log"], 3),
-    ("libchar/log/csv/head/dialect.cpp", ["log"], 3),
-    ("libchar/log/csv/*.cpp", ["log"], 1),
-    ("libchar/log/time/stamp_sketch.cpp", ["log"], 3),
-    ("libchar/log/time/time_column.cpp", ["log"], 3),
-    ("libchar/log/time/*.cpp", ["log"], 2),
-    ("libchar/log/binary/*.cpp", ["log"], 1),
-    ("libchar/log/quality.cpp", ["log"], 3),
-    ("libchar/log/read.cpp", ["log"], 1),
-    # Numerics
-    ("libchar/allan/allan_pyramid.cpp", ["allan"], 3),
-    ("libchar/allan/allan_deviation.cpp", ["allan"], 2),
-    ("libchar/allan/detail/equivalent_dof.cpp", ["allan"], 2),
-    ("libchar/allan/*.cpp", ["allan"], 1),
-    ("libchar/allan/detail/*.cpp", ["allan"], 1),
-    ("libchar/spectrum/*.cpp", ["spectrum"], 1),
-    ("libchar/fit/curve/curve_fit.cpp", ["fit"], 3),
-    ("libchar/fit/curve/curve_table.cpp", ["fit"], 1),
-    ("libchar/fit/record/power_bins.cpp", ["fit"], 1),
-    ("libchar/fusion/algorithms/*.cpp", ["fusion"], 1),
-    ("libchar/core/numeric/moments.cpp", ["core"], 1),
-    ("libchar/core/numeric/distributions.cpp", ["core"], 1),
-    ("libchar/core/numeric/random_effects.cpp", ["core"], 1),
-    ("libchar/core/numeric/dense.cpp", ["core", "fusion"], 1),
-    # Documents and their numbers
-    ("libchar/core/document/document.cpp", ["core", "model"], 3),
-    ("libchar/core/document/json.cpp", ["core", "model"], 2),
-    ("libchar/core/document/json_reader.cpp", ["core", "model"], 2),
-    ("libchar/core/document/fields.cpp", ["core", "model"], 1),
-    ("libchar/core/document/entry.cpp", ["core", "model"], 1),
-    ("libchar/core/document/schema.cpp", ["core", "model"], 1),
-    ("libchar/core/text/text.cpp", ["core", "log"], 1),
-    ("libchar/core/units.cpp", ["core", "log", "model"], 1),
-    ("libchar/core/text/quantity_text.cpp", ["core", "model"], 1),
-    ("libchar/model/*.cpp", ["model"], 1),
-]
+"""Who else should notice a broken floor: the floors whose tests run after its own, in order."""
+USERS = {
+    "core": ["model", "log", "fusion"],
+    "export": ["model"],
+    "fit": ["characterize"],
+    "log": ["characterize"],
+    "lot": ["fleet"],
+    "model": ["export"],
+    "scene": ["replay"],
+    "simulate": ["scene"],
+}

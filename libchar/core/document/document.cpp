@@ -121,6 +121,8 @@ class Builder : public YAML::EventHandler {
   }
 
   Document* put(const YAML::Mark& mark, Document value) {
+    if (++values_ > kMaxDocumentBytes / 24)
+      throw input_error("E0522", file_).says("YAML of more than {} values", kMaxDocumentBytes / 24);
     value.line = mark.line + 1;
     value.column = mark.column + 1;
     Document* place = slot();
@@ -143,6 +145,7 @@ class Builder : public YAML::EventHandler {
   const std::string& file_;
   Document root_;
   std::vector<Level> stack_;
+  std::size_t values_ = 0;
 };
 
 void check_bytes(std::string_view text, const std::string& file) {

@@ -59,7 +59,11 @@ Json with_valid_text(Json document) {
 
 std::string dump_json(const Json& document) {
   check_finite(document);
-  return with_valid_text(document).dump(2) + "\n";
+  try {
+    return document.dump(2) + "\n";
+  } catch (const Json::type_error&) {  // a text that is not UTF-8
+    return with_valid_text(document).dump(2) + "\n";
+  }
 }
 
 namespace {

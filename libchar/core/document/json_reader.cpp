@@ -159,6 +159,8 @@ class Guard : public nlohmann::json_sax<Json> {
     return parent.kind == Document::Kind::list ? parent.list.emplace_back() : parent.map.back().value;
   }
   Document& put(Document::Kind kind, std::string text, std::size_t start) {
+    if (++values_ > kMaxDocumentBytes / 24)  // each takes up to .3 kB
+      throw input_error("E0605", file_).says("JSON of more than {} values", kMaxDocumentBytes / 24);
     Document& node = slot();
     const Place place = places_.at(start);
     node.kind = kind;
@@ -190,6 +192,7 @@ class Guard : public nlohmann::json_sax<Json> {
   std::string_view text_;
   const std::string& file_;
   const char* read_;
+  std::size_t values_ = 0;
   Places places_;
   Document root_;
   std::vector<Document*> stack_;  // an open map or list is not moved: nothing is added beside it

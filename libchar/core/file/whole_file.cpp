@@ -162,8 +162,12 @@ void WholeFile::hand_over() {
 
 void WholeFile::write(std::string_view bytes) {
   on_disk_ = false;
-  buffer_.append(bytes);
-  if (buffer_.size() >= kBuffer) flush();
+  while (!bytes.empty()) {  // in pieces: the buffer stays with the file
+    const std::string_view piece = bytes.substr(0, kBuffer);
+    buffer_.append(piece);
+    if (buffer_.size() >= kBuffer) flush();
+    bytes.remove_prefix(piece.size());
+  }
 }
 
 void WholeFile::flush() {

@@ -58,8 +58,13 @@ void add_flat(FlatTable& out, std::string head, bool number, std::size_t rows, C
   for (std::size_t r = 0; r < rows; ++r) out.rows[r].push_back(std::move(cells[r]));
 }
 
-FlatTable flat_table(Table table, Table::Door door) {
-  std::erase_if(table.rows, [](const Table::Row& row) { return row.kind == Table::Kind::part; });
+FlatTable flat_table(const Table& table, Table::Door door) {
+  const auto is_part = [](const Table::Row& row) { return row.kind == Table::Kind::part; };
+  if (std::any_of(table.rows.begin(), table.rows.end(), is_part)) {
+    Table without = table;
+    std::erase_if(without.rows, is_part);
+    return flat_table(without, door);
+  }
   const std::size_t rows = table.rows.size();
   FlatTable out;
   out.rows.resize(rows);

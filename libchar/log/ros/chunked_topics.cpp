@@ -138,7 +138,7 @@ void ChunkedTopics::find_examples() {
 }
 
 void ChunkedTopics::list_topics(std::vector<std::pair<StreamId, RawTopic>> streams) {
-  std::vector<RawTopic> raw;
+  RawTopics raw;
   for (auto& [id, topic] : streams) {
     if (const auto count = counts_.find(id); count != counts_.end()) {
       topic.rows = count->second.rows;
@@ -147,12 +147,12 @@ void ChunkedTopics::list_topics(std::vector<std::pair<StreamId, RawTopic>> strea
       topic.rate_hz = rate_seen(count->second);
       topic.format.example = std::move(count->second.example);
     }
-    const std::size_t at = merge_topic(raw, std::move(topic));
+    const std::size_t at = raw.add(std::move(topic));
     if (at == streams_.size()) streams_.emplace_back();
     streams_[at].push_back(id);
   }
   counts_.clear();
-  set_topics(std::move(raw));
+  set_topics(raw.take());
 }
 
 void ChunkedTopics::start(std::size_t topic) {

@@ -234,7 +234,7 @@ class Db3Reader final : public MessageTopics {
     const std::map<std::int64_t, Count> counts = counted();
     Query example(database_, "SELECT data FROM messages WHERE id=?1");
     Query query(database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
-    std::vector<RawTopic> raw;
+    RawTopics raw;
     while (query.step()) {
       RawTopic topic;
       const std::int64_t id = query.integer(0);
@@ -255,11 +255,11 @@ class Db3Reader final : public MessageTopics {
           topic.format.example.assign(data.begin(), data.end());
         }
       }
-      const std::size_t at = merge_topic(raw, std::move(topic));
+      const std::size_t at = raw.add(std::move(topic));
       if (at == ids_.size()) ids_.emplace_back();
       ids_[at].push_back(id);
     }
-    set_topics(std::move(raw));
+    set_topics(raw.take());
   }
 
   Database database_;

@@ -342,15 +342,27 @@ std::string which_in_detail(const CharacterizationView& view) {
 }
 
 // Of what has a part for each channel, only those that the page draws.
-Json of_details(const CharacterizationView& view, Json document) {
-  for (auto& [key, part] : document.items()) {
-    if (!part.is_object() || !part.contains("channels")) continue;
-    Json& channels = part["channels"];
-    if (!channels.is_array() || channels.size() != view.channels.size()) continue;
-    for (std::size_t i = 0; i < view.channels.size(); ++i)
-      if (!view.channels[i].in_detail) channels[i] = nullptr;
+Json of_details(const CharacterizationView& view, const Json& document) {
+  Json out = Json::object();
+  for (const auto& [key, part] : document.items()) {
+    Json& kept = out[key];
+    const bool by_channel = part.is_object() && part.contains("channels") && part["channels"].is_array() &&
+                            part["channels"].size() == view.channels.size();
+    if (!by_channel) {
+      kept = part;
+      continue;
+    }
+    for (const auto& [name, value] : part.items()) {
+      if (name != "channels") {
+        kept[name] = value;
+        continue;
+      }
+      Json& channels = kept[name] = Json::array();
+      for (std::size_t i = 0; i < view.channels.size(); ++i)
+        channels.push_back(view.channels[i].in_detail ? value[i] : Json(nullptr));
+    }
   }
-  return document;
+  return out;
 }
 
 constexpr std::size_t kUnfoldedRows = 12;

@@ -345,7 +345,9 @@ void say_facts_of_time(Study& study) {
 void choose_time(Study& study) {
   LogInfo& info = study.info;
   const auto rate = stated_rate(study);
-  const auto all_cells = [&study](std::size_t column) {
+  constexpr std::size_t kMostLooks = 64;  // each reads the whole head, and a wide table has many columns like clocks
+  const auto all_cells = [&study, looks = std::size_t{0}](std::size_t column) mutable {
+    if (++looks > kMostLooks) return std::vector<Cells>();
     std::vector<Cells> all = filled_cells(study, {column}, std::numeric_limits<std::size_t>::max())[0];
     for (Cells& cells : cells_further_on(study, column)) all.push_back(std::move(cells));
     return all;

@@ -28,26 +28,29 @@ bool not_measured(const MessageDecoder& decoder, const std::vector<double>& exam
 
 }  // namespace
 
-std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic) {
-  bool taken = false;
-  const std::string other_name = fmt::format("{} ({})", topic.name, topic.format.type);
-  for (std::size_t i = 0; i < topics.size(); ++i) {
-    RawTopic& known = topics[i];
-    if (known.name != topic.name && known.name != other_name) continue;
-    taken = true;
-    const MessageFormat &a = known.format, &b = topic.format;
-    if (a.type != b.type || a.message_encoding != b.message_encoding || a.definition != b.definition) continue;
-    if (topic.rows > 0) {
-      known.first_ns = known.rows == 0 ? topic.first_ns : std::min(known.first_ns, topic.first_ns);
-      known.last_ns = known.rows == 0 ? topic.last_ns : std::max(known.last_ns, topic.last_ns);
-    }
-    known.rows += topic.rows;
-    if (known.format.example.empty()) known.format.example = std::move(topic.format.example);
-    return i;
+std::size_t RawTopics::add(RawTopic topic) {
+  const MessageFormat& format = topic.format;
+  const std::string other_name = fmt::format("{} ({})", topic.name, format.type);
+  std::size_t place = topics_.size();
+  for (const std::string& name : {topic.name, other_name})
+    if (const auto found = places_.find({name, format.type, format.message_encoding, format.definition});
+        found != places_.end())
+      place = std::min(place, found->second);
+  if (place == topics_.size()) {
+    if (names_.contains(topic.name) || names_.contains(other_name)) topic.name = other_name;
+    names_.insert(topic.name);
+    places_.emplace(std::array{topic.name, format.type, format.message_encoding, format.definition}, place);
+    topics_.push_back(std::move(topic));
+    return place;
   }
-  if (taken) topic.name = other_name;
-  topics.push_back(std::move(topic));
-  return topics.size() - 1;
+  RawTopic& known = topics_[place];
+  if (topic.rows > 0) {
+    known.first_ns = known.rows == 0 ? topic.first_ns : std::min(known.first_ns, topic.first_ns);
+    known.last_ns = known.rows == 0 ? topic.last_ns : std::max(known.last_ns, topic.last_ns);
+  }
+  known.rows += topic.rows;
+  if (known.format.example.empty()) known.format.example = std::move(topic.format.example);
+  return place;
 }
 
 MessageTopics::MessageTopics(std::string path, const ReadOptions& options, bool publishes)

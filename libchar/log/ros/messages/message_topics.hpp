@@ -1,11 +1,15 @@
 #pragma once
 // Topics of logs of ROS messages: what MCAP, bags and rosbag2's databases have in common once their messages are found.
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libchar/log/read.hpp"
@@ -25,9 +29,19 @@ struct RawTopic {
   double rate_hz = 0;        ///< where it is known better than by these
 };
 
-/// Adds `topic` to `topics`, to one of the same name and type where there is one; returns its
-/// place. Of one name with another type the second is called "NAME (TYPE)".
-std::size_t merge_topic(std::vector<RawTopic>& topics, RawTopic topic);
+/// The topics of a log, each once.
+class RawTopics {
+ public:
+  /// Adds a topic to one of the same name and type where there is one; its place. Of one name with another type the
+  /// second is called "NAME (TYPE)".
+  std::size_t add(RawTopic topic);
+  std::vector<RawTopic> take() { return std::move(topics_); }
+
+ private:
+  std::vector<RawTopic> topics_;
+  std::set<std::string> names_;
+  std::map<std::array<std::string, 4>, std::size_t> places_;  ///< by name, type, encoding, definition
+};
 
 struct RawMessage {
   std::span<const std::byte> data;
