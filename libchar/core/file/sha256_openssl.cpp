@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 #include <memory>
@@ -17,8 +18,10 @@ struct Sha256::State {
 };
 
 Sha256::Sha256() : state_(detail::hidden<State>()) {
-  // OpenSSL has no other reason to refuse this.
-  if (!state_->context || EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
+  // OpenSSL has no other reason to refuse this; without its default context, for want of memory, it would crash.
+  if (OSSL_LIB_CTX_get0_global_default() == nullptr || !state_->context ||
+      EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1)
+    throw std::bad_alloc();
 }
 
 void Sha256::update(std::string_view bytes) { EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size()); }
