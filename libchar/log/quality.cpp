@@ -1231,8 +1231,10 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
     q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
                   (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
   if (FrozenRuns(q).rare) q.saturated = 0;
-  if (q.saturated > 0 && state.bottom.is_apart(others)) q.signs.apart.push_back(q.minimum);
-  if (q.saturated > 0 && state.top.is_apart(others)) q.signs.apart.push_back(q.maximum);
+  if (q.saturated > 0 && (state.bottom.is_apart(others) || state.top.is_apart(others))) {
+    if (state.bottom.saturated() > 0) q.signs.apart.push_back(q.minimum);
+    if (state.top.saturated() > 0) q.signs.apart.push_back(q.maximum);
+  }
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);
   q.findings = findings_of(q, rate_hz);

@@ -449,12 +449,15 @@ TEST_CASE("a value that stands often and far from all others is a mark for missi
   CHECK(meter(clipped).findings.at(0).help.empty());
   // Nearer than that it is one or the other, and the same remedy serves both.
   std::vector<double> near = gaussian(20000, 1);
-  for (std::size_t i = 500; i < near.size(); i += 400)
+  for (std::size_t i = 500; i < near.size(); i += 800)
     std::fill_n(near.begin() + static_cast<std::ptrdiff_t>(i), 5, -10.0);
   const ChannelQuality either = meter(near);
   REQUIRE(has(either.findings, "saturated"));
   REQUIRE(either.findings.at(0).help.size() == 1);
   CHECK(either.findings[0].help[0].options[0] == Finding::Setting{"missing", "-10"});
+  for (std::size_t i = 700; i < near.size(); i += 800)
+    std::fill_n(near.begin() + static_cast<std::ptrdiff_t>(i), 5, 8.0);  // half of the range away, and both are meant
+  CHECK(meter(near).findings.at(0).help.at(0).options[0] == Finding::Setting{"missing", "-10,8"});
 }
 
 TEST_CASE("a sawtooth wraps, with the period of its jumps, and noise does not") {
