@@ -93,6 +93,7 @@ const Format& format_of(const std::string& path, const ReadOptions& options) {
   if (packing != csv::Packing::none && packing < csv::Packing::json) return packed_format(path);
   for (const Format& format : formats())
     if (format.certain != nullptr && format.certain(front)) return format;
+  csv::refuse_document(front, path);
   if (const Format* format = format_by_suffix(path)) return *format;
   for (const Format& format : formats())
     if (format.sniff != nullptr && format.sniff(path, front)) return format;

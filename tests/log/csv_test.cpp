@@ -502,6 +502,8 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"\x80\x04\x95\x10\0\0\0"s, "pickle"},
       {"000001D CMPX\x01\x02"s, "obspy"},
       {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s, "gfzrnx"},
+      {"# Noise of one channel.\nformat: sensor-model\nversion: 1\n"s, "simulate and compare"},
+      {"{\n  \"format\": \"characterization\",\n  \"version\": 1\n}\n"s, "compare and verify"},
   };
   for (const auto& [text, way] : contents) CHECK_THAT(failure(text), Catch::Contains("E0301") && Catch::Contains(way));
 }

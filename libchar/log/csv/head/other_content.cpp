@@ -55,6 +55,25 @@ constexpr std::array kMagics = {
     Magic{0, "C 1 CLIENT"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
 };
 
+/// What this program writes, or reads with a log: the word behind `format`, near the begin.
+struct Document {
+  std::string_view format;
+  const char *what, *hint;
+};
+
+constexpr const char* kResult = "plot, report, compare and verify read it";
+
+constexpr std::array kDocuments = {
+    Document{"scene", "a scene", "replay reads it"},
+    Document{"fusion", "what a replay has learnt", "fuse reads it with a log"},
+    Document{"sensor-model", "a sensor model", "model, simulate and compare read it"},
+    Document{"noise-limits", "limits of a channel's noise", "fit and characterize read it with a log"},
+    Document{"characterization", "the report of a characterization", kResult},
+    Document{"replay-report", "the report of a replay", kResult},
+    Document{"allan", "an Allan curve", "plot draws it"},
+    Document{"spectrum", "a spectrum", "plot draws it"},
+};
+
 /// MAVLink messages behind stamps of eight bytes: the first two of them are 0 until the year 2100.
 bool is_telemetry_log(std::string_view head) {
   return head.size() > 9 && head[0] == 0 && head[1] != 0 && (head[8] == '\xFE' || head[8] == '\xFD') && head[2] != 0;
@@ -125,6 +144,18 @@ void refuse_other_format(std::string_view head, const std::string& file) {
   if (is_miniseed(head))
     throw refusal(file, "seismic records (miniSEED), not CSV")
         .hint("ObsPy reads them: obspy.read(FILE)[0].write('log.slist', format='SLIST')");
+}
+
+void refuse_document(std::string_view front, const std::string& file) {
+  for (const std::string_view key : {"\nformat: ", "\n  \"format\": \""}) {
+    const bool first = front.starts_with(key.substr(1));
+    const std::size_t at = first ? 0 : front.find(key);
+    if (at == std::string_view::npos) continue;
+    const std::string_view rest = front.substr(at + key.size() - (first ? 1 : 0));
+    const std::string_view word = rest.substr(0, rest.find_first_of("\"\r\n"));
+    for (const Document& one : kDocuments)
+      if (word == one.format) throw refusal(file, std::string(one.what) + ", not a log").hint(one.hint);
+  }
 }
 
 void refuse_other_content(std::string_view head, const std::string& file) {

@@ -11,5 +11,7 @@ namespace libchar::csv {
 void refuse_other_content(std::string_view head, const std::string& file);
 /// The same of formats that are told by their first bytes alone, whatever the file is called.
 void refuse_other_format(std::string_view head, const std::string& file);
+/// The same of scenes, models, reports and other documents of this program, by the word behind `format`.
+void refuse_document(std::string_view front, const std::string& file);
 
 }  // namespace libchar::csv
