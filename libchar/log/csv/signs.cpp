@@ -13,21 +13,14 @@ namespace libchar::csv {
 namespace {
 
 // 'a','it''s': the same in quotes.
-class FromApostrophes final : public Unpacker {
+class FromApostrophes final : public DecodedText {
  public:
   explicit FromApostrophes(std::function<std::size_t(char*, std::size_t)> stored) : feed_{std::move(stored)} {}
 
-  std::size_t read(char* to, std::size_t n) override {
-    while (text_.empty() && !done_) decode();
-    const std::size_t taken = text_.copy(to, n);
-    text_.erase(0, taken);
-    return taken;
-  }
-  bool cut() const override { return false; }
   std::string_view what() const override { return "cells in apostrophes"; }
 
  private:
-  void decode() {
+  void decode() override {
     done_ = !feed_.more();
     for (; feed_.at < feed_.raw.size(); ++feed_.at) take(feed_.raw[feed_.at]);
     if (done_ && closing_) text_ += '"';
@@ -55,8 +48,7 @@ class FromApostrophes final : public Unpacker {
   }
 
   Feed feed_;
-  std::string text_;
-  bool open_ = false, closing_ = false, begins_ = true, done_ = false;
+  bool open_ = false, closing_ = false, begins_ = true;
 };
 
 constexpr std::string_view kOpen = "[({", kClose = "])}";
@@ -116,17 +108,10 @@ std::string without_colours(std::string line) {
   return line;
 }
 
-class FromSigns final : public Unpacker {
+class FromSigns final : public DecodedText {
  public:
   explicit FromSigns(std::function<std::size_t(char*, std::size_t)> stored) : feed_{std::move(stored)} {}
 
-  std::size_t read(char* to, std::size_t n) override {
-    while (text_.empty() && !done_) decode();
-    const std::size_t taken = text_.copy(to, n);
-    text_.erase(0, taken);
-    return taken;
-  }
-  bool cut() const override { return false; }
   std::string_view what() const override {
     return signs_.colours     ? "codes of a terminal's colours"
            : signs_.brackets  ? "lines in brackets"
@@ -136,7 +121,7 @@ class FromSigns final : public Unpacker {
   }
 
  private:
-  void decode() {
+  void decode() override {
     if (!known_ && feed_.more()) signs_ = signs_of(std::string_view(feed_.raw).substr(0, kPackingBytes));
     known_ = true;
     std::string line;
@@ -166,8 +151,7 @@ class FromSigns final : public Unpacker {
 
   Feed feed_;
   Signs signs_;
-  std::string text_;
-  bool known_ = false, done_ = false;
+  bool known_ = false;
 };
 
 }  // namespace

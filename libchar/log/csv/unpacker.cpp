@@ -193,21 +193,15 @@ class Unxz final : public Unpacker {
 #endif
 
 // Characters beyond 0xFFFF, of two units, stand in no table of numbers: each unit becomes '?'.
-class FromUtf16 final : public Unpacker {
+class FromUtf16 final : public DecodedText {
  public:
   FromUtf16(StoredBytes stored, bool big) : stored_(std::move(stored)), big_(big) {}
 
-  std::size_t read(char* to, std::size_t n) override {
-    while (text_.empty() && !done_) decode();
-    const std::size_t taken = text_.copy(to, n);
-    text_.erase(0, taken);
-    return taken;
-  }
   bool cut() const override { return done_ && half_; }
   std::string_view what() const override { return "UTF-16"; }
 
  private:
-  void decode() {
+  void decode() override {
     done_ = !stored_.more();
     for (std::size_t i = 0; !done_ && i < stored_.size(); ++i) {
       const auto byte = static_cast<unsigned char>(stored_.data()[i]);
@@ -223,9 +217,8 @@ class FromUtf16 final : public Unpacker {
   }
 
   StoredBytes stored_;
-  std::string text_;
   std::optional<std::uint32_t> half_;
-  bool big_ = false, done_ = false;
+  bool big_ = false;
 };
 
 }  // namespace

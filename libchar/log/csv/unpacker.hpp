@@ -40,6 +40,23 @@ class Unpacker {
   virtual void finish(Findings& findings) const { static_cast<void>(findings); }
 };
 
+/// Text that is decoded a piece at a time.
+class DecodedText : public Unpacker {
+ public:
+  std::size_t read(char* to, std::size_t n) final {
+    while (text_.empty() && !done_) decode();
+    const std::size_t taken = text_.copy(to, n);
+    text_.erase(0, taken);
+    return taken;
+  }
+  bool cut() const override { return false; }
+
+ protected:
+  virtual void decode() = 0;  ///< appends to `text_`, or is done
+  std::string text_;
+  bool done_ = false;
+};
+
 /// Is text of so many bytes more than a file of measurements would be when packed into so few? Small ones are free.
 inline bool is_bomb(std::uint64_t text, std::uint64_t stored, std::uint64_t most) {
   constexpr std::uint64_t kFree = std::uint64_t{32} << 20U;
