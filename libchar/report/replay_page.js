@@ -163,7 +163,7 @@
           box[0] > area.left && box[2] < area.right && box[1] > area.top && box[3] < area.bottom &&
           taken.every((t) => box[0] > t[2] || box[2] < t[0] || box[1] > t[3] || box[3] < t[1]));
         if (!free) return;
-        taken.push(free);
+        taken.push([free[0] - 4, free[1], free[2] + 4, free[3]]);
         pen.fillStyle = p.dim ? colours().border : colours().ink;
         pen.strokeText(p.name, free[0], (free[1] + free[3]) / 2);
         pen.fillText(p.name, free[0], (free[1] + free[3]) / 2);

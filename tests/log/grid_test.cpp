@@ -82,6 +82,51 @@ TEST_CASE("one late row whose followers are on time is no gap") {
   CHECK(r.info.time.gaps == 0);
 }
 
+TEST_CASE("a wild stamp behind a gap leaves the gap and its row, in blocks of any size") {
+  for (const std::size_t first : {std::size_t{6}, std::size_t{700}}) {
+    auto t = even(2 * first, 1000000);
+    t[first] += 60000000;
+    t.erase(t.begin() + static_cast<std::ptrdiff_t>(first) + 1);
+    for (const std::size_t bytes : {std::size_t{16}, std::size_t{200}, std::size_t{1} << 20U}) {
+      ReadOptions options;
+      options.block_bytes = bytes;
+      const Recording r = read_text(log_of(t), options);
+      INFO(first << " rows in blocks of " << bytes << " bytes");
+      CHECK(r.info.rows_dropped == 0);
+      CHECK(r.info.samples == 2 * first);
+      CHECK(r.info.time.missing_samples == 1);
+      CHECK(r.info.time.rate_hz == Approx(1).epsilon(1e-9));
+      CHECK(count(r, "late_stamp") == 1);
+    }
+  }
+}
+
+TEST_CASE("a blank between a wild stamp and the rows behind it shows no clock of its own") {
+  std::string text = "t[s],x\n";
+  for (int i = 1; i <= 12; ++i) text += fmt::format("{},{}\n", i == 6 ? 68 : i, i == 7 ? "" : fmt::to_string(i));
+  const Recording r = read_text(text);
+  CHECK(count(r, "own_rows") == 0);
+  CHECK(r.info.samples == 12);
+  CHECK(r.info.time.rate_hz == Approx(1));
+}
+
+TEST_CASE("rows of blocks that are left out whole are none of those ahead") {
+  std::string text = "t[s],fast,slow\n";
+  for (int i = 0; i < 4000; ++i)
+    text += fmt::format("{},{},{}\n", i % 20 == 0 && i / 20 == 100 ? i * 10 + 4000 : i * 10, i % 7,
+                        i % 20 == 0 ? fmt::to_string(i) : "");
+  ReadOptions options;
+  options.channels = {"slow"};
+  const Recording whole = read_text(text, options);
+  CHECK(whole.info.samples == 200);
+  for (const std::size_t bytes : {std::size_t{9}, std::size_t{40}}) {
+    options.block_bytes = bytes;
+    const Recording blocks = read_text(text, options);
+    CHECK(blocks.info.samples == whole.info.samples);
+    CHECK(count(blocks, "late_stamp") == count(whole, "late_stamp"));
+  }
+}
+
 TEST_CASE("doubled stamps: the first row is kept") {
   auto t = even(50, 1000);
   t.insert(t.begin() + 10, t[9]);

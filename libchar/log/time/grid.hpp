@@ -133,12 +133,14 @@ class TimeGrid {
   std::int64_t checked(const Pending& front, std::size_t row, std::int64_t stamp) const;
   enum class Verdict { keep, drop };
   Verdict decide(const Pending& front, std::size_t row, std::int64_t& stamp, std::size_t ahead);
-  Verdict place_late_row(const Pending& front, std::size_t row, std::int64_t step, std::int64_t& stamp);
+  Verdict place_late_row(const Pending& front, std::size_t row, std::int64_t gap, std::int64_t& stamp);
   Verdict pass_gap(const Pending& front, std::size_t row, std::int64_t step, std::int64_t gap, std::size_t left);
   Verdict drop_wild(const Pending& front, std::size_t row);
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
   [[noreturn]] void refuse_backward() const;
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
+  bool next_row(const Pending*& at, std::size_t& item, std::size_t& row) const;
+  bool next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const;
   std::int64_t lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
   std::vector<double> lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
   std::int64_t packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;

@@ -31,7 +31,8 @@ bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks,
   const auto share = [&](const auto& holds) {
     return static_cast<double>(std::count_if(steps.begin(), steps.end(), holds)) / static_cast<double>(steps.size());
   };
-  if (!(usual > 0) || median_in_place(over_blanks, Middle::lower) > (few ? kNone : 1.5) * usual) return false;
+  const double over_blank = median_in_place(over_blanks, Middle::lower);
+  if (!(usual > 0) || !(over_blank > 0) || over_blank > (few ? kNone : 1.5) * usual) return false;
   if (steps.size() < kFew) return share([&](double step) { return std::fabs(step - usual) <= 0.25 * usual; }) == 1;
   return share([&](double step) { return step <= 0.55 * usual; }) <= 0.1;
 }

@@ -142,7 +142,11 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
   const bool packets = step_.model.packet > 0;
   const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead);
   if (packets && gap == 0) return Verdict::keep;
-  return gap > 0 ? pass_gap(front, row, step, gap, ahead) : place_late_row(front, row, step, stamp);
+  if (gap == 0 || (!step_.coarse && ahead > 1 && next_lies_before(front, row, stamp))) {
+    if (place_late_row(front, row, gap, stamp) == Verdict::drop) return Verdict::drop;
+    step = stamp - last_.stamp;
+  }
+  return gap > 0 ? pass_gap(front, row, step, gap, ahead) : Verdict::keep;
 }
 
 TimeGrid::Verdict TimeGrid::drop_wild(const Pending& front, std::size_t row) {
@@ -150,15 +154,16 @@ TimeGrid::Verdict TimeGrid::drop_wild(const Pending& front, std::size_t row) {
   return Verdict::drop;
 }
 
-// Late, but the rows behind it are not: its stamp is wrong, the row has its place.
-TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row, std::int64_t step,
+// Late, also behind the gap in front of it, but the rows that follow are not: its stamp is wrong, it has its place.
+TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row, std::int64_t gap,
                                            std::int64_t& stamp) {
-  const double late = static_cast<double>(step) + recent_.rows.last_late(step_.ns);
+  const double passed = static_cast<double>(gap) * step_.ns;
+  const double late = static_cast<double>(stamp - last_.stamp) + recent_.rows.last_late(step_.ns) - passed;
   if (late > kWildSteps * step_.ns) return drop_wild(front, row);
   if (late <= 2 * step_.ns) return Verdict::keep;
   warnings_.add("late_stamp", "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
-  stamp = last_.stamp + clamped_whole<std::int64_t>(std::round(step_.ns));
+  stamp = last_.stamp + clamped_whole<std::int64_t>(std::round(passed + step_.ns));
   return Verdict::keep;
 }
 
@@ -240,6 +245,22 @@ void TimeGrid::unwrap(const Pending& front, std::size_t row, const ClockWrap& wr
   if (late > 0) leave_missing(static_cast<std::uint64_t>(late), late);
 }
 
+/// The row behind this one, in the blocks that wait: one without rows is passed over.
+bool TimeGrid::next_row(const Pending*& at, std::size_t& item, std::size_t& row) const {
+  for (++row; row >= at->block.rows; row = 0) {
+    if (++item >= pending_.size()) return false;
+    at = &pending_[item];
+  }
+  return true;
+}
+
+bool TimeGrid::next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const {
+  const Pending* at = &front;
+  std::size_t item = 0;
+  std::int64_t next = 0;
+  return next_row(at, item, row) && !__builtin_add_overflow(at->block.time_ns[row], last_.wrap, &next) && next < stamp;
+}
+
 // How much later than expected this row and those behind it are, in steps; its own first.
 std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp,
                                          std::size_t ahead) const {
@@ -255,11 +276,7 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, 
   std::size_t item = 0, i = row;
   const Pending* at = &front;
   for (std::size_t j = 1; j < std::min(ahead, kRowsAhead); ++j) {
-    if (++i >= at->block.rows) {
-      if (++item >= pending_.size()) break;
-      at = &pending_[item];
-      i = 0;
-    }
+    if (!next_row(at, item, i)) break;
     std::int64_t t = 0, unused = 0;
     // Rows ahead are not checked yet.
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
@@ -292,11 +309,7 @@ std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::in
   std::int64_t before = stamp;
   const std::size_t looked = std::min(ahead, 2 * step_.model.packet + 2);
   for (std::size_t j = 1; j < looked && late > 0; ++j) {
-    if (++i >= at->block.rows) {
-      if (++item >= pending_.size()) break;
-      at = &pending_[item];
-      i = 0;
-    }
+    if (!next_row(at, item, i)) break;
     std::int64_t t = 0, step = 0;
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;
     before = t;
