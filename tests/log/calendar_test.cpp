@@ -47,6 +47,11 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
                            "2024-05-01_12-00-00",
                            "20240501_120000",
                            "2024-05-01 14:00:00.000+0200 [Europe/Berlin]",
+                           "2024年5月1日 12时00分00秒",
+                           "2024年05月01日 下午 12:00:00",
+                           "2024년 5월 1일 12시 00분 00초",
+                           "2024-05-01 오후 12:00:00",
+                           "01/05/2024 12h00",
                            "2024-05-01T12:00:00Z[UTC]"}) {
     INFO(text);
     CHECK(ns(text) == noon);
@@ -66,6 +71,14 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
   CHECK(ns("12:5:7") == (12 * 3600 + 5 * 60 + 7) * kBillion);
   CHECK(ns("1 day, 2:03:04") == (26 * 3600 + 3 * 60 + 4) * kBillion);
   CHECK(ns("0 days 00:00:01.5") == 1500000000);
+  for (const char* text : {"1 02:03:04", "1.02:03:04", "1d 02:03:04", "26:03:04", "26h03m04s", "26 h 3 min 4 s"}) {
+    INFO(text);
+    CHECK(ns(text) == (26 * 3600 + 3 * 60 + 4) * kBillion);
+  }
+  CHECK(ns("23h40") == (23 * 60 + 40) * 60 * kBillion);
+  CHECK(ns("35:10") == (35 * 60 + 10) * kBillion);  // no hour of a day
+  CHECK(ns("75:03.5") == (75 * 60 + 3) * kBillion + 500000000);
+  CHECK(ns("오전 00:05:00") == 300 * kBillion);
   CHECK(ns("24-05-01 12:00", DateOrder::year_first) == noon);
   for (const char* text : {"20240501120000", "202405011200", "2024050112", "240501120000"}) {
     INFO(text);
@@ -103,6 +116,10 @@ TEST_CASE("what is no day or no time of day is refused") {
                            "Sat",
                            "Mon 5",
                            "12:5",
+                           "1 day, 26:03:04",
+                           "23h",
+                           "5月",
+                           "10 hm",
                            "2024-05-01 12:00:00-042 x"}) {
     INFO(text);
     CHECK_FALSE(read_calendar(text, DateOrder::day_first));

@@ -143,6 +143,24 @@ TEST_CASE("a line of names is told from a damaged row, and is found between othe
   CHECK(count(kept, "no_header") == 1);
 }
 
+TEST_CASE("columns behind the last name are known by their position, that of row numbers in front of the first") {
+  const auto four = [](char sign) {
+    return forty([&](int k) { return fmt::format("{1:.2f}{0}{2}.25{0}{2}.5{0}-{2}.5\n", sign, 0.01 * k, k % 7); });
+  };
+  for (const char sign : {',', ';', '\t'}) {
+    const Recording r = read_text(fmt::format("t{}x [V]\n", sign) + four(sign));
+    CHECK(names_of(r) == "x[V] c2[] c3[] ");
+    CHECK(r.info.time.rate_hz == Approx(100));
+    CHECK(count(r, "unnamed_column") == 2);
+  }
+  const Recording rows = read_text(
+      "t ax ay\n" + forty([](int k) { return fmt::format("{} {:.2f} {}.5 {}.25\n", k + 1, 0.01 * k, k % 7, k % 5); }));
+  CHECK(names_of(rows) == "ax[] ay[] ");
+  CHECK(rows.info.time.rate_hz == Approx(100));
+  CHECK_THAT(failure("t,x\n" + forty([](int k) { return fmt::format("0,{:02d},{},{}\n", k, k % 7, k % 5); })),
+             Catch::Contains("decimal commas"));
+}
+
 TEST_CASE("a line of units is told by the unit of the time alone") {
   const Recording r = read_text("Time,a,b\nsec,counts,flurbs\n" +
                                 forty([](int k) { return fmt::format("{:.1f},{}.5,2\n", 0.1 * k, k); }));

@@ -392,6 +392,58 @@ TEST_CASE("minutes and seconds of an hour go on behind it") {
   CHECK(r.info.samples == 300);
 }
 
+TEST_CASE("two numbers of a clock are minutes and seconds where one of them is above any hour") {
+  for (const int from : {0, 1300, 2400}) {
+    std::string text = "time,x\n";
+    for (int i = 0; i < 3000; ++i) text += fmt::format("{:02}:{:02},{}\n", (from + i) / 60, (from + i) % 60, i % 7);
+    const Recording r = test::read_text(text);
+    INFO(from);
+    CHECK(r.info.time.rate_hz == Approx(1));
+    CHECK(r.info.samples == 3000);
+  }
+  const Recording hours = with_stamps("time", [](int i) { return fmt::format("{:02}:{:02}", i / 60, i % 60); });
+  CHECK(hours.info.time.rate_hz == Approx(1.0 / 60));
+  const Recording hour_behind = with_stamps("time", [](int i) {
+    const int s = 3500 + i;
+    return s < 3600 ? fmt::format("{:02}:{:02}", s / 60, s % 60) : fmt::format("1:{:02}:{:02}", s / 60 % 60, s % 60);
+  });
+  CHECK(hour_behind.info.time.rate_hz == Approx(1));
+  CHECK(hour_behind.info.samples == 300);
+}
+
+TEST_CASE("clocks with words for their units, and what ran for days") {
+  const auto rate = [](const std::function<std::string(int)>& stamp) {
+    const Recording r = with_stamps("Zeit", stamp);
+    return r.info.samples == 300 ? r.info.time.rate_hz : -1;
+  };
+  CHECK(rate([](int i) { return fmt::format("{:02}h{:02}m{:02}s", i / 3600, i / 60 % 60, i % 60); }) == Approx(1));
+  CHECK(rate([](int i) { return fmt::format("{}h{:02}", 5 + i / 60, i % 60); }) == Approx(1.0 / 60));
+  CHECK(rate([](int i) { return fmt::format("{} {:02}:{:02}:00", i / 24, i % 24, 0); }) == Approx(1.0 / 3600));
+  CHECK(rate([](int i) { return fmt::format("{}:{:02}:00", i / 6, i % 6 * 10); }) == Approx(1.0 / 600));
+  CHECK(rate([](int i) { return fmt::format("2024年3月5日 {:02}时{:02}分{:02}秒", 8, i / 60, i % 60); }) == Approx(1));
+  CHECK(rate([](int i) { return fmt::format("2024-03-05 오전 {}:{:02}:{:02}", 8, i / 60, i % 60); }) == Approx(1));
+}
+
+TEST_CASE("samples that beat slowly with whole seconds keep their rate") {
+  for (const double interval : {1.0024, 0.9970, 1.0009}) {
+    std::string text = "time,x\n";
+    for (int i = 0; i < 6000; ++i)
+      text += fmt::format("{},{}\n", 1700000000 + static_cast<int>(std::floor(0.4 + interval * i)), i % 7);
+    const Recording r = test::read_text(text);
+    INFO(interval);
+    CHECK(r.info.time.rate_hz == Approx(1 / interval).epsilon(1e-4));
+    CHECK(r.info.samples == 6000);
+    CHECK(r.info.time.missing_samples == 0);
+  }
+  std::mt19937 random(7);
+  std::string lost = "time,x\n";  // some at random
+  for (int i = 0; i < 6000; ++i)
+    if (random() % 500 != 0) lost += fmt::format("{},{}\n", 1700000000 + i, i % 7);
+  const Recording r = test::read_text(lost);
+  CHECK(r.info.time.rate_hz == Approx(1));
+  CHECK(r.info.samples == 6000);
+}
+
 TEST_CASE("which number of a date is the day follows from the whole head") {
   for (const bool day_first : {true, false}) {
     const Recording r = with_stamps("date", [&](int i) {

@@ -57,6 +57,66 @@ struct DateScanner {
   }
 };
 
+// What stands behind a number instead of a sign, in the languages of East Asia and in French.
+struct StampWord {
+  std::string_view text;
+  char sign;
+  bool latin = false;  // no letter stands behind it
+};
+constexpr StampWord kStampWords[] = {{"年", '-'},        {"月", '-'},      {"日", ' '},        {"时", ':'},
+                                     {"時", ':'},        {"点", ':'},      {"點", ':'},        {"分", ':'},
+                                     {"秒", ' '},        {"년", '-'},      {"월", '-'},        {"일", ' '},
+                                     {"시", ':'},        {"분", ':'},      {"초", ' '},        {"h", ':', true},
+                                     {"min", ':', true}, {"m", ':', true}, {"sec", ' ', true}, {"s", ' ', true}};
+constexpr std::pair<std::string_view, std::string_view> kHalves[] = {{"上午", " am"}, {"下午", " pm"}, {"午前", " am"},
+                                                                     {"午後", " pm"}, {"오전", " am"}, {"오후", " pm"}};
+
+bool ascii_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+const StampWord* stamp_word(std::string_view text) {
+  for (const StampWord& word : kStampWords)
+    if (text.starts_with(word.text) &&
+        !(word.latin && text.size() > word.text.size() && ascii_letter(text[word.text.size()])))
+      return &word;
+  return nullptr;
+}
+
+// "2024年3月5日 上午 10時05分07秒" and "10 h 05 min" with signs, "2024-3-5 10:05:07 am"; nothing where none of these words
+// stands in the text.
+std::optional<std::string> with_signs(std::string_view text) {
+  const bool worded = std::any_of(text.begin(), text.end(), [](char c) { return (c & 0x80) != 0 || c == 'h'; });
+  if (!worded) return std::nullopt;
+  std::string out;
+  std::string_view half;
+  bool found = false, hour = false;
+  const auto end_with = [&](std::string_view signs) {
+    while (!out.empty() && signs.find(out.back()) != signs.npos) out.pop_back();
+  };
+  while (!text.empty()) {
+    const auto* const is_half = std::find_if(std::begin(kHalves), std::end(kHalves),
+                                             [&](const auto& one) { return text.starts_with(one.first); });
+    const std::size_t digit = out.find_last_not_of(' ');
+    const StampWord* const word = digit != out.npos && decimal_digit(out[digit]) ? stamp_word(text) : nullptr;
+    if (is_half != std::end(kHalves)) {
+      half = is_half->second;
+      text.remove_prefix(is_half->first.size());
+    } else if (word != nullptr && (!word->latin || word->text == "h" || hour)) {
+      end_with(" ");
+      out += word->sign;
+      hour = hour || word->sign == ':';
+      text.remove_prefix(word->text.size());
+    } else {
+      if (text[0] != ' ' || (!out.empty() && out.back() != ':' && out.back() != '-')) out += text[0];
+      text.remove_prefix(1);
+      continue;
+    }
+    found = true;
+  }
+  if (!found) return std::nullopt;
+  end_with(" :-");
+  return out.append(half);
+}
+
 // 1…12 for a month as a word, in English; 0 for none.
 int month_word(DateScanner& at) {
   static constexpr std::array<std::string_view, 12> kMonths = {"january",   "february", "march",    "april",
@@ -212,12 +272,13 @@ std::int64_t behind_seconds(DateScanner& at) {
   return part;
 }
 
-// "12:00", "12:00:00.123", "12:00:00:123", "12-00-00", "3:04:05 PM", "120000.5", and "59:58.0" without an hour
+// "12:00", "12:00:00.123", "12:00:00:123", "12-00-00", "3:04:05 PM", "120000.5", "49:03:04" of what ran for days, and
+// "59:58.0" and "35:10" without an hour
 bool clock_time(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const bool compact = out.date && (s.digits_ahead() == 6 || s.digits_ahead() == 4);
   const bool with_seconds = s.digits_ahead() == 6;
-  const auto hour = compact ? std::optional(s.fixed(2)) : s.number(1, 2);
+  const auto hour = compact ? std::optional(s.fixed(2)) : s.number(1, out.date ? 2 : 4);
   const char sign = out.date && s.peek() == '-' ? '-' : ':';
   if (!hour || (!compact && !s.take(sign))) return false;
   const bool padded = s.digits_ahead() == 2 || s.peek(1) != ':';  // printf("%d:%d:%d")
@@ -230,9 +291,10 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
     out.of_hour = out.clock = true;
     out.ns = *hour * kMinuteNs + *minute * kSecondNs + second_fraction(s);
     at = s;
-    return *hour < 60 && *minute < 60;
+    return *minute < 60;
   }
-  if (compact ? with_seconds : s.peek() == sign) {
+  out.seconds = compact ? with_seconds : s.peek() == sign;
+  if (out.seconds) {
     if (!compact) s.take(sign);
     const std::size_t n = s.digits_ahead();
     if (n == 0 || (!compact && n > 2)) return false;
@@ -245,13 +307,16 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
   const bool morning = half.word("am") || half.word("a.m."),
              evening = !morning && (half.word("pm") || half.word("p.m."));
   if (morning || evening) {
-    if (hours < 1 || hours > 12) return false;
+    if (hours > 12) return false;
     hours = hours % 12 + (evening ? 12 : 0);
     out.half_days = true;
     s = half;
   }
-  if (hours > 24 || *minute > 59 || second > 60 || (hours == 24 && (*minute > 0 || second > 0))) return false;
-  out.ns += hours * kHourNs + *minute * kMinuteNs + second * kSecondNs + part;
+  const bool beyond = hours > 24 || (hours == 24 && (*minute > 0 || second > 0));
+  if (*minute > 59 || second > 60 || (beyond && (out.date || out.ns > 0))) return false;
+  out.of_hour = beyond && !out.seconds;
+  out.ns += out.of_hour ? hours * kMinuteNs + *minute * kSecondNs
+                        : hours * kHourNs + *minute * kMinuteNs + second * kSecondNs + part;
   out.clock = true;
   at = s;
   return true;
@@ -287,14 +352,18 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
   return at.rest.empty();
 }
 
-// "0 days 00:00:01.5", "1 day, 2:03:04": durations of pandas and Python.
+// "0 days 00:00:01.5", "1 day, 2:03:04", "1d 02:03:04", "1 02:03:04", "1.02:03:04": durations of pandas, Python and .NET.
 void whole_days(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const auto days = s.number(1, 5);
+  if (!days) return;
+  const bool sign = s.peek() == '.' || s.peek() == ' ';
+  if (!s.take('.')) s.blanks();
+  const bool word = s.word("days") || s.word("day") || s.word("d");
+  if (word) s.take(',');
   s.blanks();
-  if (!days || (!s.word("days") && !s.word("day"))) return;
-  s.take(',');
-  s.blanks();
+  DateScanner clock = s;
+  if (!word && (!sign || !clock.number(1, 2) || !clock.take(':') || !clock.number(2, 2) || !clock.take(':'))) return;
   out.ns = *days * kDayNs;
   at = s;
 }
@@ -302,6 +371,7 @@ void whole_days(DateScanner& at, CalendarStamp& out) {
 }  // namespace
 
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order) {
+  if (const auto plain = with_signs(text)) return read_calendar(*plain, order);
   DateScanner at{text};
   at.blanks();
   CalendarStamp out;
@@ -326,9 +396,7 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
 std::optional<CalendarStamp> read_calendar(std::string_view text) {
   // Next to all cells are numbers, which need no further look.
   const auto sign = [](char c) { return c == '-' || c == '/' || c == '.'; };
-  const auto clock = [](char c) {
-    return c == ':' || c == ',' || c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0;
-  };
+  const auto clock = [](char c) { return c == ':' || c == ',' || c == '_' || (c & 0x80) != 0 || ascii_letter(c); };
   if (std::none_of(text.begin(), text.end(), clock) && std::count_if(text.begin(), text.end(), sign) < 2)
     return std::nullopt;
   for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})

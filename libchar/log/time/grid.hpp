@@ -113,6 +113,7 @@ class TimeGrid {
   void leave_out_blank(Pending& item);
   void begin();
   bool ready(bool end);
+  std::size_t rows_to_learn() const;
   void learn();
   std::vector<std::int64_t> first_stamps();
   void drop_wild_start(const std::vector<std::int64_t>& stamps);

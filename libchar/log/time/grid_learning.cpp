@@ -14,8 +14,9 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kEnough = 64;   // rows of a window that may say another interval
-constexpr std::size_t kLearn = 1025;  // rows whose stamps decide on dt
+constexpr std::size_t kEnough = 64;           // rows of a window that may say another interval
+constexpr std::size_t kLearn = 1025;          // rows whose stamps decide on dt
+constexpr std::size_t kLearnSeconds = 16385;  // where those are whole seconds, with which other clocks beat slowly
 
 }  // namespace
 
@@ -40,14 +41,23 @@ bool TimeGrid::ready(bool end) {
       waiting_ += waiting.block.rows - waiting.done;
     }
   }
-  return clocks_.rows.decided() && waiting_ > 0 && (end || waiting_ >= kLearn);
+  return clocks_.rows.decided() && waiting_ > 0 && (end || waiting_ >= rows_to_learn());
+}
+
+std::size_t TimeGrid::rows_to_learn() const {
+  std::size_t rows = 0;
+  for (const Pending& item : pending_)
+    for (std::size_t i = item.done; i < item.block.rows && rows < kLearn; ++i, ++rows)
+      if (item.block.time_ns[i] % 1000000000 != 0) return kLearn;
+  return kLearnSeconds;
 }
 
 /// Of the rows that wait, as far as the window goes.
 std::vector<std::int64_t> TimeGrid::first_stamps() {
   std::vector<std::int64_t> stamps;
+  const std::size_t most = rows_to_learn();
   for (const Pending& item : pending_)
-    for (std::size_t i = item.done; i < item.block.rows && stamps.size() < kLearn; ++i) {
+    for (std::size_t i = item.done; i < item.block.rows && stamps.size() < most; ++i) {
       const std::int64_t stamp = checked(item, i, item.block.time_ns[i]);
       const std::int64_t first = last_.any ? last_.first - last_.wrap : stamps.empty() ? stamp : stamps.front();
       if (stamps.size() > 1 && window_.to_ns != INT64_MAX && stamp - first >= window_.to_ns) return stamps;

@@ -43,7 +43,8 @@ struct StampPart {
   /// what the digits behind the mark count, where they are written without leading zeros ("12.5" is
   /// 12 s and 5 ns); 0 = a fraction
   std::int64_t fraction_ns = 0;
-  bool digits = false;  ///< 125959.5 is 12:59:59.5, 20240501125959 has its date too
+  bool of_hour = false;  ///< "12:05" is 12 minutes and 5 seconds
+  bool digits = false;   ///< 125959.5 is 12:59:59.5, 20240501125959 has its date too
 };
 
 /// Rows with another value in this column are left out, or (`must`) refused.

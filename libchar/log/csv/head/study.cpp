@@ -7,19 +7,42 @@
 #include <utility>
 
 #include "libchar/core/refusal.hpp"
+#include "libchar/log/detail/column_name.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
 namespace {
 
-// LabVIEW names a column of comments that its rows do not have; R names no column of row numbers,
-// which they do; names with commas in them are known by the blanks behind those.
+// R does not name the first column, of row numbers; others name the first ones alone, where the time is among them and
+// no comma of the rows is a decimal one.
+void add_missing_names(const Study& study, Cells& fields) {
+  const std::size_t columns = study.columns, rows = study.sample.size();
+  const auto is_word = [&](const Field& field) { return cell_kind(field, study.style()) == CellKind::word; };
+  if (rows < 3 || 2 * fields.size() < columns || !std::all_of(fields.begin(), fields.end(), is_word)) return;
+  const Cells last = cells_in(study.dialect, study.sample[rows - 1].text),
+              before = cells_in(study.dialect, study.sample[rows - 2].text);
+  if (last.size() != columns || before.size() != columns) return;
+  const auto says_time = [](const Field& field) {
+    const auto name = time_name(name_and_unit(field.text).first);
+    return name && !name->date;
+  };
+  const bool quoted = std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; });
+  const bool time = fields.size() > 1 && std::any_of(fields.begin(), fields.end(), says_time);
+  const Cell a = read_cell(before[0].text, '.'), b = read_cell(last[0].text, '.');
+  const bool counts = a.kind == Cell::value && b.kind == Cell::value && a.integer && b.number == a.number + 1;
+  if (fields.size() + 1 == columns && ((quoted && last[0].quoted) || (time && counts)))
+    fields.insert(fields.begin(), Field{"", 0, true});
+  const auto has_point = [](const Field& field) { return field.text.find('.') != std::string::npos; };
+  if (!time || (study.dialect.delimiter == ',' && std::none_of(last.begin(), last.end(), has_point))) return;
+  while (fields.size() < columns) fields.push_back(Field{"", fields.back().offset, false});
+}
+
+// LabVIEW names a column of comments that its rows do not have; names with commas in them are known by the blanks
+// behind those.
 void fit_names(const Study& study, std::string_view text, Cells& fields) {
   const std::size_t columns = study.columns;
   if (fields.size() == columns + 1 && fields.back().text == "Comment") fields.pop_back();
-  if (fields.size() + 1 == columns && study.sample.size() > 1 &&
-      std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; }) &&
-      cells_in(study.dialect, study.sample[1].text)[0].quoted)
-    fields.insert(fields.begin(), Field{"", 0, true});
+  if (fields.size() < columns) add_missing_names(study, fields);
   const auto joined = [&](const Field& field) {
     return &field != fields.data() && field.offset > 0 && text[field.offset - 1] == ' ';
   };

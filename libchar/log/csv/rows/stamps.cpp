@@ -246,7 +246,7 @@ void choose_date_order(const StampStudy& study, const ReadOptions& options, Dial
 
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   const auto main = static_cast<std::size_t>(dialect.time.column);
-  bool zone = false, of_hour = false, date_digits = false;
+  bool zone = false, of_hour = false, seconds = false, date_digits = false;
   for (const Cells& row : study.rows)
     for (const StampPart* part : {&dialect.time, &dialect.more_time})
       if (part->column >= 0 && static_cast<std::size_t>(part->column) < row.size())
@@ -254,11 +254,18 @@ void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
             const auto stamp = part->digits ? read_date_digits(text) : read_calendar(text, dialect.date_order)) {
           zone = zone || stamp->zone;
           of_hour = of_hour || stamp->of_hour;
+          seconds = seconds || stamp->seconds;
           date_digits = date_digits || part->digits;
         }
   constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
   const bool clock_only =
       !date_digits && dialect.more_time.column < 0 && (dialect.time.digits || study.kinds[main] == ColumnKind::clock);
+  if (clock_only && !of_hour && !seconds && !dialect.time.digits && study.whole_head)
+    for (const Cells& row : study.whole_head(main)) {  // "12:05": hours and minutes, if none is above 24
+      const auto stamp = read_calendar(row[0].text);
+      of_hour = of_hour || (stamp && stamp->of_hour);
+    }
+  dialect.time.of_hour = of_hour;
   dialect.clock_period_ns = clock_only ? (of_hour ? kHour : 24 * kHour) : 0;
   info.dialect.push_back(of_hour               ? "stamps are minutes and seconds of an hour"
                          : date_digits         ? "stamps are dates in digits, YYYYMMDDhhmmss"
@@ -380,9 +387,9 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
   }
   offset = 0;
   const auto stamp = read_calendar(text, dialect.date_order);
-  if (!stamp)
+  if (!stamp || (stamp->of_hour && !part.of_hour))
     return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
-  out = stamp->ns;
+  out = part.of_hour && !stamp->of_hour && !stamp->seconds ? stamp->ns / 60 : stamp->ns;
   return StampDefect::none;
 }
 
