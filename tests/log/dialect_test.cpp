@@ -159,6 +159,8 @@ TEST_CASE("columns behind the last name are known by their position, that of row
   CHECK(rows.info.time.rate_hz == Approx(100));
   CHECK_THAT(failure("t,x\n" + forty([](int k) { return fmt::format("0,{:02d},{},{}\n", k, k % 7, k % 5); })),
              Catch::Contains("decimal commas"));
+  CHECK_THAT(failure("Device,ABC\n" + four(',')),
+             Catch::Contains("line 1 has no name for each column") && Catch::Contains("`skip_rows` 1"));
 }
 
 TEST_CASE("a line of units is told by the unit of the time alone") {

@@ -352,7 +352,7 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
   return at.rest.empty();
 }
 
-// "0 days 00:00:01.5", "1 day, 2:03:04", "1d 02:03:04", "1 02:03:04", "1.02:03:04": durations of pandas, Python and .NET.
+// "0 days 00:00:01.5", "1 day, 2:03:04", "1d 02:03:04", "1 02:03:04", "1.02:03:04": what pandas, Python and .NET write.
 void whole_days(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const auto days = s.number(1, 5);

@@ -69,7 +69,8 @@ struct Dialect {
   LineForm lines;
   bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
   bool has_header = false;
-  std::string header;  ///< the header line as it stands in the file, to recognise a repeated one
+  bool few_names = false;  ///< fewer than the rows have cells
+  std::string header;      ///< the header line as it stands in the file, to recognise a repeated one
   std::vector<Column> columns;
   StampPart time;
   StampPart more_time;  ///< added to it: a clock time to its date, nanoseconds to their seconds

@@ -183,6 +183,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
   const Cells fields = table_cells(study, text);
   if (fields.size() > kMaxColumns)
     throw refusal(study, line, 0, "E0305").says("{} columns, the limit is {}", fields.size(), kMaxColumns);
+  dialect.few_names = fields.size() < study.columns;
   std::size_t counted = 0, newline = std::string_view::npos;
   std::uint64_t lines = 0;
   for (const Field& field : fields) {

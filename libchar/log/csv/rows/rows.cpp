@@ -511,6 +511,9 @@ class CarefulLines {
           to_.dialect.delimiter, to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')
       return "are these decimal commas? write the file with another delimiter, such as ;";
+    if (to_.dialect.few_names)
+      return fmt::format("line {} has no name for each column: name them all there, or `skip_rows` {} leaves it out",
+                         to_.dialect.columns[0].line, to_.dialect.columns[0].line);
     return fmt::format("`drop_bad_rows` leaves such rows out; `delimiter`, if '{}' does not separate the fields",
                        to_.dialect.delimiter);
   }
