@@ -177,8 +177,13 @@ Finding& Findings::add(std::string_view code, std::string_view sentence, std::st
 
 void Findings::merge(const Findings& other) {
   for (const Finding& later : other.list_) {
+    if (find(later.code) == nullptr) {
+      list_.push_back(later);
+      continue;
+    }
     Finding& one = entry(later.code, later.sentence);
     one.count += later.count;
+    one.severity = std::max(one.severity, later.severity);
     if (one.help.empty()) one.help = later.help;
     for (const std::string& row : later.where.rows)
       if (one.where.rows.size() < 3) one.where.rows.push_back(row);

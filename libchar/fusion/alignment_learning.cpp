@@ -12,6 +12,7 @@
 //   sum x^2 - rows mean(v)/n,   sum e_i x - rows (v_i - mean(v))/n,   v by MINQUE of the residuals.
 // Delays start from the peak of the correlation below a tenth of the rate, within 8 samples; where it lies at
 // their end, or there is none, within twice as many. Normal equations of centred regressors scaled to one.
+// In the end the gauge is that of the channels that do not stand apart from the others (standing_apart.hpp).
 // Standard errors: delete-one jackknife over stretches.
 #include "libchar/fusion/alignment_learning.hpp"
 
@@ -25,6 +26,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/standing_apart.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -42,6 +44,7 @@ constexpr double kDelayStep = 0.02;        // samples, of numerical derivatives
 constexpr double kLargestDelayStep = 0.5;  // samples, of an iteration
 constexpr double kSettled = 1e-6;
 constexpr double kSeen = 4;             // power of x over that of its own noise, at least
+constexpr double kLeastScale = 0.01;    // of a gain; deg read as rad are 0.0175 times what the others say
 constexpr double kLikeEnough = 0.5;     // correlation of the slow parts, at least
 constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
 constexpr double kResolved = 3;         // standard errors that a delay is from zero, at least
@@ -119,11 +122,14 @@ class Learner {
     prepare();
     average_cross();
     find_truth_slope();
-    delays_.vibrates = blind() && options_.delay && vibrates();
-    if (options_.delay) start_delays();
-    choose_strictness();
-    iterate();
-    if (doubt_delays()) iterate();
+    do {
+      delays_.vibrates = blind() && options_.delay && vibrates();
+      if (options_.delay) start_delays();
+      choose_strictness();
+      iterate();
+      if (doubt_delays()) iterate();
+    } while (leaves_unlike_out());
+    level_gauge();
     tell();
     return out_;
   }
@@ -408,7 +414,7 @@ class Learner {
       to.bias += scale * bias;
       if (spread > 0) size = std::max(size, std::abs(change(0)) / spread);
     }
-    to.gain = std::max(scale * (1 + gain), 0.02) - 1;
+    to.gain = std::max(scale * (1 + gain), kLeastScale) - 1;
     if (can_delay_[k]) {
       const double step = std::clamp(change(next), -kLargestDelayStep, kLargestDelayStep);
       to.delay = std::clamp(to.delay + step, -delays_.reach, delays_.reach);
@@ -439,6 +445,54 @@ class Learner {
       of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
       for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
     }
+  }
+
+  // In the end the input is that of most channels: what stands apart (a wrong unit, an offset of its own) does not move
+  // the others.
+  void level_gauge() {
+    if (!blind() || used_.size() < 3) return;
+    const double gain = centre([&](std::size_t k) { return of(k).gain; });
+    for (std::size_t k = 0; k < used_.size(); ++k) {
+      of(k).gain = (1 + of(k).gain) / (1 + gain) - 1;
+      of(k).gain_se /= 1 + gain;
+    }
+    x0_ *= 1 + gain;
+    if (!options_.bias) return;
+    const double bias = centre([&](std::size_t k) { return of(k).bias + of(k).gain * x0_; });
+    for (std::size_t k = 0; k < used_.size(); ++k) of(k).bias -= (1 + of(k).gain) * bias;
+  }
+
+  template <typename Value>
+  double centre(const Value& value) const {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < used_.size(); ++k) values.push_back(value(k));
+    const std::vector<bool> apart = standing_apart(values);
+    double mean = 0, n = 0;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!apart[k]) n += 1, mean += (values[k] - mean) / n;
+    return mean;
+  }
+
+  // A gain at the least one that is searched is no estimate: its channel has another sign, or does not see the input.
+  bool leaves_unlike_out() {
+    std::vector<Index> left;
+    for (std::size_t k = 0; k < used_.size(); ++k)
+      if (1 + of(k).gain > kLeastScale) left.push_back(used_[k]);
+    if (left.size() == used_.size() || left.size() < (blind() ? 2U : 1U)) return false;
+    unlike_ += used_.size() - left.size();
+    for (std::size_t k = 0; k < used_.size(); ++k) {
+      ChannelAlignment nominal;
+      nominal.cross.assign(static_cast<std::size_t>(further_), 0);
+      nominal.cross_se.assign(static_cast<std::size_t>(further_), kUnknownValue);
+      nominal.used = 1 + of(k).gain > kLeastScale;
+      of(k) = nominal;
+    }
+    used_ = std::move(left);
+    can_delay_.assign(used_.size(), false);
+    residual_power_.resize(0);
+    delays_.bounds.clear();
+    delays_.ends = 0;
+    return true;
   }
 
   // The spread of what the equations say when each stretch in turn is left out.
@@ -520,9 +574,11 @@ class Learner {
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
       note(fmt::format("{} of {} other axes hardly move within the stretch: misalignment with them is not estimated",
                        static_cast<std::size_t>(further_) - axes_.size(), further_));
-    if (used_.size() < static_cast<std::size_t>(n_))
+    if (unlike_ > 0)
+      note(fmt::format("{} of {} sensors do not follow the input, or with the other sign: left as they are", unlike_, n_));
+    if (used_.size() + unlike_ < static_cast<std::size_t>(n_))
       note(fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",
-                       static_cast<std::size_t>(n_) - used_.size(), n_));
+                       static_cast<std::size_t>(n_) - used_.size() - unlike_, n_));
   }
 
   Equations equations(std::size_t k) {
@@ -737,6 +793,7 @@ class Learner {
   } delays_;
   std::vector<Index> rows_;
   bool strict_ = true;  // samples whose interpolation misses a tap are left out
+  std::size_t unlike_ = 0;
   bool gain_ = false;   // terms that the stretch tells
   std::vector<Index> axes_;
   double x0_ = 0;

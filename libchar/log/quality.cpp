@@ -21,6 +21,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/detail/line_watch.hpp"
+#include "libchar/log/detail/run_exits.hpp"
 
 namespace libchar {
 namespace {
@@ -583,6 +584,7 @@ struct OddValues {
   WrapWatch wraps;
   RestingValue resting;
   detail::FlagRuns same{kFrozenRun - 1};  // equal to the one before; the first sample has no flag
+  detail::RunExits exits;
   detail::LineWatch lines;
   ZeroWatch zero;
 };
@@ -617,6 +619,7 @@ struct QualityMeter::State {
   void runs(const double* x, const double* before, std::size_t n, bool repeats, const unsigned char* begins,
             std::uint64_t at);
   bool may_saturate(std::uint64_t levels) const;
+  void judge_exits(ChannelQuality& q) const;
   void join(const State& later);
   void join_runs(const State& later, bool direct);
   static void layout(auto& at, auto& s);
@@ -638,6 +641,7 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   Extreme::layout(at, s.bottom);
   at.group(kWhat, s.missing, s.beyond, s.pushed);
   detail::FlagRuns::layout(at, s.odd.same);
+  detail::RunExits::layout(at, s.odd.exits);
   detail::LineWatch::layout(at, s.odd.lines);
   at.group(kWhat, s.previous, s.minimum, s.maximum);
   at.group(kWhat, s.joined, s.float32);
@@ -755,10 +759,18 @@ void QualityMeter::State::runs(const double* x, const double* before, std::size_
                                const unsigned char* begins, std::uint64_t at) {
   odd.lines.block({x, n}, begins, at);
   const std::size_t first = values.n == 0 ? 1 : 0;
-  if (!repeats) return odd.same.push_without(n - first);
+  const auto follows = [&](std::size_t i) { return begins == nullptr || begins[i] == 0; };
+  const auto leave = [&](std::size_t i) {
+    odd.exits.leave(odd.same.now() + 1, follows(i) ? x[i] - before[i] : 0, odd.same.pauses() == 0);
+  };
+  if (!repeats) {
+    if (n > first) leave(first);
+    return odd.same.push_without(n - first);
+  }
   if (first == 1) odd.resting.look(x[0], 1);
-  const auto equals = [&](std::size_t i) { return x[i] - before[i] == 0 && (begins == nullptr || begins[i] == 0); };
+  const auto equals = [&](std::size_t i) { return x[i] - before[i] == 0 && follows(i); };
   for (std::size_t i = first, from = first; i < n; from = i) {
+    if (!equals(i)) leave(i);
     for (; i < n && !equals(i); ++i) odd.resting.look(x[i], 1);
     odd.same.push_without(i - from);
     const std::uint64_t run = odd.same.now() + 2;
@@ -888,8 +900,9 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
   return true;
 }
 
-/// What repeats outside of the runs gives the chance of a run among these samples; a record that holds all of its
-/// values has a rhythm, and a quantity that changes little from sample to sample may rest.
+/// What repeats outside of the runs gives the chance of a run among these samples, and the other runs show how long
+/// they get. Where neither tells (a quantity that changes little from sample to sample may rest, and between coarse
+/// steps it does), a run that hung is left by a jump.
 struct FrozenRuns {
   explicit FrozenRuns(const ChannelQuality& q) {
     constexpr double kHeld = 0.5, kAtEnds = 4;
@@ -899,14 +912,21 @@ struct FrozenRuns {
     const auto by_chance = [&](std::uint64_t run) { return samples * std::pow(repeats, static_cast<double>(run - 1)); };
     const bool saturated = kAtEnds * static_cast<double>(q.saturated) > frozen;  // rather than hung at an extreme
     rare = !saturated && !held && is_restless(q) && by_chance(kFrozenRun) < kChance;
-    // Where values repeat anyway, as between coarse steps, runs of them are no sign.
     const std::uint64_t run = rare ? kFrozenRun : 2 * kFrozenRun;
-    if (q.distinct_values > 16 && q.longest_stuck >= (rare ? kFrozenRun : 100)) found = true;
-    if (found && !held && by_chance(run) < kChance) fewest = run;
+    const bool known = !held && by_chance(run) < kChance;
+    const bool alone = 2 * q.signs.longest.second < detail::RunExits::kLong;
+    by_length = rare || q.signs.held_times > 1 || (is_restless(q) && (known || alone));
+    longest = by_length ? q.longest_stuck : q.signs.longest.jump;
+    found = q.distinct_values > 16 && longest >= (rare ? kFrozenRun : detail::RunExits::kLong);
+    if (!found || !known) return;
+    fewest = by_length ? run : std::max(run, q.signs.longest.rest + 1);
+    if (fewest > longest) fewest = 0;
   }
   static constexpr double kChance = 1e-3;
   bool found = false, rare = false;  ///< rare: the shortest that are counted
-  std::uint64_t fewest = 0;          ///< samples of a run that chance does not give; 0: not known
+  bool by_length = false;            ///< none of these runs is a rest
+  std::uint64_t longest = 0;
+  std::uint64_t fewest = 0;  ///< samples of a run that neither chance nor a rest gives; 0: not known
 };
 
 /// Runs of one value, where values do not repeat anyway, as they do between coarse steps.
@@ -918,14 +938,14 @@ void judge_runs(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   Finding stuck = finding(
       "stuck",
       q.signs.frozen_runs < 2 || !runs.rare
-          ? fmt::format("one value {} times in a row: the sensor or the link hung", q.longest_stuck)
+          ? fmt::format("one value {} times in a row: the sensor or the link hung", runs.longest)
           : fmt::format(
                 "one value {} to {} times in a row in {} stretches, {} of the samples: the sensor or the link hung",
-                kFrozenRun, q.longest_stuck, q.signs.frozen_runs, percent_text(frozen / samples)));
-  if ((runs.rare ? frozen : static_cast<double>(q.longest_stuck)) > kMuch * samples) stuck.severity = Severity::bad;
+                kFrozenRun, runs.longest, q.signs.frozen_runs, percent_text(frozen / samples)));
+  if ((runs.rare ? frozen : static_cast<double>(runs.longest)) > kMuch * samples) stuck.severity = Severity::bad;
   if (runs.fewest > 0)
     stuck.help.push_back({"Take frozen values as missing.", {{"frozen", fmt::format("{}", runs.fewest)}}});
-  stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
+  if (runs.by_length) stuck.where.time_s = times_of(q.signs.frozen_at, rate_hz);
   out.push_back(std::move(stuck));
 }
 
@@ -963,22 +983,22 @@ void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
 void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
   constexpr double kMuch = 0.01, kAll = 0.5;
   constexpr std::uint64_t kFewestSamples = 1000;
-  if (q.signs.lines == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
+  if (q.signs.lines.runs == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
   if (!q.signs.counter.empty() || !is_restless(q)) return;
-  const double share = static_cast<double>(q.signs.on_lines) / static_cast<double>(q.samples);
-  Finding lines =
-      finding("interpolated",
-              fmt::format("{}{} lie {}: filled or interpolated", q.signs.line_run == 1 ? "about " : "",
-                          share < kMuch ? plural(q.signs.on_lines, "sample") : percent_text(share) + " of the samples",
-                          q.signs.line_run == 1
-                              ? "half-way between their neighbours"
-                              : "on straight lines between two others, in " + plural(q.signs.lines, "place")));
-  lines.count = q.signs.lines;
-  lines.where.time_s = times_of(q.signs.lines_at, rate_hz);
+  const double share = static_cast<double>(q.signs.lines.samples) / static_cast<double>(q.samples);
+  Finding lines = finding(
+      "interpolated",
+      fmt::format("{}{} lie {}: filled or interpolated", q.signs.lines.least == 1 ? "about " : "",
+                  share < kMuch ? plural(q.signs.lines.samples, "sample") : percent_text(share) + " of the samples",
+                  q.signs.lines.least == 1
+                      ? "half-way between their neighbours"
+                      : "on straight lines between two others, in " + plural(q.signs.lines.runs, "place")));
+  lines.count = q.signs.lines.runs;
+  lines.where.time_s = times_of(q.signs.lines.at, rate_hz);
   if (share > kMuch) lines.severity = Severity::bad;
   if (share < kAll)
     lines.help.push_back(
-        {"Take what lies on lines as missing.", {{"interpolated", fmt::format("{}", q.signs.line_run + 2)}}});
+        {"Take what lies on lines as missing.", {{"interpolated", fmt::format("{}", q.signs.lines.least + 2)}}});
   out.push_back(std::move(lines));
 }
 
@@ -1059,6 +1079,19 @@ std::vector<Finding> findings_of(const ChannelQuality& q, double rate_hz) {
 
 // Ends of a range are told from values that simply stand: of few levels, of a channel that stands
 // most of the time wherever it is (coarse steps, slow changes), of a counter or a clock.
+// By three deviations of the differences, or one step of a grid; of the run at the end it is not known, which is as
+// long as those that rested, or longer.
+void QualityMeter::State::judge_exits(ChannelQuality& q) const {
+  constexpr double kDeviations = 3, kStep = 1.5;
+  constexpr std::uint64_t kTimes = 4;
+  const double usual = std::max(kDeviations * q.difference_sd, kStep * value_step(q));
+  q.signs.longest.rest = odd.exits.longest(usual, false);
+  q.signs.longest.jump = odd.exits.longest(usual, true);
+  const std::uint64_t last = odd.same.now() + 1;
+  if (last >= detail::RunExits::kLong && last > kTimes * q.signs.longest.rest)
+    q.signs.longest.jump = std::max(q.signs.longest.jump, last);
+}
+
 bool QualityMeter::State::may_saturate(std::uint64_t levels) const {
   constexpr std::uint64_t kFewLevels = 8;
   if (levels <= kFewLevels || !odd.counter.sentence().empty()) return false;
@@ -1104,7 +1137,16 @@ void QualityMeter::State::join_runs(const State& later, bool direct) {
   const bool all = is(later.values.n, other.equal);
   top.join(later.top, later.top.value == other.value ? other.equal : 0, all);
   bottom.join(later.bottom, -later.bottom.value == other.value ? other.equal : 0, all);
-  if (values.n > 0) odd.same.push(direct && other.value == previous, pushed);
+  if (values.n > 0) {
+    if (direct)
+      odd.exits.join(later.odd.exits, odd.same.now() + 1, later.odd.same.lead() + 1, other.value - previous,
+                     odd.same.pauses() == 0);
+    else
+      odd.exits.join_apart(later.odd.exits, odd.same.pauses() == 0);
+    odd.same.push(direct && other.value == previous, pushed);
+  } else {
+    odd.exits = later.odd.exits;
+  }
   odd.same.join(later.odd.same, pushed, 1);
   odd.lines.join(later.odd.lines, direct, pushed);
   if (values.n == 0) {
@@ -1145,6 +1187,7 @@ void QualityMeter::read_state(StateReader& from) {
   State s;
   State::layout(from, s);
   s.odd.same.check(from);
+  s.odd.exits.check(from);
   s.odd.lines.check(from);
   constexpr double kExact = 0x1p53;  // a count is whole up to here
   if (!(s.values.n >= 0 && s.values.n <= kExact)) from.refuse("the number of its samples");
@@ -1208,16 +1251,19 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
                                                    : state.top.at_next;
   std::tie(q.signs.frozen_runs, q.signs.frozen) = state.odd.same.from_length(kFrozenRun - 1);
   for (const auto& [from, to] : state.odd.same.places()) q.signs.frozen_at.push_back({from - 1, to});
+  q.signs.longest.second = state.odd.same.second_longest() + 1;
+  state.judge_exits(q);
   q.signs.held_times = held_times(state.odd.same);
   const detail::LineWatch::Found lines =
       state.odd.lines.found(q.difference_kurtosis > kMostKurtosis ? 1 : value_step(q) / q.difference_sd);
-  q.signs.line_run = lines.least_run;
+  q.signs.lines.least = lines.least_run;
   q.signs.roughness = state.odd.lines.roughness();
   if (lines.least_run > 0) {
-    std::tie(q.signs.lines, q.signs.on_lines) = lines.runs->from_length(lines.least_run);
-    if (lines.alone > 0) q.signs.lines = q.signs.on_lines = clamped_whole<std::uint64_t>(std::round(lines.alone));
+    std::tie(q.signs.lines.runs, q.signs.lines.samples) = lines.runs->from_length(lines.least_run);
+    if (lines.alone > 0)
+      q.signs.lines.runs = q.signs.lines.samples = clamped_whole<std::uint64_t>(std::round(lines.alone));
     for (const auto& [from, to] : lines.runs->places())
-      if (to - from >= q.signs.line_run) q.signs.lines_at.push_back({from - 2, to});
+      if (to - from >= q.signs.lines.least) q.signs.lines.at.push_back({from - 2, to});
   }
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;

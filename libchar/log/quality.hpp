@@ -32,9 +32,17 @@ struct ChannelQuality {
     std::uint64_t frozen_runs = 0, frozen = 0;
     using Place = std::pair<std::uint64_t, std::uint64_t>;  ///< from, to: samples of the record
     std::vector<Place> frozen_at;                           ///< the first ones
-    /// runs on straight lines of `line_run` steps and more, as chance does not give them, and the samples inside
-    std::uint64_t lines = 0, on_lines = 0, line_run = 0;
-    std::vector<Place> lines_at;
+    /// longest runs of one value
+    struct Longest {
+      /// of a hundred and more: left by a usual step, and by a jump or not at all
+      std::uint64_t rest = 0, jump = 0;
+      std::uint64_t second = 0;  ///< but for the longest one
+    } longest;
+    /// on straight lines, of `least` steps and more, as chance does not give them
+    struct Lines {
+      std::uint64_t runs = 0, samples = 0, least = 0;
+      std::vector<Place> at;
+    } lines;
     double roughness = 0;             ///< mean square of second differences over that of the first, about
     double held_times = 1;            ///< each value is recorded, on average, where a slower sensor was polled
     std::uint64_t marked = 0;         ///< samples at `marks`

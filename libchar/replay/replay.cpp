@@ -138,9 +138,7 @@ class Replay {
     ++passes_;
     instants_.pass(plan_.run_from, plan_.run_to, kLearningBlock, passing,
                    [&](const InstantBlock& b) { push_reading(b.samples, plan_.run_from, meter); });
-    std::vector<double> offsets;
-    for (const detail::TakenOut& one : taken_out()) offsets.push_back(one.offset);
-    const auto found = meter ? meter->level(offsets) : std::nullopt;
+    const auto found = meter ? meter->level(taken_out()) : std::nullopt;
     if (!found) return;
     knowledge_.level_sd = found->sd;
     if (!found->matters || scene_.align) return;

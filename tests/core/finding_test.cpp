@@ -47,6 +47,20 @@ TEST_CASE("findings: cases of one code are counted, with their first three place
   CHECK(a.find("backward_timestamp") == nullptr);
 }
 
+TEST_CASE("findings: what was said of a case is not lost where records are merged") {
+  Findings reader, whole;
+  reader.add("jitter", "stamps scatter").severity = Severity::bad;
+  whole.merge(reader);
+  CHECK(whole.find("jitter")->severity == Severity::bad);
+  reader.add("gap", "gaps").where.time_s = {{1, 2}};
+  Findings other;
+  other.add("jitter", "stamps scatter");
+  other.merge(reader);
+  CHECK(other.find("jitter")->severity == Severity::bad);
+  CHECK(other.find("jitter")->count == 2);
+  CHECK(other.find("gap")->where.time_s.size() == 1);
+}
+
 TEST_CASE("findings: the worst first, in their order otherwise") {
   const std::vector<Finding> all =
       worst_first({finding("gap", "a"), finding("motion", "b"), finding("no_fit", "c"), finding("spiky", "d")});

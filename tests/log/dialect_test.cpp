@@ -159,7 +159,7 @@ TEST_CASE("columns behind the last name are known by their position, that of row
   CHECK(rows.info.time.rate_hz == Approx(100));
   CHECK_THAT(failure("t,x\n" + forty([](int k) { return fmt::format("0,{:02d},{},{}\n", k, k % 7, k % 5); })),
              Catch::Contains("decimal commas"));
-  CHECK_THAT(failure("Device,ABC\n" + four(',')),
+  CHECK_THAT(failure("Device,ABC,4\n" + four(',')),
              Catch::Contains("line 1 has no name for each column") && Catch::Contains("`skip_rows` 1"));
 }
 
@@ -177,4 +177,32 @@ TEST_CASE("one comma in each line, and always as many digits behind it: decimals
   REQUIRE(one.samples.size() == 1);
   CHECK(one.samples[0][1] == 19.037);
   CHECK(read_text(forty([](int k) { return fmt::format("19,{}\n", 37 * k); })).samples.size() == 2);
+}
+
+TEST_CASE("a logger's stamp, words and values with names") {
+  const auto lines = [](const std::string& stamp, const std::string& between) {
+    std::string text;
+    for (int k = 0; k < 60; ++k)
+      text += fmt::format(fmt::runtime(stamp), k / 100, k % 100) +
+              fmt::format("gx{}{}, gy{}{}\n", between, 0.5 + k % 7, between, k % 5);
+    return read_text(text);
+  };
+  for (const std::string stamp :
+       {"2024-05-01 12:00:{:02d}.{:02d}0 INFO imu: ", "171456480{}.{:02d} imu: ", "2{}.{:02d} "})
+    for (const std::string between : {"=", ": "}) {
+      INFO(stamp << between);
+      const Recording r = lines(stamp, between);
+      REQUIRE(r.info.channels.size() == 2);
+      CHECK(r.info.channels[0].name == "gx");
+      CHECK(r.samples[0][0] == 0.5);
+      CHECK(r.info.time.rate_hz == Approx(100));
+    }
+}
+
+TEST_CASE("thousands by blanks beside decimal commas") {
+  std::string text = "Zeit;x\n";
+  for (int k = 0; k < 60; ++k) text += fmt::format("0,{:02d};{} {:03d},5\n", k, 1 + k % 3, 17 * k % 1000);
+  const Recording r = read_text(text);
+  REQUIRE(r.samples.size() == 1);
+  CHECK(r.samples[0][1] == 2017.5);
 }

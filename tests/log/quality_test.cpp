@@ -264,6 +264,55 @@ TEST_CASE("missing samples are counted, break runs and leave the differences out
   CHECK(meter({4}).standard_deviation == 0);
 }
 
+TEST_CASE("what rests between its movements, or between coarse steps, has not hung; what jumps behind a rest has") {
+  std::mt19937_64 random(5);
+  std::vector<double> goes, warms;  // stop and go; a thermometer of 0.0625 degrees, 5 degrees in a day
+  for (double x = 0; goes.size() < 40000;) {
+    const std::size_t moves = 300 + random() % 900, rests = 150 + random() % 600;
+    for (std::size_t i = 0; i < moves; ++i)
+      goes.push_back(x += 0.005 * (1 - std::cos(2 * M_PI * static_cast<double>(i) / static_cast<double>(moves))));
+    goes.insert(goes.end(), rests, x);
+  }
+  for (int i = 0; i < 86400; ++i) warms.push_back(std::round(40 * std::sin(2 * M_PI * i / 86400.0)) * 0.0625);
+  CHECK(meter(goes).longest_stuck > 150);
+  CHECK(meter(warms).longest_stuck > 3000);
+  for (const auto* clean : {&goes, &warms}) {
+    CHECK_FALSE(has(meter(*clean).findings, "stuck"));
+    for (const std::size_t from : {10000U, 35500U}) {
+      std::vector<double> hung = *clean;
+      const std::size_t to = std::min(from + 9000, hung.size());  // the other one until the end
+      std::fill(hung.begin() + static_cast<std::ptrdiff_t>(from), hung.begin() + static_cast<std::ptrdiff_t>(to),
+                hung[from]);
+      INFO((clean == &goes ? "goes" : "warms") << " from " << from);
+      CHECK(has(meter(hung).findings, "stuck"));
+    }
+  }
+}
+
+TEST_CASE("how long runs are left does not depend on how the parts are cut") {
+  std::mt19937_64 random(11);
+  std::vector<double> x;
+  for (double value = 0; x.size() < 6000; value += static_cast<double>(random() % 5)) {
+    x.insert(x.end(), random() % 4 == 0 ? 90 + random() % 300 : 1 + random() % 3, value);
+    if (random() % 9 == 0) x.push_back(kMissing);
+  }
+  const ChannelQuality whole = meter(x);
+  CHECK(whole.signs.longest.jump > 100);
+  for (int round = 0; round < 60; ++round) {
+    QualityMeter joined;
+    for (std::size_t at = 0; at < x.size();) {
+      const std::size_t n = std::min<std::size_t>(1 + random() % 400, x.size() - at);
+      QualityMeter part;
+      part.push({x.data() + at, n});
+      joined.join(part);
+      at += n;
+    }
+    const ChannelQuality q = joined.finish();
+    REQUIRE(q.signs.longest.rest == whole.signs.longest.rest);
+    REQUIRE(q.signs.longest.jump == whole.signs.longest.jump);
+  }
+}
+
 TEST_CASE("the result does not depend on how the samples are pushed") {
   auto x = gaussian(30000, 2);
   for (std::size_t i = 0; i < x.size(); i += 97) x[i] = kMissing;
@@ -416,6 +465,8 @@ TEST_CASE("quality: parts joined are the record, wherever it is cut") {
         REQUIRE(b.distinct_values == a.distinct_values);
         REQUIRE(b.saturated == a.saturated);
         REQUIRE(b.longest_stuck == a.longest_stuck);
+        REQUIRE(b.signs.longest.rest == a.signs.longest.rest);
+        REQUIRE(b.signs.longest.jump == a.signs.longest.jump);
         REQUIRE(b.at_minimum == a.at_minimum);
         REQUIRE(b.at_maximum == a.at_maximum);
         REQUIRE(b.repeats == a.repeats);

@@ -424,6 +424,35 @@ TEST_CASE("clocks with words for their units, and what ran for days") {
   CHECK(rate([](int i) { return fmt::format("2024-03-05 오전 {}:{:02}:{:02}", 8, i / 60, i % 60); }) == Approx(1));
 }
 
+TEST_CASE("a word for a unit, alone or behind a word for time, names the time") {
+  const auto steps = [](const std::string& name, int a_unit) {
+    std::string text = name + ";x\n";
+    for (int k = 0; k < 100; ++k) text += fmt::format("{:.7f};{}\n", k / static_cast<double>(a_unit), k % 7);
+    return test::read_text(text).info;
+  };
+  for (const std::string name : {"Elapsed Hours", "Hours", "Zeit in Stunden", "time (in hours)", "Run Time, hours"})
+    CHECK(steps(name, 360).time.rate_hz == Approx(0.1).epsilon(1e-5));
+  for (const std::string name : {"Minutes", "time_min", "Elapsed Minutes"})
+    CHECK(steps(name, 600).time.rate_hz == Approx(10).epsilon(1e-4));
+  std::string range = "t,min,max\n";
+  for (int k = 0; k < 100; ++k) range += fmt::format("{:.2f},{},{}\n", k / 100.0, k, k + 1);
+  CHECK(test::read_text(range).info.time.rate_hz == Approx(100));
+}
+
+TEST_CASE("counts of a timer of unknown speed are a doubt, whole milliseconds hardly one") {
+  const auto severity = [](int step) {
+    std::string text = "ticks,x\n";
+    for (int k = 0; k < 100; ++k) text += fmt::format("{},{}\n", 1234567 + k * step, k % 7);
+    const Finding* said = test::read_text(text).info.warnings.find("time_unit_guessed");
+    REQUIRE(said != nullptr);
+    return said->severity;
+  };
+  CHECK(severity(72000) == Severity::caution);
+  CHECK(severity(84000) == Severity::caution);
+  CHECK(severity(1000) == Severity::caution);  // 1 Hz or 1 kHz
+  CHECK(severity(20) == Severity::note);
+}
+
 TEST_CASE("samples that beat slowly with whole seconds keep their rate") {
   for (const double interval : {1.0024, 0.9970, 1.0009}) {
     std::string text = "time,x\n";

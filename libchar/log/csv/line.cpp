@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "libchar/log/csv/rows/number.hpp"
+
 namespace libchar::csv {
 
 namespace {
@@ -147,10 +149,42 @@ std::optional<Field> cell_at(std::string_view line, std::size_t column, char del
   return Field{std::string(trimmed(line.substr(from, end - from))), from, false};
 }
 
+namespace {
+
+/// Where "x=1" or "x: 1" begins behind a blank; npos: nowhere.
+std::size_t first_named(std::string_view line) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  for (std::size_t from = 1; from < line.size(); ++from) {
+    if (line[from - 1] != ' ' || !letter(line[from])) continue;
+    std::size_t to = from;
+    while (to < line.size() && (letter(line[to]) || is_digit(line[to]) || line[to] == '.')) ++to;
+    if (to == line.size() || (line[to] != '=' && line[to] != ':')) continue;
+    const std::size_t value = line.find_first_not_of(' ', to + 1);
+    if (value != line.npos && (is_digit(line[value]) || line[value] == '-' || line[value] == '+' || line[value] == '.'))
+      return from;
+  }
+  return line.npos;
+}
+
+/// The stamp is what stands in digits and signs in front: "2024-05-01 12:00:00,123", "1714564800.25", "20".
+std::optional<Field> lead_of_names(std::string_view line, std::size_t& after) {
+  const std::size_t named = first_named(line);
+  if (named == line.npos || !is_digit(line[0]) || line.find_first_of(",;", named) == line.npos) return std::nullopt;
+  std::size_t to = line.find(' ');
+  const std::size_t next = line.find(' ', to + 1);
+  if (next <= named && is_digit(line[to + 1]) && line.substr(to, next - to).find(':') != line.npos) to = next;
+  if (line[to - 1] == ',' || line[to - 1] == ';') return std::nullopt;  // a cell of its own
+  after = named;
+  return Field{std::string(line.substr(0, to)), 0, false};
+}
+
+}  // namespace
+
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {
   constexpr std::size_t kLongest = 48;
   std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return std::nullopt;
+  if (lead == "=") return lead_of_names(line, after);
   if (lead == ",") {  // the comma of the seconds
     constexpr std::size_t kComma = 19, kLength = 23;
     if (line.size() <= kLength || line[kComma] != ',' || line[kLength] != ' ' || begin > 0) return std::nullopt;

@@ -94,6 +94,25 @@ std::pair<std::uint64_t, std::uint64_t> FlagRuns::from_length(std::uint64_t leas
   return {static_cast<std::uint64_t>(runs), static_cast<std::uint64_t>(flags)};
 }
 
+std::uint64_t FlagRuns::second_longest() const {
+  std::uint64_t out = 0, counted = 0;
+  bool passed = false;
+  const auto look = [&](std::uint64_t length, std::uint64_t times) {
+    counted += length * times;
+    if (length == longest_ && !passed && times > 0) {
+      passed = true;
+      --times;
+    }
+    if (times > 0) out = std::max(out, length);
+  };
+  if (!all()) look(lead_, 1);
+  look(now_, 1);
+  for (std::size_t length = 1; length < closed_.size(); ++length)
+    look(length, static_cast<std::uint64_t>(closed_[length]));
+  const std::uint64_t beyond = set_ - counted;
+  return beyond > (passed ? 0 : longest_) ? std::max(out, std::uint64_t{kLongestCounted}) : out;
+}
+
 double FlagRuns::unevenness() const {
   if (set_ < 2) return 1;
   const double n = static_cast<double>(set_ - 1), mean = spacing_ / n;

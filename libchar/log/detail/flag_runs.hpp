@@ -26,9 +26,12 @@ class FlagRuns {
   /// `later` begins at the index `at`, and its flags `skipped` samples further on, which were pushed.
   void join(const FlagRuns& later, std::uint64_t at, std::uint64_t skipped);
 
-  std::uint64_t now() const { return now_; }  ///< flags in a row at the end
+  std::uint64_t now() const { return now_; }    ///< flags in a row at the end
+  std::uint64_t lead() const { return lead_; }  ///< at the beginning
   std::uint64_t set() const { return set_; }
   std::uint64_t longest() const { return longest_; }
+  /// But for one of those that are longest; of several beyond kLongestCounted no more than that is known.
+  std::uint64_t second_longest() const;
   /// Runs of `least` flags and more, and the flags in them.
   std::pair<std::uint64_t, std::uint64_t> from_length(std::uint64_t least) const;
   /// Those with both ends in the record: [length], up to kLongestCounted; empty: none.

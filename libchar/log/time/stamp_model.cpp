@@ -255,8 +255,8 @@ bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) 
 
 /// Samples a little slower or faster than a clock of whole seconds tells them apart: now and then a step more or
 /// less, as evenly as no losses come (Kuiper's statistic of six at random stays as small once in 3,000, the stricter
-/// one of four once in 500; of those that beat 99 and 95 % are known). Of finer steps a logger that loses each hundredth
-/// row is as likely.
+/// one of four once in 500; of those that beat 99 and 95 % are known). Of finer steps a logger that loses each
+/// hundredth row is as likely.
 bool beats_with_clock(const StampLine& line, const FirstSteps& steps, double common) {
   constexpr std::size_t kFewest = 4, kMany = 6;
   constexpr double kSecond = 1e9;

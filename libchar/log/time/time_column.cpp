@@ -99,6 +99,18 @@ constexpr std::array kClockNames = {KnownName{"ms", 1000000},
 constexpr std::array<std::string_view, 8> kDateNames = {"date",    "datum", "fecha", "data",
                                                         "uhrzeit", "heure", "hora",  "clock"};
 
+// Units as words, alone or behind a word for time: "Elapsed Hours", "Zeit in Stunden".
+constexpr std::array kUnitWords = {
+    KnownName{"days", 86400000000000}, KnownName{"tage", 86400000000000},   KnownName{"hours", 3600000000000},
+    KnownName{"hrs", 3600000000000},   KnownName{"stunden", 3600000000000}, KnownName{"heures", 3600000000000},
+    KnownName{"horas", 3600000000000}, KnownName{"ore", 3600000000000},     KnownName{"minutes", 60000000000},
+    KnownName{"mins", 60000000000},    KnownName{"min", 60000000000},       KnownName{"minuten", 60000000000},
+    KnownName{"minutos", 60000000000}, KnownName{"seconds", 1000000000},    KnownName{"secs", 1000000000},
+    KnownName{"sec", 1000000000},      KnownName{"sekunden", 1000000000},   KnownName{"secondes", 1000000000},
+    KnownName{"segundos", 1000000000}, KnownName{"milliseconds", 1000000},  KnownName{"millisekunden", 1000000},
+    KnownName{"msec", 1000000},        KnownName{"microseconds", 1000},     KnownName{"mikrosekunden", 1000},
+    KnownName{"nanoseconds", 1}};
+
 // They count what was taken, and are no clocks however steadily they rise.
 constexpr std::array<std::string_view, 18> kCounters = {
     "frame",   "frames", "frame id", "frame number",  "index",  "idx",     "seq",    "sequence", "count",
@@ -161,6 +173,20 @@ std::optional<TimeName> time_name(std::string_view stem) {
       out.letter = true;
       return out;
     }
+  const std::size_t last = words.rfind(' ');
+  for (const KnownName& unit : kUnitWords) {
+    if (unit.name != std::string_view(words).substr(last + 1)) continue;  // npos + 1 is 0
+    std::string_view before = std::string_view(words).substr(0, last == words.npos ? 0 : last);
+    for (const std::string_view link : {" in", " (in", ","})
+      if (before.ends_with(link)) before.remove_suffix(link.size());
+    const bool time = before == "t" || before == "run" || before == "run time" || before == "since start" ||
+                      std::any_of(kTimeNames.begin(), kTimeNames.end(),
+                                  [&](const KnownName& known) { return known.name == before && known.unit_ns == 0; });
+    if (!time && (!before.empty() || unit.name == "min")) continue;
+    out.unit_ns = unit.unit_ns;
+    out.letter = before.empty();
+    return out;
+  }
   out.letter = name == "t";
   out.date = among(kDateNames, name);
   const bool said = out.letter || out.date || out.clock != Clock::unknown || name.starts_with("timestamp_") ||

@@ -169,6 +169,15 @@ bool inertial(const TableFront& table) {
   return axes == 3;
 }
 
+/// Whole numbers with one step, of no usual interval in any unit.
+bool counts_of_a_timer(const FirstValues& first) {
+  const std::vector<double>& values = first.values;
+  const double step = usual_step(values);
+  bool even = first.integers && step > 1 && usual_units(step).empty();
+  for (std::size_t i = 1; i < values.size() && even; ++i) even = values[i] - values[i - 1] == step;
+  return even;
+}
+
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
@@ -183,7 +192,7 @@ bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& inf
   Finding& guess = info.warnings.add(
       "time_unit_guessed", fmt::format("the stamps state no unit: taken as {} by their step of {}, {} Hz",
                                        unit_name(unit), brief_text(step, 6), brief_text(rate_in(step, unit), 6)));
-  guess.severity = units.size() > 1 ? Severity::caution : Severity::note;
+  guess.severity = units.size() > 1 || counts_of_a_timer(first) ? Severity::caution : Severity::note;
   for (const std::int64_t one : units)
     guess.help.push_back({fmt::format("{}: {} Hz.", unit_name(one), brief_text(rate_in(step, one), 6)),
                           {{"time_unit", unit_name(one)}}});

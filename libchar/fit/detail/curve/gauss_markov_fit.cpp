@@ -124,7 +124,8 @@ AtTau::Spread AtTau::spread_at(const ModelPoint& at, double tau_s) {
     relative.col(i) = (weight * at.theta[in[static_cast<std::size_t>(i)]] *
                        problem_.unit.col(static_cast<Eigen::Index>(in[static_cast<std::size_t>(i)])))
                           .matrix();
-  const auto slope = [&](double theta, double time_s) {
+  // A vector, not Eigen's expression: that would refer to columns which are gone.
+  const auto slope = [&](double theta, double time_s) -> Eigen::VectorXd {
     return (weight * theta * (column(time_s * (1 + kStep)) - column(time_s * (1 - kStep))) / (2 * kStep)).matrix();
   };
   relative.col(n) = slope(at.theta[kLent], tau_s);

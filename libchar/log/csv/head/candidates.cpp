@@ -30,9 +30,11 @@ double worth_of(const Field& field, char decimal) {
                        read_cell(text, '.').kind == Cell::value;
   const CellKind kind = pointed ? CellKind::odd : cell_kind(field, {decimal});
   if (kind < CellKind::word) return 1;
-  const std::string plain = without_thousands(text, {decimal, decimal == ',' ? '.' : ','});
-  if (plain != text && read_cell(plain, decimal).kind == Cell::value)
-    return text.find(decimal) != std::string::npos ? 1 : kGrouped;
+  for (const char group : {decimal == ',' ? '.' : ',', ' '}) {
+    const std::string plain = without_thousands(text, {decimal, group});
+    if (plain != text && read_cell(plain, decimal).kind == Cell::value)
+      return text.find(decimal) != std::string::npos ? 1 : kGrouped;
+  }
   const bool whole = field.quoted || text.find_first_of(",;\t") == std::string::npos;
   return kind == CellKind::word && whole ? kWord : 0;
 }

@@ -65,15 +65,16 @@ void refuse_no_data(const Study& study) {
 
 // Terminals and loggers put the time in front of every line: "[12:00:00.123] 1,2", "I (12345) tag: 1,2".
 void find_lead(Study& study) {
-  for (const std::string lead : {"]", "->", ")", ","}) {
+  for (const std::string lead : {"=", "]", "->", ")", ","}) {
     std::size_t found = 0, after = 0;
     for (const Line& line : study.sample)
       if (const auto field = lead_of(line.text, lead, after); field && after < line.text.size())
         found += read_calendar(field->text) ||
-                 ((lead == "]" || lead == ")") && read_cell(field->text, '.').kind == Cell::value);
+                 ((lead == "=" || lead == "]" || lead == ")") && read_cell(field->text, '.').kind == Cell::value);
     if (found * 4 < study.sample.size() * 3) continue;
     study.dialect.lead = lead;
-    study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead));
+    study.info.dialect.push_back(
+        fmt::format("stamps in front of the lines, up to {}", lead == "=" ? "the first name" : lead));
     return;
   }
 }

@@ -58,6 +58,8 @@ struct RowFilter {
 struct LineForm {
   bool quotes = false;              ///< cells of the head stand in them, and may hold line ends
   bool semicolon_comments = false;  ///< ';' begins one, as '#' does
+  bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
+  bool few_names = false;           ///< fewer than the rows have cells
 };
 
 struct Dialect {
@@ -67,10 +69,8 @@ struct Dialect {
   std::string lead;    ///< what ends a stamp in front of the cells (lead_of); "" = none
   LineEnd line_end = LineEnd::lf;
   LineForm lines;
-  bool trailing_delimiter = false;  ///< lines end with a delimiter and nothing behind it
   bool has_header = false;
-  bool few_names = false;  ///< fewer than the rows have cells
-  std::string header;      ///< the header line as it stands in the file, to recognise a repeated one
+  std::string header;  ///< the header line as it stands in the file, to recognise a repeated one
   std::vector<Column> columns;
   StampPart time;
   StampPart more_time;  ///< added to it: a clock time to its date, nanoseconds to their seconds

@@ -73,7 +73,7 @@ bool named_by_comment(Study& study) {
 
 // A delimiter at the end of the first line, or of the first row, that has nothing behind it.
 void find_trailing(Study& study) {
-  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.trailing_delimiter; ++i) {
+  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.lines.trailing_delimiter; ++i) {
     const Line& line = study.sample[i];
     const std::size_t last = line.text.find_last_not_of(' ');
     if (last == std::string_view::npos || line.text[last] != study.dialect.delimiter) continue;
@@ -81,7 +81,7 @@ void find_trailing(Study& study) {
     if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
         fields.back().quoted)
       continue;
-    study.dialect.trailing_delimiter = true;
+    study.dialect.lines.trailing_delimiter = true;
     study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
                             place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
   }
@@ -183,7 +183,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
   const Cells fields = table_cells(study, text);
   if (fields.size() > kMaxColumns)
     throw refusal(study, line, 0, "E0305").says("{} columns, the limit is {}", fields.size(), kMaxColumns);
-  dialect.few_names = fields.size() < study.columns;
+  dialect.lines.few_names = fields.size() < study.columns;
   std::size_t counted = 0, newline = std::string_view::npos;
   std::uint64_t lines = 0;
   for (const Field& field : fields) {

@@ -494,7 +494,7 @@ class CarefulLines {
     if (span.last) return true;
     const Span extra = field(line, i);
     if (!extra.ok) return false;
-    if (to_.dialect.trailing_delimiter && extra.last && extra.from == extra.to) return true;
+    if (to_.dialect.lines.trailing_delimiter && extra.last && extra.from == extra.to) return true;
     std::size_t fields = count + 1;
     for (Span s = extra; s.ok && !s.last; ++fields) s = field(line, s.next);
     to_.out.problem.reset();  // a quote problem in the fields that are too many says less than their number
@@ -504,14 +504,14 @@ class CarefulLines {
 
   std::string many_hint(std::size_t fields) const {
     const std::size_t count = to_.plan.target.size();
-    if (to_.dialect.trailing_delimiter && fields == count + 1)
+    if (to_.dialect.lines.trailing_delimiter && fields == count + 1)
       return fmt::format(
           "the lines before end with '{}' and nothing behind it, which makes no column: name the columns in a header "
           "line{}",
           to_.dialect.delimiter, to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')
       return "are these decimal commas? write the file with another delimiter, such as ;";
-    if (to_.dialect.few_names)
+    if (to_.dialect.lines.few_names)
       return fmt::format("line {} has no name for each column: name them all there, or `skip_rows` {} leaves it out",
                          to_.dialect.columns[0].line, to_.dialect.columns[0].line);
     return fmt::format("`drop_bad_rows` leaves such rows out; `delimiter`, if '{}' does not separate the fields",

@@ -6,6 +6,7 @@
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/numeric/interval.hpp"
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/standing_apart.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/fusion/algorithm.hpp"
 
@@ -26,7 +27,7 @@ constexpr double kQuietest = 0.5;     // of the usual rms of the middle sensor: 
 constexpr double kLeastDrift = 0.05;   // of a gain
 constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
 constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
-constexpr double kNear = 7;            // deviations from the median: they make the level
+constexpr double kResolved = 5;        // standard errors of an offset
 
 double quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
@@ -129,8 +130,33 @@ ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
   return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
 }
 
+// What moves is the input: the median's own noise would be taken for gains, of a noisier sensor above one.
+bool ReadingMeter::tells_gains() const {
+  std::vector<double> noise;
+  double moves = 0, n = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    double uu = 0, ur = 0, rr = 0, all = 0;
+    for (const auto& block : blocks_) {
+      const Sums& s = block[i];
+      if (s.n < kLeastInBlock) continue;
+      uu += s.uu - s.u * s.u / s.n;
+      ur += s.ur - s.u * s.r / s.n;
+      rr += s.rr - s.r * s.r / s.n;
+      all += s.n;
+    }
+    if (!(all > 0)) continue;
+    noise.push_back((rr - (uu > 0 ? ur * ur / uu : 0)) / all);
+    moves += uu;
+    n += all;
+  }
+  if (noise.empty()) return false;
+  const double median = kMedianError * kMedianError * median_in_place(noise) / static_cast<double>(noise.size());
+  return moves / n > kLeastSignal * median;
+}
+
 ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, double rms_factor) const {
   Readings out(n_);
+  const bool gains = tells_gains();
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<std::pair<double, double>> slopes;
     std::vector<double> left, means, scatter;
@@ -141,7 +167,7 @@ ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, 
     }
     if (slopes.size() < kLeastBlocks) continue;
     LearntSensor::Reading reading;
-    reading.gain = weighted_median(std::move(slopes));
+    if (gains) reading.gain = weighted_median(std::move(slopes));
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) left.push_back(fit(block[i], 0, reading.gain).mean);
     reading.offset = median_in_place(left);
@@ -165,7 +191,7 @@ ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHa
 namespace {
 
 struct Place {
-  double offset = 0, noise = 0;
+  double offset = 0, noise = 0, error = 0;  // standard error of the offset
 };
 
 /// Deviation of the weighted mean of offsets that are draws of one kind, widened to hold 95 % as normal errors do.
@@ -184,33 +210,46 @@ double level_deviation(const std::vector<Place>& near, bool alike) {
 
 }  // namespace
 
-std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<double>& taken_out) const {
-  Level out;
-  std::vector<Place> places, near;
-  std::vector<double> scatter, away;
+std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOut>& taken_out) const {
+  std::vector<double> inputs;
+  for (const auto& block : blocks_)
+    if (block[0].n >= kLeastInBlock) inputs.push_back(block[0].u0 + block[0].u / block[0].n);
+  const double input = inputs.empty() ? 0 : median_in_place(inputs);
+  std::vector<Place> places;
+  std::vector<double> scatter, away, offsets;
   for (std::size_t i = 0; i < n_; ++i) {
-    std::vector<double> means, rms;
+    std::vector<double> means, rms, off;
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) means.push_back(fit(block[i], 0, 0).mean);
     if (means.size() < kLeastBlocks) return std::nullopt;
     const double middle = median_in_place(means);
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) rms.push_back(fit(block[i], middle, 0).rms);
+    for (const double mean : means) off.push_back(std::abs(mean - middle));
     scatter.push_back(median_in_place(rms));
-    places.push_back({middle + taken_out[i], scatter.back()});
-    out.offsets.push_back(places.back().offset);
+    const double error = kMadToSd * median_in_place(off) / std::sqrt(static_cast<double>(means.size()));
+    places.push_back({middle + taken_out[i].offset + taken_out[i].gain * input, scatter.back(), error});
+    offsets.push_back(places.back().offset);
   }
-  std::vector<double> middle = out.offsets;
-  const double median = median_in_place(middle);
-  for (const double offset : out.offsets) away.push_back(std::abs(offset - median));
-  const double away_all = median_in_place(away), noise = median_in_place(scatter);
-  for (const Place& one : places)
-    if (std::abs(one.offset - median) <= kNear * kMadToSd * away_all) near.push_back(one);
-  double mean = 0;
-  for (const Place& one : near) mean += one.offset / static_cast<double>(near.size());
-  for (double& offset : out.offsets) offset -= mean;
-  out.matters = away_all * away_all > kOffsetsCount * (away_all * away_all + noise * noise);
-  out.sd = level_deviation(near, out.matters);
+  const std::vector<bool> apart = standing_apart(offsets);
+  double mean = 0, near = 0;
+  for (std::size_t i = 0; i < n_; ++i)
+    if (!apart[i]) near += 1, mean += (offsets[i] - mean) / near;
+  std::vector<double> sorted = offsets;
+  const double median = median_in_place(sorted), noise = median_in_place(scatter);
+  for (const double offset : offsets) away.push_back(std::abs(offset - median));
+  const double usual = median_in_place(away);
+  const bool all = usual * usual > kOffsetsCount * (usual * usual + noise * noise);
+  Level out;
+  std::vector<Place> makes;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double offset = offsets[i] - mean;
+    const bool taken = apart[i] && std::abs(offset) > kResolved * places[i].error;
+    out.offsets.push_back(all || taken ? offset : 0);
+    out.matters = out.matters || out.offsets.back() != 0;
+    if (!taken) makes.push_back(places[i]);
+  }
+  out.sd = level_deviation(makes, all);
   return out;
 }
 

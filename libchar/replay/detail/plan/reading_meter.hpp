@@ -18,6 +18,11 @@
 
 namespace libchar::detail {
 
+/// Of a sensor, before it was fused.
+struct TakenOut {
+  double offset = 0, gain = 0;
+};
+
 /// Accumulates over consecutive instants, in blocks; memory does not grow with their number.
 class ReadingMeter {
  public:
@@ -32,14 +37,14 @@ class ReadingMeter {
   /// half of the log are not in it.
   Readings steady() const;
 
-  /// Of each sensor its middle distance from the median of all, and `taken_out` of what was taken out of it before,
-  /// less the level: the mean of these distances without those that stand apart.
+  /// Of each sensor its middle distance from the median of all, and `taken_out` of what was taken out of it before
+  /// (at the middle input), less the level: the mean of these distances without those that stand apart.
   struct Level {
-    std::vector<double> offsets;
-    bool matters = false;  ///< they are a fifth of the mean square of what the sensors differ by, or more
-    double sd = 0;         ///< 1.96 of it hold 95 %: of the level where they matter, else of the mean by variances
+    std::vector<double> offsets;  ///< 0: not worth taking out
+    bool matters = false;         ///< one of them is not
+    double sd = 0;                ///< 1.96 of it hold 95 % of the level
   };
-  std::optional<Level> level(const std::vector<double>& taken_out) const;
+  std::optional<Level> level(const std::vector<TakenOut>& taken_out) const;
 
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other, and in more than
   /// outliers of all sensors explain.
@@ -93,6 +98,7 @@ class ReadingMeter {
   std::int64_t least_in_a_row(const Readings& learnt, const Limits& limits) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
+  bool tells_gains() const;
   std::optional<Line> gain_line(std::size_t sensor) const;
 
   std::size_t n_;

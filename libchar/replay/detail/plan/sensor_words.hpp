@@ -14,11 +14,6 @@ struct Clock {
   double start_s = 0, rate_hz = 1;
 };
 
-/// Of a sensor, before it was fused.
-struct TakenOut {
-  double offset = 0, gain = 0;
-};
-
 /// Sensors that read otherwise than they do for most of the log they are judged by, or than all
 /// others throughout. `taken_out`: what the meter did not see.
 void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
