@@ -26,6 +26,7 @@
 #include <utility>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/standing_apart.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
@@ -45,6 +46,7 @@ constexpr double kLargestDelayStep = 0.5;  // samples, of an iteration
 constexpr double kSettled = 1e-6;
 constexpr double kSeen = 4;             // power of x over that of its own noise, at least
 constexpr double kLeastScale = 0.01;    // of a gain; deg read as rad are 0.0175 times what the others say
+constexpr double kFarGain = 0.5;        // from one
 constexpr double kLikeEnough = 0.5;     // correlation of the slow parts, at least
 constexpr double kDoubtfulDelay = 0.5;  // samples of standard error
 constexpr double kResolved = 3;         // standard errors that a delay is from zero, at least
@@ -122,6 +124,7 @@ class Learner {
     prepare();
     average_cross();
     find_truth_slope();
+    start_gains();
     do {
       delays_.vibrates = blind() && options_.delay && vibrates();
       if (options_.delay) start_delays();
@@ -178,6 +181,10 @@ class Learner {
     }
     if (used_.size() < (blind() ? 2U : 1U))
       throw refusal("too few sensors have samples that change").got("{} of {}", used_.size(), n_);
+    if (used_.size() < static_cast<std::size_t>(n_))
+      out_.notes.push_back(
+          fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",
+                      static_cast<std::size_t>(n_) - used_.size(), n_));
     can_delay_.assign(used_.size(), false);
     residual_power_.resize(0);
   }
@@ -441,9 +448,10 @@ class Learner {
     }
     for (std::size_t k = 0; k < used_.size(); ++k) {
       if (can_delay_[k]) of(k).delay = std::clamp(of(k).delay - mean.delay / late, -delays_.reach, delays_.reach);
-      of(k).bias -= mean.bias;
-      of(k).gain = (1 + of(k).gain) / (1 + mean.gain) - 1;
-      for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= mean.cross[a];
+      const double scale = (1 + of(k).gain) / (1 + mean.gain);
+      of(k).gain = scale - 1;
+      of(k).bias -= scale * mean.bias;
+      for (std::size_t a = 0; a < mean.cross.size(); ++a) of(k).cross[a] -= scale * mean.cross[a];
     }
   }
 
@@ -466,25 +474,59 @@ class Learner {
   double centre(const Value& value) const {
     std::vector<double> values;
     for (std::size_t k = 0; k < used_.size(); ++k) values.push_back(value(k));
-    const std::vector<bool> apart = standing_apart(values);
+    const std::vector<bool> apart = detail::standing_apart(values);
     double mean = 0, n = 0;
     for (std::size_t k = 0; k < values.size(); ++k)
       if (!apart[k]) n += 1, mean += (values[k] - mean) / n;
     return mean;
   }
 
+  // Blind, the mean is the input of none where one channel has another unit or sign: those that stand apart beside the
+  // median start from what they are beside it.
+  void start_gains() {
+    if (!blind() || !options_.gain || used_.size() < 3) return;
+    const auto n = static_cast<Index>(used_.size());
+    std::vector<double> row(used_.size()), slopes;
+    Eigen::ArrayXd middle = Eigen::ArrayXd::Constant(m_, kUnknownValue);
+    for (Index t = 0; t < m_; ++t) {
+      for (Index k = 0; k < n; ++k) row[static_cast<std::size_t>(k)] = raw_(t, used_[static_cast<std::size_t>(k)]);
+      if (std::all_of(row.begin(), row.end(), [](double y) { return std::isfinite(y); }))
+        middle(t) = median_in_place(row);
+    }
+    std::vector<Index> rows;
+    for (Index t = 0; t < m_; ++t)
+      if (std::isfinite(middle(t))) rows.push_back(t);
+    if (static_cast<Index>(rows.size()) < kFewestInstants) return;
+    const double level = middle(rows).mean();
+    const Eigen::ArrayXd u = middle(rows) - level;
+    const auto mean_of = [&](std::size_t k) { return raw_.col(used_[k])(rows).mean(); };
+    for (std::size_t k = 0; k < used_.size(); ++k)
+      slopes.push_back(((raw_.col(used_[k])(rows).array() - mean_of(k)) * u).sum() / u.square().sum());
+    const std::vector<bool> apart = detail::standing_apart(slopes);
+    for (std::size_t k = 0; k < used_.size(); ++k) {
+      if (!apart[k] || std::abs(slopes[k] - 1) < kFarGain) continue;
+      of(k).gain = std::max(slopes[k], kLeastScale) - 1;
+      if (options_.bias) of(k).bias = mean_of(k) - slopes[k] * level;
+    }
+    leaves_unlike_out();
+  }
+
+  bool follows(std::size_t k) { return 1 + of(k).gain > 1.001 * kLeastScale; }
+
   // A gain at the least one that is searched is no estimate: its channel has another sign, or does not see the input.
   bool leaves_unlike_out() {
     std::vector<Index> left;
     for (std::size_t k = 0; k < used_.size(); ++k)
-      if (1 + of(k).gain > kLeastScale) left.push_back(used_[k]);
+      if (follows(k)) left.push_back(used_[k]);
     if (left.size() == used_.size() || left.size() < (blind() ? 2U : 1U)) return false;
-    unlike_ += used_.size() - left.size();
+    out_.notes.push_back(
+        fmt::format("{} of {} sensors do not follow the input, or with the other sign: left as they are",
+                    used_.size() - left.size(), n_));
     for (std::size_t k = 0; k < used_.size(); ++k) {
       ChannelAlignment nominal;
       nominal.cross.assign(static_cast<std::size_t>(further_), 0);
       nominal.cross_se.assign(static_cast<std::size_t>(further_), kUnknownValue);
-      nominal.used = 1 + of(k).gain > kLeastScale;
+      nominal.used = follows(k);
       of(k) = nominal;
     }
     used_ = std::move(left);
@@ -574,11 +616,6 @@ class Learner {
     if (options_.misalignment && axes_.size() < static_cast<std::size_t>(further_))
       note(fmt::format("{} of {} other axes hardly move within the stretch: misalignment with them is not estimated",
                        static_cast<std::size_t>(further_) - axes_.size(), further_));
-    if (unlike_ > 0)
-      note(fmt::format("{} of {} sensors do not follow the input, or with the other sign: left as they are", unlike_, n_));
-    if (used_.size() + unlike_ < static_cast<std::size_t>(n_))
-      note(fmt::format("{} of {} sensors are constant or mostly missing within the stretch: left as they are",
-                       static_cast<std::size_t>(n_) - used_.size() - unlike_, n_));
   }
 
   Equations equations(std::size_t k) {
@@ -793,7 +830,6 @@ class Learner {
   } delays_;
   std::vector<Index> rows_;
   bool strict_ = true;  // samples whose interpolation misses a tap are left out
-  std::size_t unlike_ = 0;
   bool gain_ = false;   // terms that the stretch tells
   std::vector<Index> axes_;
   double x0_ = 0;

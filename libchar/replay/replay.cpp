@@ -141,7 +141,7 @@ class Replay {
     const auto found = meter ? meter->level(taken_out()) : std::nullopt;
     if (!found) return;
     knowledge_.level_sd = found->sd;
-    if (!found->matters || scene_.align) return;
+    if (!found->matters || scene_.align) return;  // what is reported only is fused as recorded
     for (std::size_t k = 0; k < found->offsets.size(); ++k) knowledge_.offsets[live(k)] = found->offsets[k];
     instants_.set_offsets(knowledge_.offsets);
   }

@@ -1,4 +1,5 @@
 // Alignment on simulated arrays whose delays, biases, gains and misalignments are known.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -213,6 +214,35 @@ TEST_CASE("alignment: beyond the longest search a delay stays at zero, and a sho
   const AlignedArray brief = simulated_array(35, {.sensors = 2, .instants = 600, .delay = 40});
   for (const fusion::ChannelAlignment& c : fusion::learn_alignment(brief.data, {}).channels)
     CHECK(std::abs(c.delay) <= 8);
+}
+
+TEST_CASE("alignment: blind, sensors in another unit, of another sign or with offsets of their own move no other") {
+  ArrayKind kind;
+  kind.sensors = 5;
+  kind.delay = kind.gain = kind.bias = 0;
+  constexpr double kRad = std::numbers::pi / 180;
+  struct Kind {
+    double scale, offset, level;
+    std::vector<Eigen::Index> sensors;
+  };
+  for (const Kind& wrong : {Kind{1, 0.5, 0, {1, 3}}, Kind{kRad, 0, 0, {2}}, Kind{1 / kRad, 0, 3, {2}},
+                            Kind{kRad, 0, 3, {0}}, Kind{-1, 0, 0, {4}}, Kind{-1, 0, 3, {1}}, Kind{1, 2, 3, {2}}}) {
+    AlignedArray array = simulated_array(11, kind);
+    array.data.samples.array() += wrong.level;
+    for (const Eigen::Index i : wrong.sensors)
+      array.data.samples.row(i) = (wrong.scale * array.data.samples.row(i)).array() + wrong.offset;
+    const Alignment learnt = fusion::learn_alignment(array.data, {});
+    CAPTURE(wrong.scale, wrong.offset, wrong.level, wrong.sensors[0]);
+    for (Eigen::Index i = 0; i < kind.sensors; ++i) {
+      const fusion::ChannelAlignment& channel = learnt.channels[static_cast<std::size_t>(i)];
+      const bool is_wrong = std::find(wrong.sensors.begin(), wrong.sensors.end(), i) != wrong.sensors.end();
+      CHECK(channel.used == !(is_wrong && wrong.scale < 0));
+      if (!channel.used) continue;
+      CHECK(1 + channel.gain == Approx(is_wrong ? wrong.scale : 1).epsilon(0.005));
+      CHECK(channel.bias == Approx(is_wrong ? wrong.offset : 0).margin(0.01 * (is_wrong ? wrong.scale : 1)));
+    }
+    if (wrong.scale < 0) CHECK_THAT(learnt.notes.at(0), Catch::Contains("1 of 5 sensors do not follow the input"));
+  }
 }
 
 TEST_CASE("alignment: an array that needs none is left as it is, and no worse") {

@@ -83,8 +83,8 @@ TEST_CASE("align: the same bits for any size of block, with and without skipping
 TEST_CASE("align: reported only, the sensors are fused as recorded") {
   const AlignedBench bench;
   const ReplayResult only = bench.run("align: {learn: [0, 15], apply: false}\nevaluation: [16, end]\n");
-  const ReplayResult recorded = bench.run("evaluation: [16, end]\n");
-  CHECK(only.algorithms[0].rmse == recorded.algorithms[0].rmse);
+  for (const SensorResult& sensor : only.sensors) CHECK(sensor.offset == 0);
+  CHECK(only.algorithms[0].rmse == Approx(only.alignment->budget.before).epsilon(0.1));
   CHECK(only.alignment->budget.after < 0.1 * only.alignment->budget.before);
 }
 

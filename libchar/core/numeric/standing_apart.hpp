@@ -1,7 +1,6 @@
 #pragma once
-// Which of some values stand apart from the others: further from their median than `limit` times the normal deviation
-// that the median distance shows. The limit is where of normal values one of three, four or five is in 5 % of draws, and
-// of more in fewer.
+// Which values are apart from the others: further from their median than some times the normal deviation that their
+// median distance from it shows. Of three, four and five normal values one is as far in 5 % of draws, of more in fewer.
 
 #include <cmath>
 #include <cstddef>
@@ -10,7 +9,7 @@
 
 #include "libchar/core/numeric/median.hpp"
 
-namespace libchar {
+namespace libchar::detail {
 
 inline std::vector<bool> standing_apart(std::span<const double> values) {
   std::vector<double> sorted(values.begin(), values.end()), away;
@@ -23,4 +22,4 @@ inline std::vector<bool> standing_apart(std::span<const double> values) {
   return out;
 }
 
-}  // namespace libchar
+}  // namespace libchar::detail

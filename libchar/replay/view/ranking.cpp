@@ -287,14 +287,21 @@ std::string level_sentence(const ReplayResult& r) {
   const std::string reach = error_text(kNormal95 * *r.level_sd, r.inputs[0].unit);
   if (std::all_of(r.sensors.begin(), r.sensors.end(), [](const SensorResult& s) { return s.offset == 0; }))
     return fmt::format("The level is known to ± {} (95 %), by what the means of the sensors differ.", reach);
-  const auto less = [](const SensorResult& a, const SensorResult& b) {
-    return std::abs(a.offset) < std::abs(b.offset);
-  };
-  const SensorResult& furthest = *std::max_element(r.sensors.begin(), r.sensors.end(), less);
+  std::vector<std::string> apart;
+  const SensorResult* furthest = &r.sensors[0];
+  for (const SensorResult& sensor : r.sensors) {
+    if (sensor.offset != 0) apart.push_back(sensor.name + " by " + error_text(sensor.offset, r.inputs[0].unit));
+    if (std::abs(sensor.offset) > std::abs(furthest->offset)) furthest = &sensor;
+  }
+  if (apart.size() < r.sensors.size())
+    return fmt::format(
+        "The means of some sensors are far from those of the others ({}): this is taken out, and the level is the mean "
+        "of the others (± {} with 95 %).",
+        list_of(apart), reach);
   return fmt::format(
       "The means of the sensors differ, that of {} by {}: the level is their mean without those far from the others "
       "(± {} with 95 %), offsets from it are taken out, and the method is chosen for the variation.",
-      furthest.name, error_text(furthest.offset, r.inputs[0].unit), reach);
+      furthest->name, error_text(furthest->offset, r.inputs[0].unit), reach);
 }
 
 // Where the others have samples.

@@ -194,18 +194,25 @@ struct Place {
   double offset = 0, noise = 0, error = 0;  // standard error of the offset
 };
 
-/// Deviation of the weighted mean of offsets that are draws of one kind, widened to hold 95 % as normal errors do.
-double level_deviation(const std::vector<Place>& near, bool alike) {
+double weight_of(const Place& one, bool alike) { return alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise); }
+
+/// Deviation of the weighted mean of offsets, widened to hold 95 % as normal errors do: of those that are draws of one
+/// kind, and all of what those weigh that stand apart from them.
+double level_deviation(const std::vector<Place>& near, const std::vector<Place>& apart, bool alike) {
   const auto n = static_cast<double>(near.size());
-  double mean = 0, squares = 0, w = 0, ww = 0;
+  double mean = 0, squares = 0, w = 0, ww = 0, off = 0;
   for (const Place& one : near) mean += one.offset / n;
   for (const Place& one : near) {
-    const double weight = alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise);
+    const double weight = weight_of(one, alike);
     squares += (one.offset - mean) * (one.offset - mean);
     w += weight;
     ww += weight * weight;
   }
-  return std::sqrt(squares / (n - 1) * ww) / w * student_quantile(0.975, n - 1) / kNormal95;
+  for (const Place& one : apart) {
+    w += weight_of(one, alike);
+    off += weight_of(one, alike) * std::abs(one.offset - mean);
+  }
+  return std::hypot(std::sqrt(squares / (n - 1) * ww) * student_quantile(0.975, n - 1) / kNormal95, off) / w;
 }
 
 }  // namespace
@@ -241,15 +248,16 @@ std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOu
   const double usual = median_in_place(away);
   const bool all = usual * usual > kOffsetsCount * (usual * usual + noise * noise);
   Level out;
-  std::vector<Place> makes;
+  std::vector<Place> alike, others;
   for (std::size_t i = 0; i < n_; ++i) {
     const double offset = offsets[i] - mean;
     const bool taken = apart[i] && std::abs(offset) > kResolved * places[i].error;
     out.offsets.push_back(all || taken ? offset : 0);
     out.matters = out.matters || out.offsets.back() != 0;
-    if (!taken) makes.push_back(places[i]);
+    if (!apart[i]) alike.push_back(places[i]);
+    if (apart[i] && !taken && !all) others.push_back(places[i]);
   }
-  out.sd = level_deviation(makes, all);
+  out.sd = level_deviation(alike, others, all);
   return out;
 }
 
