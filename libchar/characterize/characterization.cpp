@@ -135,6 +135,16 @@ std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResu
 
 /// Nothing that is said of the channel in the table's grid is about the sensor.
 void doubt(const Channel& channel, bool alone, ChannelResult& result) {
+  if (!channel.own_clock.empty()) {
+    Finding own = finding("own_stamps", fmt::format("The stamps of the channel are in the column {}: at those of the "
+                                                    "table its rate is wrong.",
+                                                    channel.own_clock));
+    if (alone)
+      own.help.push_back(
+          {"Read it by its own stamps.", {{"time_column", channel.own_clock}, {"channels", channel.name}}});
+    result.findings.push_back(std::move(own));
+    return;
+  }
   Finding slow = finding("slow_channel",
                          fmt::format("The channel has a value in one of {} rows: in the grid of the table most of its "
                                      "samples are missing, and its rate is wrong.",
@@ -152,28 +162,29 @@ void read_slow_channels_alone(const std::string& path, const CharacterizeOptions
                               Progress& progress) {
   std::vector<std::size_t> slow;
   for (std::size_t c = 0; c < result.log.channels.size(); ++c)
-    if (result.log.channels[c].every > 1) slow.push_back(c);
+    if (result.log.channels[c].every > 1 || !result.log.channels[c].own_clock.empty()) slow.push_back(c);
   if (slow.empty() || result.channels.size() != result.log.channels.size()) return;
   if (read_once(path) || !options.temperature.empty() || result.channels.size() == 1) {
     const bool alone = options.temperature.empty() && result.channels.size() > 1;
-    if (!alone && result.log.warnings.find("slow_channel") != nullptr)
-      result.log.warnings.add("slow_channel", "", {}, 0).help.clear();
+    for (const char* code : {"slow_channel", "own_stamps"})
+      if (!alone && result.log.warnings.find(code) != nullptr) result.log.warnings.add(code, "", {}, 0).help.clear();
     for (const std::size_t c : slow) doubt(result.log.channels[c], alone, result.channels[c]);
     return;
   }
   const std::vector<std::string> in_log = names_in_log(path, options.reading);
   CharacterizeOptions alone = options;
-  result.log.warnings.remove("slow_channel");
+  for (const char* code : {"slow_channel", "own_stamps"}) result.log.warnings.remove(code);
   for (const std::size_t c : slow) {
     alone.reading = options_of_channels(options.reading, result.log.channels, in_log, {c});
     alone.reading.hash = false;
-    Characterization own = characterize(path, alone, progress);
     Channel& channel = result.log.channels[c];
+    if (!channel.own_clock.empty()) alone.reading.time_column = channel.own_clock;
+    Characterization own = characterize(path, alone, progress);
     channel.rate_hz = own.log.time.rate_hz;
     result.channels[c] = std::move(own.channels.at(0));
     result.channels[c].channel.rate_hz = channel.rate_hz;
     result.log.warnings.add("own_grid",
-                            "channels slower than the rows of their table, each analysed on a grid of its own",
+                            "channels with a clock of their own in the table, each analysed on its own grid",
                             fmt::format("channel {} at {} Hz", channel.name, brief_text(channel.rate_hz, 6)));
   }
 }

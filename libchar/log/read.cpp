@@ -376,6 +376,15 @@ void judge_values(const Watch& watch, LogInfo& info, const ReadOptions& options,
     if (slow.help.empty())
       slow.help.push_back({"Read it alone: it has a grid of its own.", {{"channels", info.channels[c].name}}});
   }
+  for (const Channel& channel : info.channels) {
+    if (channel.own_clock.empty()) continue;
+    Finding& own = warnings.add("own_stamps",
+                                "channels with stamps of their own in another column: at those of the table their rate "
+                                "is wrong",
+                                fmt::format("channel {}, stamps in {}", channel.name, channel.own_clock));
+    own.help.push_back({fmt::format("{} by its own stamps.", channel.name),
+                        {{"time_column", channel.own_clock}, {"channels", channel.name}}});
+  }
   const auto by_every = [](const Channel& a, const Channel& b) { return a.every < b.every; };
   const auto [fast, slow] = std::minmax_element(info.channels.begin(), info.channels.end(), by_every);
   if (info.channels.size() < 2 || !(fast->every > 1) || !(info.time.rate_hz > 0)) return;  // rows are of the fastest

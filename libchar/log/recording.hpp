@@ -23,7 +23,8 @@ struct Channel {
   double every = 1;         ///< rows for one of its values, where it has a clock of its own in a table of others
   double rate_hz = 0;       ///< of its own, where it was read on a grid of its own; 0: that of the log
   std::string stated = {};  ///< unit that the log says
-  double factor = 1;        ///< that the numbers of the log were multiplied with
+  std::string own_clock = {};  ///< column with its stamps, where they are not those of the table
+  double factor = 1;           ///< that the numbers of the log were multiplied with
 };
 
 /// One stream of messages, or one table, of a log that holds several: each has a clock of its own.

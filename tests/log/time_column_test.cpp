@@ -430,13 +430,51 @@ TEST_CASE("a word for a unit, alone or behind a word for time, names the time") 
     for (int k = 0; k < 100; ++k) text += fmt::format("{:.7f};{}\n", k / static_cast<double>(a_unit), k % 7);
     return test::read_text(text).info;
   };
-  for (const std::string name : {"Elapsed Hours", "Hours", "Zeit in Stunden", "time (in hours)", "Run Time, hours"})
+  for (const std::string name : {"Elapsed Hours", "Hours", "Zeit in Stunden", "Run Time, hours"})
     CHECK(steps(name, 360).time.rate_hz == Approx(0.1).epsilon(1e-5));
   for (const std::string name : {"Minutes", "time_min", "Elapsed Minutes"})
     CHECK(steps(name, 600).time.rate_hz == Approx(10).epsilon(1e-4));
   std::string range = "t,min,max\n";
   for (int k = 0; k < 100; ++k) range += fmt::format("{:.2f},{},{}\n", k / 100.0, k, k + 1);
   CHECK(test::read_text(range).info.time.rate_hz == Approx(100));
+}
+
+TEST_CASE("tables of two loggers side by side: each channel has the stamps in front of it") {
+  const auto table = [](const std::string& names, double a_hz, double b_hz, int a, int b) {
+    std::string text = names + "\n";
+    for (int k = 0; k < std::max(a, b); ++k)
+      text += (k < a ? fmt::format("{:.3f},{},", k / a_hz, k % 7) : ",,") +
+              (k < b ? fmt::format("{:.3f},{}\n", k / b_hz, k % 5) : ",\n");
+    return text;
+  };
+  for (const char* names : {"Time A,A,Time B,B", "t1 [s],A,t2 [s],B"}) {
+    INFO(names);
+    const std::string second = std::string(names).starts_with("T") ? "Time B" : "t2";
+    for (const bool longer : {false, true}) {  // than the table of the time
+      const std::string text = table(names, 10, 4, longer ? 100 : 400, longer ? 400 : 200);
+      const Recording both = test::read_text(text);
+      REQUIRE(both.info.channels.size() == 2);
+      CHECK(both.info.time.rate_hz == Approx(10));
+      CHECK(both.info.channels[0].own_clock.empty());
+      CHECK(both.info.channels[1].own_clock == second);
+      const Finding* own = both.info.warnings.find("own_stamps");
+      REQUIRE(own != nullptr);
+      CHECK(own->severity == Severity::bad);
+      CHECK(own->help.at(0).options == std::vector<Finding::Setting>{{"time_column", second}, {"channels", "B"}});
+      ReadOptions by_own;
+      by_own.time_column = second;
+      by_own.channels = {"B"};
+      const Recording b = test::read_text(text, by_own);
+      CHECK(b.info.time.rate_hz == Approx(4));
+      CHECK(b.samples.at(0).size() == (longer ? 400 : 200));
+      CHECK(b.info.warnings.find("own_stamps") == nullptr);
+    }
+    CHECK(test::read_text(table(names, 10, 10.05, 400, 400)).info.warnings.find("own_stamps") == nullptr);
+  }
+  // A stamp that is missing in the midst of the table is missing.
+  std::string hole = table("Time A,A,Time B,B", 10, 4, 400, 400);
+  hole.replace(hole.find("\n20.000,") + 1, 6, "");
+  CHECK_THAT(test::failure(hole), Catch::Contains("missing time stamp"));
 }
 
 TEST_CASE("counts of a timer of unknown speed are a doubt, whole milliseconds hardly one") {
@@ -450,7 +488,8 @@ TEST_CASE("counts of a timer of unknown speed are a doubt, whole milliseconds ha
   CHECK(severity(72000) == Severity::caution);
   CHECK(severity(84000) == Severity::caution);
   CHECK(severity(1000) == Severity::caution);  // 1 Hz or 1 kHz
-  CHECK(severity(20) == Severity::note);
+  CHECK(severity(10) == Severity::caution);    // 100 Hz or 0.1 Hz
+  CHECK(severity(4) == Severity::note);
 }
 
 TEST_CASE("samples that beat slowly with whole seconds keep their rate") {

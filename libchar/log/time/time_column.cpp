@@ -318,11 +318,19 @@ bool wanders(const TableFront& table, std::size_t column) {
                                  (!steady_clock(values) || like_a_temperature(table.columns[column], first))));
 }
 
+bool speaks_of_time(const ColumnLabel& column) {
+  static constexpr std::array<std::string_view, 8> kWords = {"time",  "stamp", "clock", "tick",
+                                                             "epoch", "utc",   "tow",   " ts"};
+  std::string name = ascii_lower(stem_of(column));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return time_name(stem_of(column)) || std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
+           return name.find(word) != std::string::npos;
+         });
+}
+
 // The first column that is a clock by its values, one whose name speaks of time before others; said as
 // a guess. A rate that is known leaves it a channel.
 std::optional<std::size_t> column_like_a_clock(const TableFront& table, const ReadOptions& options, LogInfo& info) {
-  static constexpr std::array<std::string_view, 8> kWords = {"time",  "stamp", "clock", "tick",
-                                                             "epoch", "utc",   "tow",   " ts"};
   if (options.rate_hz || table.stated_rate_hz || info.time.rate_hz > 0 || table.columns.size() < 2) return std::nullopt;
   std::optional<std::size_t> found;
   bool named = false;
@@ -334,8 +342,7 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
         name.find("temp") != std::string::npos || name.find("year") != std::string::npos || name == "t" ||
         (has_unit(column) && !unit_of_time(column)))
       continue;
-    named = std::any_of(kWords.begin(), kWords.end(),
-                        [&](std::string_view word) { return name.find(word) != std::string::npos; });
+    named = speaks_of_time(column);
     const FirstValues first = table.first_values(c);
     if ((named || !found) && steady_clock(first.values) && !like_a_temperature(column, first))
       found = c;
@@ -468,6 +475,28 @@ double usual_step(const std::vector<double>& values) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
   return steps.empty() ? 0 : median_in_place(steps, Middle::lower);
+}
+
+std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t chosen) {
+  constexpr double kAlike = 0.02;
+  const auto step_of = [&](std::size_t c) { return usual_step(table.first_values(c).values); };
+  const auto is_clock = [&](std::size_t c) {
+    return speaks_of_time(table.columns[c]) || unit_of_time(table.columns[c]);
+  };
+  const std::int64_t unit = unit_said(table.columns[chosen]);
+  const double step = table.columns[chosen].calendar ? 0 : step_of(chosen);
+  std::vector<std::size_t> out;
+  for (std::size_t c = 0; c + 1 < table.columns.size() && step > 0; ++c) {
+    const ColumnLabel& column = table.columns[c];
+    if (c == chosen || column.text || column.calendar || !is_clock(c)) continue;
+    const std::int64_t own = unit_said(column);
+    const bool beside = is_clock(c + 1) || (c > 0 && is_clock(c - 1));
+    if (unit_of_another_quantity(column) || beside || (own == 0) != (unit == 0)) continue;
+    const double units = own == 0 ? 1 : static_cast<double>(own) / static_cast<double>(unit);
+    if (steady_clock(table.first_values(c).values) && std::fabs(step_of(c) * units / step - 1) > kAlike)
+      out.push_back(c);
+  }
+  return out;
 }
 
 std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info) {

@@ -66,6 +66,14 @@ bool called_time(const std::string& name);
 /// Error(usage) for a name that is not there.
 std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info);
 
+/// The unit of stamps in ns, as the file or the name says, one behind the name before the usual one of the name
+/// ("TOW [ms]"); 0 where neither does.
+std::int64_t unit_said(const ColumnLabel& column);
+
+/// Columns of stamps beside the chosen one that step at another rate, channels behind them: tables of several loggers
+/// side by side.
+std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t chosen);
+
 /// The usual distance of two values, 0 for fewer.
 double usual_step(const std::vector<double>& values);
 

@@ -207,15 +207,6 @@ std::int64_t unit_from_options(const std::string& word) {
   throw usage_error("E0323").says("unknown time unit").got(word).hint("use auto, s, ms, us, ns, min, h, d or 100us");
 }
 
-// As the file or the name says, a unit behind the name before the usual one of the name ("TOW [ms]"); 0 when none does.
-std::int64_t unit_said(const ColumnLabel& column) {
-  const auto [stem, unit] = name_and_unit(column.name);
-  for (const std::int64_t said : {unit_in_ns(column.unit), unit_in_ns(unit)})
-    if (said != 0) return said;
-  const auto known = time_name(stem);
-  return known ? known->unit_ns : 0;
-}
-
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
 std::int64_t guess_fine(const FirstValues& first) { return usual_step(first.values) < 2000 ? 100000 : 1000; }
 
@@ -242,6 +233,14 @@ void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit
 }
 
 }  // namespace
+
+std::int64_t unit_said(const ColumnLabel& column) {
+  const auto [stem, unit] = name_and_unit(column.name);
+  for (const std::int64_t said : {unit_in_ns(column.unit), unit_in_ns(unit)})
+    if (said != 0) return said;
+  const auto known = time_name(stem);
+  return known ? known->unit_ns : 0;
+}
 
 StampUnit find_time_unit(const TableFront& table, std::size_t column, const ReadOptions& options, LogInfo& info) {
   const std::string stem = name_and_unit(table.columns[column].name).first;

@@ -31,6 +31,13 @@ def two_columns(name, cell):
     return content
 
 
+def side_by_side():
+    """Two loggers, each with its stamps."""
+    values = noise(2000)
+    return "t1[s],w[deg/s],t2[s],temp[degC]\n" + "".join(
+        f"{i * 0.01:.2f},{v:.5f},{i * 0.025:.3f},{20 + 0.1 * (i % 3)}\n" for i, v in enumerate(values))
+
+
 def slow():
     """A temperature at 1 Hz beside a gyroscope at 100 Hz."""
     temperature = iter(noise(100, 0.02, seed=2))
@@ -81,6 +88,8 @@ INPUTS = {
     "no_finite_value": Input(text("empty.csv", two_columns("v", lambda i: ""))),
     "slow_channel": Input(text("slow.csv", slow), analysis=("--temperature", "temp"),
                           not_in=dict.fromkeys(("allan", "psd"), "it reads the channel alone, and says own_grid")),
+    "own_stamps": Input(text("side.csv", side_by_side), analysis=("--temperature", "temp"),
+                        not_in=dict.fromkeys(("allan", "psd"), "it reads the channel by them, and says own_grid")),
     "own_grid": Input(text("own_grid.csv", slow), made_by="characterize"),
     "own_rows": Input(text("own_rows.csv", slow), ("-c", "temp")),
     "time_unit_guessed": Input(text("unit.csv", lambda: "time,w[deg/s]\n" + "".join(

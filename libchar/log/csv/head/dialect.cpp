@@ -207,7 +207,7 @@ bool counts_rows(const Study& study, std::size_t column) {
   return study.rows.size() > 2;
 }
 
-enum class LeftOut { none, chosen, words, dates, clocks, counts };
+enum class LeftOut { none, chosen, words, dates, clocks, others, counts };
 
 // Words, dates that are not the time, counts of the rows and columns with nothing in them are no channels.
 LeftOut why_left_out(const Study& study, std::size_t c) {
@@ -221,6 +221,9 @@ LeftOut why_left_out(const Study& study, std::size_t c) {
   if (index == dialect.time.column || index == dialect.more_time.column) return LeftOut::none;
   if (kind == ColumnKind::text) return LeftOut::words;
   if (kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock) return LeftOut::dates;
+  if (std::any_of(dialect.columns.begin(), dialect.columns.end(),
+                  [&](const Column& one) { return !one.own_clock.empty() && one.own_clock == column.name; }))
+    return LeftOut::others;
   if (column.clock) return LeftOut::clocks;
   const bool unnamed =
       dialect.has_header && (column.text.empty() || column.text == "#" || column.text.starts_with("Unnamed: "));
@@ -243,6 +246,7 @@ void leave_out(Study& study) {
   for (const auto& [why, what] :
        {std::pair(LeftOut::words, "columns of words"), std::pair(LeftOut::dates, "columns of dates"),
         std::pair(LeftOut::clocks, "columns that repeat the clock"),
+        std::pair(LeftOut::others, "stamps of channels behind them"),
         std::pair(LeftOut::counts, "columns without a name that count the rows or hold nothing")})
     if (!names[why].empty())
       study.info.dialect.push_back(fmt::format("left out {}: {}", what, first_names(names[why])));

@@ -24,6 +24,7 @@ inline constexpr std::size_t kHeadBytes = 2 * kMaxLine;  // sniffed; holds at le
 struct Column {
   std::string name, unit;
   std::string unit_below;  ///< in a second header line
+  std::string own_clock;   ///< column with the stamps of its values, where they are not those of the log
   std::string cell_unit;   ///< behind every number, as in the file: "sec" of "0.005 sec"
   bool unnamed = false;    ///< the header has an empty cell
   bool words = false;      ///< known to hold words, whatever they look like

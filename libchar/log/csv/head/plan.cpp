@@ -24,6 +24,8 @@ Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info) {
   plan.dialect = &dialect;
   plan.overflow_as_missing = options.missing.overflow;
   plan.drop_bad_rows = options.missing.bad_rows;
+  plan.several_clocks = std::any_of(dialect.columns.begin(), dialect.columns.end(),
+                                    [](const Column& one) { return !one.own_clock.empty(); });
   plan.skip_repeated_header = options.skip_repeated_header;
   plan.target.assign(dialect.columns.size(), Plan::kSkip);
   if (table.time) plan.target[*table.time] = Plan::kTime;
@@ -32,6 +34,7 @@ Plan plan_columns(Dialect& dialect, const ReadOptions& options, LogInfo& info) {
     const Column& column = dialect.columns[i];
     plan.target[i] = static_cast<int>(plan.channels++);
     info.channels.push_back({column.name, column.unit, true});
+    info.channels.back().own_clock = column.own_clock;
   }
   return plan;
 }

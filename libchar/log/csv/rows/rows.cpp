@@ -282,7 +282,7 @@ class CarefulLines {
       to_.out.repeated.add(to_.line, 1);
       to_.out.account.header_bytes += bytes;
       to_.list_lines();
-    } else if (!wanted(line)) {
+    } else if (!wanted(line) || (to_.plan.several_clocks && of_another_clock(line))) {
       leave_out(bytes);
     } else if (row_or_drop(line, bytes)) {
       to_.out.account.row_bytes += bytes;
@@ -428,6 +428,16 @@ class CarefulLines {
     account.cells += to_.plan.target.size();
     account.missing += to_.plan.channels;
     account.unread += to_.plan.target.size() - to_.plan.channels;
+  }
+
+  // One table goes on where another one beside it has ended: neither a stamp nor a value of its own.
+  bool of_another_clock(std::string_view line) const {
+    const std::vector<Field> cells = split(line, to_.dialect.delimiter);
+    bool empty = true;
+    for (std::size_t c = 0; c < to_.plan.target.size() && empty; ++c)
+      if (to_.plan.target[c] != Plan::kSkip && to_.dialect.columns[c].own_clock.empty())
+        empty = c < cells.size() && trimmed(cells[c].text).empty();
+    return empty;
   }
 
   // Does the row have the values that are asked for? Notes its group.

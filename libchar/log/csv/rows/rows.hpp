@@ -58,6 +58,7 @@ struct Plan {
   bool overflow_as_missing = false;
   bool skip_repeated_header = false;
   bool drop_bad_rows = false;
+  bool several_clocks = false;  ///< some columns have stamps of their own
   std::string file;
   static constexpr int kSkip = -1, kTime = -2, kMoreTime = -3;
 };

@@ -340,6 +340,18 @@ TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::
   return table;
 }
 
+/// "Time A, A, Time B, B": what stands behind a column of stamps has those.
+void find_own_clocks(const TableFront& table, std::size_t index, Dialect& dialect) {
+  const std::vector<std::size_t> others = clocks_of_others(table, index);
+  std::string clock;
+  for (std::size_t c = 0; c < dialect.columns.size() && !others.empty(); ++c) {
+    Column& column = dialect.columns[c];
+    const bool other = std::find(others.begin(), others.end(), c) != others.end();
+    if (other || c == index) clock = other ? column.name : "";
+    if (!other) column.own_clock = clock;
+  }
+}
+
 /// "seconds_elapsed" beside "time": columns called time that are the stamps once more.
 void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialect) {
   const std::vector<double> stamps = table.first_values(index).values;
@@ -424,7 +436,10 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
   if (pair && *index == pair->second) index = pair->first;
   dialect.time = part_of(*index);
   dialect.more_time = partner_of(*index);
-  if (table.named) find_same_clock(table, *index, dialect);
+  if (table.named) {
+    find_same_clock(table, *index, dialect);
+    find_own_clocks(table, *index, dialect);
+  }
   const std::string& name = dialect.columns[*index].name;
   info.time.column = name.empty() ? fmt::format("c{}", *index) : name;
   if (dialect.time.calendar) {
