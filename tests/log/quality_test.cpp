@@ -264,7 +264,7 @@ TEST_CASE("missing samples are counted, break runs and leave the differences out
   CHECK(meter({4}).standard_deviation == 0);
 }
 
-TEST_CASE("what rests between its movements, or between coarse steps, has not hung; what jumps behind a rest has") {
+TEST_CASE("what rests between its movements, or between coarse steps, has not hung, what jumps behind a rest has") {
   std::mt19937_64 random(5);
   std::vector<double> goes, warms;  // stop and go; a thermometer of 0.0625 degrees, 5 degrees in a day
   for (double x = 0; goes.size() < 40000;) {
