@@ -182,7 +182,8 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
       .required();
   options.add_choice("--curve", verb->curve, {"none", "allan", "psd"},
                      "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
+  options.add_enum("--sides", verb->analysis.options.spectrum.sides,
+                   "of a --curve psd whose table does not say it (one)");
   options.add_choice(
       "--quantity", verb->quantity, {"auto", "root", "power"},
       "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");
