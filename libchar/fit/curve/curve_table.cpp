@@ -42,9 +42,11 @@ std::string unit_behind(const std::string& name) {
 struct Columns {
   std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute, low95, high95,
       model;
-  bool percent = false;    // the relative error is written in percent
-  std::string value_unit;  // of the values, behind their name
-  double to_si = 1;        // of the abscissa
+  struct Units {
+    double abscissa = 1;   // in s or Hz
+    std::string value;     // behind its name
+    bool percent = false;  // the relative error is
+  } units;
 };
 
 Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
@@ -69,9 +71,9 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
   c.model = find(header, {"model"});
   c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd",
                              "relative_uncertainty", "rel_unc"});
-  if (c.x) c.to_si = detail::abscissa_factor(unit_behind(header[*c.x].text), is_allan);
-  if (c.root || c.power) c.value_unit = unit_behind(header[c.root ? *c.root : *c.power].text);
-  c.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
+  if (c.x) c.units.abscissa = detail::abscissa_factor(unit_behind(header[*c.x].text), is_allan);
+  if (c.root || c.power) c.units.value = unit_behind(header[c.root ? *c.root : *c.power].text);
+  c.units.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
   c.absolute = find(header, {"error", "err", "sd", "std", "stderr", "standard_error", "standard error", "uncertainty",
                              "deviation_sd", "dev_err"});
   return c;
@@ -95,10 +97,10 @@ class Reader {
     const auto text = [&](const std::optional<std::size_t>& column) { return column ? row.cells[*column].text : ""; };
     const std::string kind = text(columns_.kind);
     if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan")) return;
-    const std::string& unit = columns_.unit ? row.cells[*columns_.unit].text : columns_.value_unit;
+    const std::string& unit = columns_.unit ? row.cells[*columns_.unit].text : columns_.units.value;
     NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve", unit, kind);
     const bool by_root = columns_.root.has_value();
-    const double x = columns_.to_si * number(row, *columns_.x),
+    const double x = columns_.units.abscissa * number(row, *columns_.x),
                  y = number(row, by_root ? *columns_.root : *columns_.power);
     if (x == 0 && !is_allan_) ++zeros_;
     if (x < 0 && !is_allan_) target.curve.sides = Sides::two;
@@ -139,7 +141,8 @@ class Reader {
     const double of_root = root ? 1 : 0.5;
     const auto low = cell(columns_.low), high = cell(columns_.high);
     if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
-    if (const auto sd = cell(columns_.relative); sd && *sd > 0) return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0)
+      return of_root * *sd * (columns_.units.percent ? 0.01 : 1);
     if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
     return std::nullopt;
   }
