@@ -238,6 +238,13 @@ Option& Option::value_name(const std::string& name) {
 
 Option& Option::separated_by_commas() {
   option_->delimiter(',');
+  // "a, b" is a and b
+  option_->transform(CLI::Validator(
+      [](std::string& text) {
+        text = CLI::detail::trim_copy(text);
+        return std::string();
+      },
+      "", ""));
   return *this;
 }
 

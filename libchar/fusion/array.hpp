@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace libchar::fusion {
@@ -32,6 +33,8 @@ struct NoiseModel {
 /// What is known of an array of sensors before its samples come.
 struct Array {
   Eigen::Index channels = 0;  ///< n
+  /// what the channels are called, for remarks; empty: 1, 2, …
+  std::vector<std::string> names;
   /// H, n rows of r inputs; empty: one input seen equally by all (H = 1)
   Eigen::MatrixXd observation_matrix;
   /// variance of a sample's noise, channel by channel; empty: not known
@@ -60,5 +63,10 @@ struct Array {
            (observation_matrix.cols() == 1 && (observation_matrix.array() == 1).all());
   }
 };
+
+/// What a channel is called in remarks.
+inline std::string channel_name(const std::vector<std::string>& names, std::size_t channel) {
+  return channel < names.size() ? names[channel] : std::to_string(channel + 1);
+}
 
 }  // namespace libchar::fusion

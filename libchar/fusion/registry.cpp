@@ -82,7 +82,7 @@ class WatchedRunner final : public Runner {
   void remarks(Findings& warnings) const override {
     watched_->remarks(warnings);
     const std::string_view name = description().name;
-    if (detector_) return detector_->remarks(name, warnings);
+    if (detector_) return detector_->remarks(name, array_.names, warnings);
     warnings.add("faults_not_watched",
                  std::string(name) +
                      " looks for no faults: the search takes more than two sensors per input, and at most " +

@@ -1016,18 +1016,21 @@ void judge_ends(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
   }
   if (q.saturated > 0 && q.distinct_values > 3) {
     const double share = static_cast<double>(q.saturated) / static_cast<double>(q.samples);
-    Finding cut = finding(
-        share > kMostSaturated ? "much_saturated" : "saturated",
-        fmt::format("{} samples ({}) are at the end of the range ({} or {}): saturated, use a larger full scale",
-                    q.saturated, percent_text(share), brief_text(q.minimum, 6), brief_text(q.maximum, 6)));
-    if (!q.signs.apart.empty()) {
-      std::vector<std::string> texts;
-      for (const double end : q.signs.apart) texts.push_back(shortest(end));
+    std::vector<std::string> ends, texts;
+    for (const double end : q.signs.ends) {
+      ends.push_back(brief_text(end, 6));
+      texts.push_back(shortest(end));
+    }
+    Finding cut =
+        finding(share > kMostSaturated ? "much_saturated" : "saturated",
+                fmt::format("{} samples ({}) are at the end of the range ({}): saturated, use a larger full scale",
+                            q.saturated, percent_text(share), fmt::join(ends, " or ")));
+    if (q.signs.apart) {
       cut.sentence =
           fmt::format("{} samples ({}) are {}, and no value comes near: a mark for missing values, or saturated",
                       q.saturated, percent_text(share), fmt::join(texts, " or "));
       cut.help.push_back({"Take the value as missing.", {{"missing", fmt::format("{}", fmt::join(texts, ","))}}});
-    } else if (q.minimum == 0 || q.maximum == 0) {
+    } else if (std::find(q.signs.ends.begin(), q.signs.ends.end(), 0.0) != q.signs.ends.end()) {
       cut.help.push_back({"Where 0 stands for no reading, `missing` 0 says so.", {}});
     }
     cut.count = q.saturated;
@@ -1273,13 +1276,15 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.signs.nearest_to_zero = state.odd.zero.nearest;
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
-  if (state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values))
-    q.saturated = (rests && q.maximum == 0 ? 0 : state.top.saturated()) +
-                  (rests && q.minimum == 0 ? 0 : state.bottom.saturated());
+  const bool may = state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values);
+  const std::uint64_t low = may && !(rests && q.minimum == 0) ? state.bottom.saturated() : 0;
+  const std::uint64_t high = may && !(rests && q.maximum == 0) ? state.top.saturated() : 0;
+  q.saturated = low + high;
   if (FrozenRuns(q).rare) q.saturated = 0;
-  if (q.saturated > 0 && (state.bottom.is_apart(others) || state.top.is_apart(others))) {
-    if (state.bottom.saturated() > 0) q.signs.apart.push_back(q.minimum);
-    if (state.top.saturated() > 0) q.signs.apart.push_back(q.maximum);
+  if (q.saturated > 0) {
+    if (low > 0) q.signs.ends.push_back(q.minimum);
+    if (high > 0) q.signs.ends.push_back(q.maximum);
+    q.signs.apart = state.bottom.is_apart(others) || state.top.is_apart(others);
   }
   if (!state.odd.counter.is_even() && q.signs.marks.empty())
     state.odd.wraps.read(state.differences, q.maximum - q.minimum, q.signs);

@@ -24,8 +24,8 @@ struct ChannelQuality {
     std::uint64_t wraps = 0;
     double period = 0;          ///< of them, with as many digits as the jumps agree in
     std::vector<double> marks;  ///< extremes that look like marks for missing values
-    /// saturated extremes, where no value comes near one of them: ends of the range, or marks
-    std::vector<double> apart;
+    std::vector<double> ends;   ///< saturated extremes
+    bool apart = false;         ///< no value comes near one of them: ends of the range, or marks
     double resting_value = 0;   ///< the first that was repeated eight times
     std::uint64_t at_rest = 0;  ///< samples at it from there on; 0: no value did
     /// runs of one value of eight and more, and the samples in them that only repeat

@@ -2,7 +2,7 @@
 (function () {
   "use strict";
 
-  const { report, colours, numberText, positive, padded, logAxis, whitePaper, options, timeMarks, start } = reportPage;
+  const { report, colours, numberText, positive, padded, linearRange, logAxis, whitePaper, options, timeMarks, start } = reportPage;
   // Told apart by dash as well as by colour, for print.
   const TERMS = {
     white_noise: { name: "white noise N", series: 2, dash: [9, 4], mark: "rectRot" },
@@ -288,7 +288,7 @@
   }
   // A round step that has two lines at least between the ends.
   function tickStep(low, high) {
-    const power = Math.pow(10, Math.floor(Math.log10((high - low) / 2)));
+    const power = Math.pow(10, Math.floor(Math.log10(high / 2 - low / 2)));
     const lines = (step) => Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) + 1;
     return [5, 2, 1, 0.5, 0.2].map((f) => f * power).find((step) => lines(step) >= 2);
   }
@@ -301,7 +301,7 @@
       low.push({ x: middle(i), y: value, i });
       high.push({ x: middle(i), y: t.high[i], i });
     });
-    const values = t.low.concat(t.high).filter((v) => v !== null), least = values.reduce((a, b) => Math.min(a, b), Infinity), most = values.reduce((a, b) => Math.max(a, b), -Infinity), pad = 0.08 * (most - least) || Math.abs(most) * 1e-3 || 1;
+    const values = t.low.concat(t.high).filter((v) => v !== null), least = values.reduce((a, b) => Math.min(a, b), Infinity), most = values.reduce((a, b) => Math.max(a, b), -Infinity), pad = 0.08 * (most - least) || Math.abs(most) * 1e-3 || 1, [bottom, top] = linearRange(least - pad, most + pad);
     const tip = (p) => [numberText(p.x, 5) + " " + (word.split(", ")[1] || ""), one ? numberText(p.y, 6) + " " + unit : numberText(t.low[p.i], 6) + " … " + numberText(t.high[p.i], 6) + " " + unit];
     const plain = { borderColor: c.measured, borderWidth: 1, pointRadius: 0, pointHoverRadius: 3, spanGaps: false, label: "" };
     const sets = [Object.assign({ data: high, fill: one ? false : "+1", backgroundColor: one ? "transparent" : c.measured, tip, pointHitRadius: 8, order: 3 }, plain)];
@@ -314,7 +314,7 @@
     })), end = length / scale, beside = timeMarks(marks, 0, end);
     figure.style.setProperty("--marks", 13 * beside.rows(figure.clientWidth || 600) + "px");
     figure.style.setProperty("--paper-marks", 13 * beside.rows(340) + "px");
-    const all = options(straight(word, 0, end, 8), straight(unit, least - pad, most + pad, 5, tickStep(least - pad, most + pad)));
+    const all = options(straight(word, 0, end, 8), straight(unit, bottom, top, 5, tickStep(bottom, top)));
     all.plugins.legend = { display: false };
     all.layout = { padding: beside.padding };
     all.interaction = { mode: "nearest", axis: "x", intersect: false };

@@ -45,8 +45,17 @@ const reportPage = (function () {
   const isPowerOfTen = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
 
   // ---- axes ----
+  // Between them ten times a step, a tenth of it and its decimals are numbers too: loops over ticks, ours and Chart.js's, end.
+  const SMALLEST = 1e-290, LARGEST = 1e300;
   // Only values above zero can stand on a logarithmic axis: one that is not would move the axis and hide the others.
-  const positive = (v) => typeof v === "number" && isFinite(v) && v > 0;
+  const positive = (v) => typeof v === "number" && v >= SMALLEST && v <= LARGEST;
+  // Ends of a linear axis whose ticks can be counted.
+  function linearRange(min, max) {
+    const low = Math.max(min, -LARGEST), high = Math.min(max, LARGEST), size = Math.max(Math.abs(low), Math.abs(high));
+    if (high - low > Math.max(SMALLEST, 1e-13 * size)) return [low, high];
+    const pad = 1e-3 * size > SMALLEST ? 1e-3 * size : 1;
+    return [low - pad, high + pad];
+  }
 
   function logTicks(axis) {
     const ticks = [];
@@ -402,5 +411,5 @@ const reportPage = (function () {
     return { figures, charts };
   }
 
-  return { report, colours, numberText, positive, padded, logAxis, whitePaper, legend, options, timeMarks, start };
+  return { report, colours, numberText, positive, padded, linearRange, logAxis, whitePaper, legend, options, timeMarks, start };
 })();

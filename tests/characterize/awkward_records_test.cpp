@@ -234,3 +234,46 @@ TEST_CASE("what is no phase, no fraction of a frequency and no rate is doubted, 
   CHECK(unit_of("period", "s", periods).empty());
   CHECK(found(SampleKind::rate, "frequency_mean") == "data");
 }
+
+namespace {
+
+Characterization of_rounded_walk(double walk, double white_level, std::uint64_t seed) {
+  constexpr double kRate = 100;
+  Recording recording;
+  recording.info.channels = {{"heading", "deg/s"}};
+  recording.info.time.rate_hz = kRate;
+  std::vector<double> samples = white(20000, seed);
+  const std::vector<double> on_top = white(20000, seed + 1000);
+  double sum = 0;
+  const double step = walk / std::sqrt(kRate), level = white_level * walk / (std::numbers::pi * std::sqrt(kRate));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sum += step * samples[i];
+    samples[i] = std::round((sum + level * on_top[i]) / (0.5 * step)) * 0.5 * step;
+  }
+  recording.samples = {samples};
+  return characterize(recording, {});
+}
+
+}  // namespace
+
+TEST_CASE("a rounded angle that is called a rate looks integrated, a rate with white noise does not") {
+  constexpr double kWalk = 2e-3;
+  std::size_t angles = 0, rates = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    angles += has(of_rounded_walk(kWalk, 0, seed).channels[0].findings, "looks_integrated") ? 1 : 0;
+    rates += has(of_rounded_walk(kWalk, 2, seed).channels[0].findings, "looks_integrated") ? 1 : 0;
+  }
+  CHECK(angles >= 10);
+  CHECK(rates <= 1);
+}
+
+TEST_CASE("white noise of which nothing shows stays within what the record has") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Characterization result = of_rounded_walk(2e-3, 0, seed);
+    const Coefficient& n = (*result.channels[0].fit)[Term::white];
+    const double most = result.channels[0].allan.points.at(0).deviation * 0.1;  // N of that deviation, at 100 Hz
+    INFO("seed " << seed);
+    if (n.value) CHECK(*n.value < 10 * most);
+    if (n.value) CHECK(n.ci95.high < 1000 * most);
+  }
+}

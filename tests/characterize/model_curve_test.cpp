@@ -6,6 +6,7 @@
 
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/fit/signs/stationarity.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 #include "tests/report/synthetic.hpp"
 
 using namespace libchar;

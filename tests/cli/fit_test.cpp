@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -14,6 +15,19 @@
 #include "tests/support/run.hpp"
 
 using namespace libchar;
+
+TEST_CASE("fit: channels without a fit for one reason are said together") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "wide.csv").string();
+  std::ofstream out(log);
+  for (int row = 0; row < 3; ++row)
+    for (int c = 0; c < 2000; ++c) out << (row * 7 + c * 13) % 101 << (c < 1999 ? "," : "\n");
+  out.close();
+  const auto ran = test::run({"fit", log, "--rate", "100"});
+  CHECK(ran.code == 4);
+  CHECK_THAT(ran.err, Catch::Contains("c0, c1, c2") && Catch::Contains("and 1988 more:"));
+  CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') < 10);
+}
 
 TEST_CASE("fit LOG gives the coefficients as a table and as JSON") {
   const test::TemporaryFolder folder;

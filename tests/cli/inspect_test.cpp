@@ -88,6 +88,37 @@ TEST_CASE("several logs make one document, channels are chosen by repetition and
   CHECK(slip.code == 2);
 }
 
+TEST_CASE("inspect: blanks behind the commas of a list belong to no name") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "log.csv").string();
+  std::ofstream(log) << "t[s],a,b,c\n0,1,2,3\n0.1,2,3,4\n0.2,1,2,3\n0.3,4,2,3\n";
+  const auto names = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"inspect", log, "--json"});
+    const auto ran = test::run(words);
+    REQUIRE(ran.code == 0);
+    std::string all;
+    const libchar::Json document = libchar::parse_json(ran.out, "stdout");
+    for (const libchar::Json& channel : document["recordings"][0]["channels"])
+      all += channel["name"].get<std::string>() + channel["unit"].get<std::string>() + "|";
+    return all;
+  };
+  CHECK(names({"-c", "a, b"}) == "a|b|");
+  CHECK(names({"-c", "!a, !b"}) == "c|");
+  CHECK(names({"-c", "a , c", "--names", "x, y", "--units", "V, mV"}) == "xV|ymV|");
+  std::ofstream(log) << "t[s],\"a\",\" b\"\n0,1,2\n0.1,2,3\n0.2,1,2\n0.3,4,2\n";
+  CHECK(test::run({"inspect", log, "-c", "a, b"}).code == 0);
+}
+
+TEST_CASE("inspect: what can be read only once has no next command") {
+  const std::string log = test::fixture("imu_at_rest.csv").string();
+  CHECK_THAT(test::run({"inspect", log}).out, Contains("next: sensorchar characterize"));
+  test::RunOptions options;
+  options.stdin_path = log;
+  const auto ran = test::run({"inspect", "-"}, options);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, !Contains("next:") && !Contains("standard input-report"));
+}
+
 TEST_CASE("option --strict turns warnings into exit code 3, --quiet keeps results") {
   const std::string log = test::fixture("npy/half.npy").string();
   CHECK(test::run({"inspect", log}).code == 0);

@@ -158,3 +158,12 @@ TEST_CASE("replay of a log: refusals name the option and leave nothing behind") 
   CHECK(RecordingBench::replay(bench.log, with(kWords, {"--write-scene", bench.log, "--force"})).code == 5);
   CHECK(test::slurp(bench.log) == array_log());
 }
+
+TEST_CASE("replay of a log without a rate is told the option that says it") {
+  const RecordingBench bench;
+  std::string text = "gyro1,gyro2,gyro3\n";
+  for (int k = 0; k < 50; ++k) text += fmt::format("{},{},{}\n", k % 7, k % 5, k % 3);
+  const auto ran = RecordingBench::replay(bench.file("bare.csv", text), {"--sensors", "gyro*"});
+  CHECK(ran.code == 3);
+  CHECK_THAT(ran.err, Contains("E0901") && Contains("--rate RATE says it") && !Contains("recording: {"));
+}

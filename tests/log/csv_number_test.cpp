@@ -137,11 +137,11 @@ TEST_CASE("a cell that is no number is told with reason and place") {
     const char* reason;
   };
   for (const Wrong& wrong :
-       {Wrong{"--1", 0, "two signs"}, Wrong{"-+1", 0, "two signs"}, Wrong{"1e", 0, "cut off in its exponent"},
-        Wrong{"1e-", 0, "cut off in its exponent"}, Wrong{".", 0, "without digits"}, Wrong{"1_0", 1, "underscore"},
-        Wrong{"1,000.5", 1, "thousands separator"}, Wrong{"1.2.3", 3, "second decimal mark"},
-        Wrong{"12abc", 2, "expected to end here"}, Wrong{"1e5x", 3, "expected to end here"},
-        Wrong{"-abc", 0, "a number was expected"},
+       {Wrong{"0x1F2A", 1, "hexadecimal"}, Wrong{"--1", 0, "two signs"}, Wrong{"-+1", 0, "two signs"},
+        Wrong{"1e", 0, "cut off in its exponent"}, Wrong{"1e-", 0, "cut off in its exponent"},
+        Wrong{".", 0, "without digits"}, Wrong{"1_0", 1, "underscore"}, Wrong{"1,000.5", 1, "thousands separator"},
+        Wrong{"1.2.3", 3, "second decimal mark"}, Wrong{"12abc", 2, "expected to end here"},
+        Wrong{"1e5x", 3, "expected to end here"}, Wrong{"-abc", 0, "a number was expected"},
         Wrong{"\xE2\x88\x92"
               "1",
               0, "U+2212"},

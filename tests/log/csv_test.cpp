@@ -173,6 +173,8 @@ TEST_CASE("channels are selected by name, in file order, and nothing else is par
   options.channels = {"accel"};
   CHECK(failure("t,accel_x\n0,1\n", options).find("did you mean accel_x?") != std::string::npos);
   options.channels = {"x"};
+  CHECK_THAT(failure("t;x;y\n0,0;1,5;2\n0,1;2,5;3\n0,2;3,5\n", {}),
+             Catch::Contains("`drop_bad_rows`") && !Catch::Contains("if the guess is wrong"));
   CHECK(failure("t,x,note\n0,1,a\n1,2\n", options).find("log.csv:3:4 (byte 18): error E0304: 2 fields, 3 expected") ==
         0);
 }

@@ -250,6 +250,19 @@ TEST_CASE("every clipped sample is counted, and coarse rounding is no end of a r
   }
 }
 
+TEST_CASE("only the end of the range that clips is named") {
+  const auto said = [](double low, double high) {
+    auto clipped = gaussian(50000, 1);
+    for (double& value : clipped) value = std::clamp(value, low, high);
+    const ChannelQuality q = meter(clipped);
+    REQUIRE(has(q.findings, "much_saturated"));
+    return q.findings.at(0).sentence;
+  };
+  CHECK_THAT(said(-9, 1.5), Catch::Contains("at the end of the range (1.5): saturated"));
+  CHECK_THAT(said(-1.5, 9), Catch::Contains("at the end of the range (-1.5): saturated"));
+  CHECK_THAT(said(-1.5, 1.5), Catch::Contains("at the end of the range (-1.5 or 1.5): saturated"));
+}
+
 TEST_CASE("missing samples are counted, break runs and leave the differences out") {
   std::vector<double> x = {5, 5, kMissing, 5, 5, 5, 1, kMissing, 2};
   const ChannelQuality q = meter(x);

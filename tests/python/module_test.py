@@ -1,6 +1,7 @@
 """The Python module says what the program says, without copies, and refuses in sentences. usage:
 module_test.py PROGRAM"""
 import dataclasses
+import datetime
 import gc
 import inspect
 import json
@@ -34,6 +35,40 @@ def program(*words, folder=None):
 
 def noise(n=20000, seed=1):
     return np.random.default_rng(seed).normal(size=n)
+
+
+class Stamp(datetime.datetime):
+    """As pandas' Timestamp: an instant whose value is in ns."""
+
+    @classmethod
+    def of(cls, ns, zone):
+        made = cls.fromtimestamp(ns / 1e9, zone)
+        made.value = ns
+        return made
+
+
+class Zoned:
+    """As pandas' DatetimeIndex with a time zone: an array of it holds Stamps."""
+    tz = "Europe/Paris"
+
+    def __init__(self, stamps, asi8, unit):
+        self.stamps, self.asi8, self.unit = stamps, asi8, unit
+
+    def __array__(self, dtype=None):
+        return self.stamps if dtype is None else self.stamps.astype(dtype)
+
+
+class Frame:
+    """As much of pandas' DataFrame as is asked of one."""
+
+    def __init__(self, columns, index):
+        self.columns, self.index, self._of = list(columns), index, columns
+
+    def __getitem__(self, name):
+        return self._of[name]
+
+    def to_numpy(self):
+        return np.stack(list(self._of.values()), axis=1)
 
 
 class SaysWhatTheProgramSays(unittest.TestCase):
@@ -261,6 +296,47 @@ class TakesWhatPeopleHave(unittest.TestCase):
         self.assertAlmostEqual(curve.tau_s[0], 0.02)  # rate and gap by the stamps
         for result in (curve, libchar.psd(log)[0], libchar.characterize(log)):
             self.assertGreater(len(result.to_dataframe()), 1)
+
+    def test_what_a_mask_hides_is_missing(self):
+        x = noise()
+        x[500:520] = 1e6
+        hidden = np.ma.array(x, mask=x > 1e5)
+        missing = hidden.filled(np.nan)
+        want = libchar.fit(missing, 100).to_dict()
+        table, tables = np.ma.stack([hidden, hidden * 2], axis=1), np.stack([missing, missing * 2], axis=1)
+        for given, same in ((hidden, missing), ({"c0": hidden}, {"c0": missing}), ([hidden, hidden], [missing] * 2),
+                            (table, tables), (table.T, tables.T),
+                            (libchar.Recording(["c0"], [""], [hidden], 100.0),) * 2):
+            got = libchar.fit(given, 100)
+            one = got[0] if isinstance(got, list) else got
+            self.assertEqual(one.to_dict(), want)
+            self.assertEqual(libchar.inspect(given, 100)["channels"][0]["missing"], 20)
+            self.assertEqual(libchar.inspect(given, 100)["samples"], libchar.inspect(same, 100)["samples"])
+        whole = np.ma.array(np.arange(3000) % 7, mask=False)
+        whole[3] = np.ma.masked
+        self.assertEqual(libchar.inspect(whole, 100)["channels"][0]["missing"], 1)  # whole numbers have no NaN
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # a mask that hides nothing costs no copy
+            self.assertEqual(libchar.fit(np.ma.array(missing), 100).to_dict(), want)
+
+    def test_frames_with_time_zones(self):
+        log = libchar.read(IMU)
+        naive = np.datetime64("2026-01-01T10:00:00", "ns") + np.arange(len(log)) * np.timedelta64(20, "ms")
+        columns = dict(zip(log.names, log.samples))
+        want = [curve.to_dict() for curve in libchar.allan(Frame(columns, naive))]
+        self.assertAlmostEqual(want[0]["tau_s"][0], 0.02)
+        summer = datetime.timezone(datetime.timedelta(hours=2))
+        nanoseconds = naive.astype(np.int64)
+        stamps = np.array([Stamp.of(ns, summer) for ns in nanoseconds.tolist()])
+        plain = np.array([datetime.datetime.fromtimestamp(ns / 1e9, summer) for ns in nanoseconds.tolist()])
+        for index in (Zoned(stamps, nanoseconds, "ns"), Zoned(stamps, nanoseconds // 1000, "us"), stamps, plain,
+                      np.array([one.replace(tzinfo=None) for one in plain])):
+            self.assertEqual([curve.to_dict() for curve in libchar.allan(Frame(columns, index))], want)
+        with self.assertRaisesRegex(libchar.UsageError, "name: an array of numbers was expected"):
+            libchar.fit(Frame({"name": np.array(["a", "b"])}, naive[:2]))
+        naive[50] = np.datetime64("NaT")
+        with self.assertRaisesRegex(libchar.UsageError, "1 row without a time, the first is row 50"):
+            libchar.fit(Frame(columns, naive))
 
     def test_findings_travel(self):
         x = noise(40000)

@@ -508,6 +508,20 @@ def check_fleet(browser, page, devices):
     print(f"{page}: {devices} devices, opened in {seconds:.2f} s, {page.stat().st_size / 1e6:.2f} MB")
 
 
+def check_ends(browser, page):
+    """A page whose values are at the ends of the doubles opens: the loops over its ticks end."""
+    browser.open(page.resolve().as_uri())
+    browser.run(UNFOLD)
+    try:
+        drawn, count = browser.run(DRAW_ALL), browser.run(PLOTS)
+        expect(drawn == count, f"{page}: {drawn} of {count} plots are drawn")
+        console = browser.console()
+        expect(not console, f"{page}: console says {console[:3]}")
+    except RuntimeError as error:
+        expect(False, f"{page}: {error}")
+        raise
+
+
 def main():
     if not shutil.which("chromium") or not shutil.which("chromedriver"):
         print("skipped: chromium and chromedriver (Debian: chromium, chromium-driver) are not both installed")
@@ -528,6 +542,8 @@ def main():
             check_dark(browser, folder / "imu/report.html")
             check_paper(browser, folder / "imu/report.html", 2)
             check_without_script(browser, folder / "imu/report.html")
+            subprocess.run([sys.argv[1], "tiny", str(folder / "tiny")], check=True)
+            check_ends(browser, folder / "tiny/report.html")
             for kind, plots in {"plain": 11, "large": 11, "inputs": 13, "blind": 8, "nothing": 1,
                                 "hostile": 10}.items():
                 subprocess.run([sys.argv[2], kind, str(folder / ("replay-" + kind))], check=True)

@@ -22,6 +22,15 @@ TEST_CASE("text and attribute: no character that could leave its place survives"
   }
 }
 
+TEST_CASE("prose: options in backticks are code, all else is text") {
+  CHECK(html_prose("Use the stretch (`still` auto).") == "Use the stretch (<code>still</code> auto).");
+  CHECK(html_prose("`from_s` and `to_s`") == "<code>from_s</code> and <code>to_s</code>");
+  for (const char* plain : {"`", "``", "a ` b", "`A`", "`a b`", "`a", "a`"}) CHECK(html_prose(plain) == plain);
+  CHECK(html_prose("`<b>`") == "`&lt;b&gt;`");
+  for (const std::string& name : test::hostile_names())
+    if (name.find('`') == std::string::npos) CHECK(html_prose(name) == html_text(name));
+}
+
 TEST_CASE("json in a script element: reads back to the same, and cannot end the element") {
   for (const std::string& name : test::hostile_names()) {
     const Json document = {{"name", json_text(name)}};

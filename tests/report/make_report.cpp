@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     const auto result = kind == "hostile" ? test::hostile()
                         : kind == "many"  ? test::many_channels(48)
                         : kind == "empty" ? test::barely_anything()
+                        : kind == "tiny"  ? test::at_the_ends_of_doubles()
                                           : test::synthetic_imu();
     std::filesystem::create_directories(folder);
     libchar::write_whole_file(folder + "/report.html", libchar::html_report(result), true);

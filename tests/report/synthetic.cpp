@@ -284,4 +284,19 @@ Characterization barely_anything() {
   return result;
 }
 
+Characterization at_the_ends_of_doubles() {
+  Characterization result = synthetic_imu();
+  const double units[] = {1e-310, 5e-324, 1e308, 1e-160, 1e160};
+  for (std::size_t k = 0; k < std::size(units); ++k) {
+    ChannelResult& c = result.channels[k];
+    for (std::size_t i = 0; i < c.trace.low.size(); ++i) {
+      c.trace.low[i] = i % 3 == 0 ? -units[k] : 0;
+      c.trace.high[i] = i % 2 == 0 ? units[k] : c.trace.low[i];
+    }
+    for (AllanPoint& p : c.allan.points) p.deviation *= units[k];
+    for (double& value : c.spectrum.value) value *= units[k];
+  }
+  return result;
+}
+
 }  // namespace test

@@ -45,6 +45,9 @@ Characterization hostile();
 /// As many channels as a large log has.
 Characterization many_channels(std::size_t count);
 
+/// Values and ranges whose squares, steps or differences are not numbers any more.
+Characterization at_the_ends_of_doubles();
+
 /// What is left when nothing could be computed.
 Characterization barely_anything();
 

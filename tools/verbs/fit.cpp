@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/file/whole_file.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/text/text_table.hpp"
 #include "libchar/fit/fit_json.hpp"
@@ -42,6 +44,19 @@ struct Unfitted {
   std::vector<Finding> findings;
 };
 
+// Each list of findings once, with the channels that have it.
+void report_unfitted(Session& session, const std::vector<Unfitted>& unfitted) {
+  std::map<std::string, std::vector<std::string>> channels;
+  std::vector<const Unfitted*> first;
+  for (const Unfitted& one : unfitted) {
+    std::vector<std::string>& alike = channels[findings_text(one.findings)];
+    if (alike.empty()) first.push_back(&one);
+    alike.push_back(one.channel.name);
+  }
+  for (const Unfitted* one : first)
+    report_findings(session, first_names(channels[findings_text(one->findings)]), one->findings);
+}
+
 std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& log, std::vector<Unfitted>& unfitted) {
   CharacterizeOptions options = finish(verb.analysis);
   options.wanted = {.quality = false, .allan = options.fit.second_opinion, .spectrum = false, .fit = true};
@@ -52,13 +67,13 @@ std::vector<ChannelFit> fit_log(Session& session, const FitVerb& verb, LogInfo& 
   for (ChannelResult& c : result.channels) {
     std::vector<Finding> found = findings_of(c);
     if (!c.fit) {
-      report_findings(session, c.channel.name, found);
       unfitted.push_back({c.channel, std::move(found)});
       continue;
     }
     fits.push_back({c.channel, std::move(*c.fit)});
     fits.back().fit.findings = std::move(found);
   }
+  report_unfitted(session, unfitted);
   return fits;
 }
 
@@ -182,7 +197,8 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
       .required();
   options.add_choice("--curve", verb->curve, {"none", "allan", "psd"},
                      "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  options.add_enum("--sides", verb->analysis.options.spectrum.sides, "of a --curve psd (one)");
+  options.add_enum("--sides", verb->analysis.options.spectrum.sides,
+                   "of a --curve psd whose table does not say it (one)");
   options.add_choice(
       "--quantity", verb->quantity, {"auto", "root", "power"},
       "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");

@@ -28,6 +28,7 @@ struct InspectVerb {
 
 std::string next_command(const InspectVerb& verb, const libchar::Inspection& inspection) {
   const libchar::LogInfo& info = inspection.info;
+  if (std::any_of(verb.logs.begin(), verb.logs.end(), libchar::read_once)) return "";
   std::vector<libchar::Finding> found;
   libchar::ReadOptions reading = verb.reading;
   std::string mark;

@@ -2,6 +2,7 @@
 
 #include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/not_known.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
 namespace {

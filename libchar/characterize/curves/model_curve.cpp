@@ -131,22 +131,6 @@ std::vector<ReadOff> read_off_points(const NoiseFit& fit, const AllanCurve& curv
   return points;
 }
 
-std::string spectrum_unit(Scaling scaling, const std::string& unit) {
-  const std::string u = unit.empty() ? "U" : unit;
-  const std::string bracketed = u.find_first_of("/ ²^") == std::string::npos ? u : "(" + u + ")";
-  switch (scaling) {
-    case Scaling::psd:
-      return bracketed + "²/Hz";
-    case Scaling::ps:
-      return bracketed + "²";
-    case Scaling::lsd:
-      return bracketed + "/√Hz";
-    case Scaling::ls:
-      return u;
-  }
-  return u;
-}
-
 }  // namespace libchar
 
 // The curves that a sensor model implies: those of a fit with its coefficients.

@@ -50,9 +50,6 @@ std::vector<Asymptote> spectrum_asymptotes(const NoiseFit& fit, const Spectrum& 
 /// Lowest reliable point of a curve, if there is one.
 const AllanPoint* allan_minimum(const AllanCurve& curve);
 
-/// "deg/s", "(deg/s)²/Hz", "(deg/s)/√Hz": unit of the values of a spectrum.
-std::string spectrum_unit(Scaling scaling, const std::string& unit);
-
 }  // namespace libchar
 
 // The Allan curve that a sensor model implies: that of a fit with its coefficients.

@@ -88,6 +88,7 @@ class Finish {
   void doubt_unit(ChannelResult& result, double rate_hz) const;
   void doubt_frequency(ChannelResult& result) const;
   void doubt_rate(ChannelResult& result, double rate_hz) const;
+  std::optional<double> white_limit(const Coefficient& walk, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
   void find_motion(ChannelResult& result, double rate_hz);
   bool is_at_rest(ChannelResult& result, double rate_hz);
@@ -426,13 +427,26 @@ void Finish::doubt_frequency(ChannelResult& result) const {
 
 // The integral of a rate's white noise is a random walk; the rate of a sensor has white noise on top, at the latest
 // between the fastest samples.
+// Where the fit cannot tell N from another term, the Allan variance at the sampling interval limits it, N² rate +
+// K²/(2 rate): at 95 %, by the least K of its interval. A rate whose N is at the limit is doubted in 5 % of records.
+std::optional<double> Finish::white_limit(const Coefficient& walk, double rate_hz) const {
+  constexpr double kNormal = 1.645, kDescribed = 0.5;
+  if (options_.data != SampleKind::rate || found_.samples == 0) return std::nullopt;
+  const double of_walk = 0.5 * walk.ci95.low * walk.ci95.low / rate_hz;
+  const double measured = 0.5 * found_.difference_sd * found_.difference_sd;
+  if (!(measured > kDescribed * of_walk)) return std::nullopt;  // the walk is not that of the fastest samples
+  const double most = measured * (1 + kNormal * std::sqrt(3 / static_cast<double>(found_.samples)));
+  return std::sqrt(std::max(0.0, most - of_walk) / rate_hz);
+}
+
 void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   constexpr double kShare = 1;  // of the walk's own root density there
   if (options_.data == SampleKind::phase || !result.fit || has(result.findings, "integral_unit")) return;
   const Coefficient& walk = (*result.fit)[Term::walk];
   const Coefficient& white = (*result.fit)[Term::white];
-  if (walk.status != Status::detected || !walk.value || !white.upper95) return;
-  if (*white.upper95 > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
+  if (walk.status != Status::detected || !walk.value) return;
+  const auto limit = white.status == Status::undetermined ? white_limit(walk, rate_hz) : white.upper95;
+  if (!limit || *limit > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
   Finding integral = finding("looks_integrated",
                              "The record is a random walk up to its fastest samples, without white noise: so is an "
                              "angle, a velocity or a phase, and no rate.");

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "libchar/allan/deviation_types.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/log/text_table.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
 namespace {
@@ -31,20 +32,21 @@ std::optional<std::size_t> find(const std::vector<TextCell>& header, std::initia
   return std::nullopt;
 }
 
-// "(deg/s)²/Hz" and "g/√Hz" are densities of a channel in deg/s and g.
-std::string unit_under_density(std::string unit) {
-  for (const std::string_view end : {"²/Hz", "^2/Hz", "/√Hz", "/sqrt(Hz)"}) {
-    if (!unit.ends_with(end)) continue;
-    unit.resize(unit.size() - end.size());
-    if (unit.starts_with('(') && unit.ends_with(')')) unit = unit.substr(1, unit.size() - 2);
-  }
-  return unit;
+// "adev [deg/s]", "psd[(deg/s)²/Hz]"; "" where a name has no unit behind it.
+std::string unit_behind(const std::string& name) {
+  const std::size_t open = name.find_first_of("[(");
+  if (open == std::string::npos || !(name.ends_with(']') || name.ends_with(')'))) return "";
+  return name.substr(open + 1, name.size() - open - 2);
 }
 
 struct Columns {
   std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute, low95, high95,
       model;
-  bool percent = false;  // the relative error is written in percent
+  struct Units {
+    double abscissa = 1;   // in s or Hz
+    std::string value;     // behind its name
+    bool percent = false;  // the relative error is
+  } units;
 };
 
 Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
@@ -69,7 +71,9 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
   c.model = find(header, {"model"});
   c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd",
                              "relative_uncertainty", "rel_unc"});
-  c.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
+  if (c.x) c.units.abscissa = detail::abscissa_factor(unit_behind(header[*c.x].text), is_allan);
+  if (c.root || c.power) c.units.value = unit_behind(header[c.root ? *c.root : *c.power].text);
+  c.units.percent = c.relative && header[*c.relative].text.find('%') != std::string::npos;
   c.absolute = find(header, {"error", "err", "sd", "std", "stderr", "standard_error", "standard error", "uncertainty",
                              "deviation_sd", "dev_err"});
   return c;
@@ -93,14 +97,17 @@ class Reader {
     const auto text = [&](const std::optional<std::size_t>& column) { return column ? row.cells[*column].text : ""; };
     const std::string kind = text(columns_.kind);
     if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan")) return;
-    NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve", text(columns_.unit), kind);
+    const std::string& unit = columns_.unit ? row.cells[*columns_.unit].text : columns_.units.value;
+    NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve", unit, kind);
     const bool by_root = columns_.root.has_value();
-    const double x = number(row, *columns_.x), y = number(row, by_root ? *columns_.root : *columns_.power);
+    const double x = columns_.units.abscissa * number(row, *columns_.x),
+                 y = number(row, by_root ? *columns_.root : *columns_.power);
+    if (x == 0 && !is_allan_) ++zeros_;
+    if (x < 0 && !is_allan_) target.curve.sides = Sides::two;
     if (x <= 0) return;  // the spectrum at zero frequency says nothing about noise
-    target.curve.root = by_root;
     target.curve.x.push_back(x);
     target.curve.y.push_back(y);
-    if (const auto sd = relative_sd(row, y)) target.curve.relative_sd.push_back(*sd);
+    if (const auto sd = relative_sd(row, y, target.curve.root)) target.curve.relative_sd.push_back(*sd);
     keep(target.low68, row, columns_.low);
     keep(target.high68, row, columns_.high);
     keep(target.low95, row, columns_.low95);
@@ -114,14 +121,9 @@ class Reader {
     return std::move(curves_);
   }
 
- private:
-  /// A row of this `curve` is of an Allan curve, not of a relative of it, where one is read; else of none of these.
-  bool wanted(const std::string& kind) const {
-    const auto type = deviation_type(kind);
-    const bool deviation = type || kind.find("dev") != std::string::npos || kind == "allan";
-    return is_allan_ ? deviation && (!type || deviation_row(*type).is_allan()) : !deviation;
-  }
+  std::uint64_t zeros() const { return zeros_; }
 
+ private:
   double number(const TextRow& row, std::size_t c) const {
     const TextCell& cell = row.cells[c];
     if (const auto value = number_in(cell, decimal_)) return *value;
@@ -131,15 +133,16 @@ class Reader {
   }
 
   // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
-  std::optional<double> relative_sd(const TextRow& row, double y) const {
+  std::optional<double> relative_sd(const TextRow& row, double y, bool root) const {
     const auto cell = [&](const std::optional<std::size_t>& column) {
       return column ? number_in(row.cells[*column], decimal_) : std::nullopt;
     };
     if (const auto dof = cell(columns_.dof); dof && *dof > 0) return 1 / std::sqrt(2 * *dof);
-    const double of_root = columns_.root ? 1 : 0.5;
+    const double of_root = root ? 1 : 0.5;
     const auto low = cell(columns_.low), high = cell(columns_.high);
     if (low && high && y > 0 && *high > *low) return of_root * (*high - *low) / (2 * y);
-    if (const auto sd = cell(columns_.relative); sd && *sd > 0) return of_root * *sd * (columns_.percent ? 0.01 : 1);
+    if (const auto sd = cell(columns_.relative); sd && *sd > 0)
+      return of_root * *sd * (columns_.units.percent ? 0.01 : 1);
     if (const auto sd = cell(columns_.absolute); sd && *sd > 0 && y > 0) return of_root * *sd / y;
     return std::nullopt;
   }
@@ -154,8 +157,11 @@ class Reader {
     if (found != curves_.end()) return *found;
     NamedCurve& added = curves_.emplace_back();
     added.name = name;
-    added.unit = unit_under_density(unit);
+    const detail::SpectrumValues values = detail::values_of_unit(unit);
+    added.unit = is_allan_ && columns_.root ? unit : values.unit;
     added.curve.is_allan = is_allan_;
+    added.curve.root = columns_.root || (!is_allan_ && values.scaling == Scaling::lsd);
+    if (const auto known = detail::spectrum_kind(kind)) added.curve.sides = known->sides;
     added.kind = kind;
     added.value_unit = unit;
     return curves_.back();
@@ -167,9 +173,15 @@ class Reader {
   char decimal_;
   bool is_allan_;
   std::vector<NamedCurve> curves_;
+  std::uint64_t zeros_ = 0;
 };
 
 }  // namespace
+
+double detail::abscissa_factor(const std::string& unit, bool is_allan) {
+  const auto known = find_unit(unit);
+  return known && known->quantity == (is_allan ? Quantity::time : Quantity::frequency) ? known->to_si : 1;
+}
 
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan) {
   const auto table = read_text_table(path, kMaxBytes);
@@ -186,7 +198,7 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
     throw input_error("E0802", path)
         .says(is_allan ? "the table holds no Allan curve" : "the table holds no spectrum")
         .hint(is_allan ? "`curve` psd?" : "`curve` allan?");
-  return CurveTable{std::move(curves), table->bytes, table->sha256};
+  return CurveTable{std::move(curves), reader.zeros(), table->bytes, table->sha256};
 }
 
 std::string curve_in_header(const std::string& path) {

@@ -21,6 +21,7 @@ struct NamedCurve {
 
 struct CurveTable {
   std::vector<NamedCurve> curves;
+  std::uint64_t at_zero = 0;  ///< rows at 0 Hz, which are left out: they say nothing about noise
   std::uint64_t bytes = 0;
   std::string sha256;
 };
@@ -32,6 +33,11 @@ struct CurveTable {
 /// name an abscissa and a value: such a file is a plain table of numbers.
 /// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
+
+namespace detail {
+/// What averaging times ("ms", "min") or frequencies ("kHz") are multiplied by to be in s or Hz; 1 for another unit.
+double abscissa_factor(const std::string& unit, bool is_allan);
+}  // namespace detail
 
 /// "allan", "psd" or "allan or psd" where the header of a file can only be that of such a table ("x" and "value" may be a log's); empty
 /// otherwise, and for what is not a regular file. Throws nothing about the file.

@@ -39,7 +39,8 @@ Minque::Minque(const Array& array, const Settings& settings)
                                          clamped_whole<std::int64_t>(std::ceil(1 / (1 - settings["gamma"]))))),
       inputs_(array.inputs()),
       present_(static_cast<std::size_t>(array.channels)),
-      m_(static_cast<int>(array.channels)) {
+      m_(static_cast<int>(array.channels)),
+      names_(array.names) {
   std::iota(present_.begin(), present_.end(), 0);
   if (settings["fault_detection"] == 1)
     detector_.emplace(
@@ -124,7 +125,7 @@ void Minque::check_recovery(const Variances& variances, const Sample& y) {
 }
 
 void Minque::remarks(Findings& warnings) const {
-  if (detector_) detector_->remarks(description.name, warnings);
+  if (detector_) detector_->remarks(description.name, names_, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",
                  "minque looks for no faults: the memory of the variances (gamma) is not five times that of the fault "
@@ -134,7 +135,7 @@ void Minque::remarks(Findings& warnings) const {
   if (scalar_.blindness(direction) <= kPoorlyKnownVariance) return;
   std::string names;
   for (std::size_t i = 0; i < direction.size(); ++i)
-    if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + std::to_string(i + 1);
+    if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + channel_name(names_, i);
   warnings.add("variances_not_identifiable",
                "minque cannot tell the variances of these channels apart (their sum is known, the other channels are "
                "too noisy to divide it): " +

@@ -86,6 +86,7 @@ struct Minque {
   Eigen::Index inputs_;
   std::vector<int> present_;  // channels of this instant, rising: the first m_
   int m_ = 0;
+  std::vector<std::string> names_;
 };
 
 }  // namespace libchar::fusion

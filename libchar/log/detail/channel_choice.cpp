@@ -8,6 +8,8 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/spelling.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/log/detail/column_name.hpp"
 
 namespace libchar {
 namespace {
@@ -33,9 +35,11 @@ std::optional<std::size_t> find_column(const TableColumns& table, const std::str
     if (table.names[i] == wanted) return i;
   for (const std::size_t i : values)
     if (i < table.texts.size() && table.texts[i] == wanted) return i;
-  if (!table.positions_skip_time) return position_in(wanted, table.names.size());
-  const auto k = position_in(wanted, values.size());
-  return k ? std::optional(values[*k]) : std::nullopt;
+  const auto k = position_in(wanted, table.positions_skip_time ? values.size() : table.names.size());
+  if (k) return table.positions_skip_time ? values[*k] : *k;
+  for (const std::size_t i : values)  // lists of names lose the blanks around them
+    if (trimmed(table.names[i]) == wanted) return i;
+  return std::nullopt;
 }
 
 std::size_t column_of(const TableColumns& table, const std::string& wanted, const ReadOptions& options,
@@ -62,6 +66,17 @@ std::vector<std::size_t> columns_of(const TableColumns& table, const std::string
         out.push_back(i);
   if (out.empty()) out.push_back(column_of(table, wanted, options, file));
   return out;
+}
+
+[[noreturn]] void refuse_time_alone(const TableColumns& table, const std::string& file) {
+  std::vector<std::string> others;
+  for (const std::size_t i : table.left_out)
+    if (i != table.time && i != table.more_time) others.push_back(table.names[i]);
+  throw input_error("E0310", file)
+      .says(others.empty() ? "there is a time column and nothing else"
+                           : "only the time column holds numbers, not " + first_names(others))
+      .hint(others.empty() ? "`time_column` none reads it as a channel"
+                           : "`channels` " + shell_word(others.front()) + " says what is wrong there");
 }
 
 }  // namespace
@@ -100,10 +115,7 @@ void refuse_channel(const std::string& wanted, const std::vector<std::string>& n
 std::vector<std::size_t> choose_channels(const TableColumns& table, const ReadOptions& options,
                                          const std::string& file) {
   std::vector<std::size_t> chosen = all_channels(table);
-  if (chosen.empty())
-    throw input_error("E0310", file)
-        .says("there is a time column and nothing else")
-        .hint("`time_column` none reads it as a channel");
+  if (chosen.empty() && !chooses(options)) refuse_time_alone(table, file);
   if (options.channels.empty()) return chosen;
   if (chooses(options)) chosen.clear();
   for (const std::string& word : options.channels)

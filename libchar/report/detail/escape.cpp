@@ -6,6 +6,20 @@
 namespace libchar {
 std::string html_text(std::string_view text) { return markup_entities(printable(text)); }
 
+std::string html_prose(std::string_view text) {
+  const std::string plain = html_text(text);
+  const auto word_end = [&](std::size_t at) { return plain.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", at); };
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = plain.find('`'); at != std::string::npos; at = plain.find('`', at + 1)) {
+    const std::size_t end = word_end(at + 1);
+    if (end == std::string::npos || end == at + 1 || plain[end] != '`') continue;
+    out += plain.substr(done, at - done) + "<code>" + plain.substr(at + 1, end - at - 1) + "</code>";
+    done = (at = end) + 1;
+  }
+  return out + plain.substr(done);
+}
+
 std::string html_attribute(std::string_view text) { return markup_entities(printable(text)); }
 
 std::string html_address(std::string_view path) {

@@ -15,6 +15,7 @@
 #include "libchar/core/text/markup.hpp"
 #include "libchar/report/detail/report_rows.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
 
@@ -299,7 +300,7 @@ void add_allan(std::string& out, const ChannelView& view) {
 void add_spectrum(std::string& out, const ChannelView& view) {
   const ChannelResult& c = *view.result;
   const Spectrum& s = c.spectrum;
-  const std::string curve = fmt::format("{}_{}_sided", name_of(s.scaling), name_of(s.sides));
+  const std::string curve = detail::spectrum_kind_word({s.scaling, s.sides});
   const std::string unit = spectrum_unit(s.scaling, c.channel.unit);
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const Interval ci68 = or_none(view.spectrum_ci68[i]), ci95 = or_none(view.spectrum_ci95[i]);

@@ -19,6 +19,13 @@ def curve(scatter, stated=False):
     return make
 
 
+def spectrum(folder):
+    """The program's own table of a spectrum, which begins at 0 Hz."""
+    (folder / "log.csv").write_text(csv_text({"w[deg/s]": noise(2000)}))
+    return [["psd", folder / "log.csv", "-o", folder / "psd.csv", "--force"],
+            ["fit", folder / "psd.csv", "--curve", "psd"]]
+
+
 def recorded(folder):
     """A simulation whose truth is a recording of half its length."""
     (folder / "motion.csv").write_text(csv_text({"rate[rad/s]": noise(1500)}))
@@ -47,6 +54,7 @@ INPUTS = {
                          optional="this program draws no PDF without that font",
                          sentence="the font Liberation Sans is not installed"),
     "recorded_signal_short": asked(recorded),
+    "zero_frequency": asked(spectrum),
     "curve_uncertainty": asked(curve(0.02)),
     "curve_scatter": asked(curve(0.022, stated=True)),
 }

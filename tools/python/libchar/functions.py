@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import datetime
 import json
 import os
 import pathlib
@@ -28,15 +29,24 @@ _OF_FILES = ("from_s", "to_s", "time_column", "time_unit", "format", "delimiter"
              "skip_rows", "topic", "time_source")
 
 
+def _array(values: Any) -> npt.NDArray[Any]:
+    """An array that keeps its mask, as do arrays in a list."""
+    if isinstance(values, np.ma.MaskedArray):
+        return values
+    masked = isinstance(values, (list, tuple)) and any(isinstance(one, np.ma.MaskedArray) for one in values)
+    return np.ma.array(values) if masked else np.asarray(values)
+
+
 def _column(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
-    given = np.asarray(values)
+    given, mask = np.asarray(values), np.ma.getmask(values)
     if given.ndim != 1:
         raise UsageError(f"{name}: an array of one dimension was expected, this has {given.ndim}", "E0208", name)
     if given.dtype.kind not in "fiu":
         raise UsageError(f"{name}: an array of numbers was expected, this is of {given.dtype}", "E0208", name)
-    out = np.ascontiguousarray(given, dtype=np.float64)
+    hidden = bool(np.any(mask))
+    out = np.ascontiguousarray(np.where(mask, np.nan, given) if hidden else given, dtype=np.float64)
     if out is not given and not np.shares_memory(out, given):
-        what = "not contiguous" if given.dtype == np.float64 else f"of {given.dtype}"
+        what = "masked" if hidden else "not contiguous" if given.dtype == np.float64 else f"of {given.dtype}"
         warnings.warn(f"{name}: {given.size} samples were copied, because the array is {what}", CopyWarning,
                       stacklevel=4)
     return out
@@ -46,14 +56,51 @@ def _is_frame(source: Any) -> bool:
     return hasattr(source, "columns") and hasattr(source, "index") and hasattr(source, "to_numpy")
 
 
+def _of_series(series: Any, name: str) -> npt.NDArray[np.float64]:
+    """A column of a frame; what pandas marks as not available is missing."""
+    own = getattr(series, "dtype", None)
+    nullable = hasattr(series, "to_numpy") and own is not None and not isinstance(own, np.dtype)
+    try:
+        if nullable:
+            return np.asarray(series.to_numpy(dtype=np.float64, na_value=np.nan))
+        return np.ma.filled(_array(series).astype(np.float64, copy=False), np.nan)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name}: an array of numbers was expected, this is of {own}", "E0208", name) from error
+
+
+def _instants(index: Any) -> Optional[npt.NDArray[np.int64]]:
+    """Stamps of an index in ns, of UTC where it has a time zone; None where it has no instants."""
+    if getattr(index, "tz", None) is not None and hasattr(index, "asi8"):
+        given = np.asarray(index.asi8).astype(f"M8[{getattr(index, 'unit', 'ns')}]")
+    else:
+        given = np.asarray(index)
+        if given.dtype == object and given.size and all(isinstance(one, datetime.datetime) for one in given):
+            return np.array([_nanoseconds(one) for one in given], dtype=np.int64)
+    kind = given.dtype.kind
+    return given.astype(f"{kind}8[ns]").astype(np.int64) if kind in "mM" else None
+
+
+def _nanoseconds(instant: datetime.datetime) -> int:
+    """Since 1970; an instant without a time zone is of UTC. pandas' own has more digits than a datetime."""
+    if hasattr(instant, "value"):
+        return int(instant.value)
+    utc = instant if instant.tzinfo is not None else instant.replace(tzinfo=datetime.timezone.utc)
+    return (utc - datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)) // datetime.timedelta(
+        microseconds=1) * 1000
+
+
 def _of_frame(frame: Any) -> Source:
     """A DataFrame as a recording, by its own stamps if its index has instants, else its columns by name. What the
     stamps mean (their rate, jitter, gaps) is decided as for a file."""
-    columns = {str(name): np.asarray(frame[name], dtype=np.float64) for name in frame.columns}
-    kind = np.asarray(frame.index).dtype.kind
-    if kind not in "mM":
+    columns = {str(name): _of_series(frame[name], str(name)) for name in frame.columns}
+    stamps = _instants(frame.index)
+    if stamps is None:
         return columns
-    stamps = np.asarray(frame.index).astype(f"{kind}8[ns]").astype(np.int64)
+    absent = np.flatnonzero(stamps == np.iinfo(np.int64).min)  # NaT
+    if absent.size:
+        rows = "1 row" if absent.size == 1 else f"{absent.size} rows"
+        raise UsageError(f"index: {rows} without a time, the first is row {absent[0]}", "E0208", "index",
+                         "frame[frame.index.notna()]")
     table = np.empty(len(stamps), dtype=[("t[ns]", np.int64), *((name, np.float64) for name in columns)])
     table["t[ns]"] = stamps
     for name, values in columns.items():
@@ -74,9 +121,9 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
         rate_hz = source.rate_hz if rate_hz is None else rate_hz
     else:
         if isinstance(source, Mapping):
-            found = {str(name): np.asarray(values) for name, values in source.items()}
+            found = {str(name): _array(values) for name, values in source.items()}
         else:
-            array = np.asarray(source)
+            array = _array(source)
             across = array.ndim == 2 and array.shape[0] < array.shape[1]  # three channels of many samples
             table = [array] if array.ndim < 2 else list(array if across else array.T) if array.ndim == 2 else []
             if not table:

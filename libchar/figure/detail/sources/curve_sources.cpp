@@ -17,6 +17,7 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/text_table.hpp"
 #include "libchar/spectrum/spectrum.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
 namespace {
@@ -35,9 +36,7 @@ void add_ends(SourceCurve& curve, const std::vector<Interval>& intervals) {
 
 std::string line_statistic(const std::string& kind) {
   // "psd_one_sided" of curves.csv
-  for (const Sides sides : {Sides::one, Sides::two})
-    for (const EnumWord<Scaling>& row : enum_table<Scaling>)
-      if (kind == fmt::format("{}_{}_sided", row.word, name_of(sides))) return spectrum_statistic(sides, row.value);
+  if (const auto known = detail::spectrum_kind(kind)) return spectrum_statistic(known->sides, known->scaling);
   return kind.empty() ? "Power spectral density" : kind;
 }
 
@@ -218,33 +217,23 @@ std::optional<WideColumn> wide_column(const std::string& cell) {
   return WideColumn{cell.substr(0, open), cell.substr(open + 1, cell.size() - open - 2)};
 }
 
-// "(deg/s)²/Hz": what it is and of what, as spectrum_unit writes it.
-std::pair<std::string, std::string> density_of(const std::string& unit) {
-  for (const auto& [end, statistic] : {std::pair{"²/Hz", "PSD"}, {"/√Hz", "LSD"}, {"²", "PS"}}) {
-    if (!unit.ends_with(end)) continue;
-    std::string base = unit.substr(0, unit.size() - std::string_view(end).size());
-    if (base.starts_with('(') && base.ends_with(')')) base = base.substr(1, base.size() - 2);
-    return {statistic, base};
-  }
-  return {"LS", unit};
-}
-
 }  // namespace
 
 void add_wide_spectra(FigureSource& out, const std::string& file) {
   const auto table = read_text_table(file, kMaxDocumentBytes);
   if (!table || table->header.cells.size() < 2 || table->header.cells[0].text != "frequency_hz") return;
   std::vector<SourceCurve> curves;
+  std::vector<Scaling> scalings;
   for (std::size_t c = 1; c < table->header.cells.size(); ++c) {
     const auto column = wide_column(table->header.cells[c].text);
     if (!column) return;
     SourceCurve& curve = curves.emplace_back();
-    const auto [statistic, base] = density_of(column->unit);
+    const detail::SpectrumValues values = detail::values_of_unit(column->unit);
+    scalings.push_back(values.scaling);
     curve.channel = column->name;
-    curve.unit = usual_figure_unit(base == "U" ? "" : base);
+    curve.unit = usual_figure_unit(values.unit);
     curve.is_allan = false;
     curve.value_unit = column->unit;
-    curve.statistic = statistic;
   }
   bool two_sided = false;
   for (const TextRow& row : table->rows) {
@@ -264,9 +253,9 @@ void add_wide_spectra(FigureSource& out, const std::string& file) {
       curves[c].y.push_back(y);
     }
   }
-  for (SourceCurve& curve : curves) {
-    curve.statistic = (two_sided ? "Two-sided " : "One-sided ") + curve.statistic;
-    out.curves.push_back(std::move(curve));
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    curves[c].statistic = spectrum_statistic(two_sided ? Sides::two : Sides::one, scalings[c]);
+    out.curves.push_back(std::move(curves[c]));
   }
 }
 

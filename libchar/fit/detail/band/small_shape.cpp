@@ -149,14 +149,20 @@ Answers answers_of(const Slopes& slopes, const std::vector<PowerBin>& inside, co
   return out;
 }
 
+/// exp(x), and beyond one its tangent: a term that is a small part of the record grows by as much as the shape takes
+/// from the others, not by as many times.
+double grown(double x) { return x <= 1 ? std::exp(x) : std::numbers::e * x; }
+
 /// A coefficient after ln theta was moved by `shift` and got `variance` more.
 void move_term(double shift, double variance, Coefficient& term) {
-  const double before = *term.value, now = before * std::exp(shift / 2);
+  const double before = *term.value, now = before * std::sqrt(grown(shift));
   const double more = kNormal95 * kNormal95 * variance / 4;
   const auto moved = [&](double end) {
     if (!(end > 0) || !std::isfinite(end)) return end;
-    const double distance = std::log(end / before);
-    return now * std::exp(std::copysign(std::sqrt(distance * distance + more), distance));
+    const double distance = std::log(end / before), far = std::sqrt(distance * distance + more);
+    const double beyond = far - std::abs(distance);
+    const double times = beyond > 0.5 ? std::exp(std::abs(distance)) * std::sqrt(grown(2 * beyond)) : std::exp(far);
+    return distance < 0 ? now / times : now * times;
   };
   term.ci95 = {moved(term.ci95.low), moved(term.ci95.high)};
   term.relative_sd = std::sqrt(term.relative_sd * term.relative_sd + variance / 4);
@@ -219,7 +225,7 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& ba
     const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
     if (!(fit.theta[i] > 0)) continue;  // lent to a law
     for (Eigen::Index b = 0; b < n; ++b) fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
-    fit.theta[i] *= std::exp(shift[a]);
+    fit.theta[i] *= grown(shift[a]);
     if (fit.term[i].value) move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);
   }
 }

@@ -263,15 +263,16 @@ void FaultDetector::stand_down() {
   sets_changed();
 }
 
-void FaultDetector::remarks(std::string_view algorithm, Findings& warnings) const {
+void FaultDetector::remarks(std::string_view algorithm, const std::vector<std::string>& names,
+                            Findings& warnings) const {
   const auto at_time = [&](std::int64_t sample) {
     return rate_hz_ > 0 ? shortest(std::round(static_cast<double>(sample) / rate_hz_ * 100) / 100) + " s"
                         : "instant " + std::to_string(sample);
   };
-  const auto list = [](std::uint64_t set) {
+  const auto list = [&](std::uint64_t set) {
     std::string text;
     for (unsigned i = 0; i < 64; ++i)
-      if ((set >> i & 1U) != 0) text += (text.empty() ? "" : ", ") + std::to_string(i + 1);
+      if ((set >> i & 1U) != 0) text += (text.empty() ? "" : ", ") + channel_name(names, i);
     return text;
   };
   const std::string who(algorithm);

@@ -312,11 +312,17 @@ void find_kinds(Study& study) {
   for (std::size_t c = 0; c < study.kinds.size(); ++c)
     if (study.dialect.columns[c].words) study.kinds[c] = ColumnKind::text;
   if (!study.kinds.empty() &&
-      std::all_of(study.kinds.begin(), study.kinds.end(), [](ColumnKind kind) { return kind == ColumnKind::text; }))
+      std::all_of(study.kinds.begin(), study.kinds.end(), [](ColumnKind kind) { return kind == ColumnKind::text; })) {
+    const auto hexadecimal = [](const auto& field) {
+      return field.text.starts_with("0x") || field.text.starts_with("0X");
+    };
+    const bool any = !study.rows.empty() && std::any_of(study.rows[0].begin(), study.rows[0].end(), hexadecimal);
     throw refusal(study, study.sample[0], 0, "E0326")
         .says("no column holds numbers")
         .got(std::string(study.sample[0].text))
-        .hint("`delimiter` says what separates the cells, `skip_rows` where the table begins");
+        .hint(any ? "hexadecimal numbers are not read: write them as decimal ones"
+                  : "`delimiter` says what separates the cells, `skip_rows` where the table begins");
+  }
 }
 
 // Words in front of averaging times or frequencies: a table of curves, whose rows are no samples.

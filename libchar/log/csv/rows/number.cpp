@@ -77,6 +77,8 @@ Cell explain(std::string_view text, char point) {
     cell.reason = "a no-break space (U+00A0) in a number";
   else if (begins("\xE2\x80\x8B"))
     cell.reason = "an invisible zero-width space (U+200B) before a number";
+  else if (lower(rest[0]) == 'x' && text.substr(start, i - start) == "0")
+    cell.reason = "a hexadecimal number, where decimal ones are read";
   else if (digits > 0 && rest[0] == '_')
     cell.reason = "an underscore in a number";
   else if (digits > 0 && (rest[0] == ',' || rest[0] == '.'))

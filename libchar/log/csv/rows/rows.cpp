@@ -530,7 +530,7 @@ class CarefulLines {
 
   std::string few_hint(std::string_view line) const {
     for (const char other : {';', '\t', ','})
-      if (other != to_.dialect.delimiter && line.find(other) != std::string_view::npos)
+      if (other != to_.dialect.delimiter && other != to_.dialect.decimal && line.find(other) != std::string_view::npos)
         return "`delimiter`, if the guess is wrong; `skip_rows`, if the table starts later";
     return "";
   }

@@ -83,6 +83,7 @@ fusion::Array describe_array(const Scene& scene, const Instants& instants, const
   fusion::Array array;
   const InstantsInfo& info = instants.info();
   array.channels = static_cast<Eigen::Index>(scene.sensors.size());
+  for (const SceneSensor& sensor : scene.sensors) array.names.push_back(sensor.name);
   array.observation_matrix = observation_matrix(scene, info.input_names.size());
   const Eigen::Map<const Eigen::VectorXd> levels(knowledge.noise_variances.data(), array.channels);
   const bool known = plan.live.empty() ? (levels.array() > 0).all() : (levels(plan.live).array() > 0).all();
@@ -380,6 +381,9 @@ fusion::Array subset(const fusion::Array& array, const std::vector<Eigen::Index>
   fusion::Array part = array;
   if (channels.empty()) return part;
   part.channels = static_cast<Eigen::Index>(channels.size());
+  part.names.clear();
+  for (const Eigen::Index i : channels)
+    part.names.push_back(fusion::channel_name(array.names, static_cast<std::size_t>(i)));
   if (array.observation_matrix.size() > 0)
     part.observation_matrix = array.observation_matrix(channels, Eigen::indexing::all);
   if (array.noise_levels.size() > 0) part.noise_levels = array.noise_levels(channels);

@@ -382,13 +382,16 @@ std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const Learn
 }
 
 // Outliers put single blocks of any sensor beyond: so many in a row are more than those of the middle sensor do by
-// chance, in all sensors together.
-std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
+// chance, in all sensors together. A run beside its own usual state has more of its own: blocks with a spike, or
+// those without one where most have some. Of independent blocks as many as begin a row, of those behind one that is
+// not beyond, are so by chance.
+std::vector<std::int64_t> ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
   constexpr double kByChance = 1e-3;
-  std::vector<double> begun;
-  for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
+  const std::size_t sensors = std::min(n_, learnt.size());
+  std::vector<double> begun, own(sensors, 0.0);
+  for (std::size_t i = 0; i < sensors; ++i) {
     if (!learnt[i]) continue;
-    double times = 0;
+    double times = 0, free = 0;
     bool before = false;
     const std::vector<double> motion = motion_factors(i, *learnt[i]);
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -396,20 +399,27 @@ std::int64_t ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& 
       const Fit here = fit(s, learnt[i]->offset, learnt[i]->gain);
       const bool now = s.n >= kLeastInBlock && beyond(here, *learnt[i], limits, motion[k]);
       times += now && !before ? 1 : 0;
+      free += before ? 0 : 1;
       before = now;
     }
     begun.push_back(times);
+    if (limits.quieter && free > 0) own[i] = (times - 1) / free;
   }
   const double blocks = static_cast<double>(blocks_.size());
-  const double chance = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
-  if (!(chance > 0)) return 2;
-  const double row = std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(chance);
-  return std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(row)));
+  const double common = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
+  std::vector<std::int64_t> out;
+  for (const double one : own) {
+    const double chance = std::max(common, one);
+    const double row =
+        chance > 0 ? std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(std::min(chance, 0.99)) : 2;
+    out.push_back(std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(row))));
+  }
+  return out;
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, bool quieter) const {
   const Limits limits = ReadingMeter::limits(learnt, quieter);
-  const std::int64_t least = least_in_a_row(learnt, limits);
+  const std::vector<std::int64_t> least = least_in_a_row(learnt, limits);
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
@@ -428,7 +438,7 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, 
       if (in_a_row++ == 0) row = {i, 0, 1, static_cast<std::int64_t>(k), 0, false};
       if (std::abs(here.mean) > std::abs(row.offset)) row.offset = here.mean;
       if (usual.usual_rms > 0) row.scatter = less_usual(row.scatter, here.rms / usual.usual_rms);
-      if (in_a_row < least) continue;
+      if (in_a_row < least[i]) continue;
       if (first < 0) first = row.from;
       last = static_cast<std::int64_t>(k);
       ++changed;

@@ -95,7 +95,7 @@ class ReadingMeter {
   static Limits limits(const Readings& learnt, bool quieter);
   static bool beyond(const Fit& block, const LearntSensor::Reading& usual, const Limits& limits, double motion);
   std::vector<double> motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const;
-  std::int64_t least_in_a_row(const Readings& learnt, const Limits& limits) const;
+  std::vector<std::int64_t> least_in_a_row(const Readings& learnt, const Limits& limits) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
   bool tells_gains() const;

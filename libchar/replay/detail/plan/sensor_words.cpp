@@ -149,13 +149,15 @@ void warn_of_apart(const Throughout& all, const Sensors& of, Findings& warnings)
       unlike);
 }
 
-/// "up to 5 deg/s off, 12 times its scatter, from 4 min to the end"
+/// "up to 5 deg/s off, 12 times its scatter, from 4 min to the end"; "its scatter 20 times smaller"
 std::string change_text(const ReadingMeter::Change& change, const Sensors& of, const Clock& clock) {
   const auto at = [&](std::int64_t instant) {
     return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
   };
-  return fmt::format("up to {} off, {} times its scatter, from {} to {}", of.amount(change.offset, change.sensor),
-                     brief_text(change.scatter, 2), change.from == 0 ? std::string("the start") : at(change.from),
+  const std::string scatter = change.scatter < 1 ? "its scatter " + brief_text(1 / change.scatter, 2) + " times smaller"
+                                                 : brief_text(change.scatter, 2) + " times its scatter";
+  return fmt::format("up to {} off, {}, from {} to {}", of.amount(change.offset, change.sensor), scatter,
+                     change.from == 0 ? std::string("the start") : at(change.from),
                      change.to_end ? std::string("the end") : at(change.to));
 }
 

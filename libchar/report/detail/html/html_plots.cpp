@@ -11,6 +11,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
+#include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
 namespace {

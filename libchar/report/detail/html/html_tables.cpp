@@ -35,7 +35,7 @@ std::string number_html(const std::string& text) {
     else
       out += text[i];
   }
-  return html_text(out);
+  return html_prose(out);
 }
 
 std::string linked(const Cell& cell) {
@@ -52,7 +52,7 @@ std::string cell_content(const Cell& cell) {
   for (const Cell::Mark& mark : cell.marks) out += " " + html_chip(mark.text, mark.tint);
   const std::string interval = cell.high.empty() ? cell.low : fmt::format("[{}, {}]", cell.low, cell.high);
   if (!interval.empty()) out += "<span class=\"ci\">" + number_html(interval) + "</span>";
-  for (const std::string& note : cell.notes) out += "<span class=\"ci dim\">" + html_text(note) + "</span>";
+  for (const std::string& note : cell.notes) out += "<span class=\"ci dim\">" + html_prose(note) + "</span>";
   for (const Cell& line : cell.lines) out += "<div>" + cell_content(line) + "</div>";
   return out;
 }
@@ -123,7 +123,7 @@ std::string html_table(const Table& table, const PageTable& look) {
   if (rows < count)
     out +=
         fmt::format("<p class=\"note\">The first {} of {}; all are in {}.</p>\n", rows, count_text(count), look.rest);
-  return table.note.empty() ? out : out + "<p class=\"note\">" + html_text(table.note) + "</p>\n";
+  return table.note.empty() ? out : out + "<p class=\"note\">" + html_prose(table.note) + "</p>\n";
 }
 
 std::string folded(const std::string& summary, const std::string& body, bool open) {
@@ -149,7 +149,7 @@ namespace {
 
 std::string finding_item(const Finding& one) {
   std::string out =
-      fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) + html_text(one.sentence);
+      fmt::format("<li class=\"{}\" title=\"{}\">", name_of(one.severity), one.code) + html_prose(one.sentence);
   for (const Finding::Help& help : one.help) out += " <span class=\"help\">" + html_text(help.sentence) + "</span>";
   return out + "</li>\n";
 }
@@ -168,7 +168,7 @@ std::string findings_list(const std::vector<Finding>& findings) {
 std::string bullet_list(const std::vector<std::string>& items, std::string_view css_class) {
   if (items.empty()) return "";
   std::string out = fmt::format("<ul class=\"{}\">\n", css_class);
-  for (const std::string& item : items) out += "<li>" + html_text(item) + "</li>\n";
+  for (const std::string& item : items) out += "<li>" + html_prose(item) + "</li>\n";
   return out + "</ul>\n";
 }
 

@@ -27,6 +27,8 @@ namespace libchar {
 /// For text between tags: & < > " ' become entities; control, bidirectional and zero-width
 /// characters and bytes that are not UTF-8 become visible escapes.
 std::string html_text(std::string_view text);
+/// A sentence: options in backticks (`still`) become code.
+std::string html_prose(std::string_view text);
 
 /// For a value inside double quotes of a tag: as html_text, and nothing else may stand there unquoted.
 std::string html_attribute(std::string_view text);

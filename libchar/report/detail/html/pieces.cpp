@@ -84,7 +84,7 @@ Table judgements(const LimitReport& report) {
 std::string limits_section(const LimitReport& report) {
   return "<section id=\"limits\">\n<h2>Limits" +
          (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
-         html_text(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
+         html_prose(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
          html_text(report.file) +
          ". A term passes or fails when its whole 95 % interval is within or above the limit; one that is at the "
          "limit does either by chance in at most 2.5 % of recordings, and passes in 5 % where only an upper limit is "
@@ -126,7 +126,7 @@ std::string alignment_html(const ReplayView& view) {
   if (!r.alignment) return "";
   const AlignmentWords words = alignment_words(r, *r.alignment);
   std::string out = "<section class=\"part\" id=\"alignment\">\n<h2>Alignment</h2>\n";
-  for (const std::string& sentence : words.sentences) out += "<p>" + html_text(sentence) + "</p>\n";
+  for (const std::string& sentence : words.sentences) out += "<p>" + html_prose(sentence) + "</p>\n";
   return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" + html_table(words.learnt) +
          html_table(words.budget) +
          "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, with 95 % intervals; "
