@@ -114,8 +114,17 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
                                      "be taken out: the record cannot tell them apart.",
                                      brief_text(search.drift_gain, 2))));
   }
+  if (search.cycle_gain > 0 && walk.status == Status::detected) {
+    walk.status = Status::undetermined;
+    fit.findings.push_back(finding(
+        "drift_or_walk", fmt::format("A slow cycle is likelier than the random walk K (2 ln L {}), but too weak to be "
+                                     "taken out: the record cannot tell them apart.",
+                                     brief_text(search.cycle_gain, 2))));
+  }
   if (!means.events_taken) return;
-  fit.events = search.events;
+  // A cycle is the surroundings', and no part of the model.
+  for (const Event& event : search.events)
+    if (event.kind != EventKind::cycle) fit.events.push_back(event);
   for (const EventKind kind : {EventKind::step, EventKind::warm_up, EventKind::ramp}) add_event_remedy(kind, fit);
 }
 
