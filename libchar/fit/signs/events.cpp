@@ -34,8 +34,8 @@ constexpr double kCycleThreshold = 5.5;
 constexpr double kHiddenMore = 4;  ///< of LR, for such a ramp: few coefficients know the walk
 /// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
 constexpr double kFavoured = 3, kWalkGone = 0.5;
-constexpr double kCycleFavoured = 8;  ///< the same of a cycle, which has two parameters more
-constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
+constexpr double kCycleFavoured = 12;  ///< the same of a cycle, which has two parameters more
+constexpr double kMostOfEnds = 1e-3;   ///< of EventSeries::Noise: beyond, the first and the last value are free
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
 constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %

@@ -32,6 +32,7 @@ EventSearch search_events(const FitOptions& options, const Series& series) {
     // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
     EventOptions how;
     how.steps = !options.clock;
+    how.cycle = options.slow_cycles;
     return find_events(searched, fitted_powers(), how, options.unit);
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric) throw;
@@ -149,6 +150,7 @@ RecordMeans without_means(std::span<const double> record, double rate_hz, const 
   if (!moves(out.temperature)) return out;
   FitOptions without = options;
   without.second_opinion = false;
+  without.slow_cycles = false;  // the temperature's own are to be seen in the walk
   const NoiseFit left_in = fit_record(record, rate_hz, nullptr, without);
   out.temperature->without = left_in.term;
   for (const Event& event : left_in.events)
