@@ -341,8 +341,8 @@ void bound_tau(const Search& search, const Regression& others, const Hypothesis&
   event.tau_ci95 = {scan.tau[low] * step_s, high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
 }
 
-/// Of a warm-up the time constant is not known either: a second one beside it spans what it may be. So do two of a cycle
-/// for its phase and its period.
+/// Of a warm-up the time constant is not known either: a second one beside it spans what it may be. So do two of a
+/// cycle for its phase and its period.
 Regression with_free_taus(const Search& search, const Hypothesis& now) {
   constexpr double kOtherTau = 1.2, kOtherPlace = 1.05;
   std::vector<EventShape> shapes = now.fit.shape;
