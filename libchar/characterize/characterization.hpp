@@ -111,6 +111,7 @@ struct ChannelResult {
   std::vector<SpectralLine> lines;
   std::optional<NoiseFit> fit;
   std::vector<NoiseType> noise_types;  ///< by averaging time; of phase and frequency
+  EventSeries means;                   ///< few, over all of the record; empty once the log's thermometers were asked
   DigitalFaults digital;               ///< rails, held values, a staircase
   /// Why something is absent, motion, what the converter did. `judge` (judgement.hpp) adds those of quality and fit.
   std::vector<Finding> findings;

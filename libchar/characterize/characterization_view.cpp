@@ -13,6 +13,7 @@
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
+#include "libchar/fit/signs/rounding.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -81,7 +82,7 @@ void add_fit(ChannelView& view, const ChannelResult& channel, double rate_hz) {
   view.spectrum_model = spectrum_model(fit, channel.spectrum);
   view.other_opinions = other_opinions(fit);
   view.plain_from_s = plain_from_s(fit, channel.allan);
-  if (rate_hz > 0) view.consumers = consumer_numbers(fit.term, view.unit, rate_hz);
+  if (rate_hz > 0) view.consumers = consumer_numbers(detail::terms_with_rounding(fit), view.unit, rate_hz);
 }
 
 TraceMark mark_of(const Event& event, double duration_s, const std::string& unit) {

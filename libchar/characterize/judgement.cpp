@@ -73,7 +73,7 @@ struct Judge {
     if (unexplained && !said)
       add("misfit", "The noise terms do not describe the recording: no coefficient is borne out.",
           "the noise terms do not describe the recording");
-    if (!fit.converged) add("not_converged", "The fit did not converge.");
+    if (!fit.search.converged) add("not_converged", "The fit did not converge.");
   }
 
   void look_at_terms(const NoiseFit& fit) {

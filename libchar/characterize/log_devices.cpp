@@ -24,9 +24,10 @@ Prepared prepared(const std::string& path, const LogAllanOptions& options, Progr
   if (options.data == SampleKind::frequency && nominal != 0)
     for (auto& samples : out.recording.samples)
       for (double& f : samples) f = (f - nominal) / nominal;
+  for (std::size_t c = 0; c < log.channels.size() && options.data == SampleKind::phase; ++c)
+    for (double& phase : out.recording.samples[c]) phase *= detail::differenced_unit(log.channels[c].unit).factor;
   for (Channel& channel : log.channels) {
-    if (options.data == SampleKind::phase)
-      channel.unit = channel.unit == "s" ? "1" : channel.unit.empty() ? "" : channel.unit + "/s";
+    if (options.data == SampleKind::phase) channel.unit = detail::differenced_unit(channel.unit).unit;
     if (options.data == SampleKind::frequency && nominal != 0) channel.unit = "1";
   }
   return out;

@@ -166,7 +166,9 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
     parts.push_back(parts.empty() ? phrase : as_part(phrase));
   };
   const std::vector<PowerLaw> laws = power_laws(fit);
-  for (const PowerLaw& law : laws) say(fmt::format("{} h_{}", law.name, law.alpha), shown_value(law.h, 1, ""), law.h);
+  for (const PowerLaw& law : laws)
+    say(fmt::format("{} h_{}", law.name, law.alpha), shown_value(law.h, 1, detail::power_law_unit(law.alpha, unit)),
+        law.h);
   for (std::size_t t = laws.empty() ? 0 : static_cast<std::size_t>(Term::ramp); t < kTerms; ++t) {
     const TermCells cells = term_cells(fit.term[t], static_cast<Term>(t), unit, !laws.empty());
     say(cells.title + " " + cells.letter, headline(cells), fit.term[t]);

@@ -254,4 +254,10 @@ std::optional<double> Unit::sample_factor(std::string_view from, std::string_vie
   return x->to_si == y->to_si ? 1 : x->to_si / y->to_si;
 }
 
+detail::DifferencedUnit detail::differenced_unit(const std::string& unit) {
+  const auto known = find_unit(unit);
+  if (known && known->quantity == Quantity::time) return {"1", known->to_si};
+  return {unit.empty() ? "" : unit + "/s", 1};
+}
+
 }  // namespace libchar

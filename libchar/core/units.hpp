@@ -88,4 +88,13 @@ std::optional<double> parse_factor(std::string_view text);
 /// Is it the unit of numbers without one ("1", "-", "none"), which is not printed?
 bool dimensionless(std::string_view unit);
 
+namespace detail {
+/// What differences of samples per second are in: of a time the fractional frequency of a clock, "1".
+struct DifferencedUnit {
+  std::string unit;
+  double factor = 1;  ///< of a difference per second
+};
+DifferencedUnit differenced_unit(const std::string& unit);
+}  // namespace detail
+
 }  // namespace libchar

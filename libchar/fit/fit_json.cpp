@@ -302,8 +302,8 @@ const Fields<NoiseFit>& noise_fit_fields() {
                               {.known = when<[](const T& fit) { return fit.stationarity.tested; }>}),
        list_of<&T::findings>("findings", finding_fields()),
        field<&T::method>("method"),
-       field<&T::converged>("converged"),
-       field<&T::iterations>("iterations"),
+       field<&T::search, &T::Search::converged>("converged"),
+       field<&T::search, &T::Search::iterations>("iterations"),
        field<&T::rate_hz>("rate_hz", {.range = kPositive, .required = true}),
        field<&T::duration_s>("duration_s", {.range = kPositive, .required = true}),
        field<&T::samples>("samples")}));

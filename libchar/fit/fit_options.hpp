@@ -23,6 +23,8 @@ struct FitOptions {
   bool white_top = false;
   /// steps, warm-up and ramp are looked for and taken out (a record that is kept only)
   bool events = true;
+  /// and cycles of less than three periods among them
+  bool slow_cycles = true;
   /// stretches of the record are compared (a record that is kept only, remedies on)
   bool stationarity = true;
   /// of the record's first differences, where it is known: spikes are looked for above an alarm

@@ -72,6 +72,8 @@ struct NoiseFit {
   /// of a clock: F of flicker phase noise, y_t = F (x_t - x_{t-1})/dt with x unit flicker (power_laws.hpp)
   std::optional<Coefficient> flicker_phase;
   Mixture theta{};  ///< squared coefficients used for drawing curves and for edf (0 = absent)
+  /// density that rounding adds to the terms and their shape, U²·s: neither in theta nor in N (signs/rounding.hpp)
+  double rounding = 0;
   /// of ln(theta) of the terms with a value
   std::array<std::array<double, kTerms>, kTerms> covariance{};
   Goodness goodness;
@@ -85,8 +87,11 @@ struct NoiseFit {
   std::vector<PowerBin> bins;     ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
   std::vector<Finding> findings;  ///< of the fit, apart from the coefficients
   std::string method;             ///< "DCT-II Whittle likelihood, 128 bins" …
-  bool converged = true;
-  int iterations = 0;
+  struct Search {
+    bool converged = true;
+    int iterations = 0;
+  };
+  Search search;  ///< for the likeliest coefficients
   double rate_hz = 0;
   double duration_s = 0;
   std::uint64_t samples = 0;

@@ -8,6 +8,9 @@
 #include "libchar/characterize/characterization.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/characterize/judgement.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
+#include "libchar/fit/curve/power_laws.hpp"
+#include "libchar/simulate/sensor_array.hpp"
 #include "tests/characterize/refusal.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
@@ -276,4 +279,93 @@ TEST_CASE("white noise of which nothing shows stays within what the record has")
     if (n.value) CHECK(*n.value < 10 * most);
     if (n.value) CHECK(n.ci95.high < 1000 * most);
   }
+}
+
+TEST_CASE("rounded samples: N is that of the sensor, and a simulation of the model gives it back") {
+  constexpr std::size_t kRecords = 10;
+  constexpr double kSd = 0.05, kTruth = 5e-3;
+  for (const double ratio : {0.1, 0.5, 0.75, 1.0, 1.5}) {
+    std::size_t held = 0, again = 0, said = 0;
+    for (std::uint64_t seed = 1; seed <= kRecords; ++seed) {
+      test::Gaussian gauss(100 + seed);
+      const double step = ratio * kSd, offset = 0.3 * kSd * static_cast<double>(seed);
+      std::vector<double> y(40000);
+      for (double& v : y) v = step * std::round((offset + kSd * gauss()) / step);
+      const Characterization result = of(y);
+      REQUIRE(result.channels[0].fit);
+      const NoiseFit& fit = *result.channels[0].fit;
+      const Coefficient& white = fit[Term::white];
+      held += white.value && white.ci95.low <= kTruth && kTruth <= white.ci95.high;
+      said += has(fit.findings, "rounding_in_n");
+      // The curve of the fit stays that of the samples: rounding is in it.
+      CHECK(*model_deviation(fit, DeviationType::oadev, 1, 0.01) ==
+            Approx(result.channels[0].allan.points[0].deviation).epsilon(0.03));
+      const SensorModel model = sensor_model_from(result.channels[0], result.log);
+      const NoiseFit shown = detail::sensor_model_fit(model);
+      CHECK(*model_deviation(shown, DeviationType::oadev, 1, 0.01) ==
+            Approx(*model_deviation(fit, DeviationType::oadev, 1, 0.01)).epsilon(1e-9));
+      ArraySimulation simulation;
+      simulation.rate_hz = 100;
+      simulation.samples = y.size();
+      simulation.seed = seed;
+      simulation.sensors = {{"x", model, {1}}};
+      ArraySimulator simulator(simulation);
+      std::vector<double> simulated;
+      for (auto block = simulator.next(8192); !block.empty(); block = simulator.next(8192))
+        simulated.insert(simulated.end(), block[0].begin(), block[0].end());
+      const NoiseFit second = *of(simulated).channels[0].fit;
+      again += white.value && second[Term::white].value &&
+               std::abs(*second[Term::white].value / *white.value - 1) < 3 * white.relative_sd;
+    }
+    CAPTURE(ratio);
+    CHECK(held >= kRecords - 1);
+    CHECK(again >= kRecords - 1);
+    CHECK(said >= (ratio >= 0.5 ? kRecords : 0));
+  }
+}
+
+TEST_CASE("rounding that is no white noise, or none at all, is not taken out of N") {
+  test::Gaussian gauss(7);
+  std::vector<double> y(40000);
+  for (double& v : y) v = 0.05 * gauss();
+  CHECK_FALSE(has(of(y).channels[0].fit->findings, "rounding_in_n"));
+  // A walk of a hundredth of a step: what is measured is the rounding, and it is slow.
+  double level = 0;
+  for (double& v : y) v = std::round((level += 0.01 * gauss()));
+  const ChannelResult slow = of(y).channels[0];
+  CHECK(slow.fit->rounding == 0);
+  CHECK_FALSE(has(slow.fit->findings, "rounding_in_n"));
+  // Every value twice: the rounding is held with it.
+  for (std::size_t t = 0; t < y.size(); ++t) y[t] = t % 2 == 0 ? std::round(5 * gauss()) : y[t - 1];
+  CHECK(of(y).channels[0].fit->rounding == 0);
+}
+
+TEST_CASE("a clock's phase has fractional frequencies, whatever the unit of its time") {
+  test::Gaussian gauss(11);
+  double level = 0;
+  std::vector<double> phase(20000);
+  for (double& x : phase) x = (level += 1e-11 * gauss()) + 2e-11 * gauss();
+  std::vector<double> h;
+  for (const auto& [unit, factor] : {std::pair{"s", 1.0}, {"ns", 1e9}, {"µs", 1e6}}) {
+    Recording recording;
+    recording.info.channels.resize(1);
+    recording.info.channels[0].name = "x";
+    recording.info.channels[0].unit = unit;
+    recording.info.time.rate_hz = 1;
+    recording.samples = {phase};
+    for (double& x : recording.samples[0]) x *= factor;
+    CharacterizeOptions options;
+    options.data = SampleKind::phase;
+    const Characterization result = characterize(recording, options);
+    CHECK(result.channels[0].channel.unit == "1");
+    CHECK(result.channels[0].allan.points[0].deviation == Approx(3.6e-11).epsilon(0.05));
+    const std::vector<PowerLaw> laws = power_laws(*result.channels[0].fit);
+    REQUIRE(laws.size() == 5);
+    CHECK(laws[2].h.value.value_or(0) == Approx(2e-22).epsilon(0.1));  // 2 sd² dt
+    h.push_back(laws[0].h.value.value_or(0));
+  }
+  CHECK(h[1] == Approx(h[0]).epsilon(1e-6));
+  CHECK(h[2] == Approx(h[0]).epsilon(1e-6));
+  CHECK(detail::power_law_unit(2, "1") == "Hz⁻³");
+  CHECK(detail::power_law_unit(-1, "Hz") == "(Hz)²");
 }

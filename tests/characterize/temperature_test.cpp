@@ -96,3 +96,65 @@ TEST_CASE("temperature of a log: read beside the channels that were chosen, and 
   options.reading.names = {"x"};
   CHECK_THROWS_AS(characterize(log.path(), options), Error);
 }
+
+TEST_CASE("temperature of a recording: nobody asked, and the log holds the explanation") {
+  constexpr std::size_t kSamples = 40'000;
+  int said = 0, walks = 0, mended = 0, records = 0, clean = 0;
+  for (const double periods : {1.0, 1.5, 2.2, 4.0})
+    for (const double times : {1.0, 5.0})
+      for (std::uint64_t seed = 1; seed <= 2; ++seed, ++records) {
+        test::NoiseSource source(kSamples, 100, 30 + seed);
+        Recording recording;
+        recording.info.time.rate_hz = 100;
+        recording.info.channels = {{"gyr_x", "deg/s", false}, {"gyr_y", "deg/s", false}, {"temp", "degC", false}};
+        recording.samples = {source.record(5e-3, 0, 0), source.record(5e-3, 0, 0), std::vector<double>(kSamples)};
+        for (std::size_t t = 0; t < kSamples; ++t) {
+          const double part = static_cast<double>(t) / kSamples;
+          const double warm = std::sin(2 * M_PI * periods * part + static_cast<double>(seed));
+          recording.samples[2][t] = 30 + 4 * warm;
+          recording.samples[0][t] += 0.05 * times * warm;
+        }
+        const Characterization result = characterize(recording, {});
+        const ChannelResult &moved = result.channels[0], &still = result.channels[1];
+        for (const Finding& one : moved.findings)
+          if (one.code == "temperature_left_in")
+            said += one.help.at(0).options.at(0).option == "temperature" && one.help[0].options[0].value == "temp";
+        walks += (*moved.fit)[Term::walk].status == Status::detected;
+        clean += !has(still.findings, "temperature_left_in");
+        CHECK_FALSE(has(result.channels[2].findings, "motion"));
+        CHECK_FALSE(has(result.channels[2].findings, "moves_throughout"));
+        CHECK(moved.means.value.empty());
+        CharacterizeOptions options;
+        options.temperature = "temp";
+        const Characterization again = characterize(recording, options);
+        const Coefficient& white = (*again.channels[0].fit)[Term::white];
+        mended += white.value && white.ci95.low <= 5e-3 && 5e-3 <= white.ci95.high &&
+                  (*again.channels[0].fit)[Term::walk].status == Status::not_detected;
+        CHECK_FALSE(has(again.channels[0].findings, "temperature_left_in"));
+      }
+  INFO(said << " said, " << walks << " walks, " << mended << " mended, " << clean << " clean of " << records);
+  CHECK(said == records);
+  CHECK(walks == 0);
+  CHECK(mended >= records - 2);
+  CHECK(clean == records);
+}
+
+TEST_CASE("temperature of a recording: walks that no temperature makes are left alone") {
+  constexpr std::size_t kSamples = 40'000;
+  int said = 0, detected = 0;
+  constexpr int kRecords = 30;
+  for (int seed = 0; seed < kRecords; ++seed) {
+    test::NoiseSource source(kSamples, 100, 60 + static_cast<std::uint64_t>(seed));
+    Recording recording;
+    recording.info.time.rate_hz = 100;
+    recording.info.channels = {{"gyr_x", "deg/s", false}, {"temp", "degC", false}};
+    recording.samples = {source.record(5e-3, 0, 3e-3), source.record(5e-3, 0, 3e-2)};
+    for (double& warm : recording.samples[1]) warm += 30;
+    const Characterization result = characterize(recording, {});
+    said += has(result.channels[0].findings, "temperature_left_in");
+    detected += (*result.channels[0].fit)[Term::walk].status == Status::detected;
+  }
+  INFO(said << " said, " << detected << " detected");
+  CHECK(said <= 2);
+  CHECK(detected >= kRecords - 3);
+}

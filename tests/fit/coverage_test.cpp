@@ -36,7 +36,7 @@ TEST_CASE("efficiency, coverage, false terms and optimum on simulated records") 
       FitOptions options;
       options.white_top = true;  // the bounds are those of the terms alone
       const NoiseFit fit = fit_record(y, scene.rate_hz, nullptr, options);
-      REQUIRE(fit.converged);
+      REQUIRE(fit.search.converged);
       remedies += fit.remedies.empty() ? 0 : 1;
       bool any_false = false;
       for (std::size_t i = 0; i < 3; ++i) {

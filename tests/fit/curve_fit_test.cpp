@@ -118,7 +118,7 @@ TEST_CASE("a curve of any scale that a double holds has the digits of scale one"
         for (double& y : other.y) y *= root ? scale : scale * scale;
         const NoiseFit fit = fit_curve(other);
         CAPTURE(is_allan, root, octave);
-        CHECK(fit.converged);
+        CHECK(fit.search.converged);
         for (std::size_t i = 0; i < kTerms; ++i) {
           REQUIRE(one.term[i].status == fit.term[i].status);
           if (one.term[i].value) CHECK(*fit.term[i].value == scale * *one.term[i].value);
@@ -427,8 +427,8 @@ TEST_CASE("published Allan curves of two IMUs are fitted, with and without the r
           }
           if (c.value) CHECK(c.ci95.high / *c.value < 1e3);
         }
-      CHECK(alone.converged);
-      CHECK(weighted.converged);
+      CHECK(alone.search.converged);
+      CHECK(weighted.search.converged);
       CHECK(rms_log10(alone) < 0.13);
       CHECK(alone[Term::white].value.has_value());
     }

@@ -158,3 +158,58 @@ TEST_CASE("cycles: a shift changes nothing, a scale scales") {
   CHECK(says_cycle(other));
   CHECK(*other[Term::white].value == Approx(1000 * *fit[Term::white].value).epsilon(1e-6));
 }
+
+namespace {
+
+std::vector<double> slow_cycle(std::vector<double> y, double cycles, double amplitude, double phase) {
+  for (std::size_t t = 0; t < y.size(); ++t)
+    y[t] += amplitude *
+            std::sin(2 * std::numbers::pi * cycles * static_cast<double>(t) / static_cast<double>(y.size()) + phase);
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("cycles: less than two periods in the record are no random walk") {
+  constexpr std::size_t kSamples = 60'000;
+  const double sd = kWhiteOfCycles * std::sqrt(kCycleRate);
+  int records = 0, said = 0, walks = 0, held = 0, placed = 0;
+  for (const double cycles : {1.0, 1.2, 1.5, 1.9, 2.3})
+    for (const double times : {0.1, 1.0, 10.0})
+      for (std::uint64_t seed = 0; seed < 4; ++seed, ++records) {
+        test::NoiseSource source(kSamples, kCycleRate, 700 + seed);
+        const double phase = 1.7 * static_cast<double>(seed) + cycles;
+        const NoiseFit fit = fit_of(slow_cycle(source.record(kWhiteOfCycles, 0, 0), cycles, times * sd, phase));
+        const auto one =
+            std::find_if(fit.findings.begin(), fit.findings.end(), [](const Finding& f) { return f.code == "cycle"; });
+        said += one != fit.findings.end();
+        if (one != fit.findings.end())
+          placed +=
+              std::abs(one->where.frequency_hz[0].low * static_cast<double>(kSamples) / kCycleRate / cycles - 1) < 0.1;
+        walks += fit[Term::walk].status == Status::detected;
+        held += fit[Term::white].value && within(fit[Term::white]);
+      }
+  INFO(said << " said, " << placed << " placed, " << walks << " walks, " << held << " held of " << records);
+  CHECK(said >= 52);  // the others, of a tenth of the noise, are a ramp or in doubt
+  CHECK(placed >= 52);
+  CHECK(walks <= 1);
+  CHECK(held >= 54);
+}
+
+TEST_CASE("cycles: random walks, flicker and white noise hold no slow cycle") {
+  constexpr std::size_t kSamples = 60'000;
+  constexpr int kRecords = 40;
+  int said = 0, detected = 0, white = 0;
+  for (int seed = 0; seed < kRecords; ++seed) {
+    test::NoiseSource source(kSamples, kCycleRate, 800 + static_cast<std::uint64_t>(seed));
+    const NoiseFit walk = fit_of(source.record(kWhiteOfCycles, 0, 3e-3));
+    said += says_cycle(walk) + says_cycle(fit_of(source.record(kWhiteOfCycles, 5e-3, 1e-3)));
+    detected += walk[Term::walk].status == Status::detected;
+    const NoiseFit plain = fit_of(source.record(kWhiteOfCycles, 0, 0));
+    white += says_cycle(plain) + (plain[Term::walk].status == Status::detected);
+  }
+  INFO(said << " cycles, " << detected << " walks, " << white << " in white noise");
+  CHECK(said <= 2);
+  CHECK(detected >= kRecords - 4);
+  CHECK(white <= 1);
+}

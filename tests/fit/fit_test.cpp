@@ -35,7 +35,7 @@ TEST_CASE("noise-free bins give their coefficients back to nine digits") {
   const Mixture theta = {1e-6, 1e-4, 25e-6, 0, 0};
   const NoiseFit fit = fit_power_bins(noise_free(theta, 200), 200, 30000, nullptr);
   for (std::size_t i = 0; i < 3; ++i) CHECK(fit.term[i].value.value() == Approx(std::sqrt(theta[i])).epsilon(1e-9));
-  CHECK(fit.converged);
+  CHECK(fit.search.converged);
   CHECK(fit.remedies.empty());
 }
 

@@ -92,7 +92,7 @@ NoiseFit synthetic_fit(const Truth& t, std::mt19937_64& random) {
   fit.samples = t.samples;
   fit.duration_s = static_cast<double>(t.samples) / t.rate_hz;
   fit.method = "DCT-II Whittle likelihood, 128 bins";
-  fit.iterations = 4;
+  fit.search.iterations = 4;
   fit.term[0] = synthetic_coefficient(t.q, 0.0016, 1e-4, random);
   fit.term[1] = synthetic_coefficient(t.b, 0.064, 4e-4, random);
   fit.term[2] = synthetic_coefficient(t.k, 0.21, 2e-5, random);

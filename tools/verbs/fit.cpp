@@ -171,7 +171,7 @@ void run_fit(Session& session, const FitVerb& verb) {
   }
   if (!verb.models.empty()) write_models(verb, fits, log);
   for (const ChannelFit& c : fits) {
-    if (!c.fit.converged)
+    if (!c.fit.search.converged)
       throw numeric_error("E0712", verb.input)
           .says("the fit of {} did not converge; its result is marked", c.channel.name);
   }

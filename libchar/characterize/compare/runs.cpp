@@ -18,6 +18,7 @@
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/fit/signs/rounding.hpp"
 #include "libchar/simulate/random.hpp"
 
 namespace libchar {
@@ -244,6 +245,19 @@ std::string bias_sentence(const PooledChannel& c) {
       probability_text(b.p), number_text(b.spread_ci95.high, 3), unit);
 }
 
+/// Of runs that share it: else N is that of the samples, as it is.
+std::optional<DigitalFaults::Rounding> common_rounding(std::span<const Characterization> runs,
+                                                       const std::string& channel,
+                                                       const std::vector<std::size_t>& fitted) {
+  std::optional<DigitalFaults::Rounding> common;
+  for (const std::size_t r : fitted) {
+    const std::optional<DigitalFaults::Rounding>& one = find_channel(runs[r], channel)->digital.rounding;
+    if (!one || (common && one->step != common->step)) return std::nullopt;
+    if (!common || one->sd > common->sd) common = one;
+  }
+  return common;
+}
+
 PooledChannel pooled_channel(std::span<const Characterization> runs, const Channel& channel,
                              const std::vector<std::size_t>& fitted, const PoolOptions& options) {
   PooledChannel out;
@@ -273,6 +287,7 @@ PooledChannel pooled_channel(std::span<const Characterization> runs, const Chann
     }
     out.sentences.push_back(consistency_sentence(out, runs));
   }
+  if (const auto rounding = common_rounding(runs, channel.name, fitted)) detail::take_out_rounding(*rounding, out.fit);
   if (options.data == SampleKind::rate) find_bias(runs, out);
   if (out.bias) out.sentences.push_back(bias_sentence(out));
   return out;

@@ -23,11 +23,11 @@ namespace {
 constexpr std::size_t kRows = std::size_t{1} << 14U;
 
 // Only the noise: a recording at rest says nothing about the other blocks, and its resolution is in
-// the fit already when it matters.
+// the fit already where it was not taken out.
 SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   SensorModel model = sensor_model_from(channel, log);
   model.saturation_low = model.saturation_high = std::nullopt;
-  model.resolution = std::nullopt;
+  if (!(channel.fit->rounding > 0)) model.resolution = std::nullopt;
   return model;
 }
 

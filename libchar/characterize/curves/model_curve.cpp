@@ -59,6 +59,9 @@ std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, 
     const double f = fit.flicker_phase->value.value_or(0);
     reach.add(*fit.flicker_phase, f * f, flicker_phase_allan_variance(m, dt_s));
   }
+  Mixture white{};
+  white[static_cast<std::size_t>(Term::white)] = 1;
+  reach.variance += fit.rounding * allan_variance(white, m, dt_s);
   if (!(reach.variance > 0)) return std::nullopt;
   const double low = 1 - std::sqrt(reach.down) / reach.variance, high = 1 + std::sqrt(reach.up) / reach.variance;
   const double spread = spread_reach(fit.stationarity, m * dt_s);
@@ -147,6 +150,7 @@ NoiseFit sensor_model_fit(const SensorModel& model) {
     if (c.value && !(c.ci95.high > 0)) c.ci95 = {*c.value, *c.value};
   }
   fit.shape = model.noise_shape;
+  if (model.resolution && model.rate_hz > 0) fit.rounding = *model.resolution * *model.resolution / 12 / model.rate_hz;
   if (model.gauss_markov.sigma > 0) {
     GaussMarkovFit process;
     process.in_model = true;

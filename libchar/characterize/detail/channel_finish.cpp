@@ -23,6 +23,7 @@
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/signs/motion.hpp"
+#include "libchar/fit/signs/rounding.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -59,6 +60,22 @@ void add_findings(const std::vector<Finding>& findings, ChannelResult& result) {
   result.findings.insert(result.findings.end(), findings.begin(), findings.end());
 }
 
+/// Of a series at most so many means, for what is slow: temperature.
+EventSeries coarse(const EventSeries& series) {
+  constexpr std::size_t kMost = std::size_t{1} << 14U;  // a cycle of a few periods is lost in 2,000
+  const std::size_t each = (series.value.size() + kMost - 1) / kMost;
+  EventSeries out;
+  out.start_s = series.start_s;
+  out.step_s = series.step_s * static_cast<double>(each);
+  out.per_point = series.per_point * each;
+  for (std::size_t t = 0; t + each <= series.value.size(); t += each) {
+    double sum = 0;
+    for (std::size_t i = 0; i < each; ++i) sum += series.value[t + i];
+    out.value.push_back(sum / static_cast<double>(each));
+  }
+  return out;
+}
+
 class Finish {
  public:
   Finish(ReadChannel& read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
@@ -75,7 +92,7 @@ class Finish {
   ChannelQuality quality_of_rate() const;
   std::string unit_of_rate(const std::string& unit) const;
   void make_rate(double rate_hz);
-  void scale_sums(double rate_hz);
+  void scale_sums(double per_s);
   std::vector<NoiseType> noise_types(double rate_hz) const;
   // what is made of it
   void finish(ChannelResult& result, double rate_hz);
@@ -102,6 +119,7 @@ class Finish {
   CharacterizeWorkspace& workspace_;
   ChannelQuality found_;
   bool is_whole_ = false;
+  double phase_factor_ = 1;   ///< of its unit, to fractional frequency
   std::vector<double> kept_;  ///< as a rate: all samples, or none
   DespikedRecord despiked_;   ///< rate of the phase without its spikes, when it has some
   std::vector<NoiseType> noise_types_;
@@ -128,18 +146,19 @@ void Finish::make_rate(double rate_hz) {
     return;
   }
   if (options_.fit.remedies && wants_fit() && is_whole()) despiked_ = without_spikes(kept_);
-  if (!is_whole()) scale_sums(rate_hz);
+  const double per_s = rate_hz * phase_factor_;
+  if (!is_whole()) scale_sums(per_s);
   noise_types_ = noise_types(rate_hz);
   for (std::vector<double>* phase : {&despiked_.samples, &kept_}) {
     difference(*phase);
-    for (double& rate : *phase) rate *= rate_hz;
+    for (double& rate : *phase) rate *= per_s;
   }
 }
 
 /// Of a phase, whose differences know no rate before the log has been read.
-void Finish::scale_sums(double rate_hz) {
-  scale(read_.sums.record, rate_hz);
-  for (double& power : read_.sums.spectrum.power) power *= rate_hz * rate_hz;
+void Finish::scale_sums(double per_s) {
+  scale(read_.sums.record, per_s);
+  for (double& power : read_.sums.spectrum.power) power *= per_s * per_s;
 }
 
 // Of a clock. Of a record of leaves: below the length of its means by the first leaf, from there on
@@ -250,6 +269,10 @@ void Finish::find_motion(ChannelResult& result, double rate_hz) {
   if (options_.data != SampleKind::rate || !options_.fit.remedies) return;
   series_ = series(rate_hz);
   if (!series_) return;
+  result.means = coarse(*series_);
+  const auto unit = find_unit(result.channel.unit);
+  // The air around a thermometer moves, and not the thermometer.
+  if (unit && unit->quantity == Quantity::temperature) return;
   result.motion = libchar::find_motion(*series_);
   add_findings(result.motion.findings, result);
 }
@@ -263,16 +286,25 @@ bool Finish::is_at_rest(ChannelResult& result, double rate_hz) {
   return false;
 }
 
-// Of samples as the log has them: those of other kinds are differences or ratios.
+// Of samples as the log has them: those of other kinds are differences or ratios. A counter's frequencies are rounded
+// as samples are; a phase's rounding is in its white phase noise.
 void Finish::find_digital(ChannelResult& result, double rate_hz) const {
-  if (options_.data != SampleKind::rate || !options_.wanted.fit) return;
+  if (options_.data == SampleKind::phase || !options_.wanted.fit) return;
   if (found_.samples == 0) return;
   const ValueCensus census = census_of(found_);
   const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
-  result.digital =
+  DigitalFaults faults =
       find_digital_faults(is_whole() ? of_kept : read_.sums.digital, census, rate_hz,
                           has(found_.findings, "dead_band") ? std::nullopt : found_.resolution, result.channel.unit);
-  add_findings(result.digital.findings, result);
+  if (options_.data == SampleKind::rate) {
+    result.digital = std::move(faults);
+    return add_findings(result.digital.findings, result);
+  }
+  if (!faults.rounding) return;
+  const double nominal = options_.nominal_frequency == 0 ? 1 : options_.nominal_frequency;
+  result.digital.rounding = DigitalFaults::Rounding{faults.rounding->step / std::abs(nominal),
+                                                    faults.rounding->variance / (nominal * nominal),
+                                                    faults.rounding->sd / (nominal * nominal)};
 }
 
 void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& result) {
@@ -293,6 +325,7 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         const bool of_kept = is_whole() || read_.temperature;
         result.fit = of_kept ? fit_of_kept(octaves, rate_hz, options) : fit_of_sums(octaves, rate_hz, options);
         result.fit->moving_s = result.motion.moving_s;
+        if (result.digital.rounding) detail::take_out_rounding(*result.digital.rounding, *result.fit);
         doubt_digital(result.digital, *result.fit);
       },
       "no_fit");
@@ -456,7 +489,7 @@ void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string Finish::unit_of_rate(const std::string& unit) const {
-  if (options_.data == SampleKind::phase) return unit == "s" ? "1" : unit.empty() ? "" : unit + "/s";
+  if (options_.data == SampleKind::phase) return detail::differenced_unit(unit).unit;
   return options_.data == SampleKind::frequency && options_.nominal_frequency != 0 ? "1" : unit;
 }
 
@@ -480,6 +513,7 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   ChannelResult result;
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
+  if (options_.data == SampleKind::phase) phase_factor_ = detail::differenced_unit(channel.unit).factor;
   found_ = read_.sums.meters.quality.finish(rate_hz);
   std::erase_if(found_.findings, [this](const Finding& one) { return is_answered(one); });
   for (Finding& one : found_.findings)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/detail/thermometers.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
@@ -165,13 +166,17 @@ std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& p
   if (refused()) refuse(log);
   if (!options_.temperature.empty()) give_temperature(log);
   std::vector<ChannelResult> results(stages_.size());
+  const bool thermometer = options_.temperature.empty() && detail::has_thermometer(log);
   for (std::size_t first = 0; first < stages_.size(); first += kFittedAtOnce) {
     progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()), "fitting");
     const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
     parallel::for_each(first, last, [&](std::size_t c) {
       results[c] = stages_[c].finish(log.channels[first_ + c], log.time.rate_hz);
+      if (!thermometer) results[c].means = {};
     });
   }
+  if (thermometer) detail::ask_thermometers(results);
+  for (ChannelResult& result : results) result.means = {};
   return results;
 }
 

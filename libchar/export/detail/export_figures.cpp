@@ -27,20 +27,36 @@ constexpr double kSteadyOverB = 1.0759975729152143;  // 0.6642825 / 0.6173643
 struct AxisNumber {
   std::optional<double> value, limit;
   Status status = Status::not_fitted;
-  bool driven = false;  // the driving density of a Gauss-Markov process is in it
+  bool driven = false;   // the driving density of a Gauss-Markov process is in it
+  bool rounded = false;  // what rounding adds is in it, and is to be seen
 };
 
 double driving_density(const GaussMarkovNoise& process) {
   return process.sigma > 0 ? process.sigma * std::sqrt(2 / process.tau_s) : 0;
 }
 
+/// Of white noise, U·√s.
+double rounding_density(const SensorModel& m) {
+  return m.rate_hz > 0 ? m.resolution.value_or(0) / std::sqrt(12 * m.rate_hz) : 0;
+}
+
 AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
   const Coefficient& c = (*placed.model)[term];
   const double factor = placed.to_si * inflate;
-  AxisNumber out{std::nullopt, std::nullopt, c.status, false};
+  AxisNumber out{std::nullopt, std::nullopt, c.status};
   // A stated 0 says that the term is absent, and bounds nothing.
   if (c.value && *c.value > 0) out.value = *c.value * factor;
   if (!c.value && c.upper95 && *c.upper95 > 0) out.limit = *c.upper95 * factor;
+  if (term == Term::white) {
+    // Consumers do not round: what rounding adds is in their N.
+    const double rounding = rounding_density(*placed.model) * factor;
+    for (std::optional<double>* level : {&out.value, &out.limit})
+      if (*level) {
+        const double with = std::hypot(**level, rounding);
+        out.rounded |= with > 1.001 * **level;
+        *level = with;
+      }
+  }
   const double driving = driving_density(placed.model->gauss_markov);
   // An undetermined process says no more of slow noise than the terms' limits do.
   const Status status = placed.model->gauss_markov.status;
@@ -52,10 +68,11 @@ AxisNumber number_of(const PlacedModel& placed, Term term, double inflate) {
 
 std::string said(const AxisNumber& n) {
   if (n.value)
-    return shortest(rounded(*n.value, 4)) + (n.driven                           ? " (Gauss-Markov driving density)"
-                                             : n.status == Status::undetermined ? " (undetermined)"
-                                             : n.status == Status::misfit       ? " (misfit)"
-                                                                                : "");
+    return shortest(rounded(*n.value, 4)) + (n.rounded ? " (with rounding)" : "") +
+           (n.driven                           ? " (Gauss-Markov driving density)"
+            : n.status == Status::undetermined ? " (undetermined)"
+            : n.status == Status::misfit       ? " (misfit)"
+                                               : "");
   if (n.limit) return "<= " + shortest(rounded(*n.limit, 3));
   return "unknown";
 }

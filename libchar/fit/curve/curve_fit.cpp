@@ -272,8 +272,8 @@ void report_positive_term(const CurveJudgement& found, std::size_t i, double thr
 void report_terms(const CurveJudgement& found, const TermSet& offered, double threshold, NoiseFit& fit) {
   const CurveSolution& best = found.decision.best;
   fit.theta = best.theta;
-  fit.converged = best.converged;
-  fit.iterations = best.iterations;
+  fit.search.converged = best.converged;
+  fit.search.iterations = best.iterations;
   for (std::size_t i = 0; i < kTerms; ++i) {
     if (!offered[i]) continue;
     Coefficient& term = fit.term[i];

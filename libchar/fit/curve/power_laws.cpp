@@ -3,6 +3,8 @@
 // Qz, the deviation of a white phase times sqrt(dt), is the quantization term; F that of a flicker phase.
 #include "libchar/fit/curve/power_laws.hpp"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "libchar/allan/noise_type.hpp"
@@ -33,6 +35,13 @@ std::vector<PowerLaw> power_laws(const NoiseFit& fit) {
       {-1, noise_type_name(-1), "FLFM", squared(fit[Term::flicker], 1 / pi)},
       {-2, noise_type_name(-2), "RWFM", squared(fit[Term::walk], 1 / (2 * pi * pi))},
   };
+}
+
+std::string detail::power_law_unit(int alpha, const std::string& unit) {
+  static constexpr std::array<std::string_view, 5> kPowers = {"Hz", "", "Hz⁻¹", "Hz⁻²", "Hz⁻³"};  // of -(alpha + 1)
+  const std::string power(kPowers[static_cast<std::size_t>(std::clamp(alpha, -2, 2) + 2)]);
+  if (unit.empty() || unit == "1") return power;
+  return "(" + unit + ")²" + (power.empty() ? "" : "·" + power);
 }
 
 }  // namespace libchar

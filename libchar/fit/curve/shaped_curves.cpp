@@ -37,14 +37,6 @@ double flicker_phase_theta(const NoiseFit& fit) {
   return f * f;
 }
 
-double unshaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  const double terms =
-      spectrum(fit.theta, frequency_hz, dt_s) + flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
-  if (!has_process(fit)) return terms;
-  const double sigma = *fit.gauss_markov->sigma.value;
-  return terms + sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
-}
-
 double unshaped_variance(const NoiseFit& fit, double m, double dt_s) {
   return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s) +
          flicker_phase_theta(fit) * flicker_phase_allan_variance(m, dt_s);
@@ -60,6 +52,10 @@ double shape_from_hz(const NoiseFit& fit, double dt_s) {
   return f / 2;
 }
 
+double rounding_variance(const NoiseFit& fit, double m, double dt_s) {
+  return fit.rounding * unit_allan_variance(Term::white, m, dt_s);
+}
+
 /// sin⁴(pi f m dt) / (m sin(pi f dt))² times the excess of the density, over one stretch.
 double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_hz, double high_hz) {
   const double width = high_hz - low_hz, periods = width * m * dt_s;
@@ -70,19 +66,27 @@ double stretch_integral(const NoiseFit& fit, double m, double dt_s, double low_h
     const double f = low_hz + width * (i + 0.5) / nodes;
     const double sine = std::sin(kPi * f * m * dt_s), step = m * std::sin(kPi * f * dt_s);
     const double transfer = (many ? 0.375 : sine * sine * sine * sine) / (step * step);
-    sum += (ratio_at(fit, f, dt_s) - 1) * unshaped_density(fit, f, dt_s) * transfer;
+    sum += (ratio_at(fit, f, dt_s) - 1) * detail::unshaped_density(fit, f, dt_s) * transfer;
   }
   return 4 * sum * width / nodes;
 }
 
 }  // namespace
 
+double detail::unshaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
+  const double terms =
+      spectrum(fit.theta, frequency_hz, dt_s) + flicker_phase_theta(fit) * flicker_phase_spectrum(frequency_hz, dt_s);
+  if (!has_process(fit)) return terms;
+  const double sigma = *fit.gauss_markov->sigma.value;
+  return terms + sigma * sigma * gauss_markov_spectrum(*fit.gauss_markov->tau_s.value, frequency_hz, dt_s);
+}
+
 double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s) {
-  return unshaped_density(fit, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s);
+  return detail::unshaped_density(fit, frequency_hz, dt_s) * ratio_at(fit, frequency_hz, dt_s) + fit.rounding;
 }
 
 double shaped_allan_variance(const NoiseFit& fit, double m, double dt_s) {
-  double variance = unshaped_variance(fit, m, dt_s);
+  double variance = unshaped_variance(fit, m, dt_s) + rounding_variance(fit, m, dt_s);
   if (!has_shape(fit)) return variance;
   const double lowest_hz = shape_from_hz(fit, dt_s), step = std::exp2(-kStretch);
   for (double high = 0.5 / dt_s; high > lowest_hz; high *= step)
@@ -98,7 +102,7 @@ double process_allan_variance(const NoiseFit& fit, double m, double dt_s) {
 
 double mean_noise_variance(const NoiseFit& fit) {
   const double m = static_cast<double>(fit.samples), dt_s = 1 / fit.rate_hz;
-  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s);
+  return allan_variance(fit.theta, m, dt_s) + process_allan_variance(fit, m, dt_s) + rounding_variance(fit, m, dt_s);
 }
 
 namespace {
@@ -114,9 +118,15 @@ void widen_by_stretches(AllanCurve& curve, const Stationarity& stationarity) {
   curve.notes.emplace_back("the intervals hold what stretches of the record differ by");
 }
 
+Mixture theta_with_rounding(const NoiseFit& fit) {
+  Mixture theta = fit.theta;
+  theta[static_cast<std::size_t>(Term::white)] += fit.rounding;
+  return theta;
+}
+
 void add_steady_intervals(AllanCurve& curve, const NoiseFit& fit) {
   if (!has_process(fit)) {
-    Mixture theta = fit.theta;  // flicker phase has the degrees of freedom of white phase, nearly
+    Mixture theta = theta_with_rounding(fit);  // flicker phase has the degrees of freedom of white phase, nearly
     theta[static_cast<std::size_t>(Term::quantization)] += flicker_phase_theta(fit);
     return add_intervals(curve, theta);
   }
@@ -126,7 +136,7 @@ void add_steady_intervals(AllanCurve& curve, const NoiseFit& fit) {
     const auto m = static_cast<double>(point.m);
     const double across = m * curve.dt_s / *fit.gauss_markov->tau_s.value;
     const Term like = across < kRises ? Term::walk : across < kFalls ? Term::flicker : Term::white;
-    Mixture theta = fit.theta;
+    Mixture theta = theta_with_rounding(fit);
     theta[static_cast<std::size_t>(like)] +=
         process_allan_variance(fit, m, curve.dt_s) / unit_allan_variance(like, m, curve.dt_s);
     one.points = {point};
@@ -147,7 +157,7 @@ double plain_from_s(const NoiseFit& fit, const AllanCurve& curve) {
   double from_s = 0;
   for (const AllanPoint& point : curve.points) {
     const auto m = static_cast<double>(point.m);
-    const double unshaped = unshaped_variance(fit, m, curve.dt_s);
+    const double unshaped = unshaped_variance(fit, m, curve.dt_s) + rounding_variance(fit, m, curve.dt_s);
     if (std::abs(shaped_allan_variance(fit, m, curve.dt_s) - unshaped) > kSameWithin * unshaped)
       from_s = point.tau_s * (1 + 1e-9);
   }

@@ -6,6 +6,11 @@
 
 namespace libchar {
 
+namespace detail {
+/// Two-sided density of the noise terms and processes of the fit, without its shape and without rounding.
+double unshaped_density(const NoiseFit& fit, double frequency_hz, double dt_s);
+}  // namespace detail
+
 /// Two-sided density of the fit at a frequency, 0 < f <= 1/(2 dt).
 double shaped_density(const NoiseFit& fit, double frequency_hz, double dt_s);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 
 #include "libchar/allan/allan_pyramid.hpp"
@@ -97,6 +98,10 @@ double event_variance(std::span<const Event> events, double rate_hz, double samp
   const double terms = std::max(1.0, samples - 2 * m + 1), tau_s = m / rate_hz;
   for (const Event& event : events) {
     if (event.kind == EventKind::step) sum += event.size * event.size * (2 * m * m + 1) / (6 * m * terms);
+    if (event.kind == EventKind::cycle) {
+      const double angle = std::numbers::pi * tau_s / event.period_s;
+      sum += std::pow(event.size * std::sin(angle) * std::sin(angle) / angle, 2);
+    }
     if (event.kind == EventKind::ramp) sum += 0.5 * std::pow(event.slope * tau_s, 2);
     if (event.kind == EventKind::warm_up) {
       const double fall = -std::expm1(-tau_s / event.tau_s);

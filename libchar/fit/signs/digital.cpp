@@ -3,6 +3,10 @@
 // the next value). Staircase: with s = sqrt(2) sigma / step, neighbours are equal with probability
 //   P0 = 2 Phi(1/s) - 1 - s sqrt(2/pi) (1 - exp(-1/(2 s^2))),   .27 at sigma = step,
 // averaged over where between two steps the value stands, which holds while the noise moves it there (sigma > .3 step).
+// Rounding to steps q of noise of that size adds white noise (B. Widrow and I. Kollar, "Quantization Noise", 2008,
+// ch. 5): of the variance
+//   q^2/12 + q^2 exp(-2 pi^2 sigma^2/q^2) (4 sigma^2/q^2 + 1/pi^2) cos(2 pi mean/q) + ...,
+// and errors of neighbours share (6/pi^2) exp(-4 pi^2 sigma^2/q^2) of it, .017 at sigma = .3 step.
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
@@ -48,6 +52,16 @@ std::optional<Staircase> staircase(double repeats, double step) {
     (chance_of_repeat(middle) > repeats ? low : high) = middle;
   }
   return Staircase{step, low * step, false};
+}
+
+/// None where the samples change by so little that the rounding of one is that of the next.
+std::optional<DigitalFaults::Rounding> rounding_noise(const ValueCensus& census, double present,
+                                                      const std::optional<Staircase>& staircase, double step) {
+  if (staircase ? staircase->bounded : static_cast<double>(census.repeats) > chance_of_repeat(1) * present)
+    return std::nullopt;
+  const double noise = staircase ? staircase->noise / step : 1, pi = std::numbers::pi;
+  const double ripple = std::exp(-2 * pi * pi * noise * noise) * (4 * noise * noise + 1 / (pi * pi));
+  return DigitalFaults::Rounding{step, step * step / 12, step * step * ripple / std::numbers::sqrt2};
 }
 
 std::string with_unit(double value, std::string_view unit) {
@@ -113,6 +127,7 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
   if (census.held_times > 1) faults.held = {census.held_times, rate_hz / census.held_times};
   if (step && !faults.held && census.repeats >= kFewestRepeats)
     faults.staircase = staircase(static_cast<double>(census.repeats) / sums.present, *step);
+  if (step && !faults.held) faults.rounding = rounding_noise(census, sums.present, faults.staircase, *step);
   // A staircase may stand on its last step for long.
   if (!faults.staircase) {
     if (sums.low.count > 0 && sums.low.value == census.low)

@@ -34,9 +34,17 @@ struct Staircase {
 };
 
 struct DigitalFaults {
+  /// Rounding to a step that is coarse against the differences of samples, and fine against their noise: independent
+  /// from sample to sample, white noise behind the sensor's.
+  struct Rounding {
+    double step = 0;
+    double variance = 0;  ///< of a sample
+    double sd = 0;        ///< of `variance`: it depends on where between two steps the mean is
+  };
   std::vector<Rail> rails;
   std::optional<HeldValues> held;
   std::optional<Staircase> staircase;
+  std::optional<Rounding> rounding;  ///< none where it is not white
   std::vector<Finding> findings;
 };
 

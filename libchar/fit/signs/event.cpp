@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/refusal.hpp"
@@ -14,8 +15,15 @@
 namespace libchar {
 
 std::string_view event_name(EventKind kind) {
-  static constexpr std::array<std::string_view, 3> kNames = {"step", "warm-up", "ramp"};
+  static constexpr std::array<std::string_view, 4> kNames = {"step", "warm-up", "ramp", "cycle"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+/// Mean over `count` samples from `first` on.
+static double cycle_mean(const Event& event, double rate_hz, double first, double count) {
+  const double middle_s = (first + 0.5 * count) / rate_hz - event.from_s;
+  const double half = std::numbers::pi * count / (event.period_s * rate_hz);
+  return event.size * std::sin(half) / half * std::cos(2 * std::numbers::pi * middle_s / event.period_s - event.phase);
 }
 
 void subtract_events(std::span<const Event> events, double rate_hz, std::span<double> record) {
@@ -27,6 +35,7 @@ void subtract_events(std::span<const Event> events, double rate_hz, std::span<do
       if (event.kind == EventKind::warm_up)
         record[i] -= event.size * std::exp(-std::max(0.0, t - event.from_s) / event.tau_s);
       if (event.kind == EventKind::ramp) record[i] -= event.slope * t;
+      if (event.kind == EventKind::cycle) record[i] -= cycle_mean(event, rate_hz, static_cast<double>(i), 1);
     }
   }
 }
@@ -36,6 +45,7 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
   for (const Event& event : events) {
     const double at = std::round(event.at_s * rate_hz);
     if (event.kind == EventKind::step) sum += event.size * std::clamp((first + count - at) / count, 0.0, 1.0);
+    if (event.kind == EventKind::cycle) sum += cycle_mean(event, rate_hz, first, count);
     if (event.kind == EventKind::ramp) sum += event.slope / rate_hz * (first + 0.5 * (count - 1));
     if (event.kind == EventKind::warm_up) {
       // of the decay e^(-t/tau): q^k for k = 0 … count - 1, q = e^(-1/tau)
@@ -65,6 +75,10 @@ std::string event_sentence(const Event& event, std::string_view unit) {
   if (event.kind == EventKind::ramp)
     text = fmt::format("A straight drift of {} over the record ({}{} /s)", size,
                        number_text(event.slope, digits_for(relative)), unit.empty() ? "" : " " + std::string(unit));
+  if (event.kind == EventKind::cycle)
+    text = event.tau_ci95.low > 0
+               ? fmt::format("A bend, like the part of a cycle of at least {}", duration_text(event.tau_ci95.low))
+               : fmt::format("A cycle of {} (amplitude {})", duration_text(event.period_s), size);
   for (std::size_t i = 0; i < event.not_told_from.size(); ++i)
     text += fmt::format("{} a {}", i == 0 ? ", not distinguished from" : " or", event_name(event.not_told_from[i]));
   return text + ".";

@@ -11,8 +11,8 @@
 
 namespace libchar {
 
-enum class EventKind { step, warm_up, ramp };
-/// "step", "warm-up", "ramp".
+enum class EventKind { step, warm_up, ramp, cycle };
+/// "step", "warm-up", "ramp", "cycle".
 std::string_view event_name(EventKind kind);
 
 /// Something in a record that is a mean and no noise. Times are from the record's first sample.
@@ -21,13 +21,14 @@ struct Event {
   double at_s = 0;      ///< step: the first sample after it
   Interval at_ci95;     ///< step: where it is with 95 %
   bool in_gap = false;  ///< step: while samples were missing
-  /// step: after less before; warm-up: at the first sample; ramp: last sample less first
+  /// step: after less before; warm-up: at the first sample; ramp: last sample less first; cycle: amplitude
   double size = 0;
   double sd = 0;                           ///< of `size`
-  double from_s = 0;                       ///< warm-up: the first sample that is present
+  double from_s = 0;                       ///< warm-up, cycle: the first sample that is present
   double tau_s = 0;                        ///< warm-up: time constant
   Interval tau_ci95;                       ///< upper end 0: the record sets none
   double slope = 0;                        ///< ramp: per s
+  double period_s = 0, phase = 0;          ///< cycle: size cos(2 pi (t - from_s) / period - phase)
   double score = 0;                        ///< |size| / sd, or the root of what 2 ln L gained where that is less
   double threshold = 0;                    ///< what noise alone passes as often as `false_alarm` says
   std::vector<EventKind> not_told_from{};  ///< kinds that explain the record nearly as well

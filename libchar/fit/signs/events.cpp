@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "libchar/core/text/readable.hpp"
@@ -27,10 +28,14 @@ constexpr double kGate = 0.7;   ///< share of a threshold that a score must reac
 /// The same of a ramp beside a random walk, which may be fitted to it and hides it then: where the slowest power is so
 /// many times the next (2 of flicker, 4 of a walk).
 constexpr double kRampGate = 0.45, kLikeWalk = 2.4;
+/// Of the score of a cycle. It has three parameters, and few coefficients know a walk that looks like one: of LR above
+/// its square it is one (measured in docs/theory/events.md).
+constexpr double kCycleThreshold = 5.5;
 constexpr double kHiddenMore = 4;  ///< of LR, for such a ramp: few coefficients know the walk
 /// From this LR on a ramp is likelier than what the walk made of it, if the slowest power falls to this share.
 constexpr double kFavoured = 3, kWalkGone = 0.5;
-constexpr double kMostOfEnds = 1e-3;  ///< of EventSeries::Noise: beyond, the first and the last value are free
+constexpr double kCycleFavoured = 12;  ///< the same of a cycle, which has two parameters more
+constexpr double kMostOfEnds = 1e-3;   ///< of EventSeries::Noise: beyond, the first and the last value are free
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
 constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %
@@ -82,6 +87,9 @@ EventSeries without(const EventSeries& series, const SeriesGrid& grid, const Reg
       if (shape.kind == EventKind::step) left.value[t] -= size * step_share(shape, at);
       if (shape.kind == EventKind::ramp) left.value[t] -= size * at * per / (samples - 1);
       if (shape.kind == EventKind::warm_up) left.value[t] -= decaying;
+      if (shape.kind == EventKind::cycle)
+        left.value[t] -=
+            size * std::cos(std::numbers::pi * shape.at * (at + 0.5) / static_cast<double>(grid.points) - shape.tau);
       decaying *= r;
     }
   }
@@ -169,6 +177,10 @@ Candidate best_of(EventKind kind, const Search& search, const Regression& beside
   if (kind == EventKind::step) return best_step(search, beside, weight);
   if (kind == EventKind::ramp)
     return {{kind}, ramp_score(beside, search.grid, weight).value(), rough_threshold({}, alpha / 4)};
+  if (kind == EventKind::cycle) {
+    const CycleScan cycle = scan_cycles(beside, search.grid, weight);
+    return {{kind, cycle.place, 0, cycle.phase}, cycle.score, kCycleThreshold};
+  }
   const WarmUpScan scan = scan_warm_ups(beside, search.grid, weight);
   return {{kind, 0, 0, refined_tau(scan, beside, search.grid, weight)},
           scan.score[scan.best],
@@ -221,38 +233,43 @@ std::vector<EventKind> offered(const Search& search, const Hypothesis& now) {
   if (search.options.steps) kinds.push_back(EventKind::step);
   if (search.options.warm_up && !has(now, EventKind::warm_up)) kinds.push_back(EventKind::warm_up);
   if (search.options.ramp && !has(now, EventKind::ramp)) kinds.push_back(EventKind::ramp);
+  if (search.options.cycle && !has(now, EventKind::cycle)) kinds.push_back(EventKind::cycle);
   return kinds;
 }
 
-/// LR of a ramp that is no event and yet likelier than the walk in its place; 0: there is none.
-double walk_like_drift(const Hypothesis& now, const Trial& ramp) {
-  return ramp.gain > kFavoured && ramp.with.power.front() < kWalkGone * now.power.front() ? ramp.gain : 0;
+/// LR of a ramp, or of a cycle, that is no event and yet likelier than the walk in its place; 0: there is none.
+double walk_like_drift(const Hypothesis& now, const Trial& drift, double favoured) {
+  return drift.gain > favoured && drift.with.power.front() < kWalkGone * now.power.front() ? drift.gain : 0;
 }
 
 /// The next event, if there is one; otherwise what the ramp is worth.
-std::optional<Trial> next_event(const Search& search, const Hypothesis& now, double& drift_gain) {
+std::optional<Trial> next_event(const Search& search, const Hypothesis& now, EventSearch& found) {
   std::vector<Trial> trials;
   for (const EventKind kind : offered(search, now)) {
     const Candidate candidate = best_of(kind, search, now.fit, now.weight);
     const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
     const bool hidden = kind == EventKind::ramp && now.power[0] > kLikeWalk * now.power[1];
-    const double gate = hidden ? kRampGate : kGate;
+    const double gate = hidden || kind == EventKind::cycle ? kRampGate : kGate;
     if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
     double& threshold = trials.back().candidate.threshold;
-    if (std::abs(candidate.score) < kGate * candidate.threshold)
+    if (kind == EventKind::ramp && std::abs(candidate.score) < kGate * candidate.threshold)
       threshold = std::sqrt(threshold * threshold + kHiddenMore);
   }
   const auto best = std::max_element(trials.begin(), trials.end(),
                                      [](const Trial& a, const Trial& b) { return a.worth() < b.worth(); });
   if (best == trials.end() || best->worth() <= 0) {
     for (const Trial& trial : trials)
-      if (trial.candidate.shape.kind == EventKind::ramp) drift_gain = walk_like_drift(now, trial);
+      if (trial.candidate.shape.kind == EventKind::ramp)
+        found.drift_gain = walk_like_drift(now, trial, kFavoured);
+      else if (trial.candidate.shape.kind == EventKind::cycle)
+        found.cycle_gain = walk_like_drift(now, trial, kCycleFavoured);
     return std::nullopt;
   }
   std::vector<EventKind> not_told;
   for (const Trial& other : trials)
-    if (&other != &*best && other.worth() > best->worth() - kNotTold) not_told.push_back(other.candidate.shape.kind);
+    if (&other != &*best && other.candidate.shape.kind != EventKind::cycle && other.worth() > best->worth() - kNotTold)
+      not_told.push_back(other.candidate.shape.kind);
   best->with.threshold.push_back(best->candidate.threshold);
   best->with.gained.push_back(best->gain);
   best->with.not_told.push_back(std::move(not_told));
@@ -324,10 +341,18 @@ void bound_tau(const Search& search, const Regression& others, const Hypothesis&
   event.tau_ci95 = {scan.tau[low] * step_s, high + 1 == scan.tau.size() && in(high) ? 0 : scan.tau[high] * step_s};
 }
 
-/// Of a warm-up the time constant is not known either: a second one beside it spans what it may be.
+/// Of a warm-up the time constant is not known either: a second one beside it spans what it may be. So do two of a
+/// cycle for its phase and its period.
 Regression with_free_taus(const Search& search, const Hypothesis& now) {
-  constexpr double kOtherTau = 1.2;
+  constexpr double kOtherTau = 1.2, kOtherPlace = 1.05;
   std::vector<EventShape> shapes = now.fit.shape;
+  for (const EventShape& shape : now.fit.shape) {
+    if (shape.kind != EventKind::cycle) continue;
+    shapes.push_back(shape);
+    shapes.back().tau += std::numbers::pi / 2;
+    shapes.push_back(shape);
+    shapes.back().at *= kOtherPlace;
+  }
   for (const EventShape& shape : now.fit.shape) {
     if (shape.kind != EventKind::warm_up) continue;
     shapes.push_back(shape);
@@ -389,6 +414,14 @@ Event event_of(const Search& search, const Hypothesis& now, std::size_t i, doubl
     event.tau_s = shape.tau * step_s;
     bound_tau(search, beside, now, event);
   }
+  if (shape.kind == EventKind::cycle) {
+    event.from_s = search.series.start_s;
+    event.period_s = 2 * static_cast<double>(search.grid.points) * step_s / shape.at;
+    event.phase = shape.tau;
+    constexpr double kPartOfOne = 1.3;  // half periods: the record does not tell it from longer ones
+    if (shape.at < kPartOfOne) event.tau_ci95.low = event.period_s;
+    event.not_told_from.clear();  // all of them are seen in its sentence
+  }
   if (shape.kind == EventKind::ramp) {
     const double samples = static_cast<double>(search.grid.points) * static_cast<double>(search.grid.per_point);
     event.slope = event.size / ((samples - 1) * step_s / static_cast<double>(search.grid.per_point));
@@ -449,6 +482,19 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
   }
 }
 
+Finding slow_cycle_finding(const Event& event, std::string_view unit) {
+  const double frequency_hz = 1 / event.period_s;
+  Finding found = finding(
+      "cycle",
+      fmt::format(
+          "{} It was taken out before the noise was fitted: the recording holds too little of it to say more of "
+          "it, and a random walk looks like it in a shorter one.",
+          event_sentence(event, unit)),
+      "a slow cycle was taken out");
+  found.where.frequency_hz.push_back({frequency_hz, frequency_hz});
+  return found;
+}
+
 /// What phase noise puts into the first and the last value moves all slow coefficients at once, as an event does: both
 /// are free, as steps behind and in front of them are.
 void free_ends(Search& search) {
@@ -464,7 +510,9 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   EventSeries series = whole;
   const std::vector<detail::Pause> pauses = detail::leave_out_pauses(series);
   EventOptions options = asked;
-  options.ramp = options.ramp && pauses.empty();  // it goes through the sessions, whose means are gone
+  // They go through the sessions, whose means are gone.
+  options.ramp = options.ramp && pauses.empty();
+  options.cycle = options.cycle && pauses.empty();
   const std::size_t n = series.value.size();
   Dct dct(n);
   const std::span<const double> c = dct.transform(series.value);
@@ -488,7 +536,7 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   for (int i = 0; i < kRounds && !search.offset.empty(); ++i) fit_both(search, search.offset, now);
   EventSearch found;
   for (int round = 0; round <= options.most; ++round) {
-    std::optional<Trial> next = next_event(search, now, found.drift_gain);
+    std::optional<Trial> next = next_event(search, now, found);
     if (!next) break;
     found.more = round == options.most;
     if (found.more) break;
@@ -500,6 +548,10 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   const std::vector<double> sd = sds_of(free_taus, now);
   for (std::size_t i = search.offsets(); i < now.fit.shape.size(); ++i) {
     found.events.push_back(event_of(search, now, i, sd[i]));
+    if (found.events.back().kind == EventKind::cycle) {
+      found.findings.push_back(slow_cycle_finding(found.events.back(), unit));
+      continue;
+    }
     found.findings.push_back(finding("event", event_sentence(found.events.back(), unit)));
     if (found.events.back().kind == EventKind::step)
       found.findings.back().where.time_s.push_back({found.events.back().at_s, found.events.back().at_s});

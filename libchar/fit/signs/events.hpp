@@ -15,7 +15,7 @@ namespace libchar {
 struct EventOptions {
   double false_alarm = 0.003;  ///< of a record that is noise, over all kinds and places
   int most = 8;                ///< events looked for; where there are more, something else is the matter
-  bool steps = true, warm_up = true, ramp = true;
+  bool steps = true, warm_up = true, ramp = true, cycle = true;
 };
 
 /// Jumps between two levels, over and over: random telegraph noise; the steps found are some of them.
@@ -32,6 +32,7 @@ struct EventSearch {
   std::vector<double> leverage;   ///< what the events took of the degree of freedom of each c_k, k = 1.. at [k-1]
   bool more = false;              ///< stopped at `most` with more to find
   double drift_gain = 0;          ///< 2 ln L by which a ramp, too weak for an event, is likelier than a random walk
+  double cycle_gain = 0;          ///< the same of a cycle
   std::vector<Finding> findings;  ///< one for each event, in the unit given
 };
 

@@ -273,7 +273,9 @@ std::vector<StrengthChange> changes_of(const Activity& activity, const std::vect
         {start_s + static_cast<double>(run.from) * block_s, start_s + static_cast<double>(run.to) * block_s});
   }
   std::vector<StrengthChange> changes;
-  for (const Event& event : find_events(logarithms, fitted_powers()).events)
+  EventOptions how;
+  how.cycle = false;
+  for (const Event& event : find_events(logarithms, fitted_powers(), how).events)
     changes.push_back({event.kind,
                        event.at_s,
                        {event.at_ci95.low - block_s, event.at_ci95.high + block_s},

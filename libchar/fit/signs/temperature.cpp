@@ -78,6 +78,19 @@ void bridge_temperature(std::vector<double>& value, const std::string& name, dou
         .hint("read the stretch where it is present with `from_s` and `to_s`");
 }
 
+/// About its mean, in units of its scale. `value`: of each point, missing ones bridged.
+void centre(TemperatureSeries& out) {
+  for (const double value : out.value) out.mean += (value - out.range.low);
+  out.mean = out.range.low + out.mean / static_cast<double>(out.value.size());
+  double square = 0;
+  for (double& value : out.value) {
+    value -= out.mean;
+    square += value * value;
+  }
+  out.scale = std::sqrt(square / static_cast<double>(out.value.size()));
+  for (double& value : out.value) value /= out.scale;
+}
+
 /// Means over the samples that the points of `series` are means of; missing ones bridged. Throws Error(numeric) as
 /// `find_temperature_effect` says.
 TemperatureSeries temperature_series(const TemperatureRecord& temperature, const EventSeries& series, double rate_hz) {
@@ -106,15 +119,7 @@ TemperatureSeries temperature_series(const TemperatureRecord& temperature, const
     throw numeric_error("E0703").says("the temperature {} is constant, {} throughout: what it does cannot be seen",
                                       temperature.name, brief_text(out.range.low, 6));
   bridge_temperature(out.value, temperature.name, series.step_s);
-  for (const double value : out.value) out.mean += (value - out.range.low);
-  out.mean = out.range.low + out.mean / static_cast<double>(out.value.size());
-  double square = 0;
-  for (double& value : out.value) {
-    value -= out.mean;
-    square += value * value;
-  }
-  out.scale = std::sqrt(square / static_cast<double>(out.value.size()));
-  for (double& value : out.value) value /= out.scale;
+  centre(out);
   return out;
 }
 
@@ -388,6 +393,24 @@ void describe_effect(const TemperatureSearch& search, const TemperatureTrial& tr
   effect.leverage = leverage_at(search, lag, fit.size, noise.weight);
 }
 
+TemperatureEffect effect_of(TemperatureSearch search, const std::string& name, const std::string& unit) {
+  search.coefficients = transformed(search.series.value);
+  const double n = static_cast<double>(search.series.value.size());
+  search.lag.push_back(0);
+  for (double lag = std::max(1.0, n / kShortestLag); lag <= n / kLongestLag; lag *= kLagStep) search.lag.push_back(lag);
+  for (const double lag : search.lag) search.columns.push_back(temperature_columns(search.temperature, lag));
+
+  TemperatureEffect effect;
+  effect.channel = name;
+  effect.unit = unit;
+  effect.mean = search.temperature.mean;
+  effect.range = search.temperature.range;
+  effect.per_point = static_cast<double>(search.series.per_point);
+  const std::optional<TemperatureTrial> trial = best_order(search, effect.p);
+  if (trial) describe_effect(search, *trial, effect);
+  return effect;
+}
+
 }  // namespace
 
 void check_temperature(const TemperatureRecord& temperature, double rate_hz) {
@@ -400,23 +423,21 @@ void check_temperature(const TemperatureRecord& temperature, double rate_hz) {
 TemperatureEffect find_temperature_effect(std::span<const double> record, double rate_hz,
                                           const TemperatureRecord& temperature) {
   const EventSeries series = event_series(record, rate_hz);
-  TemperatureSearch search{series, temperature_series(temperature, series, rate_hz), {}, {}, {}};
-  search.coefficients = transformed(series.value);
-  const double n = static_cast<double>(series.value.size());
-  search.lag.push_back(0);
-  for (double lag = std::max(1.0, n / kShortestLag); lag <= n / kLongestLag; lag *= kLagStep) search.lag.push_back(lag);
-  for (const double lag : search.lag) search.columns.push_back(temperature_columns(search.temperature, lag));
-
-  TemperatureEffect effect;
-  effect.channel = temperature.name;
-  effect.unit = temperature.unit;
-  effect.mean = search.temperature.mean;
-  effect.range = search.temperature.range;
-  effect.per_point = static_cast<double>(series.per_point);
+  TemperatureEffect effect = effect_of({series, temperature_series(temperature, series, rate_hz), {}, {}, {}},
+                                       temperature.name, temperature.unit);
   effect.first = std::round(series.start_s * rate_hz) + 0.5 * (effect.per_point - 1);
-  const std::optional<TemperatureTrial> trial = best_order(search, effect.p);
-  if (trial) describe_effect(search, *trial, effect);
   return effect;
+}
+
+TemperatureEffect detail::temperature_effect_of_means(const EventSeries& series, const EventSeries& temperature,
+                                                      const std::string& name, const std::string& unit) {
+  TemperatureSeries means;
+  means.value = temperature.value;
+  const auto [low, high] = std::minmax_element(means.value.begin(), means.value.end());
+  means.range = {*low, *high};
+  if (!(*low < *high)) return {};
+  centre(means);
+  return effect_of({series, std::move(means), {}, {}, {}}, name, unit);
 }
 
 void add_temperature_effect(const TemperatureEffect& effect, double sign, std::span<double> record) {

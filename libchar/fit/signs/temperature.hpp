@@ -11,6 +11,7 @@
 
 #include "libchar/core/coefficient.hpp"
 #include "libchar/core/numeric/interval.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 
@@ -56,6 +57,13 @@ void check_temperature(const TemperatureRecord& temperature, double rate_hz);
 /// stretch where the record has samples.
 TemperatureEffect find_temperature_effect(std::span<const double> record, double rate_hz,
                                           const TemperatureRecord& temperature);
+
+namespace detail {
+/// Of a channel and a thermometer by means of the same samples; none where the thermometer is constant. The effect has
+/// no place in the record (`first`).
+TemperatureEffect temperature_effect_of_means(const EventSeries& series, const EventSeries& temperature,
+                                              const std::string& name, const std::string& unit);
+}  // namespace detail
 
 /// Takes it out of a record at its full rate (sign -1), or puts it in (+1).
 void add_temperature_effect(const TemperatureEffect& effect, double sign, std::span<double> record);

@@ -64,7 +64,7 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   out.title = "Noise coefficients";
   add_derived_rows(out, view, rate_hz);
   std::string html = html_table(out, {.css = "numbers cards", .cards = true});
-  if (const Table laws = power_laws_table(fit); !laws.rows.empty()) html += html_table(laws);
+  if (const Table laws = power_laws_table(fit, view.unit); !laws.rows.empty()) html += html_table(laws);
   html +=
       "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; a data sheet's noise "
       "density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao bound for this record length";
@@ -101,8 +101,8 @@ std::string trust(const ChannelView& view, std::size_t index) {
         c.channel.name);
   }
   out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
-  out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " + std::to_string(fit.iterations) +
-         (fit.converged ? " iterations, converged.</p>\n" : " iterations, <b>not converged</b>.</p>\n");
+  out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " + std::to_string(fit.search.iterations) +
+         (fit.search.converged ? " iterations, converged.</p>\n" : " iterations, <b>not converged</b>.</p>\n");
   if (!fit.remedies.empty()) {
     Table remedies("remedy|because|what was done|count");
     remedies.title = "What was done to the data before the fit";

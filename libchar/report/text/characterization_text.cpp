@@ -53,7 +53,8 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
   if (!fit.band.whole)
     text +=
         "  best possible, record for 10 %: of a record whose whole spectrum the terms describe, not this band alone\n";
-  if (const Table laws = power_laws_table(fit); !laws.rows.empty()) text += "  " + terminal_table(laws, look);
+  if (const Table laws = power_laws_table(fit, channel.unit); !laws.rows.empty())
+    text += "  " + terminal_table(laws, look);
   if (fit.bandwidth_hz) {
     const int digits = digits_of(*fit.bandwidth_hz, *fit.bandwidth_ci95);
     text += fmt::format("  low-pass corner {} Hz ({})\n", number_text(*fit.bandwidth_hz, digits),

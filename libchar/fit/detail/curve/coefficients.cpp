@@ -246,8 +246,8 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
                                NoiseFit& fit) {
   const Polished polished = polish(problem, decision.at);
   fit.theta = polished.at.theta;
-  fit.converged = !polished.known || (decision.converged && polished.converged);
-  fit.iterations = decision.iterations + polished.iterations;
+  fit.search.converged = !polished.known || (decision.converged && polished.converged);
+  fit.search.iterations = decision.iterations + polished.iterations;
   const Optimum best{polished.at, polished.half_deviance};
   const WithDropped all = with_dropped(problem, decision, best, options.terms);
   for (std::size_t i = 0; i < kTerms; ++i) {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "libchar/core/numeric/dense.hpp"
+#include "libchar/fit/detail/record/cycles.hpp"
 
 namespace libchar {
 
@@ -67,6 +68,12 @@ void fill_ramp(const SeriesGrid& grid, std::vector<double>& column) {
   }
 }
 
+void fill_cycle(const EventShape& shape, std::size_t points, std::vector<double>& column) {
+  const detail::SineColumns sines(detail::off_grid(shape.at), points);
+  for (std::size_t k = 1; k <= column.size(); ++k)
+    column[k - 1] = sines.at(k).dot(Eigen::RowVector2d(std::cos(shape.tau), std::sin(shape.tau)));
+}
+
 }  // namespace
 
 void fill_column(const EventShape& shape, const SeriesGrid& grid, std::vector<double>& column) {
@@ -77,6 +84,8 @@ void fill_column(const EventShape& shape, const SeriesGrid& grid, std::vector<do
       return fill_warm_up(shape.tau, grid, column);
     case EventKind::ramp:
       return fill_ramp(grid, column);
+    case EventKind::cycle:
+      return fill_cycle(shape, grid.points, column);
   }
 }
 

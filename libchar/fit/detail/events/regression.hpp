@@ -41,10 +41,11 @@ class Turning {
 /// first sample to the last).
 struct EventShape {
   EventKind kind = EventKind::step;
-  /// step: the first point after it; 10.3 is a step within point 10, which has seven tenths of it
+  /// cycle: half periods in the series; step: the first point after it; 10.3 is a step within point 10, which has seven
+  /// tenths of it
   double at = 0;
   double bridged = 0;  ///< step: it was while this many points were missing, bridged from `at` on by a line
-  double tau = 0;      ///< warm-up: time constant
+  double tau = 0;      ///< warm-up: time constant; cycle: phase at the beginning of the first point
 };
 
 /// Where a series stands: n points of `per_point` samples.

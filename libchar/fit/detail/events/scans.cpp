@@ -9,6 +9,7 @@
 
 #include "libchar/fit/detail/events/scans.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "libchar/fit/detail/events/regression.hpp"
+#include "libchar/fit/detail/record/cycles.hpp"
 #include "libchar/spectrum/fft.hpp"
 
 namespace libchar {
@@ -126,6 +128,61 @@ double refined_tau(const WarmUpScan& scan, const Regression& beside, const Serie
       low += third;
   }
   return std::exp(0.5 * (low + high));
+}
+
+namespace {
+
+constexpr double kLeastPlace = 1.2, kMostPlace = 5.8;  ///< half periods
+constexpr double kFastest = 5.55;                      ///< a best place beyond is the flank of a faster one
+constexpr std::size_t kHeadOfCycle = 256;              ///< coefficients: the rest hold a hundred-thousandth of a cycle
+
+CycleScan cycle_at(double place, const Regression& beside, std::size_t points, std::span<const double> weight) {
+  const std::size_t head = std::min(kHeadOfCycle, weight.size());
+  const detail::SineColumns sines(detail::off_grid(place), points);
+  Eigen::MatrixX2d column(head, 2);
+  for (std::size_t k = 0; k < head; ++k) column.row(static_cast<Eigen::Index>(k)) = sines.at(k + 1);
+  const Eigen::Map<const Eigen::VectorXd> w(weight.data(), column.rows()), rest(beside.rest.data(), column.rows());
+  const Eigen::MatrixX2d weighted = w.asDiagonal() * column;
+  const Eigen::Vector2d numerator = weighted.transpose() * rest;
+  Eigen::Matrix2d information = weighted.transpose() * column;
+  const Eigen::Vector2d alone = information.diagonal();
+  const auto count = static_cast<Eigen::Index>(beside.shape.size());
+  Eigen::MatrixX2d cross(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::vector<double>& other = beside.column[static_cast<std::size_t>(i)];
+    cross.row(i) = Eigen::Map<const Eigen::RowVectorXd>(other.data(), column.rows()) * weighted;
+  }
+  if (count > 0) information -= cross.transpose() * beside.covariance * cross;
+  CycleScan out{place, 0, 0};
+  // What the others explain but for a thousandth is nothing new.
+  if (!(information(0, 0) > 1e-3 * alone(0)) || !(information(1, 1) > 1e-3 * alone(1))) return out;
+  const double left = information.determinant() / (information(0, 0) * information(1, 1));
+  if (!(left > 1e-6)) return out;
+  const Eigen::Vector2d size = information.inverse() * numerator;
+  out.phase = std::atan2(size(1), size(0));
+  out.score = std::sqrt(std::max(0.0, size.dot(numerator)));
+  return out;
+}
+
+}  // namespace
+
+CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight) {
+  constexpr double kStep = 0.15;
+  const auto at = [&](double place) { return cycle_at(place, beside, grid.points, weight); };
+  CycleScan best = at(kLeastPlace);
+  for (double place = kLeastPlace + kStep; place < kMostPlace; place += kStep)
+    if (CycleScan one = at(place); one.score > best.score) best = one;
+  if (best.place > kFastest) return {best.place, best.phase, 0};
+  double low = std::max(kLeastPlace, best.place - kStep), high = std::min(kMostPlace, best.place + kStep);
+  for (int i = 0; i < 12; ++i) {
+    const double third = (high - low) / 3;
+    if (at(low + third).score > at(high - third).score)
+      high -= third;
+    else
+      low += third;
+  }
+  const CycleScan between = at(0.5 * (low + high));
+  return between.score > best.score ? between : best;
 }
 
 Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight) {

@@ -33,6 +33,14 @@ WarmUpScan scan_warm_ups(const Regression& beside, const SeriesGrid& grid, std::
 double refined_tau(const WarmUpScan& scan, const Regression& beside, const SeriesGrid& grid,
                    std::span<const double> weight);
 
+/// The best cycle of .6 to 2.7 periods (faster ones are lines, and cycles.hpp takes them out), and the root of what it
+/// explains.
+struct CycleScan {
+  double place = 0, phase = 0;  ///< as an EventShape has them
+  double score = 0;
+};
+CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
+
 Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
 
 // How large the largest of many correlated normal scores is by chance.

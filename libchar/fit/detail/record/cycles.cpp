@@ -38,31 +38,6 @@ struct Sine {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();
 };
 
-/// The two columns of a place, row by row.
-struct Columns {
-  double half_unit, half_w, scale, sine, cosine;
-
-  Columns(double place, std::size_t n)
-      : half_unit(std::numbers::pi / static_cast<double>(n) / 2),
-        half_w(half_unit * place),
-        scale(std::sqrt(2 / static_cast<double>(n)) / 4),
-        sine(std::sin(std::numbers::pi * place)),
-        cosine(std::cos(std::numbers::pi * place)) {}
-
-  Eigen::RowVector2d at(std::size_t k) const {
-    const double half_theta = half_unit * static_cast<double>(k), sign = k % 2 == 0 ? 1 : -1;
-    const double far = scale * (1 / std::sin(half_w + half_theta) + 1 / std::sin(half_w - half_theta));
-    return {far * sign * sine, far * (1 - sign * cosine)};
-  }
-};
-
-/// Off the coefficients themselves, where both factors are zero over zero.
-double off_grid(double place) {
-  constexpr double kOff = 1e-6;
-  const double from = place - std::round(place);
-  return std::abs(from) < kOff ? std::round(place) + kOff : place;
-}
-
 /// The first coefficients of a transform of `length` points.
 struct Head {
   std::span<double> rest;
@@ -91,7 +66,7 @@ struct Window {
     constexpr int kMostRows = 2 * kReach + 1;
     Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMostRows> columns(rows, 2);
     Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows> values(rows);
-    const Columns sines(sine.place, head.length);
+    const SineColumns sines(sine.place, head.length);
     for (std::size_t k = from; k < to; ++k) {
       const auto row = static_cast<Eigen::Index>(k - from);
       columns.row(row) = weight(k) * sines.at(k);
@@ -105,7 +80,7 @@ struct Window {
 /// Whether what is left at the peak is noise as it is beside: a steady sine leaves nothing.
 bool is_steady(const Window& window, const Sine& sine) {
   constexpr double kNear = 3, kMost = 4;  ///< of the mean squares: F of 7 and 26
-  const Columns sines(sine.place, window.head.length);
+  const SineColumns sines(sine.place, window.head.length);
   double near = 0, far = 0, near_n = 0, far_n = 0;
   for (std::size_t k = window.from; k < window.to; ++k) {
     const bool at_peak = std::abs(static_cast<double>(k) - sine.place) <= kNear;
@@ -145,7 +120,7 @@ Sine fitted_sine(const Window& window, double peak, double& left) {
 }
 
 void add(const Sine& sine, double times, const Head& head) {
-  const Columns sines(sine.place, head.length);
+  const SineColumns sines(sine.place, head.length);
   for (std::size_t k = 1; k < head.rest.size(); ++k) head.rest[k] += times * sines.at(k).dot(sine.size.transpose());
 }
 
@@ -216,6 +191,25 @@ void take_out_harmonics(std::vector<Sine>& found, const Head& head) {
 }
 
 }  // namespace
+
+SineColumns::SineColumns(double place, std::size_t n)
+    : half_unit(std::numbers::pi / static_cast<double>(n) / 2),
+      half_w(half_unit * place),
+      scale(std::sqrt(2 / static_cast<double>(n)) / 4),
+      sine(std::sin(std::numbers::pi * place)),
+      cosine(std::cos(std::numbers::pi * place)) {}
+
+Eigen::RowVector2d SineColumns::at(std::size_t k) const {
+  const double half_theta = half_unit * static_cast<double>(k), sign = k % 2 == 0 ? 1 : -1;
+  const double far = scale * (1 / std::sin(half_w + half_theta) + 1 / std::sin(half_w - half_theta));
+  return {far * sign * sine, far * (1 - sign * cosine)};
+}
+
+double off_grid(double place) {
+  constexpr double kOff = 1e-6;
+  const double from = place - std::round(place);
+  return std::abs(from) < kOff ? std::round(place) + kOff : place;
+}
 
 std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, std::size_t length) {
   const Head head{coefficients, length};

@@ -1,6 +1,7 @@
 #pragma once
 // Slow cycles of a record (heating, air conditioning, day and night), taken out of the coefficients of a transform.
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,6 +12,17 @@ namespace libchar::detail {
 
 /// As many coefficients as a slow cycle is looked for in, and its leak taken out of.
 inline constexpr std::size_t kCycleReach = 8192;
+
+/// The coefficients k = 1.. of the orthonormal DCT-II of n points of cos(w u) and sin(w u), w = pi place / n,
+/// u = t + 1/2: a sine of `place` half periods.
+struct SineColumns {
+  double half_unit, half_w, scale, sine, cosine;
+  SineColumns(double place, std::size_t n);
+  Eigen::RowVector2d at(std::size_t k) const;
+};
+
+/// Off the coefficients themselves, where both factors are zero over zero.
+double off_grid(double place);
 
 /// The sines that stand out of the first coefficients of an orthonormal DCT-II of `length` points
 /// so far that what they leak reaches the slow end, where a line cannot be left out. They are

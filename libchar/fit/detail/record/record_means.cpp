@@ -32,6 +32,7 @@ EventSearch search_events(const FitOptions& options, const Series& series) {
     // Phase noise is not among the powers of the search: where it stands, a clock would step all the time.
     EventOptions how;
     how.steps = !options.clock;
+    how.cycle = options.slow_cycles;
     return find_events(searched, fitted_powers(), how, options.unit);
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric) throw;
@@ -114,8 +115,17 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
                                      "be taken out: the record cannot tell them apart.",
                                      brief_text(search.drift_gain, 2))));
   }
+  if (search.cycle_gain > 0 && walk.status == Status::detected) {
+    walk.status = Status::undetermined;
+    fit.findings.push_back(finding(
+        "drift_or_walk", fmt::format("A slow cycle is likelier than the random walk K (2 ln L {}), but too weak to be "
+                                     "taken out: the record cannot tell them apart.",
+                                     brief_text(search.cycle_gain, 2))));
+  }
   if (!means.events_taken) return;
-  fit.events = search.events;
+  // A cycle is the surroundings', and no part of the model.
+  for (const Event& event : search.events)
+    if (event.kind != EventKind::cycle) fit.events.push_back(event);
   for (const EventKind kind : {EventKind::step, EventKind::warm_up, EventKind::ramp}) add_event_remedy(kind, fit);
 }
 
@@ -140,6 +150,7 @@ RecordMeans without_means(std::span<const double> record, double rate_hz, const 
   if (!moves(out.temperature)) return out;
   FitOptions without = options;
   without.second_opinion = false;
+  without.slow_cycles = false;  // the temperature's own are to be seen in the walk
   const NoiseFit left_in = fit_record(record, rate_hz, nullptr, without);
   out.temperature->without = left_in.term;
   for (const Event& event : left_in.events)

@@ -66,12 +66,13 @@ Table coefficients_table(const NoiseFit& fit, const std::string& unit) {
   return coefficients_table(fit.term, unit, process, fit.flicker_phase.has_value());
 }
 
-Table power_laws_table(const NoiseFit& fit) {
-  Table out("noise type|Stable32|α|h|status");
+Table power_laws_table(const NoiseFit& fit, const std::string& unit) {
+  Table out("noise type|Stable32|α|h|unit|status");
   out.title = "As a clock: one-sided S_y(f) = Σ h_α f^α";
   for (const PowerLaw& law : power_laws(fit))
     out.add({law.name, law.abbreviation, Cell::shown(std::to_string(law.alpha), law.alpha),
-             Cell::of(shown_value(law.h, 1, ""), law.h), Cell::of(law.h.status)});
+             Cell::of(shown_value(law.h, 1, ""), law.h), detail::power_law_unit(law.alpha, unit),
+             Cell::of(law.h.status)});
   return out;
 }
 

@@ -16,7 +16,7 @@ Table coefficients_table(const Coefficients& terms, const std::string& unit,
 Table coefficients_table(const NoiseFit& fit, const std::string& unit);
 
 /// A clock's noise in its own words; no rows for any other channel.
-Table power_laws_table(const NoiseFit& fit);
+Table power_laws_table(const NoiseFit& fit, const std::string& unit);
 
 /// The coefficients that tell most, each in the unit of the field: N, B, K and how well they fit.
 inline constexpr const char* kHeadlines = "N, white noise|B, bias instability|K, random walk|fit";

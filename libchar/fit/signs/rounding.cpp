@@ -1,0 +1,107 @@
+// With the density r = q^2/(12 rate) of rounding to steps q (digital.cpp),
+//   measured(f) = terms(f) shape(f) = terms'(f) shape'(f) + r,   N'^2 = N^2 - r,
+// so that shape' = (terms shape - r) / (terms - r) at every frequency where it was measured.
+#include "libchar/fit/signs/rounding.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libchar/core/text/readable.hpp"
+#include "libchar/fit/curve/shaped_curves.hpp"
+
+namespace libchar {
+namespace {
+
+constexpr auto kRoundedTerm = static_cast<std::size_t>(Term::white);
+
+double root_beside(double value, double square) { return std::sqrt(std::max(0.0, value * value - square)); }
+
+void take_out_of_shape(double density, NoiseFit& fit) {
+  constexpr double kLeastRatio = 1e-6;
+  for (std::size_t i = 0; i < fit.shape.frequency_hz.size(); ++i) {
+    const double terms =
+        detail::unshaped_density(fit, std::min(fit.shape.frequency_hz[i], fit.rate_hz / 2), 1 / fit.rate_hz);
+    const double rest = terms * fit.shape.ratio[i] - density;
+    if (terms > density) fit.shape.ratio[i] = std::max(kLeastRatio, rest / (terms - density));
+  }
+}
+
+/// Known to the variance of the fit and that of the rounding.
+void take_out_of_value(double density, double density_sd, Coefficient& white) {
+  const double square = *white.value * *white.value, rest = square - density, more = square / rest;
+  white.value = std::sqrt(rest);
+  white.relative_sd *= more;
+  white.ci95 = {root_beside(white.ci95.low, density), root_beside(white.ci95.high, density)};
+  const double wider = std::hypot(1.0, density_sd / (2 * rest) / white.relative_sd);
+  white.relative_sd *= wider;
+  white.ci95 = {*white.value * std::pow(white.ci95.low / *white.value, wider),
+                *white.value * std::pow(white.ci95.high / *white.value, wider)};
+  if (white.bound) *white.bound *= more;
+  if (white.seconds_for_10_percent) *white.seconds_for_10_percent *= more * more;
+}
+
+/// N is hidden beneath the rounding.
+void limit_white(double density, Coefficient& white) {
+  const double limit = root_beside(white.ci95.high, density);
+  white.status = Status::not_detected;
+  white.value.reset();
+  white.upper95 = limit;
+  white.ci95 = {0, limit};
+}
+
+void say_rounding(const DigitalFaults::Rounding& rounding, double before, const NoiseFit& fit,
+                  std::vector<Finding>& findings) {
+  constexpr double kNoticeable = 0.1;  // of the standard deviation of N
+  const Coefficient& white = fit.term[kRoundedTerm];
+  const std::string step = brief_text(rounding.step);
+  if (!white.value)
+    findings.push_back(finding(
+        "rounding_in_n", fmt::format("White noise is no more than rounding to {} gives: N has a limit only.", step)));
+  else if (before / *white.value - 1 > kNoticeable * white.relative_sd)
+    findings.push_back(finding(
+        "rounding_in_n",
+        fmt::format("Rounding to {} adds {} to the white noise of the samples: N is that of the sensor in front of it.",
+                    step, percent_text(before / *white.value - 1)),
+        "the noise of rounding was taken out of N"));
+}
+
+}  // namespace
+
+void detail::take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit& fit) {
+  Coefficient& white = fit.term[kRoundedTerm];
+  if (!white.value || !(fit.rate_hz > 0) || !(rounding.variance > 0)) return;
+  const double density = rounding.variance / fit.rate_hz, before = *white.value;
+  if (!(white.ci95.high * white.ci95.high > density)) return;
+  take_out_of_shape(density, fit);
+  fit.rounding = density;
+  double& theta = fit.theta[kRoundedTerm];
+  theta = std::max(0.0, theta - density);
+  if (white.ci95.low * white.ci95.low > density && before * before > density)
+    take_out_of_value(density, rounding.sd / fit.rate_hz, white);
+  else {
+    limit_white(density, white);
+    theta = 0;
+  }
+  if (white.in_all) white.in_all->square -= density;
+  if (fit.second_opinion && fit.second_opinion->value[kRoundedTerm]) {
+    double& other = *fit.second_opinion->value[kRoundedTerm];
+    const double rest = root_beside(other, density);
+    if (rest > 0) fit.second_opinion->sd[kRoundedTerm] *= other / rest;
+    other = rest;
+  }
+  say_rounding(rounding, before, fit, fit.findings);
+}
+
+Coefficients detail::terms_with_rounding(const NoiseFit& fit) {
+  Coefficients out = fit.term;
+  Coefficient& white = out[kRoundedTerm];
+  const double rounding = std::sqrt(fit.rounding);
+  if (white.value) *white.value = std::hypot(*white.value, rounding);
+  if (white.upper95) *white.upper95 = std::hypot(*white.upper95, rounding);
+  white.ci95 = {std::hypot(white.ci95.low, rounding), std::hypot(white.ci95.high, rounding)};
+  return out;
+}
+
+}  // namespace libchar

@@ -1,0 +1,17 @@
+#pragma once
+// The noise of rounding is behind the sensor's: N is without it, and whoever simulates N rounds again.
+
+#include "libchar/fit/fit_result.hpp"
+#include "libchar/fit/signs/digital.hpp"
+
+namespace libchar::detail {
+
+/// Takes it out of N and out of the shape of the noise in front of it; `fit.rounding` is what it adds to the density.
+/// Where N² is not above it beyond its interval N becomes a limit; where it is below it, the samples were not rounded
+/// so, and nothing changes.
+void take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit& fit);
+
+/// With it in N again: for consumers that do not round.
+Coefficients terms_with_rounding(const NoiseFit& fit);
+
+}  // namespace libchar::detail
