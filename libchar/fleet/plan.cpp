@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "libchar/characterize/log_thermometer.hpp"
 #include "libchar/core/document/document.hpp"
 #include "libchar/core/document/schema.hpp"
 #include "libchar/core/file/file_owner.hpp"
@@ -216,7 +217,9 @@ class UnitMaker {
       : options_(options), cost_(cost), plan_(plan) {}
 
   void add(const LookedAt& log, FleetUnit unit) {
-    if (!options_.by_channel) return add_log(log, unit);
+    // A thermometer is asked what the slow part of every channel owes to it.
+    const bool together = unit.options->temperature.empty() && detail::has_thermometer(log.head);
+    if (!options_.by_channel || together) return add_log(log, unit);
     const std::vector<Channel>& channels = log.head.channels;
     const std::string& wanted = unit.options->temperature;
     const auto thermometer = wanted.empty() ? std::nullopt : temperature_channel(log.head, wanted);

@@ -23,7 +23,7 @@
 namespace libchar {
 
 struct FleetPlanOptions {
-  bool by_channel = false;  ///< a unit for each channel of a log
+  bool by_channel = false;  ///< a unit for each channel of a log without a thermometer, or with `temperature`
   bool reports = true;      ///< each device's page and tables as well as its record
   std::uint64_t split_bytes = std::uint64_t{4}
                               << 30U;  ///< logs larger than this are divided in stretches where their format allows

@@ -102,7 +102,7 @@ Row run(const Scene& scene, int records, bool in_blocks) {
     row.fit_ms += milliseconds(from);
     const double excess = excess_over_multistart(bins, decided, starts);
     row.worst_excess = std::max(row.worst_excess, excess);
-    row.at_optimum += decided.converged && excess < 1e-3 ? 1 : 0;
+    row.at_optimum += decided.search.converged && excess < 1e-3 ? 1 : 0;
     row.p_below += decided.goodness.p < 0.05 ? 1 : 0;
     ++row.records;
     for (std::size_t i = 0; i < 3; ++i) {

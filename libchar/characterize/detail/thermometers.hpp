@@ -4,11 +4,9 @@
 #include <vector>
 
 #include "libchar/characterize/characterization.hpp"
+#include "libchar/characterize/log_thermometer.hpp"
 
 namespace libchar::detail {
-
-/// Is a channel of the log in a unit of temperature?
-bool has_thermometer(const LogInfo& log);
 
 /// Of channels whose slow part is in doubt, with the thermometer of the log that explains most: a finding that names
 /// it, and K is undetermined. By the channels' means, at 1 % a channel.

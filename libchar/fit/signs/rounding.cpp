@@ -71,7 +71,9 @@ void say_rounding(const DigitalFaults::Rounding& rounding, double before, const 
 
 void detail::take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit& fit) {
   Coefficient& white = fit.term[kRoundedTerm];
-  if (!white.value || !(fit.rate_hz > 0) || !(rounding.variance > 0)) return;
+  // What is not known is not known better without rounding.
+  if (!white.value || white.status == Status::undetermined) return;
+  if (!(fit.rate_hz > 0) || !(rounding.variance > 0)) return;
   const double density = rounding.variance / fit.rate_hz, before = *white.value;
   if (!(white.ci95.high * white.ci95.high > density)) return;
   take_out_of_shape(density, fit);
