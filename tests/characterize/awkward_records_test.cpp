@@ -241,7 +241,7 @@ TEST_CASE("what is no phase, no fraction of a frequency and no rate is doubted, 
 namespace {
 
 Characterization of_rounded_walk(double walk, double white_level, std::uint64_t seed) {
-  constexpr double kRate = 100;
+  constexpr double kRate = 100, kWhite = 0.01;  // deviation of white()
   Recording recording;
   recording.info.channels = {{"heading", "deg/s"}};
   recording.info.time.rate_hz = kRate;
@@ -250,8 +250,8 @@ Characterization of_rounded_walk(double walk, double white_level, std::uint64_t 
   double sum = 0;
   const double step = walk / std::sqrt(kRate), level = white_level * walk / (std::numbers::pi * std::sqrt(kRate));
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    sum += step * samples[i];
-    samples[i] = std::round((sum + level * on_top[i]) / (0.5 * step)) * 0.5 * step;
+    sum += step * samples[i] / kWhite;
+    samples[i] = std::round((sum + level * on_top[i] / kWhite) / (0.5 * step)) * 0.5 * step;
   }
   recording.samples = {samples};
   return characterize(recording, {});
