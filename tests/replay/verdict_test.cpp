@@ -176,6 +176,26 @@ TEST_CASE("verdict: a noisier sensor of an array at rest has no other gain") {
   }
 }
 
+TEST_CASE("verdict: a turned sign is named where noise hides gains") {
+  const test::SceneBench bench;
+  for (const bool turned : {false, true}) {
+    test::Gaussian noise(9);
+    std::string log = "t,s1,s2,s3\n";
+    for (int k = 0; k < 6000; ++k) {
+      const double x = std::sin(k / 50.0) + 0.3 * std::sin(k / 17.0);
+      log += fmt::format("{:.2f},{:.5f},{:.5f},{:.5f}\n", k / 100.0, x + 0.5 * noise(),
+                         (turned ? -x : x) + 0.7 * noise(), x + 0.9 * noise());
+    }
+    bench.put("array.csv", log);
+    const ReplayResult result = replay(bench.read(scene_of(3, "algorithms: [mean, median]\n")));
+    std::string said;
+    for (const Finding& one : result.warnings.list())
+      for (const std::string& row : one.where.rows) said += row + "\n";
+    CHECK((said.find("s2: gain -") != said.npos) == turned);
+    CHECK((said.find("gain") != said.npos) == turned);
+  }
+}
+
 TEST_CASE("verdict: without a reference the level is stated also where offsets are too small to be taken out") {
   const test::SceneBench bench;
   // Offsets of 0.3 in noise of 1, by which the mean of four is 0.15 off, and not by 0.01 as 8000 samples would make it.

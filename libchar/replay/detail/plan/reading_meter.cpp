@@ -26,6 +26,7 @@ constexpr double kQuietest = 0.5;     // of the usual rms of the middle sensor: 
 
 constexpr double kLeastDrift = 0.05;   // of a gain
 constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
+constexpr double kOtherSign = -1.25;   // beyond one, of a gain: noise alone gives none below -1
 constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
 constexpr double kResolved = 5;        // standard errors of an offset
 
@@ -167,7 +168,8 @@ ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, 
     }
     if (slopes.size() < kLeastBlocks) continue;
     LearntSensor::Reading reading;
-    if (gains) reading.gain = weighted_median(std::move(slopes));
+    const double gain = weighted_median(std::move(slopes));
+    if (gains || gain < kOtherSign) reading.gain = gain;
     for (const auto& block : blocks_)
       if (block[i].n >= kLeastInBlock) left.push_back(fit(block[i], 0, reading.gain).mean);
     reading.offset = median_in_place(left);
