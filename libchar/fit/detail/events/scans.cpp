@@ -9,7 +9,7 @@
 
 #include "libchar/fit/detail/events/scans.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -156,9 +156,9 @@ CycleScan cycle_at(double place, const Regression& beside, std::size_t points, s
   CycleScan out{place, 0, 0};
   // What the others explain but for a thousandth is nothing new.
   if (!(information(0, 0) > 1e-3 * alone(0)) || !(information(1, 1) > 1e-3 * alone(1))) return out;
-  const double left = information.determinant() / (information(0, 0) * information(1, 1));
+  const double left = 1 - information(0, 1) * information(0, 1) / (information(0, 0) * information(1, 1));
   if (!(left > 1e-6)) return out;
-  const Eigen::Vector2d size = information.inverse() * numerator;
+  const Eigen::Vector2d size = information.llt().solve(numerator);
   out.phase = std::atan2(size(1), size(0));
   out.score = std::sqrt(std::max(0.0, size.dot(numerator)));
   return out;

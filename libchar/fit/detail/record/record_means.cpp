@@ -100,6 +100,17 @@ void add_event_remedy(EventKind kind, NoiseFit& fit) {
                           "taken out of the record before the noise was fitted" + places, count});
 }
 
+/// `gain`: 2 ln L of what is in the place of a random walk; 0: nothing is.
+void doubt_walk(const char* rival, double gain, NoiseFit& fit) {
+  Coefficient& walk = fit.term[static_cast<std::size_t>(Term::walk)];
+  if (!(gain > 0) || walk.status != Status::detected) return;
+  walk.status = Status::undetermined;
+  fit.findings.push_back(finding(
+      "drift_or_walk", fmt::format("A {} is likelier than the random walk K (2 ln L {}), but too weak to be taken out: "
+                                   "the record cannot tell them apart.",
+                                   rival, brief_text(gain, 2))));
+}
+
 void report_events(const RecordMeans& means, NoiseFit& fit) {
   const EventSearch& search = means.search;
   fit.findings.insert(fit.findings.end(), search.findings.begin(), search.findings.end());
@@ -107,21 +118,8 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   if (search.more || search.telegraph)
     for (Coefficient& term : fit.term)
       if (term.status == Status::detected) term.status = Status::undetermined;
-  Coefficient& walk = fit.term[static_cast<std::size_t>(Term::walk)];
-  if (search.drift_gain > 0 && walk.status == Status::detected) {
-    walk.status = Status::undetermined;
-    fit.findings.push_back(finding(
-        "drift_or_walk", fmt::format("A straight drift is likelier than the random walk K (2 ln L {}), but too weak to "
-                                     "be taken out: the record cannot tell them apart.",
-                                     brief_text(search.drift_gain, 2))));
-  }
-  if (search.cycle_gain > 0 && walk.status == Status::detected) {
-    walk.status = Status::undetermined;
-    fit.findings.push_back(finding(
-        "drift_or_walk", fmt::format("A slow cycle is likelier than the random walk K (2 ln L {}), but too weak to be "
-                                     "taken out: the record cannot tell them apart.",
-                                     brief_text(search.cycle_gain, 2))));
-  }
+  doubt_walk("straight drift", search.drift_gain, fit);
+  doubt_walk("slow cycle", search.cycle_gain, fit);
   if (!means.events_taken) return;
   // A cycle is the surroundings', and no part of the model.
   for (const Event& event : search.events)
