@@ -176,6 +176,23 @@ TEST_CASE("verdict: a noisier sensor of an array at rest has no other gain") {
   }
 }
 
+TEST_CASE("verdict: what is known of the reading is said where the method is recommended") {
+  const test::SceneBench bench;
+  for (const double rate_hz : {4.0, 10.0}) {  // of the second logger
+    test::Gaussian noise(2);
+    std::string log = "t1[s],s1,t2[s],s2\n";
+    for (int k = 0; k < 2000; ++k) {
+      const double first = noise(), second = noise();
+      log += fmt::format("{:.1f},{:.4f},{:.2f},{:.4f}\n", k / 10.0, first, k / rate_hz, second);
+    }
+    bench.put("array.csv", log);
+    const ReplayResult result = replay(bench.read(scene_of(2, "algorithms: [mean]\n")));
+    const bool said = test::verdict_of(result, false).find("Mend the samples first (channel with stamps of its own)") !=
+                      std::string::npos;
+    CHECK(said == (rate_hz < 10));
+  }
+}
+
 TEST_CASE("verdict: a turned sign is named where noise hides gains") {
   const test::SceneBench bench;
   for (const bool turned : {false, true}) {

@@ -336,6 +336,14 @@ std::string detected_faults(const ReplayResult& r, const AlgorithmResult& best) 
   return out.empty() ? "" : fmt::format("While it runs {} doubts {}.", watching.label, list_of(out));
 }
 
+/// Of the samples, and of how the logs were read.
+std::optional<Finding> worst_finding(const ReplayResult& r) {
+  std::vector<Finding> all = r.warnings.list();
+  for (const LogInfo& log : r.logs) all.insert(all.end(), log.warnings.list().begin(), log.warnings.list().end());
+  const std::vector<Finding> sorted = worst_first(std::move(all));
+  return sorted.empty() ? std::nullopt : std::optional(sorted.front());
+}
+
 // Sensors that fail or stand apart, as found.
 std::string doubtful_sensors(const ReplayResult& r) {
   std::string out = missing_samples(r);
@@ -369,12 +377,9 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   const auto add = [&](const std::string& sentence) {
     if (!sentence.empty()) out.push_back(sentence);
   };
-  for (const Finding& one : worst_first(r.warnings.list())) {
-    if (one.severity != Severity::bad) break;
+  if (const auto bad = worst_finding(r); bad && bad->severity == Severity::bad)
     out.insert(out.begin(), fmt::format("Mend the samples first ({}): these figures are of them as they are.",
-                                        find_finding_kind(one.code)->title));
-    break;
-  }
+                                        find_finding_kind(bad->code)->title));
   SensorSentence single = sensor_sentence(r);
   if (single.against_fusion)
     out.insert(out.begin(), std::move(single.text));
