@@ -17,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/numeric/distributions.hpp"
@@ -416,14 +417,65 @@ struct Search {
     return widest;
   }
 
-  /// With one order more; a cut band that passes without a shape is halved.
+  /// A polynomial of two orders, or a filter with a low corner, makes a band likelier by `worth` of ln L.
+  bool explained_by_shape(const Trial& trial, double worth) const {
+    Band band = trial.band;
+    band.quantized = false;
+    const auto likelier = [&](const std::optional<Trial>& other) {
+      return other && trial.half_deviance - other->half_deviance > worth;
+    };
+    const std::optional<Band> filter = named(band);
+    band.orders = 2;
+    return likelier(at(band)) || (filter && likelier(at(*filter)));
+  }
+
+  bool has_holes(const Band& band) const {
+    for (std::size_t j = 0; j < bins.size(); ++j)
+      if (band.inside[j] == 0 && bins[j].high_hz <= band.top_hz) return true;
+    return false;
+  }
+
+  /// Its holes with as much again on each side, where the skirts of peaks are too low to be seen.
+  Band without_skirts(Band band) const {
+    std::vector<std::size_t> order(bins.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return bins[a].frequency_hz < bins[b].frequency_hz; });
+    const std::vector<char> inside = band.inside;
+    for (std::size_t from = 0, to = 0; from < order.size(); from = to + 1) {
+      for (to = from; to < order.size() && inside[order[to]] == 0;) ++to;
+      if (to < order.size() && bins[order[to]].high_hz > band.top_hz) break;
+      const std::size_t width = to - from, begin = from - std::min(from, width);
+      for (std::size_t i = begin; width > 0 && i < std::min(order.size(), to + width); ++i) band.inside[order[i]] = 0;
+    }
+    return band;
+  }
+
+  /// With the orders that explain something, and two more of few, one more of many: what just passes leaves a bias.
+  /// Peaks beside white noise go with their skirts. A cut band that passes without a shape is halved.
   Band with_margin(Band band) const {
+    constexpr double kExplains = 1;  ///< of ln L
+    constexpr int kMostMore = 4;
     const bool whole = band.top_hz > rate_hz / 2 * 0.99;
-    if (whole && band.orders == 0) return band;
-    Band next = band.orders == 0 ? cut_at(band, bins, band.top_hz / 2) : band;
-    ++next.orders;
-    const std::optional<Trial> trial = at(next);
-    return trial && trial->band.passes ? trial->band : band;
+    if (whole && band.orders == 0) {
+      const std::optional<Trial> bare = has_holes(band) ? at(without_skirts(band)) : std::nullopt;
+      return bare && bare->band.passes ? bare->band : band;
+    }
+    std::optional<Trial> best = at(band);
+    if (!whole && band.orders == 0) band = cut_at(band, bins, band.top_hz / 2);
+    const auto with_orders = [&](int more) {
+      Band next = band;
+      next.orders += more;
+      return at(next);
+    };
+    for (int more = 1; best && best->band.orders > 0 && more <= kMostMore; ++more) {
+      std::optional<Trial> next = with_orders(1);
+      if (!next || best->half_deviance - next->half_deviance < kExplains) break;
+      best = std::move(next);
+      band = best->band;
+    }
+    const std::optional<Trial> trial = with_orders(band.orders > 0 && band.orders <= options.most_orders ? 2 : 1);
+    return trial && trial->band.passes ? trial->band : best ? best->band : band;
   }
 };
 
@@ -621,18 +673,21 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   with_quantization.quantized = true;
   const std::optional<Trial> quantized = search.at(with_quantization);
   constexpr double kWorth = 4;  ///< of ln L, where the terms alone describe the record
-  if (quantized && chance_of(*quantized) >= options.probability_unshaped &&
-      (!describes || unshaped->half_deviance - quantized->half_deviance > kWorth))
-    return passing(*quantized);
+  const auto worth = [&](const Trial& trial) {
+    return !describes || unshaped->half_deviance - trial.half_deviance > kWorth;
+  };
+  const bool rises = quantized && chance_of(*quantized) >= options.probability_unshaped && worth(*quantized);
+  if (rises && !search.explained_by_shape(*quantized, kWorth)) return passing(*quantized);
   if (const auto named = named_filter(bins, rate_hz, terms, options);
-      named && named->band.passes && explains_nulls(bins, rate_hz, *named))
+      named && named->band.passes && worth(*named) && explains_nulls(bins, rate_hz, *named))
     return named->band;
   Band low_pass = whole;
   TermSet offered = terms;
   offered[kLentTerm] = offered[kLentTerm] || options.tau_s;
   low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
   if (low_pass.low_pass)
-    if (const auto trial = search.at(low_pass); trial && trial->band.passes) return trial->band;
+    if (const auto trial = search.at(low_pass); trial && trial->band.passes && worth(*trial)) return trial->band;
+  if (describes) return search.named(whole).value_or(passing(*unshaped));
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   const bool simple = best && best->orders < kMany;
   const std::optional<Band> named = simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
