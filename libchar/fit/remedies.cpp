@@ -40,7 +40,8 @@ SpikeAnswer spike_answer(double kurtosis, double alarm, const SpikeCount& count)
   if (verdict == SpikeVerdict::spikes)
     answer.remedy = {"spikes", fmt::format("kurtosis of differences {} > {}", brief_text(kurtosis), brief_text(alarm)),
                      plural(count.left_out, "sample") + " left out", count.left_out};
-  answer.outliers = outlier_variance(answer.remedy ? count.without : count.with);
+  const bool cleaned = answer.remedy.has_value();
+  answer.outliers = outlier_variance(cleaned ? count.without : count.with, cleaned);
   return answer;
 }
 

@@ -3,6 +3,7 @@
 
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
+#include "libchar/fit/signs/spike_cleaner.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -40,6 +41,32 @@ TEST_CASE("intervals of N hold the truth where the samples have heavy tails") {
   const double scale = std::sqrt(0.5);
   // Each product has variance 1, their half sum 1/2. Without the fourth moment it is about 78 of 100.
   CHECK(held([](std::uint64_t seed) { return laplace_record(8000, seed); }, scale * 0.1) >= 89);
+}
+
+TEST_CASE("spikes of which some are left out and some are not leave N where it is") {
+  // A quarter of spikes of eight standard deviations are below six of the residual that finds them.
+  for (const double sign : {0.0, 1.0})
+    CHECK(held(
+              [&](std::uint64_t seed) {
+                test::Gaussian gauss(seed);
+                std::vector<double> y(30000);
+                for (double& v : y) {
+                  v = gauss();
+                  if (gauss.uniform() < 0.001) v += gauss.uniform() < 0.5 && sign == 0 ? -8 : 8;
+                }
+                return y;
+              },
+              0.1) >= 90);
+}
+
+TEST_CASE("small outliers are taken out where larger ones were left out, even if chance hides them") {
+  const detail::CoreSums sums{20000, 40400, 40000, 40000};
+  CHECK_FALSE(detail::outlier_variance(sums, false));
+  const auto left = detail::outlier_variance(sums, true);
+  REQUIRE(left);
+  CHECK(left->variance == Approx(0.01));
+  CHECK_FALSE(left->seen);
+  CHECK(detail::outlier_variance({20000, 44000, 40000, 40000}, false)->seen);
 }
 
 TEST_CASE("Gaussian noise keeps the interval of its likelihood") {

@@ -78,7 +78,7 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers, double ra
   fit.covariance[kWhite][kWhite] += 4 * more * more;
   fit.theta[kWhite] *= share * share;
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
-  const bool noticeable = 1 / share - 1 > kNoticeable * white.relative_sd;
+  const bool noticeable = outliers->seen && 1 / share - 1 > kNoticeable * white.relative_sd;
   if (noticeable)
     fit.findings.push_back(finding(
         "outliers_in_n",

@@ -195,14 +195,16 @@ CoreSums core_sums(std::span<const double> record) {
   return out;
 }
 
-std::optional<OutlierVariance> outlier_variance(const CoreSums& sums) {
+std::optional<OutlierVariance> outlier_variance(const CoreSums& sums, bool expected) {
   // Standard deviations of ln(far / all) and of ln(near / far) of Gaussian differences, times the root of their count.
-  constexpr double kAll = 1.7, kCore = 4.6, kSure = 4, kFlat = 0.01;
+  constexpr double kAll = 1.7, kCore = 4.6, kSure = 4, kExpected = 0.5, kFlat = 0.01;
   if (!(sums.count > 0) || !(sums.far > 0)) return std::nullopt;
   const double root = std::sqrt(sums.count);
-  if (!(std::log(sums.all / sums.far) > kSure * kAll / root)) return std::nullopt;
+  const double excess = std::log(sums.all / sums.far) * root / kAll;
+  if (!(excess > (expected ? kExpected : kSure))) return std::nullopt;
   if (std::abs(std::log(sums.near / sums.far)) > kSure * kCore / root + kFlat) return std::nullopt;
-  return OutlierVariance{(sums.all - sums.far) / sums.count / 2, kAll * sums.far / sums.count / 2 / root};
+  return OutlierVariance{(sums.all - sums.far) / sums.count / 2, kAll * sums.far / sums.count / 2 / root,
+                         excess > kSure};
 }
 
 }  // namespace libchar::detail

@@ -51,10 +51,12 @@ CoreSums core_sums(std::span<const double> record);
 
 /// Variance per sample that outliers add to a record of Gaussian noise: half of what the differences have beyond their
 /// core, with its standard deviation. Where the core itself is not Gaussian they are the noise's own tails: none.
+/// `expected`: larger ones were left out, so that smaller ones need not be beyond chance.
 struct OutlierVariance {
   double variance = 0, sd = 0;
+  bool seen = true;  ///< beyond chance by themselves
 };
-std::optional<OutlierVariance> outlier_variance(const CoreSums& sums);
+std::optional<OutlierVariance> outlier_variance(const CoreSums& sums, bool expected);
 
 }  // namespace libchar::detail
 

@@ -461,21 +461,21 @@ struct Search {
       const std::optional<Trial> bare = has_holes(band) ? at(without_skirts(band)) : std::nullopt;
       return bare && bare->band.passes ? bare->band : band;
     }
-    std::optional<Trial> best = at(band);
-    if (!whole && band.orders == 0) band = cut_at(band, bins, band.top_hz / 2);
-    const auto with_orders = [&](int more) {
-      Band next = band;
+    const auto with_orders = [&](Band next, int more) {
       next.orders += more;
       return at(next);
     };
-    for (int more = 1; best && best->band.orders > 0 && more <= kMostMore; ++more) {
-      std::optional<Trial> next = with_orders(1);
-      if (!next || best->half_deviance - next->half_deviance < kExplains) break;
+    std::optional<Trial> best = at(band);
+    for (int more = 1; best && band.orders > 0 && more <= kMostMore; ++more) {
+      std::optional<Trial> next = with_orders(band, 1);
+      if (!next || !next->band.passes || best->half_deviance - next->half_deviance < kExplains) break;
       best = std::move(next);
       band = best->band;
     }
-    const std::optional<Trial> trial = with_orders(band.orders > 0 && band.orders <= options.most_orders ? 2 : 1);
-    return trial && trial->band.passes ? trial->band : best ? best->band : band;
+    const int margin = band.orders > 0 && band.orders <= options.most_orders ? 2 : 1;
+    const std::optional<Trial> trial =
+        with_orders(band.orders == 0 ? cut_at(band, bins, band.top_hz / 2) : band, margin);
+    return trial && trial->band.passes ? trial->band : band;
   }
 };
 
