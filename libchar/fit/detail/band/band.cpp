@@ -5,8 +5,8 @@
 // with a real impulse response it is even and analytic about f = 0, and |H(0)| = 1 by construction.
 //   1. the whole spectrum, terms alone; 2. with quantization noise, or a filter known by name; 3.
 //   cuts every half octave from the
-//   top, orders 0..4 of the shape: the first that passes, with one order more, which takes out the
-//   bias that "just passes" leaves;
+//   top, orders 0..4 of the shape: the first that passes, with the orders that explain something and
+//   two more, which take out the bias that "just passes" leaves;
 //   4. where the band is cut: the same without the broad peaks, if that makes it wider.
 // A band passes when the residuals of its bins (the slowest few aside, where drift lives) and of
 // its top octave and a half are those of noise.
