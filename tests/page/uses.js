@@ -196,6 +196,33 @@ async function hardNames(one) {
   await one.has("help-replay/fusion.yaml");
 }
 
+/** Marks of missing values in a channel whose name has a comma, a bump in another one. */
+function troubled(folder) {
+  const draw = normal(5);
+  return written(folder, "troubled.csv", ["t", '"a, left [deg/s]"', "b [deg/s]"], Array.from({ length: 20000 }, (_, i) =>
+    [i / 100, i % 131 === 0 ? -999 : (0.1 * draw()).toFixed(5), (0.1 * draw() + (i > 5000 && i < 8000 ? 1.5 + draw() : 0)).toFixed(5)]));
+}
+
+/** What was found is mended by a press, where the log was read and where the report found it, and taken back. */
+async function mended(one) {
+  await one.drop(troubled(one.folder));
+  await one.tab.locator("#found").getByRole("button", { name: "Say that it means missing", exact: true }).click();
+  await one.ended("a mark is told");
+  check((await one.command()).includes("--missing=-999"), "the mark is in the command");
+  check((await one.tab.locator("#found td[data-label=missing]").allInnerTexts()).join() === "153,0", "what is marked is missing");
+  check((await one.tab.locator("#mend").innerText()).startsWith("b: "), "what only the report found is told of its channel");
+  await one.tab.locator("#mend").getByRole("button", { name: "Use the longest still stretch", exact: true }).click();
+  await one.ended("a still stretch is asked for");
+  check(/--missing=-999 .*--still auto|--still auto .*--missing=-999/.test(await one.command()), "both are in the command");
+  check((await one.tab.locator("#found .bad").count()) === 0, "inspect is not told what it does not know");
+  await one.tab.getByRole("button", { name: "Take back --missing=-999" }).click();
+  await one.ended("the mark is taken back");
+  check(!(await one.command()).includes("missing"), "it is not in the command any more");
+  const words = await one.tab.evaluate(() => [listed("a, b", ["a, b", "ab"]), listed("a, b", ["x", "a, b", "a_ b"]), together("-999", "-99,-999"),
+    together("x=2,y=3", "y=4"), ...settingsOf({ options: [{ option: "channel_scale", value: "a, b=c=2" }] }).map(({ value }) => value)]);
+  check(words.join("|") === "a? b|c1|-99,-999|x=2,y=4|a? b?c=2", `lists: ${words.join("|")}`);
+}
+
 async function aModel(one) {
   check(await one.drop(path.join(one.folder, "gyro_z.sensor.yaml")) === "done", "a model opens");
   check((await one.text()).includes("gyro_z"), "a model is shown");
@@ -242,10 +269,10 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, aModel, aReport, aCurve, cancelled, byKeys };
 
-async function uses(browser, page, folder) {
-  for (const [name, scene] of Object.entries(SCENES)) {
+async function uses(browser, page, folder, only) {
+  for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {
     const one = await new Session(browser, page, folder).open();
     try {
       await scene(one);

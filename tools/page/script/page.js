@@ -78,16 +78,15 @@ function start(words, what, made = []) {
 
 /** One item, looked at by the program. */
 async function inspect(item) {
-  const answer = await start(["inspect", item.name, ...readingWords(item), "--json", "--preview"], `Reading ${item.name}`);
+  const answer = await start(["inspect", item.name, ...toldWords("inspect", [item]), "--json", "--preview"], `Reading ${item.name}`);
   item.error = "";
   item.recording = null;
   if (answer.failed !== undefined || answer.code !== 0) {
     item.error = failure(answer);
     return;
   }
-  const document = JSON.parse(answer.out);
-  item.recording = document.recordings[0];
-  item.warnings = document.findings;
+  const { recordings, findings } = JSON.parse(answer.out);
+  [item.recording, item.warnings] = [recordings[0], findings];
 }
 
 function card(item) {
@@ -166,6 +165,27 @@ async function look(items) {
   const failed = items.filter(item => item.error);
   if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? `${failed[0].name} could not be read.` : "None of these files could be read.");
   else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
+}
+
+/** Of a press on a remedy: what was told of a recording is looked at, and the use is run again. */
+async function again(item, wanted) {
+  await look([item]);
+  if (item.error || bench.logs.length === 1) return; // it was run
+  [use, picked] = [wanted, true];
+  drawUses();
+  return run();
+}
+
+/** What reports found and options can mend, but for what stands beside the recording already. */
+function mendableLines(files, ran) {
+  return files.filter(({ name }) => /(^|\/)report\.json$/.test(name)).flatMap(({ bytes }) => {
+    const report = JSON.parse(new TextDecoder().decode(bytes)), item = bench.logs.find(({ name }) => report.recording && name === report.recording.file);
+    const known = item ? [...item.warnings, ...item.recording.channels.flatMap(({ findings }) => findings)] : [];
+    return mendable(report, known).map(({ finding, subject }) => findingLine(finding, subject, set => {
+      applyRemedy(set, item ? item.reading : ran.values, item && item.units);
+      return item ? again(item, ran) : run();
+    }));
+  });
 }
 
 function stopped(error) {
@@ -265,6 +285,7 @@ function show(answers) {
   if (pages.length > 0) showPage(pages[0]);
   const warnings = answers.flatMap(({ err }) => err.split("\n")).filter(line => line.trim());
   byId("said").replaceChildren(...warnings.map(line => element("li", {}, line.replace(/^sensorchar: /, ""))));
+  byId("mend").replaceChildren(...mendableLines(files, use));
   byId("text").hidden = pages.length > 0 || !text;
   byId("text").textContent = text;
   byId("figures").replaceChildren(...files.filter(({ name }) => name.endsWith(".svg")).map(figure));
