@@ -2,6 +2,7 @@
 "use strict";
 const fs = require("fs"), path = require("path");
 const { ROOT, LIMIT_MS, check, opened, state, dropped } = require("./support.js");
+const { bagOf } = require("./bag.js");
 
 /** Normal numbers, the same ones every time (Numerical Recipes' 32-bit generator, Box-Muller). */
 function normal(seed) {
@@ -103,7 +104,7 @@ async function oneLog(one) {
   check((await one.command()).startsWith("sensorchar characterize imu_at_rest.csv"), "the command is shown");
   await one.has("report.html", "report.json", "curves.csv", "gyro_z.sensor.yaml");
   await one.report("gyro_z");
-  await one.run("Export for a consumer", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
+  await one.run("Export for Kalibr, ROS …", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
   check((await one.text()).includes("gyroscope_noise_density"), "Kalibr's file is shown");
   await one.run("Figure");
   check((await one.tab.locator("#figures img").count()) === 1, "a figure is shown");
@@ -118,6 +119,17 @@ async function oneLog(one) {
   check(fs.readFileSync(zip).subarray(0, 4).toString("latin1") === "PK\x03\x04" && fs.statSync(zip).size > 1e5, "an archive of all files");
   for (const name of ["report.json", "gyro_z.sensor.yaml"])
     await one.saved(() => one.tab.locator("#files a", { hasText: name }).first().click(), name);
+}
+
+/** From a bag to Kalibr's file: three presses. */
+async function bagToKalibr(one) {
+  const draw = normal(3), file = path.join(one.folder, "imu.bag");
+  const three = sd => [0, 0, 0].map(() => sd * draw());
+  fs.writeFileSync(file, bagOf(Array.from({ length: 6000 }, () => [three(1e-3), three(2e-2)])));
+  check(await one.drop(file) === "done", "a bag is characterized");
+  await one.run("Export for Kalibr, ROS …");
+  await one.has("imu.yaml");
+  check(/rostopic: \/imu\n[^]*gyroscope_noise_density: 0\.0001/.test(await one.text()), `Kalibr's file: ${await one.text()}`);
 }
 
 async function printed(one) {
@@ -192,7 +204,8 @@ async function hardNames(one) {
   await one.tab.getByLabel("Unit of -b").press("Tab");
   await one.ended("a unit is told");
   check((await one.tab.locator("#found td", { hasText: "deg/s" }).count()) === 1, "the unit of a channel -b is taken");
-  await one.run("An array: best fusion");
+  await one.run("An array: best fusion", tab => tab.getByRole("checkbox", { name: "-b", exact: true }).check());
+  check((await one.command()).includes("--sensors 'a? left,c?2?,-b'"), "names in a list");
   await one.has("help-replay/fusion.yaml");
 }
 
@@ -269,7 +282,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder, only) {
   for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {

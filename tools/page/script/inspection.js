@@ -39,7 +39,7 @@ function traceCell(channel) {
     picture.setAttribute(name, value);
   path.setAttribute("d", known.map(i => `${low[i - 1] === null || i === 0 ? "M" : "L"}${i + 0.5} ${y(high[i])}V${Number(y(low[i])) + 0.6}`).join(""));
   picture.append(path);
-  return element("td", { "data-label": "trace" }, picture);
+  return element("td", { class: "trace" }, picture);
 }
 
 function channelTable(item, recording, changed) {
@@ -102,13 +102,16 @@ function readingOptions(item, changed) {
   return element("details", {}, element("summary", {}, "Say how it is read"), ...optionGroups(asked, item.reading, () => {}), button("Read it again", again, { class: "run" }));
 }
 
+/** What has to be said of a recording before anything can be made of it. */
+const lacksStream = ({ recording }) => recording !== null && recording.channels.length === 0 && (recording.topics || []).length > 0;
+const lacksRate = ({ recording }) => recording !== null && !recording.rate_hz && recording.rows > 1;
+
 /** The inside of an item's card. */
 function inspectionView(item, changed) {
   const { recording } = item;
   const parts = [element("p", { class: "facts" }, facts(recording))];
-  if (recording.channels.length === 0 && (recording.topics || []).length > 0) return [...parts, topicChoice(item, recording, changed), chosen(item, changed)];
-  const noRate = !recording.rate_hz && recording.rows > 1;
-  if (noRate) parts.push(question("The log does not say how fast it was sampled.", "Sampling rate", "--rate", "200 Hz", item, changed));
+  if (lacksStream(item)) return [...parts, topicChoice(item, recording, changed), chosen(item, changed)];
+  if (lacksRate(item)) parts.push(question("The log does not say how fast it was sampled.", "Sampling rate", "--rate", "200 Hz", item, changed));
   parts.push(channelTable(item, recording, changed));
   const found = [...(item.warnings || []).map(one => [one, ""]), ...recording.channels.flatMap(channel => channel.findings.map(one => [one, channel.name]))];
   const press = set => {

@@ -164,7 +164,8 @@ async function look(items) {
   if (bench.logs.length === 0 && items.length === 1 && (items[0].kind === "report" || items[0].kind === "model")) return opened(items[0]);
   const failed = items.filter(item => item.error);
   if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? `${failed[0].name} could not be read.` : "None of these files could be read.");
-  else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
+  else if (items.some(item => item.recording && (lacksStream(item) || lacksRate(item)))) setState("done", "Read. One answer is missing, below.");
+  else setState("done", bench.items.some(({ recording }) => recording) ? "Read. Choose what to do with it." : "Ready.");
 }
 
 /** Of a press on a remedy: what was told of a recording is looked at, and the use is run again. */

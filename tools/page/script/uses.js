@@ -20,6 +20,15 @@ function figureWords(bench, source) {
   return ["plot", source, ...optionWords([["--channel", channel]]), "-o", bench.free(`${stem(source)}.svg`)];
 }
 
+/** The most channels of one unit: what may be sensors of one quantity. */
+function alike(log) {
+  const groups = new Map();
+  for (const { name, unit } of log.recording.channels) groups.set(unit, [...(groups.get(unit) || []), name]);
+  return [...groups.values()].sort((a, b) => b.length - a.length)[0];
+}
+
+const arraysOf = bench => bench.logs.filter(log => alike(log).length > 1);
+
 const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...toldWords(use.verb, logs, use.values), "-o", out];
 /** What `compare` can hold against each other: of sensors anything, of replays nothing but replays. `begin`: what was dropped, else what was made. */
 function sidesOf(bench) {
@@ -72,9 +81,9 @@ const USES = [
   {
     ...base, id: "replay", label: "An array: best fusion", verb: "replay",
     main: [["--learning", "Learning window"], ["--align", "Align the sensors first"]], hidden: ["--sensors", "--reference", "--unit"],
-    fits: bench => bench.logs.some(log => log.recording.channels.length > 1) || bench.scenes.length > 0,
+    fits: bench => arraysOf(bench).length > 0 || bench.scenes.length > 0,
     choices: (bench, use, changed) => {
-      const sources = [...bench.scenes, ...bench.logs.filter(log => log.recording.channels.length > 1)];
+      const sources = [...bench.scenes, ...arraysOf(bench)];
       if (use.source !== first(sources, use.source)) use.sensors = null;
       use.source = first(sources, use.source);
       const log = bench.logs.find(({ name }) => name === use.source);
@@ -85,7 +94,7 @@ const USES = [
       })];
       if (!log) return parts;
       const channels = log.recording.channels.map(({ name }) => name);
-      use.sensors = use.sensors || new Set(channels);
+      use.sensors = use.sensors || new Set(alike(log));
       return [...parts, choices("Sensors of one quantity", channels, use.sensors, changed), choice("Reference, if one channel is the truth",
         [["", "none"], ...channels.map(name => [name, name])], use.reference || "", value => {
           use.reference = value;
@@ -116,7 +125,7 @@ const USES = [
     words: (bench, use) => ["fuse", use.source, ...toldWords(use.verb, [bench.logs.find(({ name }) => name === use.source)], [["--with", use.by], ...use.values]), "-o", bench.free(`${stem(use.source)}-fused.csv`)],
   },
   {
-    ...base, id: "model", label: "Export for a consumer", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
+    ...base, id: "model", label: "Export for Kalibr, ROS …", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
     fits: bench => modelsOf(bench).length > 0,
     choices: (bench, use, changed) => {
       const models = modelsOf(bench);
@@ -125,7 +134,7 @@ const USES = [
       return [choice("Models of", entriesOf(models), use.source, value => {
         use.source = value;
         changed();
-      }), choice("For", TARGETS.map(({ name, title }) => [name, title]), use.to, value => {
+      }), choice("For", TARGETS.map(({ name, title, file }) => [name, `${title}: ${file}`]), use.to, value => {
         use.to = value;
         changed();
       })];
