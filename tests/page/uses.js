@@ -236,6 +236,32 @@ async function mended(one) {
   check(words.join("|") === "a? b|c1|-99,-999|x=2,y=4|a? b?c=2", `lists: ${words.join("|")}`);
 }
 
+/** Values of any size have traces inside of their box, and documents that are none end in a sentence. */
+async function extremes(one) {
+  const draw = normal(2), file = written(one.folder, "extremes.csv", ["t", "huge", "whole", "tiny", "constant", "unknown", "step"], Array.from({ length: 3000 }, (_, i) =>
+    [i / 100, draw() * 1e300, i % 2 ? 1.7e308 : -1.7e308, Math.round(9 * draw()) * 5e-324, 7, "nan", i < 1500 ? 0 : 1e-300]));
+  await one.drop(file);
+  const paths = await one.tab.locator("svg.trace path").evaluateAll(all => all.map(path => path.getAttribute("d")));
+  check(paths.length > 4, `${paths.length} traces`);
+  for (const text of paths) {
+    const heights = [...text.matchAll(/(?: |V)(-?[0-9.]+)/g)].map(([, y]) => Number(y));
+    check(!/NaN|Infinity/.test(text) && heights.every(y => y >= 0 && y <= 24), `a trace leaves its box: ${text.slice(0, 80)}`);
+  }
+  const documents = ["null", "5", "[]", '{"format": "characterization", "recording": {"channels": 5}}', '{"format": "characterization", "recording": {"channels": [null, {"name": 3}]}}',
+    '{"format": "sensor-model"}', '{"format": "replay", "findings": 1}', '{"format":', "\ufeff{}"];
+  for (const [i, text] of documents.entries()) {
+    const name = path.join(one.folder, `document${i}.json`);
+    fs.writeFileSync(name, text);
+    const { tab, context, said } = await opened(one.browser, one.page);
+    await tab.setInputFiles("#logs", [name]);
+    await tab.waitForFunction(() => ["done", "error"].includes(document.documentElement.dataset.state), null, { timeout: LIMIT_MS });
+    const error = await tab.locator("#error").innerText();
+    check(said.length === 0, `${text}: ${said}`);
+    check((await state(tab, ["done", "error"])) === "done" || /E\d{4}/.test(error), `${text}: no sentence: ${error}`);
+    await context.close();
+  }
+}
+
 async function aModel(one) {
   check(await one.drop(path.join(one.folder, "gyro_z.sensor.yaml")) === "done", "a model opens");
   check((await one.text()).includes("gyro_z"), "a model is shown");
@@ -282,7 +308,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder, only) {
   for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {
