@@ -184,6 +184,35 @@ async function toldHow(one) {
   check((await one.command()).includes("--preset NAVCHIP_FLT"), "how it is read is in the command");
 }
 
+/** What a log does not say is asked: its rate, or the column of its times; and which columns are meant. */
+async function asked(one) {
+  const draw = normal(4), value = () => draw().toFixed(4);
+  let moment = 5; // a clock that pauses, among the channels
+  const file = written(one.folder, "counted.csv", ["left [V]", "moment", "right [V]"], Array.from({ length: 3000 }, () =>
+    [value(), (moment += draw() > 0.7 ? 0.02 : 0.01).toFixed(2), value()]));
+  const plain = written(one.folder, "plain.csv", ["left [V]", "right [V]"], Array.from({ length: 3000 }, () => [value(), value()]));
+  await one.drop(plain);
+  check((await one.tab.locator("#status").innerText()) === "Read. One answer is missing, below.", "the page says that it asks");
+  await one.tab.getByLabel("Sampling rate", { exact: true }).fill("100 Hz");
+  await one.tab.getByRole("button", { name: "Go on", exact: true }).click();
+  await one.ended("a rate is told");
+  check((await one.command()).includes("--rate '100 Hz'"), "the rate is in the command");
+  await one.tab.getByText("Say how it is read").click();
+  await one.tab.locator("#found").getByLabel("--channel", { exact: true }).fill("right");
+  await one.tab.getByRole("button", { name: "Read it again" }).click();
+  await one.ended("a column is chosen");
+  check((await one.command()).includes("--channel right") && (await one.tab.locator("#found tbody tr").count()) === 1, "one channel is left");
+  await one.tab.getByRole("button", { name: "Remove plain.csv" }).click();
+  await one.tab.setInputFiles("#logs", [file]);
+  await one.tab.locator("#found h3", { hasText: "counted.csv" }).waitFor();
+  await one.ended("a log of odd times");
+  const column = one.tab.getByLabel("or the column of its times", { exact: true });
+  await column.selectOption("moment");
+  await one.tab.getByRole("button", { name: "Go on", exact: true }).click();
+  await one.ended("a column is told");
+  check((await one.command()).includes("--time-column moment"), "the column is in the command");
+}
+
 async function anArray(one) {
   check(await one.drop(array(one.folder)) === "done", "an array is read");
   const use = "An array: best fusion";
@@ -308,7 +337,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, asked, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, byKeys };
 
 async function uses(browser, page, folder, only) {
   for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {

@@ -53,18 +53,21 @@ function channelTable(item, recording, changed) {
     element("tbody", {}, ...rows)));
 }
 
-/** A question for one option of reading, answered by Enter or the button. */
-function question(sentence, label, flag, placeholder, item, changed) {
-  const input = element("input", { type: "text", placeholder, value: item.reading.get(flag), size: 14 });
+/** What a log without a rate is asked: the rate, or the column that has the times. */
+function rateQuestion(item, recording, changed) {
+  const rate = element("input", { type: "text", placeholder: "200 Hz", value: item.reading.get("--rate"), size: 14 });
+  const column = element("select", {}, ...["", ...recording.channels.map(({ name }) => name)].map(name => element("option", { value: name }, name || "none")));
   const answer = () => {
-    if (!input.value.trim()) return;
-    item.reading.set(flag, input.value.trim());
+    const [flag, value] = column.value ? ["--time-column", column.value] : ["--rate", rate.value.trim()];
+    if (!value) return;
+    item.reading.set(flag, value);
     changed();
   };
-  input.addEventListener("keydown", event => {
+  rate.addEventListener("keydown", event => {
     if (event.key === "Enter") answer();
   });
-  return element("div", { class: "asked" }, element("p", {}, sentence), field(label, input), button("Go on", answer, { class: "run" }));
+  return element("div", { class: "asked" }, element("p", {}, "The log does not say how fast it was sampled."), field("Sampling rate", rate),
+    field("or the column of its times", column), button("Go on", answer, { class: "run" }));
 }
 
 function topicChoice(item, recording, changed) {
@@ -92,7 +95,7 @@ function chosen(item, changed) {
   return rows.length > 0 ? element("ul", { class: "seen" }, ...rows) : null;
 }
 
-/** Of a recording that was refused: all that says how one is read. */
+/** All that says how a recording is read: of one that was refused, or is meant otherwise. */
 function readingOptions(item, changed) {
   const asked = verbOf("inspect").options.filter(({ group, flags }) => group.startsWith("Reading") && !flags.some(flag => NOT_ASKED.has(flag)));
   const again = () => {
@@ -111,7 +114,7 @@ function inspectionView(item, changed) {
   const { recording } = item;
   const parts = [element("p", { class: "facts" }, facts(recording))];
   if (lacksStream(item)) return [...parts, topicChoice(item, recording, changed), chosen(item, changed)];
-  if (lacksRate(item)) parts.push(question("The log does not say how fast it was sampled.", "Sampling rate", "--rate", "200 Hz", item, changed));
+  if (lacksRate(item)) parts.push(rateQuestion(item, recording, changed));
   parts.push(channelTable(item, recording, changed));
   const found = [...(item.warnings || []).map(one => [one, ""]), ...recording.channels.flatMap(channel => channel.findings.map(one => [one, channel.name]))];
   const press = set => {
@@ -119,8 +122,7 @@ function inspectionView(item, changed) {
     changed();
   };
   if (found.length > 0) parts.push(element("ul", { class: "seen" }, ...found.map(([one, subject]) => findingLine(one, subject, press))));
-  parts.push(chosen(item, changed));
-  return parts;
+  return [...parts, chosen(item, changed), readingOptions(item, changed)];
 }
 
 /** Words that read logs as they were described, by what a verb can be told; `more`: what the use itself says, which wins. */

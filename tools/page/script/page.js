@@ -313,6 +313,9 @@ function save(blob, name) {
 }
 
 function listen() {
+  // What nobody thought of ends in a sentence too.
+  addEventListener("unhandledrejection", ({ reason }) => stopped(reason));
+  addEventListener("error", ({ error, message }) => stopped(error || message));
   byId("logs").addEventListener("change", event => {
     const files = [...event.target.files].map(file => ({ name: file.webkitRelativePath || file.name, file }));
     event.target.value = "";
