@@ -392,6 +392,7 @@ async function begin() {
   }
   byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
   setState("ready", "Ready.");
+  pool.warm();
 }
 
 begin();
