@@ -106,6 +106,8 @@ async function oneLog(one) {
   await one.report("gyro_z");
   await one.run("Export for Kalibr, ROS …", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
   check((await one.text()).includes("gyroscope_noise_density"), "Kalibr's file is shown");
+  const top = await one.tab.locator("#result").evaluate(result => result.getBoundingClientRect().top);
+  check(top >= -1 && top < 1000, `what came of it is in sight: ${top}`);
   await one.run("Figure");
   check((await one.tab.locator("#figures img").count()) === 1, "a figure is shown");
   await one.tab.getByRole("button", { name: "Add it as PNG" }).click();

@@ -212,6 +212,12 @@ async function take(files) {
 
 const run = () => command(use.jobs ? use.jobs(bench, use) : [use.words(bench, use)], { made: use.made ? bench.made : [], said: use.words(bench, use) });
 
+/** The button of a use stands far from what comes of it. */
+async function pressed() {
+  await run();
+  byId(byId("error").hidden ? "result" : "error").scrollIntoView({ block: "start" });
+}
+
 const worked = answer => answer.failed === undefined && ([0, 6].includes(answer.code) || (answer.code === 4 && answer.files.length > 0));
 
 /** Runs commands, side by side, and shows all of it. `said`: the command that they are parts of. `keep`: what is shown of the last one stays.
@@ -336,7 +342,7 @@ function listen() {
   });
   byId("options").addEventListener("submit", event => {
     event.preventDefault();
-    if (running === 0) run();
+    if (running === 0) pressed();
   });
   byId("cancel").addEventListener("click", () => pool.cancel());
   byId("copy").addEventListener("click", async () => {
