@@ -1,6 +1,6 @@
 // The page in a browser: files are dropped on it, every request is recorded, and what comes of it is looked at.
 //
-// usage: node browser.js PAGE [--browser chromium|firefox] [--only STEP] [--screens FOLDER] [--native PROGRAM] [FILE…]
+// usage: node browser.js PAGE [--browser chromium|firefox] [--only STEP [--use SCENE]] [--screens FOLDER] [--native PROGRAM] [FILE…]
 // NODE_PATH has playwright-core and axe-core. FILE: logs (default: the fixtures); what stands beside one goes with it. Prints a row per file:
 // state, seconds to the first number and to the end, the largest heap of the program; with PROGRAM its seconds for the same by one thread.
 // Exit code 1 where something is wrong.
@@ -117,13 +117,13 @@ async function main() {
     const at = words.indexOf(name);
     return at < 0 ? undefined : words.splice(at, 2)[1];
   };
-  const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only"), program = named("--native");
+  const kind = named("--browser") || "chromium", folder = named("--screens"), only = named("--only"), scene = named("--use"), program = named("--native");
   const [page, ...files] = words;
   const scratch = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
   const browser = await launched(kind);
   const steps = {
     recorder: () => recorderWorks(browser),
-    uses: () => uses(browser, page, scratch),
+    uses: () => uses(browser, page, scratch, scene),
     injections: () => injections(browser, page, scratch),
     accessible: () => accessible(browser, page),
     screens: () => folder && screens(browser, page, folder),

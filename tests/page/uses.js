@@ -2,6 +2,7 @@
 "use strict";
 const fs = require("fs"), path = require("path");
 const { ROOT, LIMIT_MS, check, opened, state, dropped } = require("./support.js");
+const { bagOf } = require("./bag.js");
 
 /** Normal numbers, the same ones every time (Numerical Recipes' 32-bit generator, Box-Muller). */
 function normal(seed) {
@@ -103,8 +104,10 @@ async function oneLog(one) {
   check((await one.command()).startsWith("sensorchar characterize imu_at_rest.csv"), "the command is shown");
   await one.has("report.html", "report.json", "curves.csv", "gyro_z.sensor.yaml");
   await one.report("gyro_z");
-  await one.run("Export for a consumer", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
+  await one.run("Export for Kalibr, ROS …", tab => tab.getByLabel("Axes", { exact: true }).selectOption("z"));
   check((await one.text()).includes("gyroscope_noise_density"), "Kalibr's file is shown");
+  const top = await one.tab.locator("#result").evaluate(result => result.getBoundingClientRect().top);
+  check(top >= -1 && top < 1000, `what came of it is in sight: ${top}`);
   await one.run("Figure");
   check((await one.tab.locator("#figures img").count()) === 1, "a figure is shown");
   await one.tab.getByRole("button", { name: "Add it as PNG" }).click();
@@ -118,6 +121,17 @@ async function oneLog(one) {
   check(fs.readFileSync(zip).subarray(0, 4).toString("latin1") === "PK\x03\x04" && fs.statSync(zip).size > 1e5, "an archive of all files");
   for (const name of ["report.json", "gyro_z.sensor.yaml"])
     await one.saved(() => one.tab.locator("#files a", { hasText: name }).first().click(), name);
+}
+
+/** From a bag to Kalibr's file: three presses. */
+async function bagToKalibr(one) {
+  const draw = normal(3), file = path.join(one.folder, "imu.bag");
+  const three = sd => [0, 0, 0].map(() => sd * draw());
+  fs.writeFileSync(file, bagOf(Array.from({ length: 6000 }, () => [three(1e-3), three(2e-2)])));
+  check(await one.drop(file) === "done", "a bag is characterized");
+  await one.run("Export for Kalibr, ROS …");
+  await one.has("imu.yaml");
+  check(/rostopic: \/imu\n[^]*gyroscope_noise_density: 0\.0001/.test(await one.text()), `Kalibr's file: ${await one.text()}`);
 }
 
 async function printed(one) {
@@ -172,6 +186,35 @@ async function toldHow(one) {
   check((await one.command()).includes("--preset NAVCHIP_FLT"), "how it is read is in the command");
 }
 
+/** What a log does not say is asked: its rate, or the column of its times; and which columns are meant. */
+async function asked(one) {
+  const draw = normal(4), value = () => draw().toFixed(4);
+  let moment = 5; // a clock that pauses, among the channels
+  const file = written(one.folder, "counted.csv", ["left [V]", "moment", "right [V]"], Array.from({ length: 3000 }, () =>
+    [value(), (moment += draw() > 0.7 ? 0.02 : 0.01).toFixed(2), value()]));
+  const plain = written(one.folder, "plain.csv", ["left [V]", "right [V]"], Array.from({ length: 3000 }, () => [value(), value()]));
+  await one.drop(plain);
+  check((await one.tab.locator("#status").innerText()) === "Read. One answer is missing, below.", "the page says that it asks");
+  await one.tab.getByLabel("Sampling rate", { exact: true }).fill("100 Hz");
+  await one.tab.getByRole("button", { name: "Go on", exact: true }).click();
+  await one.ended("a rate is told");
+  check((await one.command()).includes("--rate '100 Hz'"), "the rate is in the command");
+  await one.tab.getByText("Say how it is read").click();
+  await one.tab.locator("#found").getByLabel("--channel", { exact: true }).fill("right");
+  await one.tab.getByRole("button", { name: "Read it again" }).click();
+  await one.ended("a column is chosen");
+  check((await one.command()).includes("--channel right") && (await one.tab.locator("#found tbody tr").count()) === 1, "one channel is left");
+  await one.tab.getByRole("button", { name: "Remove plain.csv" }).click();
+  await one.tab.setInputFiles("#logs", [file]);
+  await one.tab.locator("#found h3", { hasText: "counted.csv" }).waitFor();
+  await one.ended("a log of odd times");
+  const column = one.tab.getByLabel("or the column of its times", { exact: true });
+  await column.selectOption("moment");
+  await one.tab.getByRole("button", { name: "Go on", exact: true }).click();
+  await one.ended("a column is told");
+  check((await one.command()).includes("--time-column moment"), "the column is in the command");
+}
+
 async function anArray(one) {
   check(await one.drop(array(one.folder)) === "done", "an array is read");
   const use = "An array: best fusion";
@@ -192,8 +235,62 @@ async function hardNames(one) {
   await one.tab.getByLabel("Unit of -b").press("Tab");
   await one.ended("a unit is told");
   check((await one.tab.locator("#found td", { hasText: "deg/s" }).count()) === 1, "the unit of a channel -b is taken");
-  await one.run("An array: best fusion");
+  await one.run("An array: best fusion", tab => tab.getByRole("checkbox", { name: "-b", exact: true }).check());
+  check((await one.command()).includes("--sensors 'a? left,c?2?,-b'"), "names in a list");
   await one.has("help-replay/fusion.yaml");
+}
+
+/** Marks of missing values in a channel whose name has a comma, a bump in another one. */
+function troubled(folder) {
+  const draw = normal(5);
+  return written(folder, "troubled.csv", ["t", '"a, left [deg/s]"', "b [deg/s]"], Array.from({ length: 20000 }, (_, i) =>
+    [i / 100, i % 131 === 0 ? -999 : (0.1 * draw()).toFixed(5), (0.1 * draw() + (i > 5000 && i < 8000 ? 1.5 + draw() : 0)).toFixed(5)]));
+}
+
+/** What was found is mended by a press, where the log was read and where the report found it, and taken back. */
+async function mended(one) {
+  await one.drop(troubled(one.folder));
+  await one.tab.locator("#found").getByRole("button", { name: "Say that it means missing", exact: true }).click();
+  await one.ended("a mark is told");
+  check((await one.command()).includes("--missing=-999"), "the mark is in the command");
+  check((await one.tab.locator("#found td[data-label=missing]").allInnerTexts()).join() === "153,0", "what is marked is missing");
+  check((await one.tab.locator("#mend").innerText()).startsWith("b: "), "what only the report found is told of its channel");
+  await one.tab.locator("#mend").getByRole("button", { name: "Use the longest still stretch", exact: true }).click();
+  await one.ended("a still stretch is asked for");
+  check(/--missing=-999 .*--still auto|--still auto .*--missing=-999/.test(await one.command()), "both are in the command");
+  check((await one.tab.locator("#found .bad").count()) === 0, "inspect is not told what it does not know");
+  await one.tab.getByRole("button", { name: "Take back --missing=-999" }).click();
+  await one.ended("the mark is taken back");
+  check(!(await one.command()).includes("missing"), "it is not in the command any more");
+  const words = await one.tab.evaluate(() => [listed("a, b", ["a, b", "ab"]), listed("a, b", ["x", "a, b", "a_ b"]), together("-999", "-99,-999"),
+    together("x=2,y=3", "y=4"), ...settingsOf({ options: [{ option: "channel_scale", value: "a, b=c=2" }] }).map(({ value }) => value)]);
+  check(words.join("|") === "a? b|c1|-99,-999|x=2,y=4|a? b?c=2", `lists: ${words.join("|")}`);
+}
+
+/** Values of any size have traces inside of their box, and documents that are none end in a sentence. */
+async function extremes(one) {
+  const draw = normal(2), file = written(one.folder, "extremes.csv", ["t", "huge", "whole", "tiny", "constant", "unknown", "step"], Array.from({ length: 3000 }, (_, i) =>
+    [i / 100, draw() * 1e300, i % 2 ? 1.7e308 : -1.7e308, Math.round(9 * draw()) * 5e-324, 7, "nan", i < 1500 ? 0 : 1e-300]));
+  await one.drop(file);
+  const paths = await one.tab.locator("svg.trace path").evaluateAll(all => all.map(path => path.getAttribute("d")));
+  check(paths.length > 4, `${paths.length} traces`);
+  for (const text of paths) {
+    const heights = [...text.matchAll(/(?: |V)(-?[0-9.]+)/g)].map(([, y]) => Number(y));
+    check(!/NaN|Infinity/.test(text) && heights.every(y => y >= 0 && y <= 24), `a trace leaves its box: ${text.slice(0, 80)}`);
+  }
+  const documents = ["null", "5", "[]", '{"format": "characterization", "recording": {"channels": 5}}', '{"format": "characterization", "recording": {"channels": [null, {"name": 3}]}}',
+    '{"format": "sensor-model"}', '{"format": "replay", "findings": 1}', '{"format":', "\ufeff{}"];
+  for (const [i, text] of documents.entries()) {
+    const name = path.join(one.folder, `document${i}.json`);
+    fs.writeFileSync(name, text);
+    const { tab, context, said } = await opened(one.browser, one.page);
+    await tab.setInputFiles("#logs", [name]);
+    await tab.waitForFunction(() => ["done", "error"].includes(document.documentElement.dataset.state), null, { timeout: LIMIT_MS });
+    const error = await tab.locator("#error").innerText();
+    check(said.length === 0, `${text}: ${said}`);
+    check((await state(tab, ["done", "error"])) === "done" || /E\d{4}/.test(error), `${text}: no sentence: ${error}`);
+    await context.close();
+  }
 }
 
 async function aModel(one) {
@@ -242,10 +339,10 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, printed, severalLogs, anythingCompared, toldHow, anArray, hardNames, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, asked, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, byKeys };
 
-async function uses(browser, page, folder) {
-  for (const [name, scene] of Object.entries(SCENES)) {
+async function uses(browser, page, folder, only) {
+  for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {
     const one = await new Session(browser, page, folder).open();
     try {
       await scene(one);

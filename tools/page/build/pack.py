@@ -15,7 +15,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parent
 ROOT = PAGE.parent.parent
-SCRIPTS = ["elements", "words", "zip", "pool", "items", "inspection", "options", "uses", "page"]
+SCRIPTS = ["elements", "words", "zip", "pool", "items", "remedies", "inspection", "options", "uses", "page"]
 NOT_INSIDE = {"glog", "SuiteSparse", "HDF5", "OpenSSL", "oneTBB", "pybind11", "Cairo", "fontconfig"}
 
 

@@ -23,7 +23,8 @@ async function kindOf(name, file) {
 function reportAbout(text) {
   try {
     const { format, recording } = JSON.parse(text);
-    return { kind: format === "replay" ? "replay" : "report", channels: recording && recording.channels || [] };
+    const channels = [recording && recording.channels].flat().filter(channel => channel && typeof channel.name === "string");
+    return { kind: format === "replay" ? "replay" : "report", channels };
   } catch {
     return null; // the program says what is wrong with it
   }

@@ -30,8 +30,11 @@ function control(option, values, changed) {
   return made;
 }
 
-const optionField = (option, values, changed, label) =>
-  field(label || longFlag(option), control(option, values, changed), option.help + (option.only ? ` (only ${option.only})` : ""), option.kind === "flag" ? "flag" : "");
+/** `given`: flags that the page itself gives, so that it need not be said that the option goes with them. */
+function optionField(option, values, changed, label, given = []) {
+  const only = option.only && !given.some(flag => option.only.includes(flag)) ? ` (only ${option.only})` : "";
+  return field(label || longFlag(option), control(option, values, changed), option.help + only, option.kind === "flag" ? "flag" : "");
+}
 
 /** Fields by the groups of the help. */
 function optionGroups(options, values, changed) {
@@ -48,7 +51,7 @@ function optionFields(verbName, use, changed) {
   const rest = asked.filter(option => !main.some(([one]) => one === option));
   const parts = [];
   if (main.length > 0) {
-    const fields = element("div", { class: "fields" }, ...main.map(([option, label]) => optionField(option, use.values, changed, label)));
+    const fields = element("div", { class: "fields" }, ...main.map(([option, label]) => optionField(option, use.values, changed, label, use.hidden)));
     parts.push(use.folded ? element("details", {}, element("summary", {}, "Frequent options"), fields) : fields);
   }
   if (rest.length === 0) return parts;

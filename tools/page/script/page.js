@@ -78,16 +78,15 @@ function start(words, what, made = []) {
 
 /** One item, looked at by the program. */
 async function inspect(item) {
-  const answer = await start(["inspect", item.name, ...readingWords(item), "--json", "--preview"], `Reading ${item.name}`);
+  const answer = await start(["inspect", item.name, ...toldWords("inspect", [item]), "--json", "--preview"], `Reading ${item.name}`);
   item.error = "";
   item.recording = null;
   if (answer.failed !== undefined || answer.code !== 0) {
     item.error = failure(answer);
     return;
   }
-  const document = JSON.parse(answer.out);
-  item.recording = document.recordings[0];
-  item.warnings = document.findings;
+  const { recordings, findings } = JSON.parse(answer.out);
+  [item.recording, item.warnings] = [recordings[0], findings];
 }
 
 function card(item) {
@@ -165,7 +164,29 @@ async function look(items) {
   if (bench.logs.length === 0 && items.length === 1 && (items[0].kind === "report" || items[0].kind === "model")) return opened(items[0]);
   const failed = items.filter(item => item.error);
   if (failed.length > 0 && failed.length === items.length) setState("error", failed.length === 1 ? `${failed[0].name} could not be read.` : "None of these files could be read.");
-  else setState("done", bench.logs.length > 0 || bench.items.some(({ recording }) => recording) ? "Read." : "Ready.");
+  else if (items.some(item => item.recording && (lacksStream(item) || lacksRate(item)))) setState("done", "Read. One answer is missing, below.");
+  else setState("done", bench.items.some(({ recording }) => recording) ? "Read. Choose what to do with it." : "Ready.");
+}
+
+/** Of a press on a remedy: what was told of a recording is looked at, and the use is run again. */
+async function again(item, wanted) {
+  await look([item]);
+  if (item.error || bench.logs.length === 1) return; // it was run
+  [use, picked] = [wanted, true];
+  drawUses();
+  return run();
+}
+
+/** What reports found and options can mend, but for what stands beside the recording already. */
+function mendableLines(files, ran) {
+  return files.filter(({ name }) => /(^|\/)report\.json$/.test(name)).flatMap(({ bytes }) => {
+    const report = JSON.parse(new TextDecoder().decode(bytes)), item = bench.logs.find(({ name }) => report.recording && name === report.recording.file);
+    const known = item ? [...item.warnings, ...item.recording.channels.flatMap(({ findings }) => findings)] : [];
+    return mendable(report, known).map(({ finding, subject }) => findingLine(finding, subject, set => {
+      applyRemedy(set, item ? item.reading : ran.values, item && item.units);
+      return item ? again(item, ran) : run();
+    }));
+  });
 }
 
 function stopped(error) {
@@ -190,6 +211,12 @@ async function take(files) {
 }
 
 const run = () => command(use.jobs ? use.jobs(bench, use) : [use.words(bench, use)], { made: use.made ? bench.made : [], said: use.words(bench, use) });
+
+/** The button of a use stands far from what comes of it. */
+async function pressed() {
+  await run();
+  byId(byId("error").hidden ? "result" : "error").scrollIntoView({ block: "start" });
+}
 
 const worked = answer => answer.failed === undefined && ([0, 6].includes(answer.code) || (answer.code === 4 && answer.files.length > 0));
 
@@ -265,6 +292,7 @@ function show(answers) {
   if (pages.length > 0) showPage(pages[0]);
   const warnings = answers.flatMap(({ err }) => err.split("\n")).filter(line => line.trim());
   byId("said").replaceChildren(...warnings.map(line => element("li", {}, line.replace(/^sensorchar: /, ""))));
+  byId("mend").replaceChildren(...mendableLines(files, use));
   byId("text").hidden = pages.length > 0 || !text;
   byId("text").textContent = text;
   byId("figures").replaceChildren(...files.filter(({ name }) => name.endsWith(".svg")).map(figure));
@@ -291,6 +319,9 @@ function save(blob, name) {
 }
 
 function listen() {
+  // What nobody thought of ends in a sentence too.
+  addEventListener("unhandledrejection", ({ reason }) => stopped(reason));
+  addEventListener("error", ({ error, message }) => stopped(error || message));
   byId("logs").addEventListener("change", event => {
     const files = [...event.target.files].map(file => ({ name: file.webkitRelativePath || file.name, file }));
     event.target.value = "";
@@ -311,7 +342,7 @@ function listen() {
   });
   byId("options").addEventListener("submit", event => {
     event.preventDefault();
-    if (running === 0) run();
+    if (running === 0) pressed();
   });
   byId("cancel").addEventListener("click", () => pool.cancel());
   byId("copy").addEventListener("click", async () => {
@@ -367,6 +398,7 @@ async function begin() {
   }
   byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
   setState("ready", "Ready.");
+  pool.warm();
 }
 
 begin();

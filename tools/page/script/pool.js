@@ -25,6 +25,10 @@ class Pool {
     this.waiting = [];
     for (const job of jobs) job.reject(new Cancelled());
   }
+  /** A worker that waits: the first command need not wait for it. */
+  warm() {
+    if (this.idle.length + this.busy.size === 0) this.idle.push(this.start());
+  }
   deal() {
     while (this.waiting.length > 0 && this.busy.size < this.most) {
       const worker = this.idle.pop() || this.start(), job = this.waiting.shift();

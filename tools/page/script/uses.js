@@ -11,13 +11,6 @@ const modelsOf = bench => bench.subjects.filter(({ kind }) => kind === "model" |
 const entriesOf = subjects => subjects.map(({ name }) => [name, name]);
 const first = (entries, wanted) => entries.some(({ name }) => name === wanted) ? wanted : entries[0].name;
 
-/** How logs are read that go into one command: what was said of any of them. */
-function readingOf(logs) {
-  const together = { reading: new Map(), units: new Map() };
-  for (const log of logs) for (const key of ["reading", "units"]) for (const [name, value] of log[key]) together[key].set(name, value);
-  return readingWords(together);
-}
-
 /** Channels that one axis can have: of unlike units, the first. */
 const drawable = channels => new Set(channels.map(({ unit }) => unit)).size > 1 ? listed(channels[0].name) : "";
 
@@ -27,7 +20,16 @@ function figureWords(bench, source) {
   return ["plot", source, ...optionWords([["--channel", channel]]), "-o", bench.free(`${stem(source)}.svg`)];
 }
 
-const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...readingOf(logs), ...optionWords(use.values), "-o", out];
+/** The most channels of one unit: what may be sensors of one quantity. */
+function alike(log) {
+  const groups = new Map();
+  for (const { name, unit } of log.recording.channels) groups.set(unit, [...(groups.get(unit) || []), name]);
+  return [...groups.values()].sort((a, b) => b.length - a.length)[0];
+}
+
+const arraysOf = bench => bench.logs.filter(log => alike(log).length > 1);
+
+const characterizeWords = (logs, use, out) => ["characterize", ...names(logs), ...toldWords(use.verb, logs, use.values), "-o", out];
 /** What `compare` can hold against each other: of sensors anything, of replays nothing but replays. `begin`: what was dropped, else what was made. */
 function sidesOf(bench) {
   const isReplay = ({ kind }) => kind === "replay", dropped = new Set(names(bench.items));
@@ -68,7 +70,7 @@ const USES = [
       if (use.begin !== begin.join()) Object.assign(use, { begin: begin.join(), inputs: new Set(begin) });
       return [choices("Compare", all, use.inputs, changed)];
     },
-    words: (bench, use) => ["compare", ...use.inputs, ...readingOf(bench.logs.filter(({ name }) => use.inputs.has(name))), ...optionWords(use.values),
+    words: (bench, use) => ["compare", ...use.inputs, ...toldWords(use.verb, bench.logs.filter(({ name }) => use.inputs.has(name)), use.values),
       "-o", bench.free("which.html")],
   },
   {
@@ -79,9 +81,9 @@ const USES = [
   {
     ...base, id: "replay", label: "An array: best fusion", verb: "replay",
     main: [["--learning", "Learning window"], ["--align", "Align the sensors first"]], hidden: ["--sensors", "--reference", "--unit"],
-    fits: bench => bench.logs.some(log => log.recording.channels.length > 1) || bench.scenes.length > 0,
+    fits: bench => arraysOf(bench).length > 0 || bench.scenes.length > 0,
     choices: (bench, use, changed) => {
-      const sources = [...bench.scenes, ...bench.logs.filter(log => log.recording.channels.length > 1)];
+      const sources = [...bench.scenes, ...arraysOf(bench)];
       if (use.source !== first(sources, use.source)) use.sensors = null;
       use.source = first(sources, use.source);
       const log = bench.logs.find(({ name }) => name === use.source);
@@ -92,7 +94,7 @@ const USES = [
       })];
       if (!log) return parts;
       const channels = log.recording.channels.map(({ name }) => name);
-      use.sensors = use.sensors || new Set(channels);
+      use.sensors = use.sensors || new Set(alike(log));
       return [...parts, choices("Sensors of one quantity", channels, use.sensors, changed), choice("Reference, if one channel is the truth",
         [["", "none"], ...channels.map(name => [name, name])], use.reference || "", value => {
           use.reference = value;
@@ -102,8 +104,9 @@ const USES = [
     },
     words: (bench, use) => {
       const log = bench.logs.find(({ name }) => name === use.source);
-      const array = log ? [...readingWords(log), ...optionWords([["--sensors", [...use.sensors].map(listed).join(",")], ["--reference", use.reference && listed(use.reference)]])] : [];
-      return ["replay", use.source, ...array, ...optionWords(use.values), "-o", bench.free(`${stem(use.source)}-replay`)];
+      const channels = log && !log.reading.has("--channel") ? log.recording.channels.map(({ name }) => name) : []; // positions are those of all
+      const array = log ? [["--sensors", [...use.sensors].map(name => listed(name, channels)).join(",")], ["--reference", use.reference && listed(use.reference, channels)]] : [];
+      return ["replay", use.source, ...toldWords(use.verb, log ? [log] : [], [...array, ...use.values]), "-o", bench.free(`${stem(use.source)}-replay`)];
     },
   },
   {
@@ -119,11 +122,10 @@ const USES = [
       use.by = first(bench.fusions, use.by);
       return [choice("Recording", entriesOf(bench.logs), use.source, take("source")), choice("By", entriesOf(bench.fusions), use.by, take("by"))];
     },
-    words: (bench, use) => ["fuse", use.source, ...readingWords(bench.logs.find(({ name }) => name === use.source)), "--with", use.by,
-      ...optionWords(use.values), "-o", bench.free(`${stem(use.source)}-fused.csv`)],
+    words: (bench, use) => ["fuse", use.source, ...toldWords(use.verb, [bench.logs.find(({ name }) => name === use.source)], [["--with", use.by], ...use.values]), "-o", bench.free(`${stem(use.source)}-fused.csv`)],
   },
   {
-    ...base, id: "model", label: "Export for a consumer", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
+    ...base, id: "model", label: "Export for Kalibr, ROS …", verb: "model", made: true, main: [["--axes", "Axes"]], hidden: ["--to"],
     fits: bench => modelsOf(bench).length > 0,
     choices: (bench, use, changed) => {
       const models = modelsOf(bench);
@@ -132,7 +134,7 @@ const USES = [
       return [choice("Models of", entriesOf(models), use.source, value => {
         use.source = value;
         changed();
-      }), choice("For", TARGETS.map(({ name, title }) => [name, title]), use.to, value => {
+      }), choice("For", TARGETS.map(({ name, title, file }) => [name, `${title}: ${file}`]), use.to, value => {
         use.to = value;
         changed();
       })];
@@ -226,7 +228,7 @@ const USES = [
       use.to = use.to || "csv";
       return [choice("Recording", entriesOf(bench.logs), use.source, take("source")), choice("To", [["csv", "CSV"], ["npy", "NumPy"]], use.to, take("to"))];
     },
-    words: (bench, use) => ["convert", use.source, ...readingWords(bench.logs.find(({ name }) => name === use.source)), ...optionWords(use.values),
+    words: (bench, use) => ["convert", use.source, ...toldWords(use.verb, [bench.logs.find(({ name }) => name === use.source)], use.values),
       "-o", bench.free(`${stem(use.source)}-converted.${use.to || "csv"}`)],
   },
 ].map(use => ({ ...use, values: new Map() }));

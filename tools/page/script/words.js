@@ -9,8 +9,21 @@ const typed = verb => verb.split("-");
 
 const shellCommand = words => ["sensorchar", ...words].map(shellWord).join(" ");
 
-/** A channel in a list of them: what would end a name there stands as a ?, which is any character. */
-const listed = channel => channel.replace(/[,=!]/g, "?");
+/** Does a pattern mean a name? "?" is any character. */
+const means = (pattern, name) => pattern.length === name.length && [...pattern].every((c, i) => c === "?" || c === name[i]);
+
+/** A channel in a list of them: what would end a name there stands as a ?, which is any character. `among`: all channels, in their order;
+ * where the pattern means another one too, the position says which. */
+function listed(channel, among = []) {
+  const pattern = channel.replace(/[,=!]/g, "?");
+  return pattern !== channel && among.some(name => name !== channel && means(pattern, name)) ? `c${among.indexOf(channel)}` : pattern;
+}
+
+/** Values of options that list them, together; of a name that both give one, the later. */
+function together(before, later) {
+  const name = part => part.split("=")[0], parts = later.split(","), named = new Set(parts.map(name));
+  return [...before.split(",").filter(part => !named.has(name(part))), ...parts].join(",");
+}
 
 /** Words of options that were set: a Map of flag → value, true for a flag without one. */
 function optionWords(options) {
