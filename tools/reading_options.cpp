@@ -58,7 +58,7 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
                 "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
       .value_name("NAME")
       .group("Reading");
-  verb.add_choice("--time-unit", options.time_unit, {"auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"},
+  verb.add_choice("--time-unit", options.time_unit, {"auto", "s", "ms", "us", "ns", "100us", "100ns", "min", "h", "d"},
                   "unit of the time column (default: auto)")
       .group("Reading");
 }

@@ -57,7 +57,7 @@ struct ReadOptions {
   std::optional<double>
       rate_hz;  ///< sampling rate; needed when the log has neither stamps nor a rate; wins over stamps' absence only
   std::string time_column = "auto";  ///< "auto", "none", a name, or c0-style position among all columns
-  std::string time_unit = "auto";    ///< "auto", "s", "ms", "us", "ns", "100us", "min", "h", "d"
+  std::string time_unit = "auto";    ///< "auto", "s", "ms", "us", "ns", "100us", "100ns", "min", "h", "d"
   std::string format = "auto";       ///< "auto" or a name of the table of formats
   std::string delimiter = "auto";    ///< "auto", ",", ";", "tab", "space", or one character
   std::string decimal = "auto";      ///< "auto", "point", "comma"

@@ -12,7 +12,7 @@ constexpr Word kHeaders[] = {{"auto"}, {"yes"}, {"no"}};
 constexpr Word kEncodings[] = {{"auto"}, {"utf-8"}, {"latin1"}, {"cp1252"}};
 constexpr Word kTimeSources[] = {{"auto"}, {"header"}, {"log"}, {"publish"}};
 constexpr Word kDateOrders[] = {{"auto"}, {"day"}, {"month"}, {"year"}};
-constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}, {"min"}, {"h"}, {"d"}};
+constexpr Word kTimeUnits[] = {{"auto"}, {"s"}, {"ms"}, {"us"}, {"ns"}, {"100us"}, {"100ns"}, {"min"}, {"h"}, {"d"}};
 
 // auto and the names of the table of formats.
 const std::vector<Word>& format_choices() {

@@ -45,6 +45,8 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
                            "2024:05:01 12:00:00",
                            "2024-05-01-12-00-00",
                            "2024-05-01_12-00-00",
+                           "2024_05_01_12_00_00",
+                           "2024_05_01 12:00:00",
                            "20240501_120000",
                            "2024-05-01 14:00:00.000+0200 [Europe/Berlin]",
                            "2024年5月1日 12时00分00秒",
@@ -64,7 +66,8 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
   CHECK(ns("1969-12-31T23:59:59Z") == -kBillion);
   CHECK(ns("12:30:01.5") == (12 * 3600 + 30 * 60 + 1) * kBillion + 500000000);
   CHECK(ns("12:00:00 AM") == 0);
-  for (const char* text : {"2024-05-01_12-00-00-042", "20240501_120000_042", "2024-05-01 12:00:00.042,000"}) {
+  for (const char* text :
+       {"2024-05-01_12-00-00-042", "2024_05_01_12_00_00.042", "20240501_120000_042", "2024-05-01 12:00:00.042,000"}) {
     INFO(text);
     CHECK(ns(text) == noon + 42000000);
   }

@@ -204,6 +204,13 @@ TEST_CASE("a phone's archive: a topic for each file, with the units of its senso
   CHECK(joined.samples[1][49] == 49);
 }
 
+TEST_CASE("a table of one row beside a recording needs no choice") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "Accelerometer.csv") << "time,x\n0,1\n0.01,2\n0.02,1\n0.03,3\n";
+  std::ofstream(folder / "Metadata.csv") << "version,appVersion,recording epoch time\n3,1.2,1714564800000\n";
+  CHECK(names(read_recording((folder / ".").string())).starts_with("x"));
+}
+
 TEST_CASE("a folder of CSV files is read as the archive of them is") {
   const test::TemporaryFolder folder;
   for (const char* name : {"Accelerometer", "Gyroscope"})

@@ -338,6 +338,58 @@ TEST_CASE("a temperature that rises and a row counter are no time") {
             .info.time.column.empty());
 }
 
+TEST_CASE("a temperature's letter in front of a unit is no time where it begins far from zero") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.02);
+  double level = 20;
+  for (const char* name : {"T_min", "T_h", "t_h", "T_d"}) {
+    INFO(name);
+    CHECK(
+        with_stamps(name, [&](int) { return fmt::format("{:.2f}", level += noise(random)); }).info.time.column.empty());
+  }
+}
+
+TEST_CASE("a count of packets that lacks some is no clock, time since 1970 is one however it rises") {
+  for (const char* name : {"Packet number", "sample_no", "msg_count", "frame_index", "packet id"}) {
+    INFO(name);
+    CHECK(with_stamps(name, [](int i) { return std::to_string(i + i / 40); }).info.time.column.empty());
+  }
+  for (const double step : {1.0, 0.25}) {
+    const Recording r =
+        with_stamps("unix", [&](int i) { return fmt::format("{:.2f}", 1714564800 + step * (i < 50 ? i : i + 40)); });
+    CHECK(r.info.time.rate_hz == Approx(1 / step));
+    CHECK(r.info.time.missing_samples == 40);
+  }
+}
+
+TEST_CASE("counts of 100 ns since long ago are dates") {
+  for (const std::int64_t of_1970 : {std::int64_t{621355968} * 1000000000, std::int64_t{116444736} * 1000000000})
+    for (const char* name : {"Ticks", "filetime", "time"})
+      for (const int hz : {1, 50, 1000}) {
+        const Recording r = with_stamps(name, [&](int i) {
+          return std::to_string(of_1970 + std::int64_t{17145648} * 1000000000 + std::int64_t{10000000} / hz * i);
+        });
+        CHECK(r.info.time.rate_hz == Approx(hz));
+        CHECK(r.info.time.unit == "100ns");
+        CHECK(*r.info.time.start_ns == std::int64_t{1714564800} * 1000000000);
+      }
+}
+
+TEST_CASE("seconds and what is left of them stand in two columns, two full clocks do not") {
+  for (const auto& [names, unit] : {std::pair{"tv_sec,tv_usec", 1000000},
+                                    {"sec,msec", 1000},
+                                    {"Seconds,Microseconds", 1000000},
+                                    {"secs,nsecs", 1000000000}}) {
+    INFO(names);
+    const Recording r = with_stamps(
+        names, [unit = unit](int i) { return fmt::format("{},{}", 1714564800 + i / 50, i % 50 * (unit / 50)); });
+    CHECK(r.info.time.rate_hz == Approx(50));
+    CHECK(r.info.channels.size() == 1);
+  }
+  CHECK(with_stamps("sec,msec", [](int i) { return fmt::format("{},{}", i / 50, 20 * i); }).info.time.rate_hz ==
+        Approx(50));
+}
+
 TEST_CASE("a device's clock of whole seconds gives way to a steady host clock") {
   const Recording r = with_stamps("device_time[s],host_time[s]",
                                   [](int i) { return fmt::format("{},{:.3f}", (i * 10 + 3) / 10, 100 + i * 1.0003); });
@@ -434,6 +486,19 @@ TEST_CASE("a word for a unit, alone or behind a word for time, names the time") 
     CHECK(steps(name, 360).time.rate_hz == Approx(0.1).epsilon(1e-5));
   for (const std::string name : {"Minutes", "time_min", "Elapsed Minutes"})
     CHECK(steps(name, 600).time.rate_hz == Approx(10).epsilon(1e-4));
+  for (const std::string name : {"time (in hours)", "time [in hours]", "Time (hrs)", "time_h", "t/h", "Elapsed_h",
+                                 "Zeit (Stunden)", "temps (heures)", "Hours since start", "hour", "runtime_h"})
+    CHECK(steps(name, 360).time.rate_hz == Approx(0.1).epsilon(1e-5));
+  for (const std::string name :
+       {"Time (mins)", "Time/min", "Time [Minuten]", "time (in minutes)", "Time [m]", "minute"})
+    CHECK(steps(name, 600).time.rate_hz == Approx(10).epsilon(1e-4));
+  for (const std::string name :
+       {"t [d]", "Time (d)", "time_d", "t / d", "Zeit [Tage]", "Days since start", "DOY", "day"})
+    CHECK(steps(name, 8640).time.rate_hz == Approx(0.1).epsilon(1e-3));
+  for (const std::string name : {"t [Sek.]", "Zeit (Sekunden)", "Time [seg]", "Seconds since start"}) {
+    CHECK(steps(name, 50).time.rate_hz == Approx(50));
+    CHECK_FALSE(steps(name, 50).time.unit_guessed);
+  }
   std::string range = "t,min,max\n";
   for (int k = 0; k < 100; ++k) range += fmt::format("{:.2f},{},{}\n", k / 100.0, k, k + 1);
   CHECK(test::read_text(range).info.time.rate_hz == Approx(100));

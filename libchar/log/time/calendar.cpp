@@ -208,7 +208,7 @@ bool numbered_date(DateScanner& at, DateOrder order, CalendarStamp& out) {
   const std::size_t first_digits = s.digits_ahead();
   const auto first = s.number(1, 4);
   const char sign = s.peek();
-  const bool known = sign == '-' || sign == '/' || sign == '.' || (sign == ':' && first_digits == 4);
+  const bool known = sign == '-' || sign == '/' || sign == '.' || ((sign == ':' || sign == '_') && first_digits == 4);
   if (!first || !known || first_digits == 3) return false;
   s.take(sign);
   if (first_digits == 4 && s.digits_ahead() == 3) {  // the day of the year
@@ -272,14 +272,14 @@ std::int64_t behind_seconds(DateScanner& at) {
   return part;
 }
 
-// "12:00", "12:00:00.123", "12:00:00:123", "12-00-00", "3:04:05 PM", "120000.5", "49:03:04" of what ran for days, and
-// "59:58.0" and "35:10" without an hour
+// "12:00", "12:00:00.123", "12:00:00:123", "12-00-00", "12_00_00", "3:04:05 PM", "120000.5", "49:03:04" of what ran
+// for days, and "59:58.0" and "35:10" without an hour
 bool clock_time(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   const bool compact = out.date && (s.digits_ahead() == 6 || s.digits_ahead() == 4);
   const bool with_seconds = s.digits_ahead() == 6;
   const auto hour = compact ? std::optional(s.fixed(2)) : s.number(1, out.date ? 2 : 4);
-  const char sign = out.date && s.peek() == '-' ? '-' : ':';
+  const char sign = out.date && (s.peek() == '-' || s.peek() == '_') ? s.peek() : ':';
   if (!hour || (!compact && !s.take(sign))) return false;
   const bool padded = s.digits_ahead() == 2 || s.peek(1) != ':';  // printf("%d:%d:%d")
   const auto minute = compact ? std::optional(s.fixed(2)) : s.number(padded ? 2 : 1, 2);

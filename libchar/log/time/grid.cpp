@@ -237,8 +237,9 @@ double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
-  if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, 2.0 * static_cast<double>(step_.longest)))
-    return usual;
+  const double ends = std::max(2.0 * static_cast<double>(step_.longest),  // where the log begins and ends in a packet
+                               static_cast<double>(step_.model.packet) * step_.ns);
+  if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, ends)) return usual;
   warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} Hz, which "
                                                "is used: the sampling is uneven, and times on the axes are off by that",
                                                brief_text(1e9 / usual, 5), brief_text(1e9 / spanned, 5)));

@@ -85,12 +85,15 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
     row = 0;
   }
   const bool fall = std::is_sorted(stamps.rbegin(), stamps.rend()), equal = stamps.front() == stamps.back();
+  const std::vector<std::int64_t> turned(stamps.rbegin(), stamps.rend());
+  const double ns = fall && !equal ? model_of_stamps(turned, {}).ns : 0;
   fail(*item, row, "E0315",
        fall && equal ? "no time axis: all stamps are equal"
        : fall        ? "the stamps fall from row to row: the newest row is the first"
                      : "no time axis: the stamps never rise",
        std::string(fall && !equal ? "turn the rows round (tac) below the header; " : "") +
-           "`time_column` none and `rate_hz` HZ ignore the stamps");
+           fmt::format("`time_column` none and `rate_hz` {} ignore the stamps",
+                       ns > 0 ? shortest(rounded(1e9 / ns, 6)) : "HZ"));
 }
 
 // Rows at another rate than those of the longer rest stand in front of the window.

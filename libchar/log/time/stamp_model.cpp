@@ -304,6 +304,22 @@ std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
   return usual > 1 && alike >= kAlike * count ? static_cast<std::size_t>(usual) : 0;
 }
 
+/// Rows between longer steps, as unlike as where each row is lost with one probability: then they scatter as much as
+/// their mean, and those between beats with a coarse clock hardly at all.
+bool lost_at_random(const FirstSteps& steps, double common) {
+  constexpr double kScatter = 0.6;
+  double rows = 0, count = 0, sum = 0, squares = 0;
+  for (const double step : steps.rising) {
+    ++rows;
+    if (step < 1.5 * common) continue;
+    ++count;
+    sum += rows;
+    squares += rows * rows;
+    rows = 0;
+  }
+  return steps.equal == 0 && squares * count > (1 + kScatter * kScatter) * sum * sum;
+}
+
 /// Steps that are whole multiples of the common one and whose stamps lead away from every line: rows are missing,
 /// however many. Stamps of packets are late against an even clock, by no more than a packet or two; where packets are
 /// missing, those that are left are alike.
@@ -315,7 +331,7 @@ bool rows_are_missing(const FirstSteps& steps, const CommonStep& common) {
     if (!multiple_of(step, common.ns, 1e-3)) return false;
     longest = std::max(longest, step);
   }
-  return line_through(steps.line).spread > kFar * longest;
+  return line_through(steps.line).spread > kFar * longest || lost_at_random(steps, common.ns);
 }
 
 /// What explains that many steps are longer than the common one.

@@ -20,182 +20,14 @@ namespace libchar {
 
 namespace {
 
-struct KnownName {
-  std::string_view name;
-  std::int64_t unit_ns = 0;  // 0 = not said by the name
-};
-
-constexpr std::array kTimeNames = {KnownName{"time"},
-                                   KnownName{"timestamp"},
-                                   KnownName{"time stamp"},
-                                   KnownName{"timestamps"},
-                                   KnownName{"stamp"},
-                                   KnownName{"times"},
-                                   KnownName{"elapsed"},
-                                   KnownName{"elapsed time"},
-                                   KnownName{"time elapsed"},
-                                   KnownName{"time since start"},
-                                   KnownName{"relative time"},
-                                   KnownName{"uptime"},
-                                   KnownName{"sampletime"},
-                                   KnownName{"datetime"},
-                                   KnownName{"date time"},
-                                   KnownName{"date/time"},
-                                   KnownName{"unix time"},
-                                   KnownName{"unixtime"},
-                                   KnownName{"gps time"},
-                                   KnownName{"host time"},
-                                   KnownName{"sample time"},
-                                   KnownName{"epoch"},
-                                   KnownName{"epoch time"},
-                                   KnownName{"zeit"},
-                                   KnownName{"zeitstempel"},
-                                   KnownName{"datum/zeit"},
-                                   KnownName{"temps"},
-                                   KnownName{"horodatage"},
-                                   KnownName{"tiempo"},
-                                   KnownName{"tempo"},
-                                   KnownName{"tijd"},
-                                   KnownName{"tid"},
-                                   KnownName{"czas"},
-                                   KnownName{"aika"},
-                                   KnownName{"cas"},
-                                   KnownName{"timeus", 1000},
-                                   KnownName{"timems", 1000000},
-                                   KnownName{"utime", 1000},
-                                   KnownName{"seconds", 1000000000},
-                                   KnownName{"seconds elapsed", 1000000000},
-                                   KnownName{"elapsed seconds", 1000000000},
-                                   KnownName{"sec", 1000000000},
-                                   KnownName{"secs", 1000000000},
-                                   KnownName{"second", 1000000000},
-                                   KnownName{"x value", 1000000000},  // LabVIEW measurement files
-                                   KnownName{"millis", 1000000},
-                                   KnownName{"milliseconds", 1000000},
-                                   KnownName{"micros", 1000},
-                                   KnownName{"\xE6\x97\xB6\xE9\x97\xB4"},  // Chinese
-                                   KnownName{"\xE6\x97\xB6\xE9\x97\xB4\xE6\x88\xB3"},
-                                   KnownName{"\xE6\x99\x82\xE9\x96\x93"},
-                                   KnownName{"\xE6\x99\x82\xE5\x88\xBB"},
-                                   KnownName{"microseconds", 1000},
-                                   KnownName{"nanoseconds", 1},
-                                   KnownName{"sampletimefine"}};  // Xsens: 0.1 ms from MT Manager, 1 us from DOTs
-
-// Units as names, and what is a clock elsewhere: time only where the values are a steady clock.
-constexpr std::array kClockNames = {KnownName{"ms", 1000000},
-                                    KnownName{"msec", 1000000},
-                                    KnownName{"us", 1000},
-                                    KnownName{"usec", 1000},
-                                    KnownName{"ns", 1},
-                                    KnownName{"ts"},
-                                    KnownName{"tow", 1000000000},
-                                    KnownName{"itow", 1000000},
-                                    KnownName{"mjd"},
-                                    KnownName{"utc"},
-                                    KnownName{"tick"},
-                                    KnownName{"ticks"}};
-
-// Time only where the values are dates or clock times.
-constexpr std::array<std::string_view, 8> kDateNames = {"date",    "datum", "fecha", "data",
-                                                        "uhrzeit", "heure", "hora",  "clock"};
-
-// Units as words, alone or behind a word for time: "Elapsed Hours", "Zeit in Stunden".
-constexpr std::array kUnitWords = {
-    KnownName{"days", 86400000000000}, KnownName{"tage", 86400000000000},   KnownName{"hours", 3600000000000},
-    KnownName{"hrs", 3600000000000},   KnownName{"stunden", 3600000000000}, KnownName{"heures", 3600000000000},
-    KnownName{"horas", 3600000000000}, KnownName{"ore", 3600000000000},     KnownName{"minutes", 60000000000},
-    KnownName{"mins", 60000000000},    KnownName{"min", 60000000000},       KnownName{"minuten", 60000000000},
-    KnownName{"minutos", 60000000000}, KnownName{"seconds", 1000000000},    KnownName{"secs", 1000000000},
-    KnownName{"sec", 1000000000},      KnownName{"sekunden", 1000000000},   KnownName{"secondes", 1000000000},
-    KnownName{"segundos", 1000000000}, KnownName{"milliseconds", 1000000},  KnownName{"millisekunden", 1000000},
-    KnownName{"msec", 1000000},        KnownName{"microseconds", 1000},     KnownName{"mikrosekunden", 1000},
-    KnownName{"nanoseconds", 1}};
-
-// They count what was taken, and are no clocks however steadily they rise.
-constexpr std::array<std::string_view, 18> kCounters = {
-    "frame",   "frames", "frame id", "frame number",  "index",  "idx",     "seq",    "sequence", "count",
-    "counter", "packet", "record",   "packetcounter", "sample", "samples", "number", "row",      "id"};
-
-constexpr std::array<std::string_view, 14> kDevices = {"device", "dev",    "sensor",    "imu",   "hardware",
-                                                       "hw",     "sample", "acc",       "accel", "accelerometer",
-                                                       "gyr",    "gyro",   "gyroscope", "mag"};
-constexpr std::array<std::string_view, 11> kHosts = {"host",    "pc",       "ros",     "system", "sys", "recv",
-                                                     "receive", "received", "arrival", "log",    "unix"};
-constexpr std::array<std::string_view, 3> kTimes = {"time", "timestamp", "stamp"};
-
-template <std::size_t N>
-bool among(const std::array<std::string_view, N>& list, std::string_view word) {
-  return std::find(list.begin(), list.end(), word) != list.end();
+// "frame", "Packet number", "sample_no": they count what was taken, and are no clocks however steadily they rise.
+bool counts_something(const std::string& words) {
+  static constexpr std::array<std::string_view, 19> kCounters = {
+      "frame",  "frames", "index",   "idx",    "seq", "sequence", "count", "counter", "packet", "packetcounter",
+      "record", "sample", "samples", "number", "no",  "nr",       "row",   "id",      "packets"};
+  const std::string_view last = std::string_view(words).substr(words.rfind(' ') + 1);  // npos + 1 is 0
+  return std::find(kCounters.begin(), kCounters.end(), last) != kCounters.end();
 }
-
-// "imu_time", "time_host" or "arrival timestamp": one of `words` beside a word for time.
-template <std::size_t N>
-bool time_of(std::string_view name, const std::array<std::string_view, N>& words) {
-  const std::size_t between = name.find_first_of("_ .-");
-  if (between == std::string_view::npos) return false;
-  const std::string_view first = name.substr(0, between), second = name.substr(between + 1);
-  return (among(words, first) && among(kTimes, second)) || (among(kTimes, first) && among(words, second));
-}
-
-// "field.header.stamp", "/imu/header/stamp": stamps that a driver wrote.
-bool header_stamp(std::string_view name) {
-  for (const std::string_view part : {"secs", "sec"})
-    if (name.ends_with(part) && name.size() > part.size() + 1) name.remove_suffix(part.size() + 1);
-  static constexpr std::array<std::string_view, 4> kEnds = {"header.stamp", "header/stamp", "header_stamp",
-                                                            "header:stamp"};
-  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) { return name.ends_with(end); });
-}
-
-}  // namespace
-
-std::optional<TimeName> time_name(std::string_view stem) {
-  const std::string lower = ascii_lower(stem);
-  std::string_view name = lower;
-  while (name.size() > 1 && (name[0] == '_' || name[0] == '%' || name[0] == '#' || name[0] == ' '))
-    name.remove_prefix(1);
-  if (name.ends_with("()")) name.remove_suffix(2);  // millis()
-  if (name.size() > 1 && name.ends_with('.')) name.remove_suffix(1);
-  TimeName out;
-  if (name == "sampletimefine" || name == "sampletime" || time_of(name, kDevices) || header_stamp(name))
-    out.clock = Clock::device;
-  else if (time_of(name, kHosts))
-    out.clock = Clock::host;
-  std::string words(name);
-  std::replace(words.begin(), words.end(), '_', ' ');
-  for (const KnownName& known : kTimeNames)
-    if (known.name == words) {
-      out.unit_ns = known.unit_ns;
-      return out;
-    }
-  for (const KnownName& known : kClockNames)
-    if (known.name == name) {
-      out.unit_ns = known.unit_ns;
-      out.letter = true;
-      return out;
-    }
-  const std::size_t last = words.rfind(' ');
-  for (const KnownName& unit : kUnitWords) {
-    if (unit.name != std::string_view(words).substr(last + 1)) continue;  // npos + 1 is 0
-    std::string_view before = std::string_view(words).substr(0, last == words.npos ? 0 : last);
-    for (const std::string_view link : {" in", " (in", ","})
-      if (before.ends_with(link)) before.remove_suffix(link.size());
-    const bool time = before == "t" || before == "run" || before == "run time" || before == "since start" ||
-                      std::any_of(kTimeNames.begin(), kTimeNames.end(),
-                                  [&](const KnownName& known) { return known.name == before && known.unit_ns == 0; });
-    if (!time && (!before.empty() || unit.name == "min")) continue;
-    out.unit_ns = unit.unit_ns;
-    out.letter = before.empty();
-    return out;
-  }
-  out.letter = name == "t";
-  out.date = among(kDateNames, name);
-  const bool said = out.letter || out.date || out.clock != Clock::unknown || name.starts_with("timestamp_") ||
-                    name.starts_with("timestamp ") || name.starts_with("date time,") ||
-                    name.starts_with("time since start");
-  return said ? std::optional(out) : std::nullopt;
-}
-
-namespace {
 
 bool near_uniform_and_rising(const std::vector<double>& values) {
   if (values.size() < 3) return false;
@@ -280,28 +112,29 @@ bool steady_clock(const std::vector<double>& values) {
   return usual > 0 && !counts && 10 * alike >= 8 * (values.size() - 1);
 }
 
-bool unit_of_another_quantity(const ColumnLabel& column) {
-  const auto unit = find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
-  return unit && unit->quantity != Quantity::time;
-}
-
 bool has_unit(const ColumnLabel& column) { return !column.unit.empty() || !name_and_unit(column.name).second.empty(); }
 
-bool unit_of_time(const ColumnLabel& column) {
-  const auto unit = find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
-  return unit && unit->quantity == Quantity::time;
+bool unit_of_time(const ColumnLabel& column) { return unit_behind(column) != 0; }
+
+bool unit_of_another_quantity(const ColumnLabel& column) {
+  return !unit_of_time(column) && find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
 }
 
 // "T", "T1", "TC2", "T_air": a temperature where its values are such and begin far from zero, however evenly they rise.
 bool like_a_temperature(const ColumnLabel& column, const FirstValues& first) {
   constexpr double kColdest = -100, kHottest = 1500, kNearZero = 10;  // degrees, steps
   const std::string name = stem_of(column);
-  if (!name.starts_with('T') || unit_of_time(column) ||
+  if (!(name.starts_with('T') || name.starts_with("t_")) || unit_of_time(column) ||
       (name.size() > 1 && std::string_view("0123456789C_").find(name[1]) == name.npos) || first.integers ||
       first.values.empty())
     return false;
   const double front = first.values.front();
   return front > kColdest && front < kHottest && std::fabs(front) > kNearZero * usual_step(first.values);
+}
+
+// "T", "T_min", "t_h": as well a temperature's letter, where neither values nor unit say more.
+bool temperature_or_time(const std::string& name) {
+  return name == "T" || name.starts_with("T_") || name.starts_with("t_");
 }
 
 // A temperature t goes up and down, or rises with noise.
@@ -313,9 +146,11 @@ bool wanders(const TableFront& table, std::size_t column) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  return values.size() >= 8 && (5 * std::min(up, down) > values.size() ||
-                                (stem_of(table.columns[column]) == "T" &&
-                                 (!steady_clock(values) || like_a_temperature(table.columns[column], first))));
+  if (values.size() < 8) return false;
+  if (5 * std::min(up, down) > values.size()) return true;
+  const std::string name = stem_of(table.columns[column]);
+  const bool clock = steady_clock(values) || (name.size() > 1 && usual_step(values) == 1);  // a count of minutes
+  return temperature_or_time(name) && (!clock || like_a_temperature(table.columns[column], first));
 }
 
 bool speaks_of_time(const ColumnLabel& column) {
@@ -328,6 +163,16 @@ bool speaks_of_time(const ColumnLabel& column) {
          });
 }
 
+// Numbers that never fall and are dates since 2008, in seconds or as whole numbers in any unit.
+bool counts_since_1970(const FirstValues& first) {
+  const std::vector<double>& values = first.values;
+  if (values.size() < 3 || !std::is_sorted(values.begin(), values.end())) return false;
+  for (const double unit : {1.0, 1e3, 1e6, 1e9})
+    if ((first.integers || unit == 1) && values.front() >= 1.2e9 * unit && values.back() < 2.2e9 * unit)
+      return values.back() > values.front();
+  return false;
+}
+
 // The first column that is a clock by its values, one whose name speaks of time before others; said as
 // a guess. A rate that is known leaves it a channel.
 std::optional<std::size_t> column_like_a_clock(const TableFront& table, const ReadOptions& options, LogInfo& info) {
@@ -338,13 +183,14 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
     const ColumnLabel& column = table.columns[c];
     std::string name = ascii_lower(stem_of(column));
     std::replace(name.begin(), name.end(), '_', ' ');
-    if (column.text || among(kCounters, name) || unit_of_another_quantity(column) ||
+    if (column.text || (counts_something(name) && !speaks_of_time(column)) || unit_of_another_quantity(column) ||
         name.find("temp") != std::string::npos || name.find("year") != std::string::npos || name == "t" ||
         (has_unit(column) && !unit_of_time(column)))
       continue;
     named = speaks_of_time(column);
     const FirstValues first = table.first_values(c);
-    if ((named || !found) && steady_clock(first.values) && !like_a_temperature(column, first))
+    if ((named || !found) && (counts_since_1970(first) || steady_clock(first.values)) &&
+        !like_a_temperature(column, first))
       found = c;
     else
       named = false;
@@ -415,15 +261,6 @@ std::optional<std::size_t> column_called_time(const TableFront& table, const Rea
                                                                  : "not",
                                      others));
   return best.column;
-}
-
-// Whole numbers that never fall and are dates since 2008, in any unit.
-bool counts_since_1970(const FirstValues& first) {
-  const std::vector<double>& values = first.values;
-  if (!first.integers || values.size() < 3 || !std::is_sorted(values.begin(), values.end())) return false;
-  for (const double unit : {1.0, 1e3, 1e6, 1e9})
-    if (values.front() >= 1.2e9 * unit && values.back() < 2.2e9 * unit) return values.back() > values.front();
-  return false;
 }
 
 // Rows of several sources, named in front, have each stamp as many times.

@@ -66,6 +66,9 @@ bool called_time(const std::string& name);
 /// Error(usage) for a name that is not there.
 std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info);
 
+/// A unit of time that stands behind the name, in ns: "[ms]", "(in Stunden)", "_min"; else 0.
+std::int64_t unit_behind(const ColumnLabel& column);
+
 /// The unit of stamps in ns, as the file or the name says, one behind the name before the usual one of the name
 /// ("TOW [ms]"); 0 where neither does.
 std::int64_t unit_said(const ColumnLabel& column);

@@ -20,59 +20,50 @@ namespace {
 
 constexpr std::int64_t kDayNs = 86400000000000;
 
-std::int64_t unit_in_ns(std::string_view unit) {
-  const auto known = find_unit(unit);
-  if (!known || known->quantity != Quantity::time) return 0;
-  return clamped_whole<std::int64_t>(std::round(known->to_si * 1e9));
-}
+struct NamedUnit {
+  const char* name;
+  std::int64_t ns;
+};
+constexpr std::array kNamedUnits = {
+    NamedUnit{"s", 1000000000}, NamedUnit{"ms", 1000000}, NamedUnit{"us", 1000},         NamedUnit{"ns", 1},
+    NamedUnit{"100us", 100000}, NamedUnit{"100ns", 100},  NamedUnit{"min", 60000000000}, NamedUnit{"h", 3600000000000},
+    NamedUnit{"d", kDayNs}};
 
 std::string unit_name(std::int64_t ns) {
-  switch (ns) {
-    case 1:
-      return "ns";
-    case 1000:
-      return "us";
-    case 1000000:
-      return "ms";
-    case 1000000000:
-      return "s";
-    case 60000000000:
-      return "min";
-    case 3600000000000:
-      return "h";
-    case kDayNs:
-      return "d";
-    case 100000:
-      return "100us";
-    default:
-      return fmt::format("{} ns", ns);
-  }
+  for (const NamedUnit& unit : kNamedUnits)
+    if (unit.ns == ns) return unit.name;
+  return fmt::format("{} ns", ns);
 }
 
-/// Counts of days, by the day on which 1970 began; their stamps of 1990 to 2100 are told by their size.
-struct DayCount {
+/// Counts that began long before 1970, by their number at its beginning; stamps of 1990 to 2100 are told by their size.
+struct OldCount {
   const char* name;
   const char* word;  // in a column's name, which decides between two of one size
+  std::int64_t unit_ns;
   double of_1970;
 };
-constexpr std::array kDayCounts = {DayCount{"days since 1858-11-17 (MJD)", "mjd", 40587},
-                                   DayCount{"days of a spreadsheet, since 1899-12-30", "", 25569},
-                                   DayCount{"days of MATLAB's datenum", "", 719529},
-                                   DayCount{"Julian days", "", 2440587.5}};
+constexpr std::array kOldCounts = {OldCount{"days since 1858-11-17 (MJD)", "mjd", kDayNs, 40587},
+                                   OldCount{"days of a spreadsheet, since 1899-12-30", "", kDayNs, 25569},
+                                   OldCount{"days of MATLAB's datenum", "", kDayNs, 719529},
+                                   OldCount{"Julian days", "", kDayNs, 2440587.5},
+                                   OldCount{"100 ns since 0001-01-01 (.NET)", "", 100, 621355968e9},
+                                   OldCount{"100 ns since 1601-01-01 (Windows)", "", 100, 116444736e9}};
 
 bool few_digits(double step) { return std::fabs(step - rounded(step, 3)) <= 1e-6 * step; }
 
 /// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as seconds.
-const DayCount* day_count(const std::string& stem, const FirstValues& first) {
-  constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // 1990, 2100
+const OldCount* old_count(const std::string& stem, const FirstValues& first, std::int64_t unit_ns) {
+  constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // days: 1990, 2100
   const std::string name = ascii_lower(stem);
   if (first.values.size() < 2) return nullptr;
   const double step = usual_step(first.values), size = first.values[0];
-  for (const DayCount& count : kDayCounts) {
+  for (const OldCount& count : kOldCounts) {
     const bool said = *count.word != '\0' && name.find(count.word) != std::string::npos;
-    if (*count.word != '\0' && !said) continue;
-    if (size - count.of_1970 < kFrom || size - count.of_1970 > kTo) continue;
-    if (said || (!first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step)))) return &count;
+    if ((*count.word != '\0' && !said) || (unit_ns != 0 && unit_ns != count.unit_ns)) continue;
+    const double days = (size - count.of_1970) * static_cast<double>(count.unit_ns) / static_cast<double>(kDayNs);
+    if (days < kFrom || days > kTo) continue;
+    const bool fractions = !first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step));
+    if (said || (count.unit_ns == kDayNs ? fractions : first.integers)) return &count;
   }
   return nullptr;
 }
@@ -200,11 +191,12 @@ bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& inf
 }
 
 std::int64_t unit_from_options(const std::string& word) {
-  for (const char* known : {"s", "ms", "us", "ns", "min", "h"})
-    if (word == known) return unit_in_ns(word);
-  if (word == "d") return kDayNs;
-  if (word == "100us") return 100000;
-  throw usage_error("E0323").says("unknown time unit").got(word).hint("use auto, s, ms, us, ns, min, h, d or 100us");
+  for (const NamedUnit& unit : kNamedUnits)
+    if (word == unit.name) return unit.ns;
+  throw usage_error("E0323")
+      .says("unknown time unit")
+      .got(word)
+      .hint("use auto, s, ms, us, ns, min, h, d, 100us or 100ns");
 }
 
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
@@ -234,14 +226,6 @@ void warn_of_stated_rate(const TableFront& table, double step, std::int64_t unit
 
 }  // namespace
 
-std::int64_t unit_said(const ColumnLabel& column) {
-  const auto [stem, unit] = name_and_unit(column.name);
-  for (const std::int64_t said : {unit_in_ns(column.unit), unit_in_ns(unit)})
-    if (said != 0) return said;
-  const auto known = time_name(stem);
-  return known ? known->unit_ns : 0;
-}
-
 StampUnit find_time_unit(const TableFront& table, std::size_t column, const ReadOptions& options, LogInfo& info) {
   const std::string stem = name_and_unit(table.columns[column].name).first;
   StampUnit unit{options.time_unit != "auto" ? unit_from_options(options.time_unit) : unit_said(table.columns[column])};
@@ -254,12 +238,11 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     first.values.erase(std::unique(first.values.begin(), first.values.end()), first.values.end());
   const double step = usual_step(first.values);
   const bool comparable = table.stated_rate_hz && step > 0 && first.values.size() > 3;
-  const DayCount* days = unit.ns == 0 || unit.ns == kDayNs ? day_count(stem, first) : nullptr;
-  if (days != nullptr) {
-    unit = {kDayNs, days->of_1970};
+  if (const OldCount* count = old_count(stem, first, unit.ns); count != nullptr) {
+    unit = {count->unit_ns, count->of_1970};
     info.time.unit_guessed = options.time_unit == "auto";
     info.guesses.push_back(
-        fmt::format("time: {}, from the size of the stamps (`time_unit` says otherwise)", days->name));
+        fmt::format("time: {}, from the size of the stamps (`time_unit` says otherwise)", count->name));
   } else if (unit.ns == 0) {
     std::int64_t guess = ascii_lower(stem) == "sampletimefine" ? guess_fine(first) : guess_unit(first);
     constexpr double kSlow = 5;  // s

@@ -197,6 +197,9 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics, con
     usable.push_back(t);
     if (topics[t].sensor) sensors.push_back(t);
   }
+  // A table of one row beside recordings, such as a phone's Metadata.csv, is none.
+  const auto one_row = [&](std::size_t t) { return topics[t].rows == 1; };
+  if (!std::all_of(usable.begin(), usable.end(), one_row)) std::erase_if(usable, one_row);
   if (usable.size() == 1) return choice_of(topics, usable[0], options);
   if (chooses(options) && !usable.empty()) {
     const std::size_t t = topic_of_channels(topics, options, file);

@@ -14,8 +14,9 @@ namespace {
 // Two columns that are one stamp.
 struct StampPair {
   std::size_t first = 0, second = 0;
-  bool calendar = false;  // a date and its clock time; else seconds and nanoseconds
-  bool days = false;      // days since 1858-11-17 and seconds of the day
+  bool calendar = false;     // a date and its clock time; else seconds and nanoseconds
+  bool days = false;         // days since 1858-11-17 and seconds of the day
+  std::int64_t rest_ns = 1;  // of the second where that is no clock time
 };
 
 // "MJD" and "sod", "Day (MJD)" and "Seconds of day [s]".
@@ -29,18 +30,6 @@ bool is_calendar(ColumnKind kind) {
   return kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock;
 }
 
-// "header.stamp.secs" and "header.stamp.nsecs".
-bool seconds_and_nanoseconds(std::string_view a, std::string_view b) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {
-      {{"nanosecs", "secs"}, {"nanosec", "sec"}, {"nsecs", "secs"}, {"nsec", "sec"}, {"nanoseconds", "seconds"}}};
-  const std::string first = ascii_lower(a), second = ascii_lower(b);
-  for (const auto& [nano, whole] : kWords)
-    if (first.ends_with(whole) && second.ends_with(nano) &&
-        first.substr(0, first.size() - whole.size()) == second.substr(0, second.size() - nano.size()))
-      return true;
-  return false;
-}
-
 std::optional<std::int64_t> whole_number(const Cells& row, std::size_t column) {
   if (column >= row.size()) return std::nullopt;
   std::int64_t out = 0;
@@ -49,6 +38,27 @@ std::optional<std::int64_t> whole_number(const Cells& row, std::size_t column) {
                  row[column].text.find_first_of(".eE") == std::string::npos
              ? std::optional(out)
              : std::nullopt;
+}
+
+/// ".secs" and ".nsecs", "tv_sec" and "tv_usec": ns in the smaller unit; 0 where they are no pair.
+std::int64_t unit_of_rest(const std::vector<Cells>& rows, const Dialect& dialect, std::size_t column) {
+  static constexpr std::array<std::pair<std::string_view, std::int64_t>, 6> kParts = {
+      {{"nano", 1}, {"n", 1}, {"micro", 1000}, {"u", 1000}, {"milli", 1000000}, {"m", 1000000}}};
+  const std::string first = ascii_lower(dialect.columns[column].text),
+                    second = ascii_lower(dialect.columns[column + 1].text);
+  for (const std::string_view seconds : {"seconds", "secs", "sec"}) {
+    if (!first.ends_with(seconds)) continue;
+    const std::string front = first.substr(0, first.size() - seconds.size());
+    for (const auto& [part, ns] : kParts) {
+      if (second != fmt::format("{}{}{}", front, part, seconds)) continue;
+      const bool rest = std::all_of(rows.begin(), rows.end(), [&, unit = ns](const Cells& row) {
+        const auto whole = whole_number(row, column), more = whole_number(row, column + 1);
+        return whole && more && *more * unit < 1000000000;
+      });
+      return rest || ns == 1 ? ns : 0;  // else two clocks
+    }
+  }
+  return 0;
 }
 
 // Without names: seconds since 1970, then what is left of them in nanoseconds (ros2 topic echo --csv).
@@ -116,10 +126,11 @@ std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& diale
   if (dialect.has_header) {
     for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c) {
       const std::string &first = dialect.columns[c].text, &second = dialect.columns[c + 1].text;
-      if (seconds_and_nanoseconds(first, second)) return StampPair{c, c + 1, false};
+      if (const std::int64_t ns = unit_of_rest(study.rows, dialect, c); ns != 0)
+        return StampPair{c, c + 1, false, false, ns};
       if (digits_in_two(study, dialect, c)) return StampPair{c, c + 1, true};
       if (days_and_seconds(first, second) && !study.rows.empty() && whole_number(study.rows.front(), c))
-        return StampPair{c, c + 1, false, true};
+        return StampPair{c, c + 1, false, true, 1000000000};
     }
   } else if (dialect.columns.size() > 2 && epoch_and_rest(study.rows)) {
     return StampPair{0, 1, false};
@@ -305,6 +316,10 @@ Fractions fractions_of(const StampStudy& study, const Dialect& dialect, const St
   return out;
 }
 
+const char* word_of(std::int64_t ns) {
+  return ns == 1 ? "nanoseconds" : ns == 1000 ? "microseconds" : ns == 1000000 ? "milliseconds" : "seconds";
+}
+
 // printf("%d.%d", seconds, nanoseconds): stamps that step to and fro as fractions, and rise as two numbers.
 void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   StampPart& part = dialect.time;
@@ -312,10 +327,8 @@ void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info
   if (part.unit_ns != 1000000000 || as_read.rise || as_read.alike) return;
   part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
   if (fractions_of(study, dialect, part).rise)
-    info.guesses.push_back(fmt::format("stamps: the digits behind the mark are {} without leading zeros",
-                                       part.fraction_ns == 1      ? "nanoseconds"
-                                       : part.fraction_ns == 1000 ? "microseconds"
-                                                                  : "milliseconds"));
+    info.guesses.push_back(
+        fmt::format("stamps: the digits behind the mark are {} without leading zeros", word_of(part.fraction_ns)));
   else
     part.fraction_ns = 0;
 }
@@ -421,7 +434,7 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
     constexpr std::int64_t kSecond = 1000000000;
     if (column == pair->first) part.unit_ns = pair->days ? 86400 * kSecond : kSecond;
     if (column == pair->first && pair->days) part.zero = 40587;
-    if (column == pair->second && pair->days) part.unit_ns = kSecond;
+    if (column == pair->second) part.unit_ns = pair->rest_ns;
     return part;
   };
   const auto partner_of = [&](std::size_t column) {
@@ -448,9 +461,9 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
     info.time.unit = "s";
     info.time.unit_ns = 1;
     const std::string& rest = dialect.columns[pair->second].name;
-    const std::string sentence = fmt::format("stamps: {} in {} and {} in {}", pair->days ? "days (MJD)" : "seconds",
-                                             printable(info.time.column), pair->days ? "seconds" : "nanoseconds",
-                                             rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
+    const std::string sentence =
+        fmt::format("stamps: {} in {} and {} in {}", pair->days ? "days (MJD)" : "seconds", printable(info.time.column),
+                    word_of(pair->rest_ns), rest.empty() ? fmt::format("c{}", pair->second) : printable(rest));
     if (dialect.has_header)
       info.dialect.push_back(sentence);
     else
