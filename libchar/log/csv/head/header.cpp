@@ -56,11 +56,11 @@ std::string header_text(Study& study, const Field& field, const Line& line, std:
 // time,Ax,Ay": the last comment before the data, when it has as many cells.
 bool named_by_comment(Study& study) {
   if (study.options.header != "auto" || study.columns < 2 || study.comments.empty()) return false;
-  constexpr std::string_view kHeaders = "headers,";
+  constexpr std::string_view kPrefix = "headers,";
   const Line& line = study.comments.back();
   std::string_view text = line.text;
   text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
-  if (ascii_lower(text.substr(0, kHeaders.size())) == kHeaders) text.remove_prefix(kHeaders.size());
+  if (ascii_lower(text.substr(0, kPrefix.size())) == kPrefix) text.remove_prefix(kPrefix.size());
   if (text.empty()) return false;
   const Cells names = table_cells(study, text);
   const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {
