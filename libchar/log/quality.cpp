@@ -188,7 +188,7 @@ LIBCHAR_LANES BlockSums sums_of_lanes(const double* x, const double* before, std
     repeats |= d == 0.0;
     const Four size = v < 0.0 ? -v : v;
     zeros += v == 0.0;
-    near = (size < near) & (v != 0.0) ? size : near;
+    near = ((size < near) & (v != 0.0)) ? size : near;
     top = q > top ? q : top;
     a1 += d;
     a2 += q;

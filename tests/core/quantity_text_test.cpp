@@ -91,7 +91,7 @@ TEST_CASE("typed durations, rates and sizes have their units") {
   }
   CHECK(parse_rate_hz("1/300", off) == 1.0 / 300);
   CHECK(off == 0);
-  for (const char* text : {"200±", "±0.5", "200±-1", "200±x", "200Hz±200%"})
+  for (const char* text : {"200±", "±0.5", " ±0.5", "200±-1", "200±x", "200Hz±200%"})
     CHECK_THROWS_AS(parse_rate_hz(text, off), Error);
   CHECK(parse_rate_hz("200Hz") == 200);
   CHECK(parse_rate_hz("500mHz") == 0.5);

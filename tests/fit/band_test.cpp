@@ -20,7 +20,7 @@ using namespace libchar;
 namespace {
 
 constexpr double kRate = 100;
-constexpr std::size_t kSamples = 200000, kBefore = 4000;
+constexpr std::size_t kRecorded = 200000, kBefore = 4000;
 const Mixture kTruth = {5e-3, 5e-3, 1.5e-3, 0, 0};  // Q, B, K themselves
 
 using Filter = std::function<std::vector<double>(const std::vector<double>&)>;
@@ -30,7 +30,7 @@ std::vector<double> filtered_record(std::uint64_t seed, const Filter& filter) {
   design.coefficient = kTruth;
   design.rate_hz = kRate;
   NoiseGenerator generator(design, seed, 0);
-  std::vector<double> u(kSamples + kBefore, 0.0);
+  std::vector<double> u(kRecorded + kBefore, 0.0);
   generator.add(u, {});
   std::vector<double> y = filter(u);
   y.erase(y.begin(), y.begin() + kBefore);
@@ -198,9 +198,9 @@ TEST_CASE("where no band passes every value is a misfit, its interval as wide as
   PowerPart blocks;
   blocks.push(filtered_record(5, [](const auto& u) { return u; }));
   std::vector<PowerBin> bins = power_bins(powers_of(blocks.finish(true)), kRate);
-  const NoiseFit clean = fit_power_bins(bins, kRate, kSamples, nullptr);
+  const NoiseFit clean = fit_power_bins(bins, kRate, kRecorded, nullptr);
   for (std::size_t j = 0; j < bins.size(); ++j) bins[j].energy *= j % 2 == 0 ? 20 : 0.05;
-  const NoiseFit fit = fit_power_bins(bins, kRate, kSamples, nullptr);
+  const NoiseFit fit = fit_power_bins(bins, kRate, kRecorded, nullptr);
   int values = 0;
   for (const Coefficient& term : fit.term) {
     CHECK(term.status != Status::detected);

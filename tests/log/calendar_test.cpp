@@ -141,6 +141,7 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
   CHECK(date_style({"24-03-14", "24-03-15"}, false).order == DateOrder::year_first);  // a day, not a year
   CHECK(date_style({"14-03-24", "15-03-24"}, false).order == DateOrder::day_first);
   CHECK(date_style({"99/12/31", "00/01/01"}, false).order == DateOrder::year_first);
+  CHECK_FALSE(date_style({"99/12/31", "00/01/01"}, false).ambiguous);  // the second alone would be a day's
   CHECK_FALSE(date_style({"14.03.24", "15.03.24"}, false).ambiguous);
 }
 

@@ -225,6 +225,7 @@ TEST_CASE("options that hints name do what they say") {
   options = {};
   options.encoding = "cp1252";
   CHECK(names(read_text("t,\x80/h\n0,1\n", options)) == Names{"€/h"});
+  CHECK_THROWS_WITH(read_text("t,\xEF\xBC\x9D\n0,1\n", options), Catch::Contains("byte 0x9D at offset 4"));
   options = {};
   options.header = "no";
   CHECK(count(read_text("0,7\n1,8\n", options), "no_header") == 0);

@@ -11,7 +11,7 @@ using namespace libchar;
 
 namespace {
 
-constexpr std::size_t kDevices = 6, kChannels = 3, kLots = 2000;
+constexpr std::size_t kDevices = 6, kChannels = 3, kTrials = 2000;
 constexpr double kSpread = 0.05;  ///< of a channel, as a logarithm
 
 /// Of 2000 lots, those that name a device. `shared`: standard deviation of what the channels of a device have in
@@ -19,7 +19,7 @@ constexpr double kSpread = 0.05;  ///< of a channel, as a logarithm
 std::size_t named(double shared, double factor, std::uint64_t seed) {
   test::Gaussian normal(seed);
   std::size_t lots = 0;
-  for (std::size_t lot = 0; lot < kLots; ++lot) {
+  for (std::size_t lot = 0; lot < kTrials; ++lot) {
     std::vector<double> value;
     for (std::size_t device = 0; device < kDevices; ++device) {
       const double common = shared * kSpread * normal();
@@ -36,13 +36,13 @@ std::size_t named(double shared, double factor, std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("devices as a whole: a sound lot names one in half of 1 % at most where channels are independent") {
-  CHECK(named(0, 1, 1) <= kLots / 200);
+  CHECK(named(0, 1, 1) <= kTrials / 200);
   // Where devices differ as much as their channels do, six devices tell that apart badly.
-  CHECK(named(1, 1, 2) <= kLots / 50);
-  CHECK(named(5, 1, 3) <= kLots / 50);
+  CHECK(named(1, 1, 2) <= kTrials / 50);
+  CHECK(named(5, 1, 3) <= kTrials / 50);
 }
 
 TEST_CASE("devices as a whole: one that is 1.4 times as noisy in three channels of six devices is named in most lots") {
-  CHECK(named(0, 1.4, 4) >= 7 * kLots / 10);
-  CHECK(named(0, 1.25, 5) >= 2 * kLots / 10);
+  CHECK(named(0, 1.4, 4) >= 7 * kTrials / 10);
+  CHECK(named(0, 1.25, 5) >= 2 * kTrials / 10);
 }

@@ -46,16 +46,16 @@ struct Weighted {
 
 /// Weights 1 / (v_i + square). In lanes: sums that do not wait for each other take a quarter of the time.
 inline Weighted weighted(std::span<const double> y, std::span<const double> v, double square) {
-  constexpr std::size_t kLanes = 4;
-  const std::size_t n = y.size(), whole = n - n % kLanes;
-  double weights[kLanes] = {}, means[kLanes] = {}, q[kLanes] = {};
+  constexpr std::size_t kWays = 4;
+  const std::size_t n = y.size(), whole = n - n % kWays;
+  double weights[kWays] = {}, means[kWays] = {}, q[kWays] = {};
   const auto add_mean = [&](std::size_t i, std::size_t lane) {
     const double weight = 1 / (v[i] + square);
     weights[lane] += weight;
     means[lane] += y[i] * weight;
   };
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) add_mean(i + lane, lane);
+  for (std::size_t i = 0; i < whole; i += kWays)
+    for (std::size_t lane = 0; lane < kWays; ++lane) add_mean(i + lane, lane);
   for (std::size_t i = whole; i < n; ++i) add_mean(i, i - whole);
   Weighted out;
   out.weights = (weights[0] + weights[1]) + (weights[2] + weights[3]);
@@ -64,8 +64,8 @@ inline Weighted weighted(std::span<const double> y, std::span<const double> v, d
   const auto add_q = [&](std::size_t i, std::size_t lane) {
     q[lane] += (y[i] - mean) * (y[i] - mean) / (v[i] + square);
   };
-  for (std::size_t i = 0; i < whole; i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) add_q(i + lane, lane);
+  for (std::size_t i = 0; i < whole; i += kWays)
+    for (std::size_t lane = 0; lane < kWays; ++lane) add_q(i + lane, lane);
   for (std::size_t i = whole; i < n; ++i) add_q(i, i - whole);
   out.q = (q[0] + q[1]) + (q[2] + q[3]);
   return out;

@@ -138,7 +138,8 @@ double parse_rate_hz(std::string_view text, double& uncertainty_hz) {
       uncertainty_hz = hz * parse_number(std::string_view(off).substr(0, off.size() - 1), 0, 100) / 100;
       return hz;
     }
-    if (may_follow(rate.back())) rate += off.substr(off.find_last_of("0123456789.") + 1);  // "200±0.5Hz"
+    if (!rate.empty() && may_follow(rate.back()))
+      rate += off.substr(off.find_last_of("0123456789.") + 1);  // "200±0.5Hz"
     uncertainty_hz = parse_rate_hz(off);
     return parse_rate_hz(rate);
   }

@@ -34,15 +34,16 @@ LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
   before[3] = on_line(x[-3], x[-2], x[-1], kStraight) ? -1 : 0;
   std::size_t i = 0;
   for (; i + 4 <= n; i += 4) {
-    const Four a = LIBCHAR_FOUR(x + i - 2), b = LIBCHAR_FOUR(x + i - 1), c = LIBCHAR_FOUR(x + i);
+    const double* at = x + i;  // first: i - 2 alone is no index
+    const Four a = LIBCHAR_FOUR(at - 2), b = LIBCHAR_FOUR(at - 1), c = LIBCHAR_FOUR(at);
     const Four step = b - a, bend = (c - b) - step;
     const auto flag = bend * bend < kSquare * (step * step);
     found |= flag & __builtin_shufflevector(before, flag, 3, 4, 5, 6);
     before = flag;
   }
   bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
-  for (; i < n; ++i)
-    out |= on_line(x[i - 2], x[i - 1], x[i], kStraight) && on_line(x[i - 3], x[i - 2], x[i - 1], kStraight);
+  for (const double* at = x + i; at < x + n; ++at)
+    out |= on_line(at[-2], at[-1], *at, kStraight) && on_line(at[-3], at[-2], at[-1], kStraight);
   return out;
 }
 constexpr InLanes<any_two_lanes> any_two;

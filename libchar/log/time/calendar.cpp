@@ -441,7 +441,8 @@ DateStyle date_style(const std::vector<std::string_view>& texts, bool european) 
   for (const std::string_view text : texts) {
     const auto stamp = read_calendar(text);
     if (!stamp || !stamp->date || stamp->order_said) continue;
-    if (!stamp->short_year || (stamp->separator != '-' && stamp->first <= 31)) not_so(DateOrder::year_first);
+    const bool no_year = !stamp->short_year || (stamp->separator != '-' && stamp->first <= 31);
+    if (no_year && could_be.size() > 1) not_so(DateOrder::year_first);  // unless another text had a year there
     for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
       if (could_be.size() > 1 && !read_calendar(text, order)) not_so(order);
     seen = true;

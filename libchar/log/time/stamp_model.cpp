@@ -496,9 +496,9 @@ std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stam
 }
 
 std::optional<RateChange> find_rate_change(std::span<const double> rows, std::span<const double> instants) {
-  constexpr std::size_t kMost = 32, kFewest = 8, kSide = 3, kRows = 16;
+  constexpr std::size_t kMost = 32, kFewest = 8, kSide = 3, kPiece = 16;
   constexpr double kLeast = 0.03, kOff = 0.25;
-  const std::size_t n = rows.size(), pieces = std::min(kMost, n / kRows);
+  const std::size_t n = rows.size(), pieces = std::min(kMost, n / kPiece);
   if (pieces < kFewest) return std::nullopt;
   const auto edge = [&](std::size_t piece) { return std::min(n - 1, piece * n / pieces); };
   const auto slope = [&](std::size_t from, std::size_t to) {

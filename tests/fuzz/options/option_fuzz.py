@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Options in combination: option_fuzz.py PROGRAM [--seconds 60] [--runs N] [--seed 1] [--verb NAME] [--counts]
+[--sanitized]
 
 Draws a verb, one to five of its options and a value for each from the program's own description
 (sensorchar --generate json), on a table of good inputs, and asks of every command what option_contract.py says.
@@ -23,6 +24,7 @@ import option_inputs as inputs
 import option_values as values
 
 TIMEOUT = 30
+MEMORY = 8 << 30
 NOT_DRAWN = {"--help", "-h"}
 
 
@@ -65,7 +67,8 @@ def places(words):
 def limits():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
-    resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+    if MEMORY:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT, TIMEOUT))
 
 
@@ -106,7 +109,17 @@ def options():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verb")
     parser.add_argument("--counts", action="store_true", help="print how often each option appeared")
+    parser.add_argument("--sanitized", action="store_true", help="a program built with the sanitizers: slower, and its "
+                        "shadow of the memory takes terabytes of addresses")
     return parser.parse_args()
+
+
+def allow_sanitizers():
+    global TIMEOUT, MEMORY
+    TIMEOUT, MEMORY = 4 * TIMEOUT, 0
+    contract.SLOWEST_S *= 4
+    contract.STRESS_S *= 4
+    os.environ.setdefault("ASAN_OPTIONS", "detect_leaks=0:detect_odr_violation=0:allocator_may_return_null=1")
 
 
 def say_counts(counts):
@@ -143,6 +156,8 @@ def fuzz(arguments, usage, base, folder):
 
 def main():
     arguments = options()
+    if arguments.sanitized:
+        allow_sanitizers()
     usage = json.loads(subprocess.run([arguments.program, "--generate", "json"], capture_output=True,
         check=True).stdout)
     scratch = "/dev/shm" if os.path.isdir("/dev/shm") else None

@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "libchar/core/refusal.hpp"
@@ -209,8 +211,9 @@ bool counts_rows(const Study& study, std::size_t column) {
 
 enum class LeftOut { none, chosen, words, dates, clocks, others, counts };
 
-// Words, dates that are not the time, counts of the rows and columns with nothing in them are no channels.
-LeftOut why_left_out(const Study& study, std::size_t c) {
+// Words, dates that are not the time, counts of the rows and columns with nothing in them are no channels, nor are
+// stamps of others (`clocks`: their names).
+LeftOut why_left_out(const Study& study, const std::set<std::string_view>& clocks, std::size_t c) {
   const Dialect& dialect = study.dialect;
   const Column& column = dialect.columns[c];
   const int index = static_cast<int>(c);
@@ -221,9 +224,7 @@ LeftOut why_left_out(const Study& study, std::size_t c) {
   if (index == dialect.time.column || index == dialect.more_time.column) return LeftOut::none;
   if (kind == ColumnKind::text) return LeftOut::words;
   if (kind == ColumnKind::calendar || kind == ColumnKind::date || kind == ColumnKind::clock) return LeftOut::dates;
-  if (std::any_of(dialect.columns.begin(), dialect.columns.end(),
-                  [&](const Column& one) { return !one.own_clock.empty() && one.own_clock == column.name; }))
-    return LeftOut::others;
+  if (clocks.count(column.name) > 0) return LeftOut::others;
   if (column.clock) return LeftOut::clocks;
   const bool unnamed =
       dialect.has_header && (column.text.empty() || column.text == "#" || column.text.starts_with("Unnamed: "));
@@ -233,9 +234,12 @@ LeftOut why_left_out(const Study& study, std::size_t c) {
 
 void leave_out(Study& study) {
   std::map<LeftOut, std::vector<std::string>> names;
+  std::set<std::string_view> clocks;
+  for (const Column& column : study.dialect.columns)
+    if (!column.own_clock.empty()) clocks.insert(column.own_clock);
   for (std::size_t c = 0; c < study.dialect.columns.size(); ++c) {
     Column& column = study.dialect.columns[c];
-    const LeftOut why = why_left_out(study, c);
+    const LeftOut why = why_left_out(study, clocks, c);
     column.left_out = why != LeftOut::none;
     names[why].push_back(column.name.empty() ? fmt::format("c{}", c) : column.name);
     if (why == LeftOut::none && column.unnamed && static_cast<int>(c) != study.dialect.time.column &&

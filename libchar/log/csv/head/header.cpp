@@ -42,25 +42,28 @@ std::string header_text(Study& study, const Field& field, const Line& line, std:
         .says("channel name longer than 1024 bytes")
         .got(field.text);
   if (auto text = decoded(study, field.text)) return *text;
-  const std::size_t invalid = first_invalid_utf8(field.text);
-  const std::size_t column =
-      field.offset + (field.quoted ? 1 : 0) + indent + (invalid == std::string::npos ? 0 : invalid);
+  std::size_t invalid = first_invalid_utf8(field.text);
+  const bool utf8 = invalid == std::string::npos;  // and read as what was asked for it is no text
+  if (utf8)
+    for (invalid = 0; windows1252_to_utf8(std::string_view(field.text).substr(invalid, 1));) ++invalid;
+  const std::size_t column = field.offset + (field.quoted ? 1 : 0) + indent + invalid;
   throw refusal(study, line, column, "E0302")
-      .says("neither UTF-8 nor Windows-1252: byte 0x{:02X} at offset {}",
+      .says("{} Windows-1252: byte 0x{:02X} at offset {}", utf8 ? "not" : "neither UTF-8 nor",
             static_cast<unsigned char>(field.text[invalid]), line.offset + column)
       .got(field.text)
-      .hint("`encoding` latin1 takes every byte for the character of ISO 8859-1");
+      .hint(utf8 ? "`encoding` auto reads it as UTF-8"
+                 : "`encoding` latin1 takes every byte for the character of ISO 8859-1");
 }
 
 // EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
 // time,Ax,Ay": the last comment before the data, when it has as many cells.
 bool named_by_comment(Study& study) {
   if (study.options.header != "auto" || study.columns < 2 || study.comments.empty()) return false;
-  constexpr std::string_view kHeaders = "headers,";
+  constexpr std::string_view kPrefix = "headers,";
   const Line& line = study.comments.back();
   std::string_view text = line.text;
   text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
-  if (ascii_lower(text.substr(0, kHeaders.size())) == kHeaders) text.remove_prefix(kHeaders.size());
+  if (ascii_lower(text.substr(0, kPrefix.size())) == kPrefix) text.remove_prefix(kPrefix.size());
   if (text.empty()) return false;
   const Cells names = table_cells(study, text);
   const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {

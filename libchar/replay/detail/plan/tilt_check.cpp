@@ -72,10 +72,10 @@ void TiltCheck::close() {
 
 // 0: none that is resolved.
 double TiltCheck::delay_s() const {
-  constexpr double kResolved = 6, kSamples = 2;
+  constexpr double kSignificant = 6, kSamples = 2;
   if (!(rr_ > 0)) return 0;
   const double delay = re_ / rr_, left = std::max(0.0, ee_ - delay * re_);
-  const bool resolved = std::abs(delay) > kResolved * std::sqrt(left / (n_ * rr_)) &&
+  const bool resolved = std::abs(delay) > kSignificant * std::sqrt(left / (n_ * rr_)) &&
                         std::abs(delay) > kSamples * step_s_ && left < ee_ / 2;
   return resolved ? delay : 0;
 }
