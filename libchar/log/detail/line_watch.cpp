@@ -76,7 +76,7 @@ void LineWatch::look(std::span<const double> x, const unsigned char* starts, std
 
 // A lone flag is none: most stretches of a noise are passed over at once.
 void LineWatch::block(std::span<const double> x, const unsigned char* starts, std::uint64_t at) {
-  constexpr std::size_t kStretch = 64;
+  constexpr std::size_t kStretch = 256;
   const auto begins = [&](std::size_t i) { return starts != nullptr && starts[i] != 0; };
   std::size_t i = 0;
   for (; i < std::min<std::size_t>(3, x.size()); ++i) take(x[i], !begins(i), at + i);
