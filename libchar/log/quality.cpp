@@ -1296,7 +1296,11 @@ double known_rate_hz(const LogInfo& info) {
   if (info.time.rate_hz > 0) return info.time.rate_hz;
   throw numeric_error("E0402", info.file)
       .says("the sampling rate is not known")
-      .hint("a log without time stamps needs `rate_hz`");
+      .hint(info.time.candidate.empty()
+                ? "a log without time stamps needs `rate_hz`"
+                : fmt::format(
+                      "`time_column` {} takes that column for the time; a log without time stamps needs `rate_hz`",
+                      shell_word(info.time.candidate)));
 }
 
 }  // namespace libchar

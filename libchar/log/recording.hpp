@@ -43,7 +43,7 @@ struct TimeBase {
   double rate_hz = 0;         ///< 0 when unknown (no stamps and no `rate_hz`)
   bool from_stamps = false;   ///< rate found by robust slope of the stamps; else given by the user or the file
   std::string column;         ///< name of the time column, "" when there is none
-  std::string candidate;      ///< without one: a channel that `time_column` could name, as it rises evenly
+  std::string candidate;      ///< without one: a channel that `time_column` could name, as it rises
   std::string unit;           ///< "s", "ms", "us", "ns", "min", "h", "100000 ns"…, "" when there is none
   std::int64_t unit_ns = 0;   ///< the same in nanoseconds; 0 when there is none
   bool unit_guessed = false;  ///< the unit was inferred from the magnitude of the stamps, not read

@@ -10,6 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/detail/column_name.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
 #include "tests/log/log_text.hpp"
 #include "tests/support/rows.hpp"
@@ -263,6 +264,23 @@ Recording with_stamps(const std::string& header, const std::function<std::string
 
 }  // namespace
 
+TEST_CASE("a column that its name calls a time, and whose rows come in packets, is offered as one") {
+  const auto packets = [](int row) { return fmt::format("{:.3f}", 0.04 * (row / 4) + 0.001 * (row % 4)); };
+  CHECK(with_stamps("IMUTime", packets).info.time.candidate == "IMUTime");
+  CHECK(with_stamps("pressure", packets).info.time.candidate.empty());
+  const Recording wanders = with_stamps("playtime", [](int row) { return std::to_string(row * 7919 % 301); });
+  CHECK(wanders.info.time.candidate.empty());
+  ReadOptions options;
+  options.time_column = "IMUTime";
+  CHECK(with_stamps("IMUTime", packets, options).info.time.rate_hz == Approx(100).epsilon(1e-3));
+  try {
+    known_rate_hz(with_stamps("IMU time", packets).info);
+    FAIL("no rate is known");
+  } catch (const Error& error) {
+    CHECK_THAT(error.problem().hint, Catch::StartsWith("`time_column` 'IMU time' takes"));
+  }
+}
+
 TEST_CASE("a steady clock is the time, whatever its name") {
   struct Named {
     const char* header;
@@ -386,8 +404,12 @@ TEST_CASE("seconds and what is left of them stand in two columns, two full clock
     CHECK(r.info.time.rate_hz == Approx(50));
     CHECK(r.info.channels.size() == 1);
   }
-  CHECK(with_stamps("sec,msec", [](int i) { return fmt::format("{},{}", i / 50, 20 * i); }).info.time.rate_hz ==
-        Approx(50));
+  for (const int step_ms : {20, 5}) {  // less than a second of them is looked at first
+    const Recording two =
+        with_stamps("sec,msec", [&](int i) { return fmt::format("{},{}", step_ms * i / 1000, step_ms * i); });
+    CHECK(two.info.time.rate_hz == Approx(1000.0 / step_ms));
+    CHECK(two.info.time.missing_samples == 0);
+  }
 }
 
 TEST_CASE("a device's clock of whole seconds gives way to a steady host clock") {

@@ -131,8 +131,9 @@ std::string mended_command(const Session& session, const std::vector<Finding>& f
 std::vector<std::string> next_steps(const Session& session, const Characterization& result, const std::string& folder) {
   const TimeBase& time = result.log.time;
   if (!(time.rate_hz > 0))
-    return {
-        command_again(session, time.candidate.empty() ? " --rate RATE" : " --time-column " + time.candidate, folder)};
+    return {command_again(
+        session, time.candidate.empty() ? " --rate RATE" : " --time-column " + libchar::shell_word(time.candidate),
+        folder)};
   const std::vector<Finding> findings = findings_of(result);
   std::vector<std::string> out;
   // What is said of samples that were read in the wrong way mends nothing.

@@ -62,7 +62,8 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
   if (info.time.rate_hz <= 0)
     return info.time.candidate.empty()
                ? fmt::format("  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags)
-               : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n", log, flags, info.time.candidate);
+               : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n", log, flags,
+                             libchar::shell_word(info.time.candidate));
   const bool hopeless =
       std::all_of(inspection.quality.begin(), inspection.quality.end(), [](const libchar::ChannelQuality& q) {
         return libchar::has(q.findings, "constant") || libchar::has(q.findings, "no_value");

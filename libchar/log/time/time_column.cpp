@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/refusal.hpp"
@@ -173,6 +174,15 @@ bool counts_since_1970(const FirstValues& first) {
   return false;
 }
 
+// With packets, pauses or rows that changed places it may be a clock all the same, if somebody says so.
+bool rises_mostly(const std::vector<double>& values) {
+  constexpr double kRising = 0.8;
+  if (values.size() < 3 || !(values.back() > values.front())) return false;
+  std::size_t falls = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) falls += values[i] < values[i - 1];
+  return static_cast<double>(falls) < (1 - kRising) * static_cast<double>(values.size());
+}
+
 // The first column that is a clock by its values, one whose name speaks of time before others; said as
 // a guess. A rate that is known leaves it a channel.
 std::optional<std::size_t> column_like_a_clock(const TableFront& table, const ReadOptions& options, LogInfo& info) {
@@ -192,9 +202,10 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
     if ((named || !found) && (counts_since_1970(first) || steady_clock(first.values)) &&
         !like_a_temperature(column, first))
       found = c;
-    else
-      named = false;
+    else if (std::exchange(named, false) && rises_mostly(first.values) && info.time.candidate.empty())
+      info.time.candidate = column.name;
   }
+  if (found) info.time.candidate.clear();
   if (found)
     info.guesses.push_back(
         fmt::format("time column: {}, because it is a steady clock (`time_column` none keeps it as a channel)",

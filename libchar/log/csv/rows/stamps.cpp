@@ -51,11 +51,13 @@ std::int64_t unit_of_rest(const std::vector<Cells>& rows, const Dialect& dialect
     const std::string front = first.substr(0, first.size() - seconds.size());
     for (const auto& [part, ns] : kParts) {
       if (second != fmt::format("{}{}{}", front, part, seconds)) continue;
-      const bool rest = std::all_of(rows.begin(), rows.end(), [&, unit = ns](const Cells& row) {
+      bool rest = ns == 1;  // else two clocks, as long as no whole second is seen in front of what is less than one
+      for (const Cells& row : rows) {
         const auto whole = whole_number(row, column), more = whole_number(row, column + 1);
-        return whole && more && *more * unit < 1000000000;
-      });
-      return rest || ns == 1 ? ns : 0;  // else two clocks
+        if (ns != 1 && (!whole || !more || *more * ns >= 1000000000)) return 0;
+        rest = rest || *whole != 0;
+      }
+      return rest ? ns : 0;
     }
   }
   return 0;
