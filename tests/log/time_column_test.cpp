@@ -393,6 +393,14 @@ TEST_CASE("counts of 100 ns since long ago are dates") {
       }
 }
 
+TEST_CASE("a word for the time of day is no unit of numbers") {
+  for (const char* name : {"hora", "heure", "Uhrzeit"}) {
+    INFO(name);
+    const Recording r = with_stamps(name, [](int i) { return fmt::format("{:.2f}", 3.25 + 0.02 * i); });
+    CHECK(r.info.time.rate_hz == Approx(50));
+  }
+}
+
 TEST_CASE("seconds and what is left of them stand in two columns, two full clocks do not") {
   for (const auto& [names, unit] : {std::pair{"tv_sec,tv_usec", 1000000},
                                     {"sec,msec", 1000},

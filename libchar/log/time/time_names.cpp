@@ -236,7 +236,8 @@ std::int64_t unit_said(const ColumnLabel& column) {
   if (const std::int64_t ns = unit_behind(column); ns != 0) return ns;
   const std::string stem = name_and_unit(column.name).first;
   const auto known = time_name(stem);
-  return known && known->unit_ns != 0 ? known->unit_ns : unit_of_word(stem);
+  return known && (known->unit_ns != 0 || known->date) ? known->unit_ns
+                                                       : unit_of_word(stem);  // "hora" is a time of day
 }
 
 }  // namespace libchar
