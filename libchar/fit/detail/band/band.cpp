@@ -687,7 +687,7 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
   if (low_pass.low_pass)
     if (const auto trial = search.at(low_pass); trial && trial->band.passes && worth(*trial)) return trial->band;
-  if (describes) return search.named(whole).value_or(passing(*unshaped));
+  if (describes) return search.named(whole).value_or(passing(rises ? *quantized : *unshaped));
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   const bool simple = best && best->orders < kMany;
   const std::optional<Band> named = simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);
