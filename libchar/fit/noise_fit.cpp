@@ -86,8 +86,7 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
   if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
   describe_band(bins, out.band, problem, best, rate_hz, fit);
-  fit.goodness = goodness_of(inside_of(fit.residuals),
-                             count_of(only_positive(fit.theta)) + static_cast<std::size_t>(out.band.orders));
+  fit.goodness = goodness_of(inside_of(fit.residuals), count_of(only_positive(fit.theta)) + unknowns_of(out.band));
   out.half_deviance = half_deviance(problem, best);
   out.best = best;
   return out;

@@ -60,8 +60,14 @@ class Session {
   }
   command() { return this.tab.locator("#command").innerText(); }
   text() { return this.tab.locator("#text").innerText(); }
+  /** Brings the uses into sight: a click right after scrolling would go to the report's frame, which was there a moment before. */
+  async toUses() {
+    await this.tab.locator("#use").evaluate(section => section.scrollIntoView());
+    await this.tab.waitForTimeout(200);
+  }
   /** Chooses a use and runs it. */
   async run(use, fill = async () => {}) {
+    await this.toUses();
     await this.tab.getByRole("button", { name: use, exact: true }).first().click();
     await fill(this.tab);
     await this.tab.locator("#run").click();

@@ -123,7 +123,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
   }
   trial.half_deviance = best.half_deviance;
   trial.theta = best.at.theta;
-  judge_band(bins, count_of(only_positive(best.at.theta)) + static_cast<std::size_t>(band.orders), options, trial);
+  judge_band(bins, count_of(only_positive(best.at.theta)) + unknowns_of(band), options, trial);
   return trial;
 }
 
@@ -366,6 +366,90 @@ struct Search {
     return band;
   }
 
+  /// Runs of bins that are left out, up to its top: from..to-1 of `order`.
+  std::vector<std::pair<std::size_t, std::size_t>> holes_of(const Band& band,
+                                                            const std::vector<std::size_t>& order) const {
+    std::vector<std::pair<std::size_t, std::size_t>> holes;
+    for (std::size_t from = 0, to = 0; from < order.size(); from = to + 1) {
+      for (to = from; to < order.size() && band.inside[order[to]] == 0;) ++to;
+      if (to < order.size() && bins[order[to]].high_hz > band.top_hz) break;
+      if (to > from) holes.push_back({from, to});
+    }
+    return holes;
+  }
+
+  std::vector<std::size_t> by_frequency() const {
+    std::vector<std::size_t> order(bins.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return bins[a].frequency_hz < bins[b].frequency_hz; });
+    return order;
+  }
+
+  /// What a hole was cut for: excess e over the model, of the height a and the area a f pi / (2 Q) of a resonance.
+  std::optional<Resonance> resonance_in(const std::vector<std::size_t>& hole, const Mixture& theta) const {
+    double sum = 0, weight = 0, area = 0, height = 0;
+    for (const std::size_t j : hole) {
+      const double excess = std::max(0.0, bins[j].energy / expected_energy(bins[j], theta) - 1);
+      sum += bins[j].dof * excess * bins[j].frequency_hz;
+      weight += bins[j].dof * excess;
+      area += excess * (bins[j].high_hz - bins[j].low_hz);
+      height = std::max(height, excess);
+    }
+    if (!(weight > 0)) return std::nullopt;
+    const double frequency_hz = sum / weight, quality = height * frequency_hz * std::numbers::pi / 2 / area;
+    const double angle = 2 * std::numbers::pi * frequency_hz / rate_hz, half = angle / (2 * quality);
+    return Resonance{frequency_hz, height * half * half, std::pow(half * std::sin(angle), 2)};
+  }
+
+  /// The likeliest strength of all skirts together, which that of the cores is a guess at; unlike ones where they
+  /// explain more.
+  std::optional<Trial> with_skirts(Band band) const {
+    constexpr double kExplains = 1;  ///< of ln L
+    std::optional<Trial> best;
+    for (const bool unlike : {false, true}) {
+      for (Resonance& resonance : band.resonances) resonance.unlike = unlike;
+      if (unknowns_of(band) > static_cast<std::size_t>(kMostShape)) break;
+      const std::optional<Trial> like = best;
+      for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+        Band scaled = band;
+        for (Resonance& resonance : scaled.resonances) resonance.strength *= factor;
+        std::optional<Trial> trial = at(scaled);
+        if (trial && like && !(trial->half_deviance < like->half_deviance - kExplains)) continue;
+        if (trial && (!best || trial->half_deviance < best->half_deviance)) best = std::move(trial);
+      }
+    }
+    return best;
+  }
+
+  /// The whole band without `holes`, each a resonance whose skirts are fitted, wider where that does not pass: a shape
+  /// beside a narrow hole, or none, would put the skirts into N.
+  std::optional<Band> between_peaks(Band band) const {
+    constexpr std::size_t kOf = 4;  ///< a quarter wider on each side
+    const std::vector<std::size_t> order = by_frequency();
+    const std::size_t fewest = bins.size() - bins.size() / kMostLeftOut;
+    const std::optional<Trial> bare = at(band);
+    const auto holes = holes_of(band, order);
+    if (!bare || holes.size() > static_cast<std::size_t>(kMostShape)) return std::nullopt;
+    for (const auto& [from, to] : holes) {
+      const auto first = order.begin() + static_cast<std::ptrdiff_t>(from);
+      const auto found = resonance_in({first, first + static_cast<std::ptrdiff_t>(to - from)}, bare->theta);
+      if (found) band.resonances.push_back(*found);
+    }
+    for (;;) {
+      const std::optional<Trial> trial = with_skirts(band);
+      if (!trial || trial->index.size() < fewest) return std::nullopt;
+      if (trial->band.passes) return trial->band;
+      const Band before = band;
+      for (const auto& [from, to] : holes_of(before, order)) {
+        const std::size_t width = (to - from + kOf - 1) / kOf;
+        for (std::size_t i = from - std::min(from, width); i < std::min(order.size(), to + width); ++i)
+          band.inside[order[i]] = 0;
+      }
+      if (band.inside == before.inside) return std::nullopt;
+    }
+  }
+
   /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small
   /// misfit, and moves the coefficients less than a deep cut does: there a smaller probability passes.
   std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
@@ -375,7 +459,8 @@ struct Search {
     lenient.probability = options.misfit;
     Search eased{bins, rate_hz, terms, lenient, std::nullopt};
     for (Search* search : {this, &eased}) {
-      const std::optional<Band> found = search->widest(holes, rate_hz / 2);
+      std::optional<Band> found = search->between_peaks(holes);
+      if (!found) found = search->widest(holes, rate_hz / 2);
       if (found && (!narrow || found->top_hz > 2 * narrow->top_hz)) narrow = found;
     }
     return narrow;
@@ -429,38 +514,13 @@ struct Search {
     return likelier(at(band)) || (filter && likelier(at(*filter)));
   }
 
-  bool has_holes(const Band& band) const {
-    for (std::size_t j = 0; j < bins.size(); ++j)
-      if (band.inside[j] == 0 && bins[j].high_hz <= band.top_hz) return true;
-    return false;
-  }
-
-  /// Its holes with as much again on each side, where the skirts of peaks are too low to be seen.
-  Band without_skirts(Band band) const {
-    std::vector<std::size_t> order(bins.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return bins[a].frequency_hz < bins[b].frequency_hz; });
-    const std::vector<char> inside = band.inside;
-    for (std::size_t from = 0, to = 0; from < order.size(); from = to + 1) {
-      for (to = from; to < order.size() && inside[order[to]] == 0;) ++to;
-      if (to < order.size() && bins[order[to]].high_hz > band.top_hz) break;
-      const std::size_t width = to - from, begin = from - std::min(from, width);
-      for (std::size_t i = begin; width > 0 && i < std::min(order.size(), to + width); ++i) band.inside[order[i]] = 0;
-    }
-    return band;
-  }
-
   /// With the orders that explain something, and two more of few, one more of many: what just passes leaves a bias.
-  /// Peaks beside white noise go with their skirts. A cut band that passes without a shape is halved.
+  /// A cut band that passes without a shape is halved.
   Band with_margin(Band band) const {
     constexpr double kExplains = 1;  ///< of ln L
     constexpr int kMostMore = 4;
     const bool whole = band.top_hz > rate_hz / 2 * 0.99;
-    if (whole && band.orders == 0) {
-      const std::optional<Trial> bare = has_holes(band) ? at(without_skirts(band)) : std::nullopt;
-      return bare && bare->band.passes ? bare->band : band;
-    }
+    if (whole && band.orders == 0) return band;
     const auto with_orders = [&](Band next, int more) {
       next.orders += more;
       return at(next);
@@ -480,6 +540,10 @@ struct Search {
 };
 
 }  // namespace
+
+std::size_t unknowns_of(const Band& band) {
+  return static_cast<std::size_t>(band.orders) + unknowns_of(band.resonances);
+}
 
 Band whole_band(const std::vector<PowerBin>& bins, double rate_hz) {
   Band band;
@@ -520,7 +584,7 @@ double band_log_gain(const Band& band, const PowerBin& bin, double rate_hz) {
 BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, double rate_hz) {
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
   const std::size_t unknowns = unknowns_of(band.named.family);
-  if (unknowns == 0) return bin_problem(inside, band.orders, band.top_hz);
+  if (unknowns == 0) return bin_problem(inside, band.orders, band.top_hz, band.resonances, rate_hz);
   BinProblem problem = bin_problem(inside);
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
   Eigen::MatrixXd slopes(problem.size(), static_cast<Eigen::Index>(unknowns));
@@ -668,7 +732,8 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
-  if (describes && !(shelf.largest > options.shelf)) return passing(*unshaped);
+  const bool peaked = options.corners && highest_peak(bins, *unshaped).deviations > options.peak;
+  if (describes && !(shelf.largest > options.shelf) && !peaked) return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;
   const std::optional<Trial> quantized = search.at(with_quantization);
@@ -681,6 +746,8 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   if (const auto named = named_filter(bins, rate_hz, terms, options);
       named && named->band.passes && worth(*named) && explains_nulls(bins, rate_hz, *named))
     return named->band;
+  if (peaked)
+    if (const std::optional<Band> between = search.between_peaks(search.without_peaks(whole))) return *between;
   Band low_pass = whole;
   TermSet offered = terms;
   offered[kLentTerm] = offered[kLentTerm] || options.tau_s;
@@ -732,7 +799,7 @@ Band find_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet&
     const Search search{bins, rate_hz, terms, options, std::nullopt};
     if (const auto above = search.above_hump(whole_band(bins, rate_hz))) return *above;
   }
-  if (!options.small_shapes || !band.passes || band.orders > 0 || count_of(terms) == 0 ||
+  if (!options.small_shapes || !band.passes || unknowns_of(band) > 0 || count_of(terms) == 0 ||
       members(bins, band).size() < kFewestBins)
     return band;
   TermSet offered = terms;

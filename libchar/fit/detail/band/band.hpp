@@ -28,6 +28,7 @@ struct Band {
   NoiseShape filter;                   ///< a filter known by name (boxcar, Bartlett), or none
   int orders = 0;                      ///< of the polynomial of the shape beyond that, or unknowns of `named`
   NamedShape named;                    ///< a filter or loop with a low corner in its place
+  std::vector<Resonance> resonances;   ///< left out, but for their skirts, which are among the unknowns
   bool quantized = false;              ///< quantization noise is among the terms
   std::optional<LowPassFit> low_pass;  ///< a first-order low-pass as well
   /// correlation time of a Gauss-Markov process that is among the terms, in the column of the ramp
@@ -52,8 +53,12 @@ struct BandOptions {
   bool corners = false;         ///< shelves and high-passes are looked for: not of a clock, whose noise rises
   double high_pass = 1.5;       ///< deviate from which on a high-pass is looked for
   double shelf = 3.9;           ///< deviate of a directed test from which on a shelf is looked for
+  double peak = 5.5;            ///< standard deviations of a broad peak from which on it is a resonance
   double seen = 3;              ///< standard deviations of such a shape from which on a filter with a name is tried
 };
+
+/// Of its shape.
+std::size_t unknowns_of(const Band& band);
 
 /// Every bin, without a shape.
 Band whole_band(const std::vector<PowerBin>& bins, double rate_hz);

@@ -1,7 +1,9 @@
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/noise_terms.hpp"
@@ -18,7 +20,21 @@ double bin_square_hz(const PowerBin& bin) {
   return (bin.low_hz * bin.low_hz + bin.low_hz * bin.high_hz + bin.high_hz * bin.high_hz) / 3;
 }
 
+/// Columns of the skirts of a resonance.
+std::array<double, 2> skirts(const Resonance& resonance, double frequency_hz, double rate_hz) {
+  const auto cosine = [&](double hz) { return std::cos(2 * std::numbers::pi * std::min(hz / rate_hz, 0.5)); };
+  const double c = cosine(frequency_hz), from = c - cosine(resonance.frequency_hz);
+  const double inverse = 1 / (from * from + resonance.width), like = resonance.strength * (1 - c * c) * inverse;
+  return {std::log1p(like), (1 - c) * inverse / (1 + like)};
+}
+
 }  // namespace
+
+std::size_t unknowns_of(const std::vector<Resonance>& resonances) {
+  std::size_t unknowns = 0;
+  for (const Resonance& resonance : resonances) unknowns += resonance.unlike ? 2 : 1;
+  return unknowns;
+}
 
 BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   const auto n = static_cast<Eigen::Index>(bins.size());
@@ -48,24 +64,32 @@ BinProblem bin_problem(const std::vector<PowerBin>& bins) {
   return problem;
 }
 
-BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz) {
+BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz,
+                       const std::vector<Resonance>& resonances, double rate_hz) {
   BinProblem problem = bin_problem(bins);
-  if (orders == 0) return problem;
+  const int unknowns = orders + static_cast<int>(unknowns_of(resonances));
+  if (unknowns == 0) return problem;
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt();
-  Eigen::MatrixXd powers(problem.size(), orders);
+  Eigen::MatrixXd columns(problem.size(), unknowns);
   for (Eigen::Index j = 0; j < problem.size(); ++j) {
     const PowerBin& bin = bins[static_cast<std::size_t>(j)];
     const double x = bin_square_hz(bin) / (band_hz * band_hz);
     // Legendre polynomials of 2x - 1, less their value at x = 0, span the same as the powers and stay apart.
     double before = 1, at = 2 * x - 1;
+    Eigen::Index column = 0;
     for (int p = 1; p <= orders; ++p) {
-      powers(j, p - 1) = root[j] * (at - (p % 2 == 0 ? 1 : -1));
+      columns(j, column++) = root[j] * (at - (p % 2 == 0 ? 1 : -1));
       const double next = ((2 * p + 1) * (2 * x - 1) * at - p * before) / (p + 1);
       before = at;
       at = next;
     }
+    for (const Resonance& resonance : resonances) {
+      const auto [like, unlike] = skirts(resonance, bin.frequency_hz, rate_hz);
+      columns(j, column++) = root[j] * like;
+      if (resonance.unlike) columns(j, column++) = root[j] * unlike;
+    }
   }
-  problem.shape = thin_qr(powers).q.array().colwise() / root;
+  problem.shape = thin_qr(columns).q.array().colwise() / root;
   return problem;
 }
 

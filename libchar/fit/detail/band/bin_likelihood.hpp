@@ -33,11 +33,25 @@ struct ModelPoint {
   ShapeCoefficients shape{};
 };
 
+/// A peak that is left out of a spectrum.
+struct Resonance {
+  double frequency_hz = 0;
+  double strength = 0;  ///< s, of its skirts
+  double width = 0;     ///< w
+  bool unlike = false;  ///< they are: a displacement or an acceleration
+};
+
+std::size_t unknowns_of(const std::vector<Resonance>& resonances);
+
 /// Of bins without a shape. Throws Error(numeric) when they hold no noise at all.
 BinProblem bin_problem(const std::vector<PowerBin>& bins);
-/// The same with ln gain = sum a_p x^p, p = 1..orders, x = (f / band_hz)²: any filter with a real impulse response has a gain that
-/// is even and analytic about f = 0.
-BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz);
+/// The same with ln gain = sum a_p x^p, p = 1..orders, x = (f / band_hz)²: any filter with a real impulse response has
+/// a gain that is even and analytic about f = 0; and with the skirts of resonances, themselves left out. A sampled one
+/// has the power
+///   (b (1 - c²) + d (1 - c)) / ((c - c_r)² + w),  c = cos(2 pi f / rate),
+/// over that at rest: b ln(1 + s (1 - c²) / ((c - c_r)² + w)), and d times its slope where the skirts are unlike.
+BinProblem bin_problem(const std::vector<PowerBin>& bins, int orders, double band_hz,
+                       const std::vector<Resonance>& resonances, double rate_hz);
 /// sqrt(nu/2) S: orthonormal columns.
 Eigen::MatrixXd whitened_shape(const BinProblem& problem);
 
