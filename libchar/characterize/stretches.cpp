@@ -321,7 +321,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
       ++with_values;
     else
       result.log.warnings.add("no_finite_value", "channels without any finite value", "channel " + channel.name);
-    result.channels.push_back(finish_channel(std::move(read), chosen, workspace, channel, result.log.time.rate_hz));
+    result.channels.push_back(finish_channel(std::move(read), chosen, workspace, channel, result.log.time));
     give_back_free_memory();
   }
   if (with_values == 0) throw input_error("E0318", result.log.file).says("no channel has a finite value");

@@ -1292,15 +1292,16 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   return q;
 }
 
+std::string detail::rate_remedy(const TimeBase& time) {
+  const std::string column = time.candidate.empty() ? ""
+                                                    : fmt::format("`time_column` {} takes that column for the time; ",
+                                                                  shell_word(time.candidate));
+  return column + "a log without time stamps needs `rate_hz`";
+}
+
 double known_rate_hz(const LogInfo& info) {
   if (info.time.rate_hz > 0) return info.time.rate_hz;
-  throw numeric_error("E0402", info.file)
-      .says("the sampling rate is not known")
-      .hint(info.time.candidate.empty()
-                ? "a log without time stamps needs `rate_hz`"
-                : fmt::format(
-                      "`time_column` {} takes that column for the time; a log without time stamps needs `rate_hz`",
-                      shell_word(info.time.candidate)));
+  throw numeric_error("E0402", info.file).says("the sampling rate is not known").hint(detail::rate_remedy(info.time));
 }
 
 }  // namespace libchar

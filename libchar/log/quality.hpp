@@ -130,6 +130,8 @@ std::uint64_t frozen_run(const ChannelQuality& quality);
 void forget_frozen(std::span<double> samples, std::uint64_t fewest);
 /// So are those inside of straight lines of `fewest` samples and more; the ends of a line are samples.
 void forget_lines(std::span<double> samples, std::uint64_t fewest);
+/// What gives a log without a rate one: a column that could be its time, where it has one, and a stated rate.
+std::string rate_remedy(const TimeBase& time);
 }  // namespace detail
 
 /// The sampling rate. Throws Error(numeric) where it is not known.

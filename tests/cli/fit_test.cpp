@@ -29,6 +29,27 @@ TEST_CASE("fit: channels without a fit for one reason are said together") {
   CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') < 10);
 }
 
+TEST_CASE("verbs that find no rate offer the column that could be the time, by one sentence") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "packets.csv").string();
+  std::ofstream out(log);
+  out << "my time,x\n";
+  for (int row = 0; row < 300; ++row)
+    out << fmt::format("{:.3f},{}\n", 0.04 * (row / 4) + 0.001 * (row % 4), row * 7919 % 101);
+  out.close();
+  for (const char* verb : {"allan", "psd", "fit", "characterize"}) {
+    INFO(verb);
+    std::vector<std::string> words = {verb, log};
+    if (verb == std::string("characterize")) words.insert(words.end(), {"-o", (folder / "report").string()});
+    const auto ran = test::run(words);
+    CHECK(ran.code == 4);
+    CHECK_THAT(ran.out + ran.err, Catch::Contains("--time-column 'my time' takes that column for the time"));
+    words.insert(words.end(), {"--time-column", "my time", "--force"});
+    if (verb != std::string("characterize")) words.pop_back();
+    CHECK(test::run(words).code == 0);
+  }
+}
+
 TEST_CASE("fit LOG gives the coefficients as a table and as JSON") {
   const test::TemporaryFolder folder;
   const std::string path = (folder / "log.csv").string();

@@ -12,6 +12,7 @@
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/formats.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/report/text/curves_text.hpp"
 #include "reading_options.hpp"
 #include "terminal_plot.hpp"
@@ -102,8 +103,9 @@ void run_allan(Session& session, const AllanVerb& verb) {
   if (!any)
     throw numeric_error("E0710", verb.log)
         .says("no channel gives an Allan deviation")
-        .hint(result.log.time.rate_hz > 0 ? ""
-                                          : "the sampling rate is not known: a log without time stamps needs --rate");
+        .hint(result.log.time.rate_hz > 0
+                  ? ""
+                  : "the sampling rate is not known: " + libchar::detail::rate_remedy(result.log.time));
   std::string text;
   if (verb.plot) {
     std::vector<SourceCurve> drawn;

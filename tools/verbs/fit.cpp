@@ -20,6 +20,7 @@
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/channel_names.hpp"
 #include "libchar/log/formats.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/report/text/characterization_text.hpp"
@@ -144,7 +145,7 @@ void run_fit(Session& session, const FitVerb& verb) {
   if (fits.empty())
     throw numeric_error("E0711", verb.input)
         .says("no channel could be fitted")
-        .hint(log.time.rate_hz > 0 ? "" : "the sampling rate is not known: a log without time stamps needs --rate");
+        .hint(log.time.rate_hz > 0 ? "" : "the sampling rate is not known: " + libchar::detail::rate_remedy(log.time));
   if (!verb.output.empty() || !verb.models.empty()) refuse_strict(session);
   std::string text;
   if (verb.json) {

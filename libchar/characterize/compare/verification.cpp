@@ -71,7 +71,9 @@ ChannelResult simulated_channel(const ChannelResult& recorded, const LogInfo& lo
   MeansAdded means(*recorded.fit, simulation);
   for (auto columns = simulator.next(kRows); !columns.empty(); columns = simulator.next(kRows))
     stage.push(means.added(columns[0]));
-  return stage.finish(recorded.channel, simulation.rate_hz);
+  TimeBase time;
+  time.rate_hz = simulation.rate_hz;
+  return stage.finish(recorded.channel, time);
 }
 
 // The model is the truth of the simulation; but how much of a measured shape's beginning is the

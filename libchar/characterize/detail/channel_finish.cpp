@@ -24,6 +24,7 @@
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/signs/motion.hpp"
 #include "libchar/fit/signs/rounding.hpp"
+#include "libchar/log/quality.hpp"
 #include "libchar/spectrum/spectrum.hpp"
 
 namespace libchar {
@@ -81,7 +82,7 @@ class Finish {
   Finish(ReadChannel& read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace)
       : read_(read), options_(options), workspace_(workspace) {}
 
-  ChannelResult result(const Channel& channel, double rate_hz);
+  ChannelResult result(const Channel& channel, const TimeBase& time);
 
  private:
   // what it is
@@ -509,7 +510,8 @@ ChannelQuality Finish::quality_of_rate() const {
   return quality;
 }
 
-ChannelResult Finish::result(const Channel& channel, double rate_hz) {
+ChannelResult Finish::result(const Channel& channel, const TimeBase& time) {
+  const double rate_hz = time.rate_hz;
   ChannelResult result;
   result.channel = channel;
   result.channel.unit = unit_of_rate(channel.unit);
@@ -529,7 +531,7 @@ ChannelResult Finish::result(const Channel& channel, double rate_hz) {
   if (rate_hz <= 0) {
     const std::string why = found_.samples < 2
                                 ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))
-                                : "the sampling rate is not known (a log without time stamps needs `rate_hz`)";
+                                : fmt::format("the sampling rate is not known ({})", detail::rate_remedy(time));
     result.findings.push_back(finding("no_fit", "no curves and no fit: " + why));
     return result;
   }
@@ -571,8 +573,8 @@ std::string what_needs_all_samples(const CharacterizeOptions& options) {
 }
 
 ChannelResult finish_channel(ReadChannel read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace,
-                             const Channel& channel, double rate_hz) {
-  return Finish(read, options, workspace).result(channel, rate_hz);
+                             const Channel& channel, const TimeBase& time) {
+  return Finish(read, options, workspace).result(channel, time);
 }
 
 }  // namespace libchar

@@ -59,7 +59,7 @@ void ChannelStage::drop() {
   tree_.nodes().clear();
 }
 
-ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
+ChannelResult ChannelStage::finish(const Channel& channel, const TimeBase& time) {
   ReadChannel read;
   const bool whole = tree_.empty() && leaf_.size() <= kLeafSamples;
   if (!whole && leaf_.size() > kLeafSamples) end_leaf(false);
@@ -73,7 +73,7 @@ ChannelResult ChannelStage::finish(const Channel& channel, double rate_hz) {
   read.all = std::move(all_);
   read.spectrum = std::move(spectrum_);
   read.temperature = temperature_;
-  return finish_channel(std::move(read), *options_, *workspace_, channel, rate_hz);
+  return finish_channel(std::move(read), *options_, *workspace_, channel, time);
 }
 
 }  // namespace libchar

@@ -35,9 +35,9 @@ struct ReadChannel {
   std::shared_ptr<const TemperatureRecord> temperature;  ///< of the log; null: none was asked for
 };
 
-/// Curves and fit. `rate_hz` > 0, or nothing that needs a time axis is computed and the result says why.
+/// Curves and fit. A rate > 0, or nothing that needs a time axis is computed and the result says why.
 ChannelResult finish_channel(ReadChannel read, const CharacterizeOptions& options, CharacterizeWorkspace& workspace,
-                             const Channel& channel, double rate_hz);
+                             const Channel& channel, const TimeBase& time);
 
 class ChannelStage {
  public:
@@ -56,7 +56,7 @@ class ChannelStage {
   /// What the temperature does is taken out of the record before its noise is fitted.
   void set_temperature(std::shared_ptr<const TemperatureRecord> temperature) { temperature_ = std::move(temperature); }
   /// Curves and fit, as `finish_channel`. The stage is done.
-  ChannelResult finish(const Channel& channel, double rate_hz);
+  ChannelResult finish(const Channel& channel, const TimeBase& time);
 
  private:
   void end_leaf(bool last);

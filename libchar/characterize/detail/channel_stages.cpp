@@ -171,7 +171,7 @@ std::vector<ChannelResult> ChannelStages::finish(const LogInfo& log, Progress& p
     progress.update(static_cast<double>(first_ + first) / static_cast<double>(log.channels.size()), "fitting");
     const std::size_t last = std::min(stages_.size(), first + kFittedAtOnce);
     parallel::for_each(first, last, [&](std::size_t c) {
-      results[c] = stages_[c].finish(log.channels[first_ + c], log.time.rate_hz);
+      results[c] = stages_[c].finish(log.channels[first_ + c], log.time);
       if (!thermometer) results[c].means = {};
     });
   }
