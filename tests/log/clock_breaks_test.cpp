@@ -62,6 +62,16 @@ TEST_CASE("first rows of another run are no rows of this one") {
   CHECK(wild_start(stamps, clock_in(kS)) == 0);
 }
 
+TEST_CASE("a lone first row further away than the log is long is no row of it") {
+  std::vector<std::int64_t> stamps = {5 * kS};
+  for (int i = 0; i < 200; ++i) stamps.push_back((405 + i) * kS);
+  CHECK(wild_start(stamps, clock_in(kS), stamps.size()) == 1);
+  CHECK(wild_start(stamps, clock_in(kS), 1000) == 0);  // a pause of 400 s in a log of 1000
+  CHECK(wild_start(stamps, clock_in(kS)) == 0);        // nobody knows how long it is
+  stamps.insert(stamps.begin() + 1, 6 * kS);
+  CHECK(wild_start(stamps, clock_in(kS), stamps.size()) == 0);  // two rows are a beginning
+}
+
 TEST_CASE("a first zero is no stamp where the next one is far away") {
   std::vector<std::int64_t> stamps = {0};
   for (int i = 0; i < 100; ++i) stamps.push_back((1700 + i) * kS);

@@ -577,6 +577,55 @@ TEST_CASE("stamps that say two rates are refused with both, and the rate given d
   CHECK(read_text(log_of(t), options).info.time.rate_hz == Approx(200).epsilon(0.1));
 }
 
+TEST_CASE("what a logger that hung writes at once is placed on the grid") {
+  std::mt19937_64 random(11);
+  for (const double rate : {10.0, 100.0, 400.0})
+    for (const double longest : {0.5, 2.0})
+      for (const std::int64_t tick : {1, 1000}) {
+        std::vector<std::int64_t> t;
+        double written = 0, hangs = 4e6;
+        for (int i = 0; i < 12000; ++i) {
+          const double sampled = 1e6 * i / rate;
+          if (sampled > hangs && i + 3 * rate < 12000) {
+            written = sampled + 1e6 * longest * (0.5 + 0.5 * static_cast<double>(random() % 1000) / 1000);
+            hangs = written + 1e6 * (6 + static_cast<double>(random() % 8));
+          }
+          written = std::max(sampled + static_cast<double>(random() % 100), written + 150);
+          t.push_back(static_cast<std::int64_t>(written) / tick * tick);
+        }
+        INFO(rate << " Hz, hangs of up to " << longest << " s, stamps in " << tick << " us");
+        const Recording r = read_text(log_of(t));
+        CHECK(r.info.time.rate_hz == Approx(rate).epsilon(1e-3));
+        CHECK(r.info.time.gaps == 0);
+        CHECK(r.info.rows_dropped == 0);
+        CHECK(r.info.samples == 12000);
+        if (longest * rate > 16) CHECK(count(r, "late_stamp") > 1);
+      }
+}
+
+TEST_CASE("what a logger lost when it hung is a gap in front of what it kept") {
+  auto t = even(4000, 10000);
+  for (std::size_t i = 2000; i < 2100; ++i) t[i] = 21000000 - 20 * static_cast<std::int64_t>(2100 - i);
+  t.erase(t.begin() + 2000, t.begin() + 2060);
+  const Recording r = read_text(log_of(t));
+  CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-4));
+  CHECK(r.info.time.gaps == 1);
+  CHECK(r.info.time.missing_samples == 60);
+  CHECK(r.info.samples == 4000);
+}
+
+TEST_CASE("a lone first row in front of a gap longer than the log is left out and said") {
+  for (const std::size_t rows : {std::size_t{200}, std::size_t{30000}}) {
+    auto t = even(rows, 10000, static_cast<std::int64_t>(rows) * 15000 + 7000000);
+    t.insert(t.begin(), 7000000);
+    const Recording r = read_text(log_of(t));
+    CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-9));
+    CHECK(r.info.time.gaps == 0);
+    CHECK(r.info.rows_dropped == 1);
+    CHECK(count(r, "wild_stamp") == 1);
+  }
+}
+
 TEST_CASE("a clock that begins again is refused with options that read it") {
   auto t = even(3000, 1000);
   const auto again = even(2000, 1000);

@@ -40,6 +40,16 @@ std::vector<ClockRange> ranges_of(const TimeBase& clock) {
   return out;
 }
 
+/// The first row stands further in front of the second than all others of the log reach, as the first ones let expect.
+bool is_lone(std::span<const std::int64_t> stamps, std::uint64_t rows) {
+  constexpr std::size_t kFewest = 16;
+  constexpr double kFewestSteps = 64, kSure = 1.1;  // of a number of rows that is an estimate
+  if (stamps.size() <= kFewest || rows == 0) return false;
+  const double step = step_between(stamps[0], stamps[1]);
+  const double mean = step_between(stamps[1], stamps.back()) / static_cast<double>(stamps.size() - 2);
+  return mean > 0 && step > mean * std::max(kFewestSteps, kSure * static_cast<double>(rows));
+}
+
 /// From 0 on, or about it as signed numbers are.
 bool holds(const ClockRange& range, std::int64_t before_ns, std::int64_t stamp_ns) {
   const auto before = static_cast<double>(before_ns), stamp = static_cast<double>(stamp_ns);
@@ -82,10 +92,10 @@ std::int64_t skipped_hour(std::int64_t before_ns, std::int64_t stamp_ns, const T
   return sunday && at_night && std::fabs(step - interval_ns) < 0.5 * interval_ns ? kHour : 0;
 }
 
-std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clock) {
+std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clock, std::uint64_t rows) {
   constexpr std::size_t kMost = 64, kTimes = 4;
   constexpr double kFar = 1e8, kFromZero = 1e3;  // steps ahead: no pause is as long, nor one behind a first zero
-  std::size_t wild = 0;
+  std::size_t wild = is_lone(stamps, rows) ? 1 : 0;
   for (std::size_t i = 1; i <= kMost && i + std::max<std::size_t>(kTimes * i, 4) <= stamps.size(); ++i) {
     std::vector<double> steps;
     bool rise = true;

@@ -29,8 +29,8 @@ std::optional<ClockWrap> find_wrap(std::int64_t before_ns, std::int64_t stamp_ns
 std::int64_t skipped_hour(std::int64_t before_ns, std::int64_t stamp_ns, const TimeBase& clock, double interval_ns);
 
 /// How many of the first rows are none: of an earlier run, or of a clock that was not set yet. The next
-/// ones rise, far away from them.
-std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clock);
+/// ones rise, far away from them. Nor is a lone first row further away than the log of `rows` (0: no telling) is long.
+std::size_t wild_start(std::span<const std::int64_t> stamps, const TimeBase& clock, std::uint64_t rows = 0);
 
 /// Rows whose stamps lie before that of the row in front of all of them.
 struct BackwardRows {

@@ -95,7 +95,7 @@ void TimeGrid::process(bool end) {
     waiting_ = 0;
     return;
   }
-  const std::size_t ahead = end ? 0 : std::max(kRowsAhead, std::min<std::size_t>(2 * step_.model.packet + 2, 256));
+  const std::size_t ahead = end ? 0 : RowsAtOnce::kMost + kRowsAhead;  // more than two packets
   while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
     if (!learned_) learn();
     Pending& front = pending_.front();
@@ -165,10 +165,6 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
       return i;
     }
     const std::int64_t step = last_.any ? stamp - last_.stamp : 0;
-    if (last_.any && !step_.coarse && step > 0 && (step < step_.shortest || step > step_.longest) &&
-        watch_.add(static_cast<std::uint64_t>(last_.row) + 1, static_cast<double>(step) / step_.ns,
-                   last_.stamp - last_.first))
-      watch_.keep_place(i > 0 ? place(front, i - 1) : last_.end_of_block);
     if (step <= 0 || step > step_.longest) {
       output_.rows(front.block, run, i);
       run = i;
@@ -179,6 +175,7 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
       }
     }
     if (backward_.in_a_row > 0) backward_ = {};
+    if (last_.any && !step_.coarse) watch_step(front, i, stamp - last_.stamp);
     ++last_.index;
     ++last_.row;
     last_.as_read = time[i] + last_.wrap;
@@ -196,6 +193,14 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
     return i;
   }
   return to;
+}
+
+/// Steps that are none of the grid's may be another rate.
+void TimeGrid::watch_step(const Pending& front, std::size_t row, std::int64_t step) {
+  if (step > 0 && (step < step_.shortest || step > step_.longest) &&
+      watch_.add(static_cast<std::uint64_t>(last_.row) + 1, static_cast<double>(step) / step_.ns,
+                 last_.stamp - last_.first))
+    watch_.keep_place(row > 0 ? place(front, row - 1) : last_.end_of_block);
 }
 
 bool TimeGrid::place_in_window(std::int64_t stamp) {

@@ -128,6 +128,7 @@ class TimeGrid {
   bool take_regular(const std::int64_t* time, std::size_t n);
   std::size_t take_one_by_one(Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   bool place_in_window(std::int64_t stamp);
+  void watch_step(const Pending& front, std::size_t row, std::int64_t step);
   void without_stamps(Pending& front);
   /// The stamp, when it and its distance from the first leave room for every sum and difference in
   /// 64 bits. Throws Error(input) else.
@@ -142,8 +143,13 @@ class TimeGrid {
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
   bool next_row(const Pending*& at, std::size_t& item, std::size_t& row) const;
   bool next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const;
-  std::int64_t lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
-  std::vector<double> lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
+  std::int64_t lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead,
+                   std::size_t at_once) const;
+  std::vector<double> lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead,
+                                 std::size_t at_once = 0) const;
+  std::size_t rows_at_once(const Pending& front, std::size_t row) const;
+  std::int64_t place_behind(std::int64_t gap) const;
+  Verdict hung(const Pending& front, std::size_t row, std::size_t at_once, std::int64_t gap, std::int64_t& stamp);
   std::int64_t packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
   bool rows_go_on(const Pending& front, std::size_t row, std::size_t ahead) const;
   /// A gap of so many steps, of which so many samples lie in the window.
@@ -206,6 +212,7 @@ class TimeGrid {
   struct Recent {
     RecentStamps rows;
     PacketStarts packets;
+    std::int64_t last_at_once = -1;  ///< of the rows that a logger wrote when it hung, as `Last::row`
   } recent_;
   StampSketch sketch_;
 };

@@ -67,7 +67,9 @@ std::vector<std::int64_t> TimeGrid::first_stamps() {
 }
 
 void TimeGrid::drop_wild_start(const std::vector<std::int64_t>& stamps) {
-  for (std::size_t left = wild_start(stamps, source_.info().time); left > 0; --left) {
+  const bool whole = waiting_ < rows_to_learn();
+  const std::uint64_t rows = whole ? waiting_ : source_.info().rows;
+  for (std::size_t left = wild_start(stamps, source_.info().time, rows); left > 0; --left) {
     while (pending_.front().done == pending_.front().block.rows) pending_.pop_front();
     drop_wild(pending_.front(), pending_.front().done);
     ++pending_.front().done;
@@ -117,7 +119,7 @@ void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
 void TimeGrid::learn() {
   learned_ = true;
   if (!last_.any) drop_wild_start(first_stamps());
-  const std::vector<std::int64_t> stamps = first_stamps();
+  const std::vector<std::int64_t> stamps = caught_up(first_stamps());
   if (!last_.any) leave_out_first_rate(stamps);
   const StampModel found = model_of_stamps(stamps, options_.rate_hz);
   const bool begins = window_.from_ns <= 0 || last_.any;

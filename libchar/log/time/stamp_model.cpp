@@ -25,6 +25,7 @@
 #include <limits>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 
 namespace libchar {
@@ -486,6 +487,43 @@ StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optiona
   const bool later = 2 * change->row < static_cast<double>(stamps.size());
   const std::vector<std::int64_t> part(later ? at + 1 : stamps.begin(), later ? stamps.end() : at);
   return model_of_one_rate(part, steps_of(part), rate_hz);
+}
+
+bool RowsAtOnce::add(std::int64_t stamp) {
+  constexpr double kShort = 0.5, kLong = 1.6;  // intervals
+  const double step = step_between(before, stamp) / interval;
+  before = stamp;
+  ++rows;
+  regular = step > kShort && step < kLong ? regular + 1 : 0;
+  shorter += step <= kShort ? 1 : 0;
+  return regular < kRegular && rows < kMost;
+}
+
+std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps) {
+  constexpr double kHung = 2.5;  // intervals
+  FirstSteps steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0) steps.rising.push_back(step);
+  const double usual = step_of_half_the_time(steps);
+  std::vector<std::int64_t> out = stamps;
+  std::size_t moved = 0;
+  for (std::size_t first = 1; first < stamps.size(); ++first) {
+    if (!(step_between(stamps[first - 1], stamps[first]) > kHung * usual)) continue;
+    RowsAtOnce ahead{usual, stamps[first]};
+    std::size_t end = first + 1;
+    while (end < stamps.size() && ahead.add(stamps[end])) ++end;
+    if (end == stamps.size() || ahead.count() == 0) continue;
+    const std::size_t last = first + ahead.count();
+    const auto rows = static_cast<double>(last - first + 1);
+    const double passed = step_between(stamps[first - 1], stamps[last]);
+    if (passed < (rows - 1.5) * usual) continue;
+    const double interval = std::min(usual, passed / rows);
+    for (std::size_t row = first; row < last; ++row)
+      out[row] = stamps[last] - clamped_whole<std::int64_t>(std::round(interval * static_cast<double>(last - row)));
+    moved += last - first;
+    first = last;
+  }
+  return 2 * moved < stamps.size() ? out : stamps;
 }
 
 std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps) {

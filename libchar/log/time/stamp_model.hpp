@@ -37,6 +37,23 @@ struct StampModel {
 /// From the first stamps, in file order. `rate_hz` decides where stamps can be read in two ways.
 StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz = {});
 
+/// A logger that hung writes what it missed at once: rows behind the first of these, until steps of about an interval
+/// follow each other.
+struct RowsAtOnce {
+  double interval = 0;      ///< ns
+  std::int64_t before = 0;  ///< the last stamp
+  std::size_t rows = 0, shorter = 0, regular = 0;
+
+  static constexpr std::size_t kMost = 1024, kRegular = 8, kFewest = 3;
+  /// The next row; false where no more are to be looked at.
+  bool add(std::int64_t stamp);
+  /// 0 where few steps are short, or none are regular.
+  std::size_t count() const { return shorter < kFewest || rows == kMost ? 0 : rows - regular; }
+};
+
+/// The same stamps, such rows (fewer than half of all) one interval apart in front of the last of them.
+std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps);
+
 /// One interval up to a row, another one from there on.
 struct RateChange {
   double row = 0;  ///< where the two lines meet

@@ -120,6 +120,10 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     return Verdict::keep;
   }
   std::int64_t step = stamp - last_.stamp;
+  if (last_.row < recent_.last_at_once) {
+    stamp = place_behind(0);
+    return Verdict::keep;
+  }
   if (step == 0) {
     if (stamp < last_.as_read) return backward(front, row, stamp);
     if (step_.coarse) return Verdict::keep;
@@ -140,8 +144,13 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     return Verdict::keep;
   }
   const bool packets = step_.model.packet > 0;
-  const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead);
+  const std::size_t at_once = packets || step_.coarse ? 0 : rows_at_once(front, row);
+  const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead, at_once);
   if (packets && gap == 0) return Verdict::keep;
+  if (at_once > 0) {
+    const std::int64_t missing = std::max<std::int64_t>(gap, 0), place_here = place_behind(missing);
+    if (static_cast<double>(stamp - place_here) > 2 * step_.ns) return hung(front, row, at_once, missing, stamp);
+  }
   if (gap == 0 || (!step_.coarse && ahead > 1 && next_lies_before(front, row, stamp))) {
     if (place_late_row(front, row, gap, stamp) == Verdict::drop) return Verdict::drop;
     step = stamp - last_.stamp;
@@ -163,8 +172,24 @@ TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row
   if (late <= 2 * step_.ns) return Verdict::keep;
   warnings_.add("late_stamp", "stamps far ahead of the rows behind them: the rows are placed on the grid",
                 place(front, row));
-  stamp = last_.stamp + clamped_whole<std::int64_t>(std::round(passed + step_.ns));
+  stamp = place_behind(gap);
   return Verdict::keep;
+}
+
+/// On the grid, behind so many missing points.
+std::int64_t TimeGrid::place_behind(std::int64_t gap) const {
+  return last_.stamp + clamped_whole<std::int64_t>(std::round(static_cast<double>(gap + 1) * step_.ns));
+}
+
+/// The first of the rows that a logger wrote at once: they are as old as the last of them says.
+TimeGrid::Verdict TimeGrid::hung(const Pending& front, std::size_t row, std::size_t at_once, std::int64_t gap,
+                                 std::int64_t& stamp) {
+  warnings_.add("late_stamp",
+                "rows that come at once behind a pause, as of a logger that hung: they are placed on the grid",
+                place(front, row));
+  recent_.last_at_once = last_.row + 1 + static_cast<std::int64_t>(at_once);
+  stamp = place_behind(gap);
+  return gap > 0 ? pass_gap(front, row, stamp - last_.stamp, gap, 2 * kRowsAhead) : Verdict::keep;
 }
 
 // Grid points before the window's start are passed over. A few last rows, further away than the log
@@ -228,6 +253,8 @@ void TimeGrid::refuse_backward() const {
                 ? fmt::format("the time steps back here by {} and goes on from there: {}", how_far,
                               log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
                                   ? "parts of a second without leading zeros, or two logs in one file"
+                              : 2 * (last_.stamp - backward_.first) < last_.stamp - last_.first
+                                  ? "a clock that was set back, or two logs in one file"
                                   : "two logs in one file, or a device that restarted")
                 : fmt::format("the time steps back here by {}, and {} rows in no order do not catch up: rows of "
                               "several sources, or a wild stamp before",
@@ -261,9 +288,20 @@ bool TimeGrid::next_lies_before(const Pending& front, std::size_t row, std::int6
   return next_row(at, item, row) && !__builtin_add_overflow(at->block.time_ns[row], last_.wrap, &next) && next < stamp;
 }
 
-// How much later than expected this row and those behind it are, in steps; its own first.
-std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp,
-                                         std::size_t ahead) const {
+// Rows behind this one that a logger wrote at once: 0 where they are few, or none are regular.
+std::size_t TimeGrid::rows_at_once(const Pending& front, std::size_t row) const {
+  const Pending* at = &front;
+  std::size_t item = 0;
+  RowsAtOnce ahead{step_.ns, front.block.time_ns[row]};
+  while (next_row(at, item, row) && ahead.add(at->block.time_ns[row])) {
+  }
+  return ahead.count();
+}
+
+// How much later than expected this row and those behind it (behind those written at once) are, in steps; its own
+// first.
+std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead,
+                                         std::size_t at_once) const {
   const double last_late = step_.coarse ? 0 : recent_.rows.last_late(step_.ns);
   const auto late = [&](std::int64_t t, std::size_t j) {
     return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns - static_cast<double>(j + 1) -
@@ -275,8 +313,9 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, 
   std::vector<double> lags{late(stamp, 0)};
   std::size_t item = 0, i = row;
   const Pending* at = &front;
-  for (std::size_t j = 1; j < std::min(ahead, kRowsAhead); ++j) {
+  for (std::size_t j = 1; j < std::min(ahead, kRowsAhead + at_once); ++j) {
     if (!next_row(at, item, i)) break;
+    if (j < at_once) continue;
     std::int64_t t = 0, unused = 0;
     // Rows ahead are not checked yet.
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) ||
@@ -292,10 +331,11 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, 
 }
 
 // Missing grid points before this row.
-std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
+std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead,
+                           std::size_t at_once) const {
   // Of an interval far below a nanosecond there may be more steps than 64 bits count.
   return static_cast<std::int64_t>(clamped_whole<std::int64_t>(
-      std::round(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead)), -9e18, 9e18))));
+      std::round(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead, at_once)), -9e18, 9e18))));
 }
 
 // Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
