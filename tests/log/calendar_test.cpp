@@ -145,6 +145,81 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
   CHECK_FALSE(date_style({"14.03.24", "15.03.24"}, false).ambiguous);
 }
 
+TEST_CASE("durations of ISO 8601 are stamps") {
+  CHECK(ns("PT12.5S") == 12500000000);
+  CHECK(ns("P0DT00H01M02.5S") == 62500000000);
+  CHECK(ns("P2DT1H") == 49 * 3600 * kBillion);
+  CHECK(ns("PT3M") == 180 * kBillion);
+  for (const char* text : {"P1Y", "PT", "P3DT", "PT5", "PT1S2M", "PT1.5M", "P99999DT1S"}) {
+    INFO(text);
+    CHECK(ns(text) == -1);
+  }
+  std::string text = "elapsed,x\n";
+  for (int i = 0; i < 900; ++i) text += fmt::format("PT{}M{:.1f}S,{}\n", i / 120, i % 120 * 0.5, i % 7);
+  CHECK(test::read_text(text).info.time.rate_hz == Approx(2).epsilon(1e-6));
+}
+
+TEST_CASE("a day of the week in front of a date without quotes is no cell of its own") {
+  for (const bool first : {true, false}) {
+    std::string text = first ? "date,x\n" : "x,date\n";
+    for (int i = 0; i < 300; ++i) {
+      const std::string date = fmt::format("Sun, 22 Nov 2026 12:{:02}:{:02} +0000", i / 60, i % 60);
+      text += first ? fmt::format("{},{}\n", date, i % 7) : fmt::format("{},{}\n", i % 7, date);
+    }
+    const Recording r = test::read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(1).epsilon(1e-9));
+    CHECK(r.info.time.start_ns.value_or(0) == 1795348800 * kBillion);
+    REQUIRE(r.info.channels.size() == 1);
+    CHECK(r.samples[0][8] == 1);
+  }
+}
+
+TEST_CASE("stamps in a column for each of their numbers are read as one") {
+  struct Spread {
+    std::string header;
+    const char* form;  ///< of year, month, day, hour, minute, second, millisecond, day of the year
+    int step_ms;
+  };
+  for (const Spread& one :
+       std::vector<Spread>{{"year,month,day,hour,minute,second", "{0},{1},{2},{3},{4},{5}", 1000},
+                           {"Year,Month,Day,Hour,Minutes,Seconds", "{0},{1:02},{2:02},{3:02},{4:02},{5}.{6:03}", 20},
+                           {"YYYY,MM,DD,hh,mm,ss", "{0},{1},{2},{3},{4},{5}", 1000},
+                           {"#YY,MM,DD,hh,mm", "{0},{1},{2},{3},{4}", 600000},
+                           {"day,month,year,hour,min,sec,ms", "{2},{1},{0},{3},{4},{5},{6}", 20},
+                           {"utc_year,utc_month,utc_day,utc_hour", "{0},{1},{2},{3}", 3600000},
+                           {"Jahr,Monat,Tag,Stunde,Minute,Sekunde", "{0},{1},{2},{3},{4},{5}", 1000},
+                           {"year,day,hhmm", "{0},{7},{3}{4:02}", 60000},
+                           {"year,doy,hour,minute", "{0},{7},{3},{4}", 60000},
+                           {"date,hour", "{0}-{1:02}-{2:02},{3}", 3600000},
+                           {"Date,Hour,Minute", "{1}/{2}/{0},{3},{4}", 60000},
+                           {"h,m,s,ms", "{3},{4},{5},{6}", 20}}) {
+    INFO(one.header);
+    std::string text = one.header + ",x\n";
+    for (int i = 0; i < 600; ++i) {
+      const int s = i * (one.step_ms / 20) / 50, hours = s / 3600, day = 22 + hours / 24;
+      text += fmt::format(fmt::runtime(one.form), 2026, day > 31 ? 11 : 10, day > 31 ? day - 31 : day, hours % 24,
+                          s / 60 % 60, s % 60, i * one.step_ms % 1000, 273 + day) +
+              fmt::format(",{}\n", i % 7);
+      if (day > 50) break;
+    }
+    const Recording r = test::read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(1e3 / one.step_ms).epsilon(1e-6));
+    CHECK(r.info.time.missing_samples == 0);
+    REQUIRE(r.info.channels.size() == 1);
+    CHECK(r.info.channels[0].name == "x");
+    CHECK(r.samples[0][8] == 1);
+    if (one.header[0] != 'h') CHECK(r.info.time.start_ns.value_or(0) == 1792627200 * kBillion);
+  }
+  // With a clock of their own, or numbers that are no dates, such columns are channels.
+  std::string beside = "time,year,month,day,hour,x\n", others = "year,month,day,hour,x\n";
+  for (int i = 0; i < 100; ++i) {
+    beside += fmt::format("{},2026,10,22,{},{}\n", i, i % 24, i % 7);
+    others += fmt::format("{},{},{},{},{}\n", i, i % 40, i % 7, i, i % 7);
+  }
+  CHECK(test::read_text(beside).info.channels.size() == 5);
+  CHECK(test::read_text(others).info.channels.size() >= 4);
+}
+
 TEST_CASE("dates in digits are read, in one column or in two, whatever they are called") {
   const auto tm_of = [](int second) {  // from 2024-03-14T23:40:12 on
     const int s = 85212 + second, day = 14 + s / 86400, of_day = s % 86400;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "libchar/log/csv/unpacker.hpp"
 
@@ -41,6 +42,34 @@ struct Feed {
     while (text.ends_with('\r')) text.pop_back();
     return true;
   }
+};
+
+/// Text of which each line is written anew, without its carriage return.
+class CleanedLines : public DecodedText {
+ public:
+  explicit CleanedLines(std::function<std::size_t(char*, std::size_t)> stored) : feed_{std::move(stored)} {}
+
+ protected:
+  virtual void begin(std::string_view front) = 0;  ///< the first kPackingBytes
+  virtual void clean(std::string& line) = 0;
+
+ private:
+  void decode() final {
+    if (!known_ && feed_.more()) begin(std::string_view(feed_.raw).substr(0, kPackingBytes));
+    known_ = true;
+    std::string line;
+    constexpr std::size_t kMost = std::size_t{1} << 20U, kPiece = std::size_t{1} << 16U;
+    while (text_.size() < kPiece && !done_) {
+      done_ = !feed_.line(line, kMost);
+      if (done_) break;
+      clean(line);
+      text_ += line;
+      if (feed_.raw[feed_.at - 1] == '\n') text_ += '\n';
+    }
+  }
+
+  Feed feed_;
+  bool known_ = false;
 };
 
 class MadeText : public Unpacker {

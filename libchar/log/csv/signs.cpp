@@ -8,6 +8,7 @@
 
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/csv/made_text.hpp"
+#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 namespace {
@@ -51,6 +52,7 @@ class FromApostrophes final : public DecodedText {
   bool open_ = false, closing_ = false, begins_ = true;
 };
 
+constexpr std::size_t kWeekday = 5;  // bytes of "Sun, "
 constexpr std::string_view kOpen = "[({", kClose = "])}";
 constexpr std::array<std::string_view, 3> kBlanks = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
@@ -102,56 +104,57 @@ std::size_t thin_blank_at(std::string_view line, std::size_t at) {
   return 0;
 }
 
+// Where "Sun, " begins in front of "22 Nov 2026 12:00:00 +0000" (RFC 2822) without quotes, npos where none does.
+std::size_t weekday_at(std::string_view line) {
+  for (std::size_t at = line.find(", "); at != std::string_view::npos; at = line.find(", ", at + 1)) {
+    const bool begins = at >= 3 && (at == 3 || one_of(",;\t", line[at - 4]));
+    if (!begins || !digit(line, at + 2)) continue;
+    const std::string_view date = line.substr(at - 3, line.find_first_of(",;\t\"", at + 2) - (at - 3));
+    const auto stamp = read_calendar(date);
+    if (stamp && stamp->date && stamp->clock && read_calendar(date.substr(kWeekday))) return at - 3;
+  }
+  return std::string_view::npos;
+}
+
 std::string without_colours(std::string line) {
   for (std::size_t at = line.find("\x1B["); at != std::string::npos; at = line.find("\x1B[", at))
     line.erase(at, line.find_first_not_of("0123456789;", at + 2) - at + 1);
   return line;
 }
 
-class FromSigns final : public DecodedText {
+class FromSigns final : public CleanedLines {
  public:
-  explicit FromSigns(std::function<std::size_t(char*, std::size_t)> stored) : feed_{std::move(stored)} {}
+  using CleanedLines::CleanedLines;
 
   std::string_view what() const override {
     return signs_.colours     ? "codes of a terminal's colours"
            : signs_.brackets  ? "lines in brackets"
            : signs_.checksums ? "lines with a checksum"
            : signs_.exponents ? "exponents of Fortran"
+           : signs_.weekdays  ? "days of the week in front of dates"
                               : "blanks of typesetting";
   }
 
  private:
-  void decode() override {
-    if (!known_ && feed_.more()) signs_ = signs_of(std::string_view(feed_.raw).substr(0, kPackingBytes));
-    known_ = true;
-    std::string line;
-    constexpr std::size_t kMost = std::size_t{1} << 20U, kPiece = std::size_t{1} << 16U;
-    while (text_.size() < kPiece && !done_) {
-      done_ = !feed_.line(line, kMost);
-      if (done_) break;
-      clean(line);
-      if (feed_.raw[feed_.at - 1] == '\n') text_ += '\n';
-    }
-  }
+  void begin(std::string_view front) override { signs_ = signs_of(front); }
 
-  void clean(std::string& line) {
+  void clean(std::string& line) override {
     if (signs_.colours) line = without_colours(std::move(line));
     if (const auto [from, to] = inside(line); signs_.brackets && to > 0) {
       std::fill(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(from), ' ');
       line.erase(to);
     }
     if (const std::size_t sum = checksum_at(line); signs_.checksums && sum != std::string::npos) line.erase(sum);
+    if (const std::size_t day = signs_.weekdays ? weekday_at(line) : std::string::npos; day != std::string::npos)
+      line.erase(day, kWeekday);
     for (std::size_t at = 0; at < line.size(); ++at) {
       if (signs_.exponents && exponent_at(line, at)) line[at] = 'E';
       if (const std::size_t bytes = signs_.typeset ? thin_blank_at(line, at) : 0; bytes > 0)
         line.replace(at, bytes, " ");
     }
-    text_ += line;
   }
 
-  Feed feed_;
   Signs signs_;
-  bool known_ = false;
 };
 
 }  // namespace
@@ -168,7 +171,7 @@ std::unique_ptr<Unpacker> open_apostrophes(std::function<std::size_t(char*, std:
 
 Signs signs_of(std::string_view front) {
   constexpr std::size_t kFewest = 3;
-  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0;
+  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0;
   Signs out;
   for (std::size_t end = front.find('\n'); end != std::string_view::npos; end = front.find('\n')) {
     std::string_view line = front.substr(0, end);
@@ -177,6 +180,7 @@ Signs signs_of(std::string_view front) {
     ++lines;
     colours += line.find("\x1B[") != std::string_view::npos ? 1 : 0;
     brackets += inside(line).second > 0 ? 1 : 0;
+    weekdays += weekday_at(line) != std::string_view::npos ? 1 : 0;
     checksums += checksum_at(line) != std::string_view::npos && !line.starts_with("$G") ? 1 : 0;
     for (std::size_t at = 0; at < line.size(); ++at) {
       if (line[at] == 'D' || line[at] == 'd') exponents += exponent_at(line, at) ? 1 : 0;
@@ -186,6 +190,7 @@ Signs signs_of(std::string_view front) {
   const auto most = [&](std::size_t n) { return n >= kFewest && 4 * n >= 3 * lines; };
   out.brackets = most(brackets);
   out.checksums = most(checksums);
+  out.weekdays = most(weekdays);
   out.exponents = exponents >= kFewest;
   out.colours = colours >= kFewest;
   return out;

@@ -240,6 +240,7 @@ Packing packing_of(std::string_view first_bytes) {
   if (is_echo(first_bytes)) return Packing::echo;
   if (in_apostrophes(first_bytes)) return Packing::apostrophes;
   if (is_json_rows(first_bytes)) return Packing::json;
+  if (has_spread_dates(first_bytes)) return Packing::dates;
   return signs_of(first_bytes).any() ? Packing::signs : Packing::none;
 }
 
@@ -260,6 +261,8 @@ std::unique_ptr<Unpacker> make_unpacker(Packing packing,
       return open_echo_rows(std::move(stored), file);
     case Packing::apostrophes:
       return open_apostrophes(std::move(stored));
+    case Packing::dates:
+      return open_spread_dates(std::move(stored));
     case Packing::signs:
       return open_signs(std::move(stored));
     case Packing::lvm:

@@ -14,7 +14,7 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes, signs };
+enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes, signs, dates };
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);

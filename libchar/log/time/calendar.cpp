@@ -368,6 +368,29 @@ void whole_days(DateScanner& at, CalendarStamp& out) {
   at = s;
 }
 
+// "PT12.5S", "P0DT00H01M02.5S": a duration of ISO 8601, without years, months and weeks.
+std::optional<CalendarStamp> duration(std::string_view text) {
+  DateScanner at{text};
+  CalendarStamp out;
+  const auto part = [&](char sign, std::size_t digits, std::int64_t unit) {
+    DateScanner s = at;
+    const auto number = s.number(1, digits);
+    const std::int64_t behind = number && sign == 'S' ? behind_seconds(s) : 0;
+    if (!number || !s.take(sign)) return;
+    out.ns += *number * unit + behind;
+    out.clock = out.seconds = true;
+    at = s;
+  };
+  if (!at.take('P')) return std::nullopt;
+  part('D', 4, kDayNs);
+  if (!at.take('T')) return std::nullopt;
+  out.clock = false;  // something stands behind the T
+  part('H', 5, kHourNs);
+  part('M', 7, kMinuteNs);
+  part('S', 9, kSecondNs);
+  return at.rest.empty() && out.clock ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order) {
@@ -379,6 +402,7 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
   if (at.rest.size() < kShortest || at.rest.size() > kLongest ||
       std::none_of(at.rest.begin(), at.rest.end(), decimal_digit))
     return std::nullopt;
+  if (at.peek() == 'P') return duration(at.rest);
   skip_weekday(at);
   const bool dated = compact_date(at, out) || numbered_date(at, order, out) || worded_date(at, out);
   if (dated) {

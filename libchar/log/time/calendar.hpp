@@ -27,8 +27,8 @@ struct CalendarStamp {
 /// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24
 /// 3:04 PM", "01-May-2024 12:00", "Wed May 1 12:00:00 2024", "2024-122T12:00:00", "20240501T120000Z", "23h40m05s",
 /// with the words of Chinese, Japanese and Korean for year, month, day, hour, minute and second, a date or a clock time
-/// alone, or one with days in front ("1 day, 2:03:04", "1.02:03:04", "49:03:04"). Fractions are rounded to the
-/// nanosecond. Nothing when it is none of these, or no day of the calendar.
+/// alone, or one with days in front ("1 day, 2:03:04", "1.02:03:04", "49:03:04", "P2DT1H3M4.5S"). Fractions are
+/// rounded to the nanosecond. Nothing when it is none of these, or no day of the calendar.
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order);
 /// The same in the first order in which it is a date.
 std::optional<CalendarStamp> read_calendar(std::string_view text);
