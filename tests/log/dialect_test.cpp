@@ -199,6 +199,19 @@ TEST_CASE("a logger's stamp, words and values with names") {
     }
 }
 
+TEST_CASE("behind semicolons points between thousands and commas with three digits are both what Europe writes") {
+  std::string text = "Zeit [ms];U [V]\n";
+  for (int i = 0; i < 400; ++i) {
+    const int ms = 500 + 1000 * i;
+    text += (ms < 1000 ? fmt::format("{}", ms) : fmt::format("{}.{:03}", ms / 1000, ms % 1000)) +
+            fmt::format(";2{},{:03}\n", i % 3, i * 7919 % 1000);
+  }
+  const Recording r = test::read_text(text);
+  CHECK(r.info.time.rate_hz == Approx(1).epsilon(1e-9));
+  REQUIRE(r.samples.size() == 1);
+  CHECK(r.samples[0][1] == 21.919);
+}
+
 TEST_CASE("thousands by blanks beside decimal commas") {
   std::string text = "Zeit;x\n";
   for (int k = 0; k < 60; ++k) text += fmt::format("0,{:02d};{} {:03d},5\n", k, 1 + k % 3, 17 * k % 1000);

@@ -117,6 +117,8 @@ void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal
   const auto rounded = [](double score) { return std::round(1e9 * score) / 1e9; };
   if (decimal != ',') out.push_back({delimiter, '.', columns, rounded(shape * worth.point)});
   if (decimal != '.') out.push_back({delimiter, ',', columns, rounded(shape * worth.comma)});
+  // "398.500;21,144" as well: semicolons stand where commas are decimal marks.
+  if (delimiter == ';' && decimal == 0) std::swap(out.back(), out[out.size() - 2]);
 }
 
 // "10,000,000.000,012,3 Hz", "10 000 000.000 012": counters write groups of three digits, on both sides of the point.

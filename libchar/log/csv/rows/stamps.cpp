@@ -401,6 +401,8 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
     return clock ? StampDefect::none : StampDefect::malformed;
   }
   if (!part.calendar) {
+    std::string plain;
+    if (dialect.thousands != 0) text = plain = without_thousands(text, {dialect.decimal, dialect.thousands});
     const std::size_t label = dialect.has_header ? 0 : label_length(text);
     if (const std::size_t mark = text.find(dialect.decimal); part.fraction_ns > 0 && mark != std::string_view::npos) {
       std::int64_t behind = 0;
