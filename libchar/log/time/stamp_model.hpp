@@ -47,8 +47,11 @@ struct RowsAtOnce {
   static constexpr std::size_t kMost = 1024, kRegular = 8, kFewest = 3;
   /// The next row; false where no more are to be looked at.
   bool add(std::int64_t stamp);
-  /// 0 where few steps are short, or none are regular.
-  std::size_t count() const { return shorter < kFewest || rows == kMost ? 0 : rows - regular; }
+  /// 0 where few steps are short, or none are regular; of stamps that only scatter half of them are.
+  std::size_t count() const {
+    const std::size_t late = rows - regular;
+    return shorter < kFewest || 10 * shorter < 7 * late || rows == kMost ? 0 : late;
+  }
 };
 
 /// The same stamps, such rows (fewer than half of all) one interval apart in front of the last of them.
