@@ -198,7 +198,7 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   if (!channel.fit) drop_what_follows(found.out);
   // Heavy tails of the differences are the alarm, and these are what it was about.
   for (const char* cause :
-       {"spikes_left_out", "spikes_kept", "heavy_tails", "held_values", "motion", "moves_throughout"})
+       {"spikes_left_out", "spikes_kept", "heavy_tails", "held_values", "staircase", "motion", "moves_throughout"})
     if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   if (channel.fit && has_step(*channel.fit))
     std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
