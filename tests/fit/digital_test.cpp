@@ -121,7 +121,7 @@ TEST_CASE("a counter of coarse steps hides what a clock does between its reading
   const auto said = [](std::uint64_t repeats, std::optional<double> step) {
     ValueCensus census;
     census.low = 0, census.high = 400, census.repeats = repeats;
-    const auto found = find_coarse_counter(census, 10000, step, "ns");
+    const auto found = detail::find_coarse_counter(census, 10000, step, "ns");
     return found ? found->code + ": " + found->sentence : "";
   };
   CHECK(said(9900, 4) ==

@@ -292,7 +292,7 @@ void Finish::find_digital(ChannelResult& result, double rate_hz) const {
   if (found_.samples == 0 || !options_.wanted.fit) return;
   const ValueCensus census = census_of(found_);
   if (options_.data == SampleKind::phase) {
-    const auto coarse = find_coarse_counter(census, found_.samples, found_.resolution, result.trace_unit);
+    const auto coarse = detail::find_coarse_counter(census, found_.samples, found_.resolution, result.trace_unit);
     if (coarse) result.findings.push_back(*coarse);
     return;
   }

@@ -85,8 +85,8 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
 
 }  // namespace
 
-std::optional<Finding> find_coarse_counter(const ValueCensus& census, std::uint64_t samples,
-                                           std::optional<double> resolution, std::string_view unit) {
+std::optional<Finding> detail::find_coarse_counter(const ValueCensus& census, std::uint64_t samples,
+                                                   std::optional<double> resolution, std::string_view unit) {
   constexpr double kRepeats = 0.3;
   const double share = static_cast<double>(census.repeats) / static_cast<double>(samples);
   if (!resolution || !(share > kRepeats)) return std::nullopt;
