@@ -15,8 +15,8 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/record/mean_meter.hpp"
+#include "libchar/log/between_channels.hpp"
 #include "libchar/log/channel_names.hpp"
-#include "libchar/log/gravity.hpp"
 
 namespace libchar {
 namespace {
@@ -216,7 +216,7 @@ Characterization characterize_source(const Source& source, const CharacterizeOpt
   if (options.data == SampleKind::rate) {
     std::vector<Channel> channels;
     for (const ChannelResult& channel : result.channels) channels.push_back(channel.channel);
-    judge_gravity(channels, [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
+    judge_together(channels, [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
   }
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

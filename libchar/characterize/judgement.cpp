@@ -56,6 +56,11 @@ double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// One difference of a step is as many standard deviations as it likes.
+bool has_step(const NoiseFit& fit) {
+  return std::any_of(fit.events.begin(), fit.events.end(), [](const Event& e) { return e.kind == EventKind::step; });
+}
+
 struct Judge {
   const ChannelResult& channel;
   std::vector<Finding> out;
@@ -98,12 +103,21 @@ struct Judge {
       out.back().count = spikes->count;
       if (share_of(spikes->count, samples) > kManySpikes) out.back().severity = Severity::caution;
     }
-    if (const Remedy* lines = find_remedy(fit, "lines")) {
-      add("lines_left_out", fmt::format("Spectral lines: {}.", lines->action), "spectral lines were left out");
-      for (const SpectralLine& line : channel.lines)
-        out.back().where.frequency_hz.push_back(
-            {line.frequency_hz - line.width_hz / 2, line.frequency_hz + line.width_hz / 2});
+  }
+
+  /// The spectrum knows where they are, and how strong.
+  Finding with_places(Finding lines) const {
+    const SpectralLine* strongest = nullptr;
+    for (const SpectralLine& line : channel.lines) {
+      lines.where.frequency_hz.push_back(
+          {line.frequency_hz - line.width_hz / 2, line.frequency_hz + line.width_hz / 2});
+      if (strongest == nullptr || line.amplitude > strongest->amplitude) strongest = &line;
     }
+    if (strongest != nullptr)
+      lines.sentence +=
+          fmt::format(" The strongest is at {} Hz, amplitude {}{}.", brief_text(strongest->frequency_hz),
+                      brief_text(strongest->amplitude), channel.channel.unit.empty() ? "" : " " + channel.channel.unit);
+    return lines;
   }
 
   // Eight steps are one finding with eight places.
@@ -125,7 +139,7 @@ struct Judge {
     look_at_remedies(fit);
     look_at_events(fit);
     for (const Finding& one : fit.findings)
-      if (one.code != "event") out.push_back(one);
+      if (one.code != "event") out.push_back(one.code == "lines_left_out" ? with_places(one) : one);
     if (fit.second_opinion && !fit.second_opinion->agrees)
       add("allan_disagrees", "The Allan fit disagrees: " + fit.second_opinion->sentence,
           "the fit of the Allan curve disagrees");
@@ -184,8 +198,10 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   if (!channel.fit) drop_what_follows(found.out);
   // Heavy tails of the differences are the alarm, and these are what it was about.
   for (const char* cause :
-       {"spikes_left_out", "spikes_kept", "heavy_tails", "held_values", "motion", "moves_throughout"})
+       {"spikes_left_out", "spikes_kept", "heavy_tails", "held_values", "staircase", "motion", "moves_throughout"})
     if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
+  if (channel.fit && has_step(*channel.fit))
+    std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   // Marks are far from all samples: they look like movement, and what moves is seen without them.
   if (has(found.out, "missing_mark"))
     std::erase_if(found.out, [](const Finding& one) {

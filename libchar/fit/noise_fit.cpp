@@ -398,6 +398,11 @@ NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::ui
   if (!lines.cycles.empty()) fit.findings.push_back(detail::cycle_finding(lines.cycles));
   if (lines.clipped == 0) return fit;
   add_lines(lines.bins, lines.all, fit);
+  // An Allan curve cannot leave a line out: it is no opinion on the noise then.
+  constexpr double kInAllan = 0.02;
+  const bool in_allan = fit.second_opinion && !fit.second_opinion->agrees && detail::share_of_lines(lines) > kInAllan;
+  if (in_allan) fit.second_opinion.reset();
+  fit.findings.push_back(detail::lines_finding(lines, in_allan));
   fit.remedies.insert(fit.remedies.begin(), lines_remedy(lines.clipped));
   return fit;
 }

@@ -67,6 +67,32 @@ Remedy lines_remedy(std::uint64_t clipped) {
           fmt::format("{} coefficients in and next to spectral lines left out", clipped), clipped};
 }
 
+double detail::share_of_lines(const ClippedBins& lines) {
+  std::array<double, 2> with{}, line{};
+  for (const PowerBin& bin : lines.all) {
+    const auto rest = std::find_if(lines.bins.begin(), lines.bins.end(), [&](const PowerBin& other) {
+      return other.low_hz == bin.low_hz && other.high_hz == bin.high_hz;
+    });
+    const double square = bin.frequency_hz * bin.frequency_hz;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      const double power = bin.dof * bin.energy * (i == 0 ? 1 : square);
+      with[i] += power;
+      if (rest != lines.bins.end()) line[i] += power * std::max(0.0, 1 - rest->energy / bin.energy);
+    }
+  }
+  return std::max(line[0] / with[0], line[1] / with[1]);
+}
+
+Finding detail::lines_finding(const ClippedBins& lines, bool in_allan) {
+  Finding found =
+      finding("lines_left_out",
+              fmt::format("Spectral lines: {} coefficients in and next to them were left out of the fit{}.",
+                          lines.clipped, in_allan ? "; the Allan curve has them, and lies above the noise" : ""),
+              in_allan ? "spectral lines were left out, and are in the Allan curve" : "spectral lines were left out");
+  if (in_allan) found.severity = Severity::caution;
+  return found;
+}
+
 Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
   const ClippedBins::Cycle& strongest = *std::max_element(
       cycles.begin(), cycles.end(),

@@ -43,6 +43,10 @@ void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 Remedy lines_remedy(std::uint64_t clipped);
 
 namespace detail {
+/// What is said of lines that were left out. `in_allan`: the Allan curve has them, and disagrees.
+Finding lines_finding(const ClippedBins& lines, bool in_allan);
+/// Share of the power that lines hold, of the samples or of their differences: the larger.
+double share_of_lines(const ClippedBins& lines);
 /// What is said of slow cycles that were taken out; by frequency, at least one.
 Finding cycle_finding(std::span<const ClippedBins::Cycle> cycles);
 }  // namespace detail

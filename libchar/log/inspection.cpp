@@ -8,7 +8,7 @@
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
-#include "libchar/log/gravity.hpp"
+#include "libchar/log/between_channels.hpp"
 #include "libchar/log/recording_json.hpp"
 
 namespace libchar {
@@ -55,7 +55,7 @@ Inspection inspect_rows(const std::string& path, const ReadOptions& options, Pro
   for (std::size_t c = 0; c < inspection.info.channels.size(); ++c)
     inspection.quality.push_back(meters.quality(c, inspection.info.time.rate_hz));
   inspection.traces = meters.traces();
-  judge_gravity(inspection.info.channels, [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
+  judge_together(inspection.info.channels, [&](std::size_t c) -> ChannelQuality& { return inspection.quality[c]; });
   return inspection;
 }
 

@@ -179,6 +179,7 @@ TEST_CASE("what the fit checks itself with does not depend on what is plotted") 
       {"nothing fits", [](auto& o) { o.allan.tau_min_s = 1e6; }},
       {"full overlap", [](auto& o) { o.full_overlap = true; }}};
   for (const bool is_long : {false, true}) {
+    int compared = 0;
     const auto plain = run(kNothing, kEnough, is_long);
     for (const auto& [name, change] : changes) {
       CAPTURE(name, is_long);
@@ -187,12 +188,14 @@ TEST_CASE("what the fit checks itself with does not depend on what is plotted") 
         const NoiseFit &a = *plain[c].fit, &b = *other[c].fit;
         CHECK(a.theta == b.theta);
         CHECK(a.findings == b.findings);
-        REQUIRE(a.second_opinion.has_value());
-        REQUIRE(b.second_opinion.has_value());
+        REQUIRE(a.second_opinion.has_value() == b.second_opinion.has_value());
+        if (!a.second_opinion) continue;  // of a channel with lines
+        ++compared;
         CHECK(a.second_opinion->value == b.second_opinion->value);
         CHECK(a.second_opinion->goodness.chi2 == b.second_opinion->goodness.chi2);
       }
     }
+    CHECK(compared > 0);
   }
 }
 

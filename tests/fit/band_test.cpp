@@ -1,4 +1,5 @@
 // The band: clean records keep their whole spectrum, filters are found or described, and the slow coefficients stay.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -315,6 +316,13 @@ TEST_CASE("the skirts of a resonance are not in N") {
       return y;
     };
   };
+  test::NoiseSource source(100000, kRate, 900);
+  const NoiseFit fit =
+      fit_record(resonance(12, 8)(source.record(1, 0, 0), source.gauss()), kRate, nullptr, FitOptions{});
+  const auto said = std::find_if(fit.findings.begin(), fit.findings.end(),
+                                 [](const Finding& one) { return one.code == "resonance"; });
+  REQUIRE(said != fit.findings.end());
+  CHECK(said->where.frequency_hz.at(0).low == Approx(12).epsilon(0.02));
   CHECK(missed(860, resonance(12, 8)) <= 2);
   CHECK(missed(880, resonance(2, 3)) <= 2);  // narrow beside its skirts: a shape or a cut took these for N
 }

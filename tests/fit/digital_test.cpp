@@ -116,3 +116,17 @@ TEST_CASE("digital: a clean recording of a real sensor") {
     CHECK_FALSE(faults.held.has_value());
   }
 }
+
+TEST_CASE("a counter of coarse steps hides what a clock does between its readings") {
+  const auto said = [](std::uint64_t repeats, std::optional<double> step) {
+    ValueCensus census;
+    census.low = 0, census.high = 400, census.repeats = repeats;
+    const auto found = detail::find_coarse_counter(census, 10000, step, "ns");
+    return found ? found->code + ": " + found->sentence : "";
+  };
+  CHECK(said(9900, 4) ==
+        "staircase: 99 % of the readings repeat the one before: the counter's step of 4.00 ns hides "
+        "what the clock does between samples, and short averaging times show its rounding.");
+  CHECK(said(1000, 4).empty());  // rounding that is noise
+  CHECK(said(9900, std::nullopt).empty());
+}

@@ -69,6 +69,23 @@ TEST_CASE("small outliers are taken out where larger ones were left out, even if
   CHECK(detail::outlier_variance({20000, 44000, 40000, 40000}, false)->seen);
 }
 
+TEST_CASE("values held and steps are no small outliers") {
+  test::Gaussian gauss(11);
+  std::vector<double> white(40000), held(white.size()), flipped(white.size());
+  for (std::size_t t = 0; t < white.size(); ++t) {
+    white[t] = gauss();
+    held[t] = white[t - t % 2];
+    flipped[t] = t < white.size() / 2 ? white[t] + 40 : -(white[t] + 40);
+  }
+  for (const auto& record : {held, flipped}) {
+    CHECK_FALSE(detail::outlier_variance(detail::core_sums(record), false));
+    const NoiseFit fit = fit_record(record, 100, nullptr, FitOptions{});
+    CHECK_FALSE(has(fit.findings, "outliers_in_n"));
+    const double truth = record == held ? std::sqrt(2) * 0.1 : 0.1;  // held: white noise of half the rate
+    CHECK(*fit[Term::white].value == Approx(truth).epsilon(0.012));
+  }
+}
+
 TEST_CASE("Gaussian noise keeps the interval of its likelihood") {
   test::Gaussian gauss(5);
   std::vector<double> y(20000);

@@ -522,6 +522,25 @@ TEST_CASE("a column of labels that is left out names no source: all rows are rea
   CHECK(r.info.time.rate_hz == Approx(10));
 }
 
+TEST_CASE("rows of several sensors in turn are no one sensor, however even their stamps") {
+  const auto table = [](const char* name, auto&& kind) {
+    std::string text = fmt::format("t [s],{},x\n", name);
+    for (int i = 0; i < 200; ++i) text += fmt::format("{:.2f},{},{}\n", 0.01 * i, kind(i), i * i % 17);
+    return text;
+  };
+  const auto number = [](int i) { return i % 2; };
+  for (const char* name : {"imu_id", "Sensor No", "device", "id"})
+    CHECK_THAT(failure(table(name, number)), Catch::Contains("E0327"));
+  CHECK_THAT(failure(table("sensor", [](int i) { return i % 3 == 0   ? "left"
+                                                        : i % 3 == 1 ? "right"
+                                                                     : "top"; })),
+             Catch::Contains("E0327"));
+  // A count of packets, a switch, a state that changes now and then.
+  CHECK(read_text(table("packet_id", number)).samples.size() == 2);
+  CHECK(read_text(table("heater", number)).samples.size() == 2);
+  CHECK(read_text(table("unit", [](int i) { return i / 50 % 2; })).samples.size() == 2);
+}
+
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
   options.kinds.group_by = "id";

@@ -290,9 +290,13 @@ bool Finish::is_at_rest(ChannelResult& result, double rate_hz) {
 // Of samples as the log has them: those of other kinds are differences or ratios. A counter's frequencies are rounded
 // as samples are; a phase's rounding is in its white phase noise.
 void Finish::find_digital(ChannelResult& result, double rate_hz) const {
-  if (options_.data == SampleKind::phase || !options_.wanted.fit) return;
-  if (found_.samples == 0) return;
+  if (found_.samples == 0 || !options_.wanted.fit) return;
   const ValueCensus census = census_of(found_);
+  if (options_.data == SampleKind::phase) {
+    const auto coarse = detail::find_coarse_counter(census, found_.samples, found_.resolution, result.trace_unit);
+    if (coarse) result.findings.push_back(*coarse);
+    return;
+  }
   const DigitalSums of_kept = is_whole() ? digital_sums(kept_, census, found_.missing) : DigitalSums{};
   DigitalFaults faults =
       find_digital_faults(is_whole() ? of_kept : read_.sums.digital, census, rate_hz,
@@ -524,10 +528,8 @@ ChannelResult Finish::result(const Channel& channel, const TimeBase& time) {
         return setting.option == "data" && options_.data != SampleKind::rate;
       });
   result.quality = quality_of_rate();
-  if (options_.wanted.quality) {
-    result.trace = read_.sums.meters.trace.finish();
-    result.trace_unit = channel.unit;
-  }
+  result.trace_unit = channel.unit;
+  if (options_.wanted.quality) result.trace = read_.sums.meters.trace.finish();
   if (rate_hz <= 0) {
     const std::string why = found_.samples < 2
                                 ? fmt::format("{}, and so no rate", plural(found_.samples, "sample"))

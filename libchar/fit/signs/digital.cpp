@@ -85,6 +85,18 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
 
 }  // namespace
 
+std::optional<Finding> detail::find_coarse_counter(const ValueCensus& census, std::uint64_t samples,
+                                                   std::optional<double> resolution, std::string_view unit) {
+  constexpr double kRepeats = 0.3;
+  const double share = static_cast<double>(census.repeats) / static_cast<double>(samples);
+  if (!resolution || !(share > kRepeats)) return std::nullopt;
+  return finding("staircase",
+                 fmt::format("{} of the readings repeat the one before: the counter's step of {} hides what the clock "
+                             "does between samples, and short averaging times show its rounding.",
+                             percent_text(share), with_unit(*resolution, unit)),
+                 "the counter's step hides the noise");
+}
+
 DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& census, std::uint64_t missing) {
   DigitalSums sums;
   sums.present = static_cast<double>(samples.size() - missing);

@@ -81,4 +81,11 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
 /// of the noise are a misfit: their intervals reach to what the noise may be.
 void doubt_digital(const DigitalFaults& faults, NoiseFit& fit);
 
+namespace detail {
+/// Of the readings of a phase: where most repeat the one before, their rounding hides the noise of the clock.
+/// `resolution`: the counter's step; `unit`: of both.
+std::optional<Finding> find_coarse_counter(const ValueCensus& census, std::uint64_t samples,
+                                           std::optional<double> resolution, std::string_view unit);
+}  // namespace detail
+
 }  // namespace libchar

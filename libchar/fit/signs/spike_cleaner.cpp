@@ -172,18 +172,22 @@ class SizeHistogram {
 CoreSums core_sums(std::span<const double> record) {
   constexpr double kQuartile = 0.6744897501960817;
   constexpr std::size_t kForScale = std::size_t{1} << 14U;
+  constexpr double kMostHeld = 1.0 / 3;  ///< share of values held: or a grid as coarse as the noise
+  constexpr double kStep = 10;           ///< standard deviations from which on a difference is no small outlier
   CoreSums out;
   std::vector<double> some;
   const std::size_t stride = std::max<std::size_t>(1, record.size() / kForScale);
   for (std::size_t t = 1; t < record.size(); t += stride)
     if (const double d = std::abs(record[t] - record[t - 1]); std::isfinite(d)) some.push_back(d);
-  const double scale = some.empty() ? 0 : median_in_place(some, Middle::upper) / kQuartile;
+  const auto held = static_cast<double>(std::count(some.begin(), some.end(), 0.0));
+  const bool has_core = held <= kMostHeld * static_cast<double>(some.size());
+  const double scale = has_core && !some.empty() ? median_in_place(some, Middle::upper) / kQuartile : 0;
   SizeHistogram sizes(scale > 0 ? scale : 1);
   for (std::size_t t = 1; t < record.size(); ++t) {
     const double d = std::abs(record[t] - record[t - 1]);
     if (!std::isfinite(d)) continue;
     out.count += 1;
-    out.all += d * d;
+    if (!(scale > 0) || d < kStep * scale) out.all += d * d;
     sizes.push(d);
   }
   if (!(scale > 0)) {  // values held or of a coarse grid: they have no core

@@ -30,6 +30,21 @@ bool names_kinds(std::string_view name) {
   return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
 }
 
+/// The same of numbers: a counter of packets goes round as well.
+bool numbers_kinds(std::string_view name) {
+  static constexpr std::array<std::string_view, 7> kThings = {"imu",    "sensor", "device", "node",
+                                                              "module", "unit",   "channel"};
+  static constexpr std::array<std::string_view, 6> kNumbers = {"id", "no", "nr", "index", "number", "address"};
+  const std::string lower = ascii_lower(name);
+  for (const std::string_view thing : kThings) {
+    if (lower.rfind(thing, 0) != 0) continue;
+    std::string_view rest = std::string_view(lower).substr(thing.size());
+    while (!rest.empty() && (rest[0] == '_' || rest[0] == ' ' || rest[0] == '-')) rest.remove_prefix(1);
+    if (rest.empty() || std::find(kNumbers.begin(), kNumbers.end(), rest) != kNumbers.end()) return true;
+  }
+  return names_kinds(name);
+}
+
 std::vector<std::string> values_of(const std::vector<Cells>& rows, std::size_t column, std::size_t most = kMostKinds) {
   std::vector<std::string> values;
   for (const Cells& row : rows)
@@ -79,6 +94,16 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
   std::nth_element(off.begin(), most, off.end());
   out.scatter = *most / usual;
   return out;
+}
+
+/// One kind after the other, row by row: evenly in time too, perhaps.
+bool in_turn(const std::vector<Cells>& rows, std::size_t column) {
+  constexpr std::size_t kRounds = 3;
+  const std::vector<std::string> kinds = values_of(rows, column);
+  if (kinds.size() < 2 || rows.size() < kRounds * kinds.size()) return false;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (column >= rows[i].size() || rows[i][column].text != kinds[i % kinds.size()]) return false;
+  return true;
 }
 
 // Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
@@ -212,7 +237,8 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
     } else if (words && names_kinds(column.name) && !timed) {
       refuse(name, values, info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
-               told_apart(rows, c, words && names_kinds(column.name), dialect)) {
+               (told_apart(rows, c, words && names_kinds(column.name), dialect) ||
+                (numbers_kinds(column.name) && in_turn(rows, c)))) {
       refuse(name, values, info);
     }
   }

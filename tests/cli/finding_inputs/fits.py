@@ -125,6 +125,16 @@ def with_line(n=30000):
     return [v + 0.4 * math.sin(2 * math.pi * 13 * i / RATE) for i, v in enumerate(noise(n))]
 
 
+def swinging(n=60000, hz=12, quality=8):
+    angle = 2 * math.pi * hz / RATE
+    radius = math.exp(-angle / 2 / quality)
+    a1, a2 = 2 * radius * math.cos(angle), -radius * radius
+    drive, out = noise(n, 0.15 * SD, 2), [0.0, 0.0]
+    for t in range(2, n):
+        out.append(a1 * out[-1] + a2 * out[-2] + drive[t] - drive[t - 2])
+    return [v + swing for v, swing in zip(noise(n), out)]
+
+
 def fitted(name, values, made_by="fit", **more):
     """A record of one gyroscope, of which the fit finds something."""
     return Input(gyro(name, values), made_by=made_by, **more)
@@ -169,6 +179,7 @@ INPUTS = {
     "staircase": fitted("staircase", lambda: [round(v / 0.35) * 0.35 for v in noise(30000)]),
     "digital_misfit": fitted("rounding", lambda: [float(round(v)) for v in noise(20000, 0.3)]),
     "lines_left_out": fitted("lines", with_line),
+    "resonance": fitted("swinging", swinging, truth=N),
     "strength_change": fitted("louder", louder),
     "not_stationary": fitted("swelling", swelling),
     "cycle": fitted("cycle", lambda: heating(100000, 97, 1.2)),

@@ -40,6 +40,7 @@ OTHER_SEVERITIES = {
     "slow_channel": {"bad"},  # in the grid of the table
     "spikes_left_out": {"caution"},  # more than a thousandth of the samples
     "spikes_kept": {"caution"},  # too many
+    "lines_left_out": {"caution"},  # in the Allan curve
     "undetermined": {"caution"},  # of N
     "not_stationary": {"note"},  # less than is noticeable
     "simulation_disagrees": {"bad"},  # by more than a few per cent

@@ -25,6 +25,12 @@ def gravity():
     return axes
 
 
+def copied():
+    axes = {name: ("deg/s", noise(30000, SD, seed)) for seed, name in enumerate(("gyro_x", "gyro_y", "gyro_z"))}
+    axes["gyro_z"] = ("deg/s", [-v for v in axes["gyro_x"][1]])
+    return axes
+
+
 def frozen():
     x = noise(30000)
     for start in range(1000, 30000, 5000):
@@ -99,6 +105,7 @@ INPUTS = {
     "spiky": Input(gyro("spiky", spiky), made_by="samples", analysis=("--no-remedies",),
                    not_in={"allan": "it takes the remedies, and says what was done"}),
     "not_gravity": Input(raw("gravity", gravity), made_by="samples", truth=N),
+    "copied_channel": Input(raw("copied", copied), made_by="samples"),
     "missing_samples": Input(gyro("missing", with_holes), made_by="characterize",
                              not_in=dict.fromkeys(("allan", "psd"), "terms that touch a missing sample are left out")),
 }

@@ -1,5 +1,5 @@
 # The program as a module that a worker or node makes instances of: createProgram({…}) (tools/page/script/worker.js).
-set(LIBCHAR_PAGE_LINK -Oz CACHE STRING "-O1 links in seconds: for work on the page")
+set(LIBCHAR_PAGE_LINK -O3 CACHE STRING "-O1 links in seconds: for work on the page")
 target_link_options(
   sensorchar
   PRIVATE ${LIBCHAR_PAGE_LINK}

@@ -1,6 +1,7 @@
 #include "libchar/fit/detail/band/band_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,26 @@ void add_lines(const std::vector<PowerBin>& clipped, const std::vector<PowerBin>
   if (any) fit.shape = measured_shape(std::move(points));
 }
 
+namespace {
+
+Finding resonance_finding(const std::vector<Resonance>& resonances) {
+  const bool one = resonances.size() == 1;
+  std::vector<std::string> frequencies;
+  for (const Resonance& resonance : resonances) frequencies.push_back(brief_text(resonance.frequency_hz, 3));
+  Finding found = finding(
+      "resonance",
+      fmt::format("{} at {} Hz {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
+                  "and {} in the Allan curve.",
+                  one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "stands" : "stand",
+                  one ? "it was" : "they were", one ? "is" : "are"),
+      one ? "a resonance was left out" : "resonances were left out");
+  for (const Resonance& resonance : resonances)
+    found.where.frequency_hz.push_back({resonance.frequency_hz, resonance.frequency_hz});
+  return found;
+}
+
+}  // namespace
+
 void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& fit) {
   const std::string alarm = "the noise terms alone do not describe the whole spectrum";
   if (band.quantized) fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
@@ -197,6 +218,7 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
                             fmt::format("a filter's shape of {} coefficient{} fitted with the terms", band.orders,
                                         band.orders == 1 ? "" : "s"),
                             static_cast<std::uint64_t>(band.orders)});
+  if (!band.resonances.empty()) fit.findings.push_back(resonance_finding(band.resonances));
   const auto left_out = static_cast<std::uint64_t>(std::count(band.inside.begin(), band.inside.end(), 0));
   // At the zeros of a filter known by name there is nothing to fit.
   if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)

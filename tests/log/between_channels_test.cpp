@@ -1,8 +1,11 @@
 // An accelerometer at rest reads gravity: units and scales that it contradicts are named, with the factor that mends.
+// Channels that repeat one another are named.
 
-#include "libchar/log/gravity.hpp"
+#include "libchar/log/between_channels.hpp"
 
 #include <catch2/catch.hpp>
+
+#include "tests/support/noise.hpp"
 
 using namespace libchar;
 
@@ -24,7 +27,7 @@ Scene triad(double z, const std::string& unit, double sd) {
     q.mean = name[4] == 'z' ? z : 0.01 * z;
     out.quality.push_back(q);
   }
-  judge_gravity(out.channels, [&](std::size_t c) -> ChannelQuality& { return out.quality[c]; });
+  judge_together(out.channels, [&](std::size_t c) -> ChannelQuality& { return out.quality[c]; });
   return out;
 }
 
@@ -68,7 +71,7 @@ TEST_CASE("gravity: one axis, other quantities and names without axes are not ju
   Scene one = triad(1, "m/s^2", 0.001);
   for (ChannelQuality& q : one.quality) q.findings.clear();
   one.channels[1].name = "temperature";
-  judge_gravity(one.channels, [&](std::size_t c) -> ChannelQuality& { return one.quality[c]; });
+  judge_together(one.channels, [&](std::size_t c) -> ChannelQuality& { return one.quality[c]; });
   CHECK(one.quality[0].findings.empty());
   CHECK(scale(triad(1, "rad/s", 0.001)) == "none");
 }
@@ -79,6 +82,35 @@ TEST_CASE("gravity: the columns of an array are axes") {
     array.quality[c].findings.clear();
     array.channels[c].name = "acc_" + std::string(1, static_cast<char>('0' + c));
   }
-  judge_gravity(array.channels, [&](std::size_t c) -> ChannelQuality& { return array.quality[c]; });
+  judge_together(array.channels, [&](std::size_t c) -> ChannelQuality& { return array.quality[c]; });
   CHECK(array.quality[0].findings.size() == 1);
+}
+
+TEST_CASE("a channel that is another one is named, also with its sign turned") {
+  const auto of = [](const std::vector<double>& samples) {
+    QualityMeter meter;
+    meter.push(samples);
+    return meter.finish();
+  };
+  test::Gaussian gauss(3);
+  std::vector<double> a(5000), b(a.size()), turned(a.size()), coarse(a.size());
+  for (std::size_t t = 0; t < a.size(); ++t) {
+    a[t] = 0.3 + gauss();
+    b[t] = 0.3 + gauss();
+    turned[t] = -a[t];
+    coarse[t] = static_cast<double>(t % 2);
+  }
+  std::vector<double> nearly = a;
+  nearly[4000] += 1e-9;
+  std::vector<ChannelQuality> quality = {of(a), of(b), of(a), of(turned), of(nearly), of(coarse), of(coarse)};
+  std::vector<Channel> channels;
+  for (const char* name : {"a", "b", "again", "turned", "nearly", "coarse", "switch"})
+    channels.push_back({name, "deg/s", false});
+  judge_together(channels, [&](std::size_t c) -> ChannelQuality& { return quality[c]; });
+  std::string said;
+  for (std::size_t c = 0; c < quality.size(); ++c)
+    if (has(quality[c].findings, "copied_channel")) said += channels[c].name + " ";
+  CHECK(said == "again turned ");
+  CHECK(quality[3].findings.back().sentence.find("a with its sign turned") != std::string::npos);
+  CHECK(quality[2].findings.back().help[0].options[0].value == "!again");
 }

@@ -1,15 +1,18 @@
-#include "libchar/log/gravity.hpp"
+#include "libchar/log/between_channels.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "libchar/core/axis_name.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 
 namespace libchar {
@@ -78,8 +81,6 @@ Suspicion suspicion_of(double ratio, const std::string& stated, bool steady) {
   return {"unit or scale are another, or the sensor does not rest", ""};
 }
 
-}  // namespace
-
 void judge_gravity(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
   for (const Triad& triad : triads_of(channels)) {
     const std::string unit = shown_unit(channels[triad[0]].unit);
@@ -108,6 +109,41 @@ void judge_gravity(std::span<const Channel> channels, const std::function<Channe
     }
     for (const std::size_t c : triad) quality(c).findings.push_back(found);
   }
+}
+
+/// Sums over all samples, to the last bit, sign aside: two records that share them are one.
+using Fingerprint = std::tuple<std::uint64_t, std::uint64_t, double, double, double, double>;
+Fingerprint fingerprint(const ChannelQuality& q) {
+  const double sign = q.mean < 0 ? -1 : 1;
+  const auto [low, high] = std::minmax(sign * q.minimum, sign * q.maximum);
+  return {q.samples, q.missing, sign * q.mean, q.standard_deviation, low, high};
+}
+
+void judge_copies(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
+  constexpr std::uint64_t kFewestValues = 32;  ///< of a switch or a coarse grid two may be alike by chance
+  std::map<Fingerprint, std::size_t> first;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    ChannelQuality& q = quality(c);
+    if (q.distinct_values < kFewestValues || !(q.standard_deviation > 0) || !q.signs.counter.empty()) continue;
+    const auto [found, fresh] = first.insert({fingerprint(q), c});
+    if (fresh) continue;
+    const std::string& other = channels[found->second].name;
+    const bool turned = q.mean != quality(found->second).mean;
+    Finding copy = finding("copied_channel",
+                           fmt::format("Every sample is that of {}{}: one sensor under two names, or an error of what "
+                                       "wrote the log.",
+                                       printable(other), turned ? " with its sign turned" : ""),
+                           fmt::format("repeats {}", printable(other)));
+    copy.help.push_back({"Leave it out.", {{"channels", "!" + channels[c].name}}});
+    q.findings.push_back(std::move(copy));
+  }
+}
+
+}  // namespace
+
+void judge_together(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
+  judge_gravity(channels, quality);
+  judge_copies(channels, quality);
 }
 
 }  // namespace libchar
