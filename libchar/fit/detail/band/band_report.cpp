@@ -184,7 +184,7 @@ Finding resonance_finding(const std::vector<Resonance>& resonances) {
       "resonance",
       fmt::format("{} at {} Hz {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
                   "and {} in the Allan curve.",
-                  one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "stands" : "stand",
+                  one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "rises" : "rise",
                   one ? "it was" : "they were", one ? "is" : "are"),
       one ? "a resonance was left out" : "resonances were left out");
   for (const Resonance& resonance : resonances)
