@@ -56,7 +56,7 @@ double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// One difference of a step is as many standard deviations as it likes.
+/// A step has one large difference, which its event explains.
 bool has_step(const NoiseFit& fit) {
   return std::any_of(fit.events.begin(), fit.events.end(), [](const Event& e) { return e.kind == EventKind::step; });
 }

@@ -386,6 +386,18 @@ struct Search {
     return order;
   }
 
+  /// Centre of the upper half of a peak.
+  double top_of(const std::vector<std::size_t>& hole, const Mixture& theta, double height) const {
+    double sum = 0, area = 0;
+    for (const std::size_t j : hole) {
+      const double excess = bins[j].energy / expected_energy(bins[j], theta) - 1;
+      if (excess < height / 2) continue;
+      area += excess * (bins[j].high_hz - bins[j].low_hz);
+      sum += excess * (bins[j].high_hz - bins[j].low_hz) * bins[j].frequency_hz;
+    }
+    return sum / area;
+  }
+
   /// What a hole was cut for: excess e over the model, of the height a and the area a f pi / (2 Q) of a resonance.
   std::optional<Resonance> resonance_in(const std::vector<std::size_t>& hole, const Mixture& theta) const {
     double sum = 0, weight = 0, area = 0, height = 0;
@@ -399,7 +411,9 @@ struct Search {
     if (!(weight > 0)) return std::nullopt;
     const double frequency_hz = sum / weight, quality = height * frequency_hz * std::numbers::pi / 2 / area;
     const double angle = 2 * std::numbers::pi * frequency_hz / rate_hz, half = angle / (2 * quality);
-    return Resonance{frequency_hz, height * half * half, std::pow(half * std::sin(angle), 2)};
+    Resonance out{frequency_hz, height * half * half, std::pow(half * std::sin(angle), 2)};
+    out.top_hz = top_of(hole, theta, height);
+    return out;
   }
 
   /// The likeliest strength of all skirts together, which that of the cores is a guess at; unlike ones where they

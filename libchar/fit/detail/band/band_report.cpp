@@ -179,16 +179,17 @@ namespace {
 Finding resonance_finding(const std::vector<Resonance>& resonances) {
   const bool one = resonances.size() == 1;
   std::vector<std::string> frequencies;
-  for (const Resonance& resonance : resonances) frequencies.push_back(brief_text(resonance.frequency_hz, 3));
+  for (const Resonance& resonance : resonances) frequencies.push_back(brief_text(resonance.top_hz, 2));
   Finding found = finding(
       "resonance",
-      fmt::format("{} at {} Hz {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
-                  "and {} in the Allan curve.",
-                  one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "rises" : "rise",
-                  one ? "it was" : "they were", one ? "is" : "are"),
+      fmt::format(
+          "{} at about {} Hz {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
+          "and {} in the Allan curve.",
+          one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "rises" : "rise",
+          one ? "it was" : "they were", one ? "is" : "are"),
       one ? "a resonance was left out" : "resonances were left out");
   for (const Resonance& resonance : resonances)
-    found.where.frequency_hz.push_back({resonance.frequency_hz, resonance.frequency_hz});
+    found.where.frequency_hz.push_back({resonance.top_hz, resonance.top_hz});
   return found;
 }
 

@@ -35,10 +35,11 @@ struct ModelPoint {
 
 /// A peak that is left out of a spectrum.
 struct Resonance {
-  double frequency_hz = 0;
-  double strength = 0;  ///< s, of its skirts
-  double width = 0;     ///< w
-  bool unlike = false;  ///< they are: a displacement or an acceleration
+  double frequency_hz = 0;  ///< between its skirts: bins grow with the frequency, and draw it upwards
+  double strength = 0;      ///< s, of its skirts
+  double width = 0;         ///< w
+  bool unlike = false;      ///< they are: a displacement or an acceleration
+  double top_hz = 0;        ///< where it is highest
 };
 
 std::size_t unknowns_of(const std::vector<Resonance>& resonances);
