@@ -85,7 +85,7 @@ Characterization characterized(Session& session, const CharacterizeVerb& verb, c
   report_warnings(session, result.log);
   for (const ChannelResult& c : result.channels) {
     const Judgement judgement = judge(c);
-    outcome.any_fit = outcome.any_fit || !judgement.has("no_fit");
+    outcome.any_fit = outcome.any_fit || c.fit;
     outcome.agrees = outcome.agrees && !judgement.has("simulation_disagrees");
   }
   return result;

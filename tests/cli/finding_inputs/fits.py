@@ -77,6 +77,11 @@ def spikes(share, size):
     return [v + (size * SD * draw.choice((-1, 1)) if draw.random() < share else 0) for v in noise(30000)]
 
 
+def bursts(size):
+    """Noise that is louder in one part of seven."""
+    return [v * (size if i // 500 % 7 == 0 else 1) for i, v in enumerate(noise(20000))]
+
+
 def steps(n, every, size):
     draw = random.Random(5)
     levels = [draw.gauss(0, size * SD) for _ in range(n // every + 1)]
@@ -211,6 +216,6 @@ INPUTS = {
                               not_in={"psd": "it fits nothing"}),
     "no_fit": Input(raw("no_fit", hardly_there), made_by="characterize"),
     "not_computed": Input(raw("not_computed", hardly_there), made_by="characterize"),
-    "simulation_disagrees": Input(gyro("again", lambda: spikes(0.04, 40)), made_by="characterize",
+    "simulation_disagrees": Input(gyro("again", lambda: bursts(4)), made_by="characterize",
                                   analysis=("--verify",), not_in=ONLY_VERIFY),
 }
