@@ -669,7 +669,7 @@ ReplayResult Replay::collect() {
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
   if (watch_.tilt) watch_.tilt->tell(out.warnings);
   if (watch_.readings) {
-    note_readings(watch_.readings->result(), learnt_);
+    note_readings(watch_.readings->learnt(), learnt_);
     tell_readings(out);
   }
   for (const AlgorithmRun& run : runs_)

@@ -11,6 +11,7 @@
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/replay/detail/plan/sensor_words.hpp"
 
 namespace libchar {
 namespace {
@@ -349,9 +350,7 @@ std::string doubtful_sensors(const ReplayResult& r) {
   std::string out = missing_samples(r);
   for (const Finding& one : r.warnings.list()) {
     const bool unlike = one.code == "sensor_unlike";
-    if (one.code == "sensor_failing" || one.code == "sensor_apart" || one.code == "frozen_sensor" ||
-        one.code == "constant_sensor" || one.code == "sensor_without_samples" || one.code == "tilt_contradicts" ||
-        unlike)
+    if (detail::doubts_sensors(one))
       out += (out.empty() ? "" : " ") + fmt::format("{}: {}.", unlike ? "Not decidable" : "Caution", sentence_of(one));
   }
   return out;
