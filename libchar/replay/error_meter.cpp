@@ -83,6 +83,25 @@ void centre(const ErrorMeter& meter, const ScoreOptions& options, std::vector<do
 constexpr double kWalks = 0.25;
 /// Between the slopes of an error whose correlation ends (-1) and of flicker (0).
 constexpr double kNeverEnds = -0.5;
+/// Beyond this slope a walk may begin to show: what it does later is not seen yet.
+constexpr double kWanders = 0.1;
+/// The variance of a mean that is extrapolated may be so many times too large.
+constexpr double kLeastOfMean = 6;
+constexpr double kEqualMean = 1e-9;  // of the square that is left without it, at least
+
+/// Of ln RMSE. Where the error does not end the square of the record's own mean m is one draw, with one degree of
+/// freedom, of what others have, and no batch shows it. Others may have more, by how far their means reach; less by no
+/// more than m, which is known. A walk may begin to show, and then nothing is known.
+Interval reach_of(const std::vector<double>& z, const MeanUncertainty& spread, const MeanUncertainty& bias,
+                  double slope, const ErrorScore& of) {
+  if (!bias.long_memory || !(slope > kNeverEnds)) return {-spread.reach95, spread.reach95};
+  const double square = of.rmse * of.rmse;
+  const double high = std::hypot(spread.reach95, bias.reach95 * bias.reach95 / (2 * square));
+  if (slope > kWanders) return {-high, high};
+  const double without = 1 - (of.bias * of.bias - bias.sd * bias.sd / kLeastOfMean) / square;
+  const double less = without < 1 ? std::log(std::max(without, kEqualMean)) / 2 : 0;
+  return {-std::hypot(mean_uncertainty(z, 0.05, 2 * kEndless).reach95, less), high};
+}
 
 void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorScore& out) {
   const std::vector<ErrorCell> cells = meter.cells();
@@ -94,12 +113,8 @@ void add_intervals(const ErrorMeter& meter, const ScoreOptions& options, ErrorSc
   const double slope = slow_slope(means);
   out.stationary = !(spread.long_memory && slope > kWalks);
   if (!out.stationary) return;
-  // The square of the record's own mean is one draw, with one degree of freedom, of what others
-  // have: no batch of it shows that.
-  const double offset =
-      bias.long_memory && slope > kNeverEnds ? bias.reach95 * bias.reach95 / (2 * out.rmse * out.rmse) : 0;
-  const double reach = std::hypot(spread.reach95, offset);
-  out.rmse_ci95 = {out.rmse * std::exp(-reach), out.rmse * std::exp(reach)};
+  const Interval reach = reach_of(z, spread, bias, slope, out);
+  out.rmse_ci95 = {out.rmse * std::exp(reach.low), out.rmse * std::exp(reach.high)};
   if (!(bias.long_memory && slope > kWalks)) out.bias_ci95 = {out.bias - bias.reach95, out.bias + bias.reach95};
 }
 

@@ -98,6 +98,7 @@ class Fusing {
   void check_readings();
   detail::ReadingMeter::Readings learnt_readings() const;
   void check_noise();
+  void tell_learnt();
   void tell();
 
   const std::string& log_;
@@ -501,7 +502,18 @@ void Fusing::check_readings() {
                           result_.warnings);
 }
 
+// Weights of there are those of a sensor that failed, whether it fails here or not.
+void Fusing::tell_learnt() {
+  for (const Finding& one : learnt_.findings) {
+    if (!detail::doubts_sensors(one) || one.code == "sensor_unlike") continue;
+    Finding& told = result_.warnings.add(one.code, "where this was learnt: " + as_part(one.sentence), {}, one.count);
+    told.severity = one.severity;
+    told.where = one.where;
+  }
+}
+
 void Fusing::tell() {
+  tell_learnt();
   check_noise();
   check_readings();
   runner_->remarks(result_.warnings);

@@ -259,8 +259,8 @@ class Replay {
     return healthy_;
   }
 
-  void watch_sensors(const Eigen::MatrixXd& samples) {
-    if (watch_.tilt) watch_.tilt->push(samples);
+  void watch_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+    if (watch_.tilt) watch_.tilt->push(samples, truth);
     if (watch_.steps) with_live(samples, [this](const auto& live) { watch_.steps->push(live); });
     watch_readings(samples);
   }
@@ -311,7 +311,7 @@ class Replay {
       judge_sensors(b.samples, healthy, b.truth, skip);
       tracker_.push(done, b.samples, b.truth, runs_);
       if (detection_) detection_->push(b.samples);
-      watch_sensors(b.samples);
+      watch_sensors(b.samples, b.truth);
       if (workspace_.estimates != nullptr) give_estimates(b);
       if (blocks < kLeastTimed) kept_.push_back(b.samples);
     });
@@ -669,7 +669,7 @@ ReplayResult Replay::collect() {
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
   if (watch_.tilt) watch_.tilt->tell(out.warnings);
   if (watch_.readings) {
-    note_readings(watch_.readings->result(), learnt_);
+    note_readings(watch_.readings->learnt(), learnt_);
     tell_readings(out);
   }
   for (const AlgorithmRun& run : runs_)

@@ -42,9 +42,9 @@ constexpr const char* kUnitScene =
     "format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, noise: 0.1}, b, c]\nreference: {channels: "
     "[x]}\nevaluation: [0, end]\n";
 
-std::string unit_refusal(const test::SceneBench& bench) {
+std::string unit_refusal(const test::SceneBench& bench, const char* scene = kUnitScene) {
   try {
-    replay(bench.read(kUnitScene));
+    replay(bench.read(scene));
   } catch (const Error& error) {
     return error.what();
   }
@@ -106,4 +106,27 @@ TEST_CASE("units of a scene: two quantities are refused in a sentence, weights o
       replay(bench.read("format: scene\nversion: 1\nrecording: log.csv\nsensors: [{name: a, h: [0.5]}, b, "
                         "c]\nreference: {channels: [x]}\n"));
   CHECK(weighed.sensors[0].unit == "rad/s");
+}
+
+TEST_CASE("units of a tilt: both axes of gravity are in one unit, and only a rate turns") {
+  test::SceneBench bench;
+  const char* const scene =
+      "format: scene\nversion: 1\nrecording: log.csv\nsensors: [w, x, z]\n"
+      "tilt: {gyroscope: w, accelerometer_x: x, accelerometer_z: z}\nreference: {channels: [tilt]}\n";
+  const auto log = [](const char* rate, const char* x, double factor) {
+    std::string text = fmt::format("t[s],w[{}],x[{}],z[m/s^2],tilt[rad]\n", rate, x);
+    for (int k = 0; k < 2000; ++k) {
+      const double angle = 0.5 * std::sin(0.02 * k);
+      text += fmt::format("{},{},{},{},{}\n", 0.01 * k, 0.5 * 2 * std::cos(0.02 * k),
+                          std::sin(angle) * 9.80665 / factor, std::cos(angle) * 9.80665, angle);
+    }
+    return text;
+  };
+  for (const auto& [unit, factor] : {std::pair("m/s^2", 1.0), std::pair("g", 9.80665)}) {
+    bench.put("log.csv", log("rad/s", unit, factor));
+    const ReplayResult result = replay(bench.read(scene));
+    CHECK(test::named(result, "tilt-accelerometer").rmse < 1e-4);
+  }
+  bench.put("log.csv", log("V", "g", 1));
+  CHECK_THAT(unit_refusal(bench, scene), Contains("E0918") && Contains("w is in V"));
 }

@@ -16,6 +16,7 @@
 
 using namespace libchar;
 using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 
@@ -45,8 +46,8 @@ std::string honest_log(std::uint64_t seed, double (*spoil)(double y, int k) = nu
 }
 
 struct HonestBench {
-  explicit HonestBench(const std::string& more = "", bool three = false) {
-    bench.put("log.csv", honest_log(1));
+  explicit HonestBench(const std::string& more = "", bool three = false, double (*spoil)(double y, int k) = nullptr) {
+    bench.put("log.csv", honest_log(1, spoil));
     const Scene scene = bench.read(
         "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n"
         "  - {name: a, noise: 0.05}\n  - {name: b, noise: 0.1}\n  - {name: c, noise: 0.08}\n" +
@@ -218,6 +219,27 @@ TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does
   CHECK(variances[2999].least == Approx(usual * usual / 2));
   detail::SensorDoubt sound({reading, reading, reading});
   CHECK(sound.push(Eigen::MatrixXd::Zero(3, 3000), estimates)[2999].more == 0);
+}
+
+TEST_CASE(
+    "fuse: a sensor that began to fail where this was learnt is told as it was before, and by what was found there") {
+  using Spoil = double (*)(double, int);
+  const Spoil late = [](double y, int k) { return k < 8000 ? y : y + 0.6; };
+  const Spoil always = [](double y, int) { return y + 0.6; };
+  for (const bool three : {false, true})
+    for (const char* algorithm : {"minque", "least-squares"}) {
+      INFO(three << " " << algorithm);
+      HonestBench bench("", three, late);
+      KeptColumns kept;
+      const FuseResult result = bench.fuse_log(honest_log(7, always), algorithm, kept);
+      const Finding *before = result.warnings.find("sensor_failing"), *now = result.warnings.find("sensor_changed");
+      REQUIRE(before != nullptr);
+      CHECK_THAT(before->sentence, StartsWith("where this was learnt: "));
+      CHECK_THAT(before->where.rows.at(0), StartsWith("b"));
+      REQUIRE(now != nullptr);
+      CHECK_THAT(now->where.rows.at(0), Contains("b: up to 0.") && Contains("from the start to the end"));
+      CHECK(coverage(kept) >= 0.9);
+    }
 }
 
 TEST_CASE(

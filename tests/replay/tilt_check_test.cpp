@@ -15,27 +15,29 @@ using Catch::Contains;
 namespace {
 
 struct Instant {
-  double rate = 0, x = 0, z = 0;
+  double rate = 0, x = 0, z = 0, reference = 0;
 };
 
 /// What is said of 200 s at 100 Hz of a tilt that swings by `swing` rad, each instant changed by `change`; "": nothing.
 std::string said(double swing, const std::function<void(Instant&)>& change, double disturbance = 0) {
   test::Gaussian normal(5);
-  Eigen::MatrixXd samples(3, 20000);
+  Eigen::MatrixXd samples(3, 20000), truth(1, 20000);
   double wind = 0;
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
     const double t = 0.01 * static_cast<double>(k), w = 2 * M_PI * 0.11;
     const double angle = swing * std::sin(w * t);
     wind += 0.05 * (normal() - wind);
     Instant now{swing * w * std::cos(w * t) + 0.05 + 0.01 * normal(),
-                9.81 * std::sin(angle) + 0.1 * normal() + disturbance * wind, 9.81 * std::cos(angle) + 0.1 * normal()};
+                9.81 * std::sin(angle) + 0.1 * normal() + disturbance * wind, 9.81 * std::cos(angle) + 0.1 * normal(),
+                angle};
     change(now);
     samples.col(k) << now.rate, now.x, now.z;
+    truth(k) = now.reference;
   }
   detail::TiltCheck check({0, 1, 2}, 100);
   // Blocks of any length tell the same.
-  check.push(samples.leftCols(777));
-  check.push(samples.rightCols(samples.cols() - 777));
+  check.push(samples.leftCols(777), truth.leftCols(777));
+  check.push(samples.rightCols(samples.cols() - 777), truth.rightCols(samples.cols() - 777));
   Findings warnings;
   check.tell(warnings);
   const Finding* found = warnings.find("tilt_contradicts");
@@ -78,4 +80,16 @@ TEST_CASE("tilt check: a right set-up is silent, also at rest, with an offset, i
           i.x /= 9.81;
           i.z /= 9.81;
         }).empty());
+}
+
+TEST_CASE("tilt check: the reference tells which is wrong, or is wrong itself") {
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate = -i.rate; }), Contains("it is the gyroscope"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.x = -i.x; }), Contains("it is the accelerometers"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate *= 57.29578; }), Contains("it is the gyroscope"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.reference = -i.reference; }), Contains("the reference turns the other way"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.reference /= 57.29578; }), Contains("0.0175 times"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.rate *= 1.2; }), Contains("reads 1.2 times"));
+  CHECK_THAT(said(0.8, [](Instant& i) { i.reference = std::sin(1000 * i.z); }), Contains("another angle"));
+  for (const double offset : {0.2, 3.1, std::nan("")})  // wraps, and without a reference
+    CHECK(said(0.8, [&](Instant& i) { i.reference = std::remainder(i.reference + offset, 2 * M_PI); }).empty());
 }

@@ -23,10 +23,11 @@ constexpr std::size_t kSimulatedRows = 4096, kKeptRows = 4096;
 constexpr std::size_t kMostParsedOnce = std::size_t{4} << 20U;
 
 // What makes the numbers of a sensor worthless: marks for missing values, a dead band, a wrapping phase.
-// One that hangs is missing there (hides: hide_frozen).
-void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, bool hides, Findings& to) {
+// One that hangs is missing there (hides: hide_frozen), and a truth that rests (truth) has no noise.
+void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, bool hides, bool truth, Findings& to) {
   for (const Finding& one : quality.findings)
-    if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !hides))
+    if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !hides) &&
+        (one.code != "dead_band" || !truth))
       to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help = one.help;
 }
 
@@ -234,7 +235,7 @@ void SceneSource::say_of(std::size_t k, const ChannelQuality& quality, const std
                           frozen_words(wanted_[k], info_.frozen[k], info_));
   const bool compared = sensor && scene_->sensors.size() >= 3 && !scene_->tilt;
   note_bad_samples(quality, sensor ? scene_->sensors[k].name : wanted_[k] + ", the reference",
-                   compared || !info_.frozen[k].empty(), info_.samples_say);
+                   compared || !info_.frozen[k].empty(), !sensor, info_.samples_say);
 }
 
 void SceneSource::scan(Progress& progress) {

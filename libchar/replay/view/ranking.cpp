@@ -11,6 +11,7 @@
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/replay/detail/plan/sensor_words.hpp"
 
 namespace libchar {
 namespace {
@@ -349,8 +350,7 @@ std::string doubtful_sensors(const ReplayResult& r) {
   std::string out = missing_samples(r);
   for (const Finding& one : r.warnings.list()) {
     const bool unlike = one.code == "sensor_unlike";
-    if (one.code == "sensor_failing" || one.code == "sensor_apart" || one.code == "frozen_sensor" ||
-        one.code == "constant_sensor" || one.code == "sensor_without_samples" || unlike)
+    if (detail::doubts_sensors(one))
       out += (out.empty() ? "" : " ") + fmt::format("{}: {}.", unlike ? "Not decidable" : "Caution", sentence_of(one));
   }
   return out;
@@ -365,8 +365,14 @@ bool detail::learns(const ReplayResult& r, const AlgorithmResult& a) {
 }
 
 std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
-  if (r.offsets_decide && !r.best) return {"No method is recommended: " + offsets_sentence(r), doubtful_sensors(r)};
-  if (!r.best) return {"No algorithm has a score: without a reference and with these sensors nothing can be compared."};
+  if (!r.best) {
+    std::vector<std::string> out = {
+        r.offsets_decide
+            ? "No method is recommended: " + offsets_sentence(r)
+            : "No algorithm has a score: without a reference and with these sensors nothing can be compared."};
+    if (const std::string doubtful = doubtful_sensors(r); !doubtful.empty()) out.push_back(doubtful);
+    return out;
+  }
   const AlgorithmResult& best = r.algorithms[*r.best];
   std::vector<std::string> out =
       r.chosen_as_robust

@@ -22,7 +22,6 @@ namespace libchar {
 namespace {
 
 constexpr std::array<std::size_t, 6> kBatches = {256, 128, 64, 32, 16, 8};
-constexpr double kSlow = 0.25;  ///< exponent of the second term
 constexpr double kAsked = 0.5;  ///< in deviance: rather a wide interval than a false one
 constexpr std::array kEndingTimes = {1. / 512, 1. / 362, 1. / 256, 1. / 181, 1. / 128, 1. / 90};  ///< T over the record
 constexpr double kLikelier = 1.5;                                                                 ///< in deviance
@@ -112,7 +111,7 @@ double of_ending(double share, double time) {
 
 }  // namespace
 
-MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
+MeanUncertainty mean_uncertainty(std::span<const double> series, double level, double endless) {
   std::vector<BatchVariance> batches;
   for (const std::size_t count : kBatches) {
     if (count > series.size()) continue;
@@ -120,7 +119,8 @@ MeanUncertainty mean_uncertainty(std::span<const double> series, double level) {
     const double share = static_cast<double>(whole) / static_cast<double>(series.size());
     const double variance = variance_of(batch_means(series, count));
     if (!(variance > 0)) return {0, 0, false};
-    batches.push_back({variance, static_cast<double>(count - 1), share, {1 / share - 1, std::pow(share, -kSlow) - 1}});
+    batches.push_back(
+        {variance, static_cast<double>(count - 1), share, {1 / share - 1, std::pow(share, -endless) - 1}});
   }
   if (batches.empty()) return {kNone, kNone, false};
   constexpr std::size_t kFewest = 4;  // lengths, to tell two terms apart

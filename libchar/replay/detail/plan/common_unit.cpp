@@ -40,11 +40,25 @@ bool seen_alike(const Scene& scene) {
          });
 }
 
+// Gravity is a direction: both axes in one unit, whatever it is. What turns is a rate.
+void to_unit_of_tilt(const Scene& scene, std::vector<std::string>& units, std::vector<double>& factors) {
+  const auto stated = [&](std::size_t i) {
+    return Stated{scene.sensors[i].name, stated_unit(scene.sensors[i], units[i])};
+  };
+  const std::size_t z = scene.tilt->accelerometer_z;
+  const Stated from = stated(z), to = stated(scene.tilt->accelerometer_x), rate = stated(scene.tilt->gyroscope);
+  if (!rate.unit.empty()) factor_between(scene, rate, {"what turns a tilt", "rad/s"});
+  if (from.unit.empty() || to.unit.empty()) return;
+  factors[z] = factor_between(scene, from, to);
+  units[z] = to.unit;
+}
+
 }  // namespace
 
 std::vector<double> to_common_unit(const Scene& scene, const std::vector<std::string>& reference_units,
                                    std::vector<std::string>& units) {
   std::vector<double> out(units.size(), 1.0);
+  if (scene.tilt) to_unit_of_tilt(scene, units, out);
   if (!seen_alike(scene)) return out;
   Stated common;
   for (std::size_t j = 0; scene.reference && j < reference_units.size(); ++j) {

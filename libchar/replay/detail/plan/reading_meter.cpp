@@ -24,6 +24,11 @@ constexpr double kBeyondNoise = 0.5;  // of the noise: a smaller change of the m
 constexpr double kLouder = 2.5;       // times the usual rms of a block
 constexpr double kQuietest = 0.5;     // of the usual rms of the middle sensor: less is no scatter of its own
 
+constexpr double kShifted = 0.5;      // of the mean square of a block
+constexpr double kOutlier = 5;        // times the rms of the steps of its block, and of the usual rms
+constexpr std::size_t kFewClean = 4;  // of so many blocks one without outliers tells the scatter
+constexpr double kMostOfOutlier = 3;  // times a mean of outliers alone, at least, is the rms
+
 constexpr double kLeastDrift = 0.05;   // of a gain
 constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
 constexpr double kOtherSign = -1.25;   // beyond one, of a gain: noise alone gives none below -1
@@ -96,6 +101,7 @@ void ReadingMeter::push(const Eigen::MatrixXd& samples) {
         s.suu += step_u * step_u;
         s.sur += step_u * step_r;
         s.srr += step_r * step_r;
+        s.largest = std::max(s.largest, step_r * step_r);
         neighbours_[i].all += 1;
         neighbours_[i].same += y == neighbours_[i].last ? 1 : 0;
       }
@@ -131,6 +137,11 @@ ReadingMeter::Fit ReadingMeter::fit(const Sums& s, double a, double b) {
   return {first + mean, std::sqrt(std::max(0.0, square + 2 * first * mean + first * first))};
 }
 
+bool ReadingMeter::outlying(const Sums& s, double usual_rms) {
+  const double least = kOutlier * std::max(std::sqrt(s.srr / std::max(1.0, s.steps)), usual_rms);
+  return s.largest > least * least;
+}
+
 // What moves is the input: the median's own noise would be taken for gains, of a noisier sensor above one.
 bool ReadingMeter::tells_gains() const {
   std::vector<double> noise;
@@ -160,7 +171,7 @@ ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, 
   const bool gains = tells_gains();
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<std::pair<double, double>> slopes;
-    std::vector<double> left, means, scatter;
+    std::vector<double> left, means, scatter, clean;
     for (const auto& block : blocks_) {
       const Sums& s = block[i];
       const double variance = s.uu - s.u * s.u / std::max(1.0, s.n);
@@ -178,7 +189,9 @@ ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, 
       const Fit one = fit(block[i], reading.offset, reading.gain);
       means.push_back(std::abs(one.mean));
       scatter.push_back(one.rms);
+      if (!outlying(block[i], 0)) clean.push_back(one.rms);
     }
+    if (kFewClean * clean.size() >= scatter.size() && clean.size() >= kLeastBlocks) scatter = std::move(clean);
     reading.usual_mean = mean_factor * quantile(std::move(means), share);
     reading.usual_rms = rms_factor * quantile(std::move(scatter), share);
     if (std::isfinite(reading.usual_rms) && std::isfinite(reading.gain)) out[i] = reading;
@@ -189,6 +202,27 @@ ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, 
 ReadingMeter::Readings ReadingMeter::result() const { return readings(kUsual, 1, 1); }
 
 ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHalf, kOfHalfRms); }
+
+ReadingMeter::Readings ReadingMeter::learnt() const {
+  Readings out = result();
+  const Readings usual = steady();
+  for (const Change& change : changes(usual, true)) out[change.sensor] = usual[change.sensor];
+  return out;
+}
+
+std::vector<double> ReadingMeter::with_outliers(const Readings& readings) const {
+  std::vector<double> out;
+  const double least = limits(readings, false).least;
+  for (std::size_t i = 0; i < n_; ++i) {
+    double all = 0, with = 0;
+    for (const auto& block : blocks_) {
+      all += readings[i] ? 1 : 0;
+      with += readings[i] && outlying(block[i], std::max(readings[i]->usual_rms, least)) ? 1 : 0;
+    }
+    out.push_back(with / std::max(1.0, all));
+  }
+  return out;
+}
 
 namespace {
 
@@ -337,7 +371,11 @@ std::vector<ReadingMeter::GainDrift> ReadingMeter::gain_drifts(double false_alar
   return out;
 }
 
-bool ReadingMeter::beyond(const Fit& block, const LearntSensor::Reading& usual, const Limits& limits, double motion) {
+bool ReadingMeter::beyond(const Sums& s, const LearntSensor::Reading& usual, const Limits& limits, double motion) {
+  const Fit block = fit(s, usual.offset, usual.gain);
+  if (s.n < kLeastInBlock ||
+      (outlying(s, std::max(usual.usual_rms, limits.least)) && kMostOfOutlier * std::abs(block.mean) < block.rms))
+    return false;
   const double more = std::max(1.0, motion), rms = more * std::max(usual.usual_rms, limits.least);
   return std::abs(block.mean) > std::max(kBeyondUsual * more * usual.usual_mean, kBeyondNoise * rms) ||
          block.rms > kLouder * rms ||
@@ -383,11 +421,19 @@ std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const Learn
   return out;
 }
 
-// Outliers put single blocks of any sensor beyond: so many in a row are more than those of the middle sensor do by
-// chance, in all sensors together. A run beside its own usual state has more of its own: blocks with a spike, or
-// those without one where most have some. Of independent blocks as many as begin a row, of those behind one that is
-// not beyond, are so by chance.
-std::vector<std::int64_t> ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
+/// Its offset or its gain is another: more than half of the scatter.
+bool ReadingMeter::shifted(const Sums& s, const LearntSensor::Reading& usual) {
+  const Fit here = fit(s, usual.offset, usual.gain);
+  const double uu = s.uu - s.u * s.u / s.n, ue = s.ur - s.u * s.r / s.n - usual.gain * uu;
+  const double by_gain = uu > 0 ? ue * ue / uu / s.n : 0;
+  return here.mean * here.mean + by_gain > kShifted * here.rms * here.rms;
+}
+
+// What all sensors do now and then puts single blocks of any beyond: so many in a row are more than those of the middle
+// sensor do by chance, in all sensors together. A run beside its own usual state has more of its own (other axes that
+// move now and then), but for blocks in which its offset or gain is another. Of independent blocks as many as begin a
+// row, of those behind one that is not beyond, are so by chance.
+std::vector<ReadingMeter::LeastRow> ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
   constexpr double kByChance = 1e-3;
   const std::size_t sensors = std::min(n_, learnt.size());
   std::vector<double> begun, own(sensors, 0.0);
@@ -397,9 +443,7 @@ std::vector<std::int64_t> ReadingMeter::least_in_a_row(const Readings& learnt, c
     bool before = false;
     const std::vector<double> motion = motion_factors(i, *learnt[i]);
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const Sums& s = blocks_[k][i];
-      const Fit here = fit(s, learnt[i]->offset, learnt[i]->gain);
-      const bool now = s.n >= kLeastInBlock && beyond(here, *learnt[i], limits, motion[k]);
+      const bool now = beyond(blocks_[k][i], *learnt[i], limits, motion[k]);
       times += now && !before ? 1 : 0;
       free += before ? 0 : 1;
       before = now;
@@ -409,38 +453,39 @@ std::vector<std::int64_t> ReadingMeter::least_in_a_row(const Readings& learnt, c
   }
   const double blocks = static_cast<double>(blocks_.size());
   const double common = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
-  std::vector<std::int64_t> out;
-  for (const double one : own) {
-    const double chance = std::max(common, one);
-    const double row =
-        chance > 0 ? std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(std::min(chance, 0.99)) : 2;
-    out.push_back(std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(row))));
-  }
+  const auto row = [&](double chance) {
+    if (!(chance > 0)) return std::int64_t{2};
+    const double least = std::log(kByChance / (blocks * static_cast<double>(n_))) / std::log(std::min(chance, 0.99));
+    return std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(least)));
+  };
+  std::vector<LeastRow> out;
+  for (const double one : own) out.push_back({row(std::max(common, one)), row(common)});
   return out;
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, bool quieter) const {
   const Limits limits = ReadingMeter::limits(learnt, quieter);
-  const std::vector<std::int64_t> least = least_in_a_row(learnt, limits);
+  const std::vector<LeastRow> least = least_in_a_row(learnt, limits);
   std::vector<Change> out;
   for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
     if (!learnt[i]) continue;
     const LearntSensor::Reading& usual = *learnt[i];
     const std::vector<double> motion = motion_factors(i, usual);
     Change one{i, 0, 1, 0, 0, false}, row = one;  // of those in a row
-    std::int64_t in_a_row = 0, changed = 0, first = -1, last = 0;
+    std::int64_t in_a_row = 0, shifts = 0, changed = 0, first = -1, last = 0;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Sums& s = blocks_[k][i];
       if (s.n < kLeastInBlock) continue;
-      const Fit here = fit(s, usual.offset, usual.gain);
-      if (!beyond(here, usual, limits, motion[k])) {
-        in_a_row = 0;
+      if (!beyond(s, usual, limits, motion[k])) {
+        in_a_row = shifts = 0;
         continue;
       }
+      shifts = shifted(s, usual) ? shifts + 1 : 0;
+      const Fit here = fit(s, usual.offset, usual.gain);
       if (in_a_row++ == 0) row = {i, 0, 1, static_cast<std::int64_t>(k), 0, false};
       if (std::abs(here.mean) > std::abs(row.offset)) row.offset = here.mean;
       if (usual.usual_rms > 0) row.scatter = less_usual(row.scatter, here.rms / usual.usual_rms);
-      if (in_a_row < least[i]) continue;
+      if (in_a_row < least[i].any && shifts < least[i].shifted) continue;
       if (first < 0) first = row.from;
       last = static_cast<std::int64_t>(k);
       ++changed;
@@ -453,7 +498,10 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, 
     one.to_end = last + 1 == static_cast<std::int64_t>(blocks_.size());
     out.push_back(one);
   }
-  return own_changes(std::move(out), learnt);
+  out = own_changes(std::move(out), learnt);
+  // Where most change it is what they see that does: motion, and how the sensors differ in it.
+  if (quieter && 2 * out.size() > learnt.size()) out.clear();
+  return out;
 }
 
 }  // namespace libchar::detail

@@ -55,12 +55,19 @@ class ReadingMeter {
     std::int64_t from = 0, to = 0;  ///< instants
     bool to_end = false;
   };
-  /// `quieter`: also where it scatters less, as one does that fails for most of the log.
+  /// `quieter`: also where it scatters less, as one does that fails for most of the log; none where most change.
   std::vector<Change> changes(const Readings& learnt, bool quieter = false) const;
 
   /// Of each sensor the rms over what it is from sample to sample, 1 where neighbours are independent: an error that is
   /// slow beside others that are not is its own. Medians over the blocks.
   std::vector<std::optional<double>> slow_scatter(const Readings& readings) const;
+
+  /// Where fused with what was learnt here: `result()`, but `steady()` of a sensor that failed for a part of it.
+  Readings learnt() const;
+
+  /// Of each sensor the share of its blocks with outliers, single samples far beyond the scatter of the others of the
+  /// block and what is usual; such a block says nothing of scatter.
+  std::vector<double> with_outliers(const Readings& readings) const;
 
   /// Of each sensor the share of its samples that repeat the one before: coarse steps, or values that are held.
   std::vector<double> repeated() const;
@@ -79,6 +86,7 @@ class ReadingMeter {
     double u0 = 0, r0 = 0;
     double steps = 0, suu = 0, sur = 0, srr = 0;  // of the differences between neighbours
     double last_u = 0, last_r = 0;
+    double largest = 0;      // square of a step of r
     std::int64_t last = -1;  // instant of these
   };
   struct Line {
@@ -93,9 +101,14 @@ class ReadingMeter {
     bool quieter = false;
   };
   static Limits limits(const Readings& learnt, bool quieter);
-  static bool beyond(const Fit& block, const LearntSensor::Reading& usual, const Limits& limits, double motion);
+  static bool outlying(const Sums& sums, double usual_rms);
+  static bool beyond(const Sums& sums, const LearntSensor::Reading& usual, const Limits& limits, double motion);
   std::vector<double> motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const;
-  std::vector<std::int64_t> least_in_a_row(const Readings& learnt, const Limits& limits) const;
+  struct LeastRow {
+    std::int64_t any = 2, shifted = 2;  // blocks
+  };
+  static bool shifted(const Sums& sums, const LearntSensor::Reading& usual);
+  std::vector<LeastRow> least_in_a_row(const Readings& learnt, const Limits& limits) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
   bool tells_gains() const;

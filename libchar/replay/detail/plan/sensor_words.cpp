@@ -25,6 +25,8 @@ constexpr double kLeastGain = 0.05;
 constexpr double kLeastLouder = 1;      // of the logarithm of the noise
 constexpr double kLeastSlower = 0.3;    // of that of its slow part
 constexpr double kLeastRepeated = 0.3;  // of its samples, more than of the others'
+constexpr double kLeastOutliers = 0.1;  // of its blocks, more than of the others'
+constexpr double kOutliersOver = 2.5;   // times as many as the others'
 // Scatter of sound sensors of one kind.
 constexpr double kUsualGain = 0.03, kUsualLevel = 0.3, kUsualSlow = 0.07;
 
@@ -66,6 +68,8 @@ std::vector<double> apart(const Values& values, double least, double usual_sd, d
   return out;
 }
 
+double middle_of(std::vector<double> values) { return median_in_place(values); }
+
 /// Everything that is said of a sensor has these.
 struct Sensors {
   const std::vector<std::string>& names;
@@ -80,7 +84,7 @@ struct Sensors {
 struct Throughout {
   ReadingMeter::Readings steady;
   Values slow;
-  std::vector<double> repeated;
+  std::vector<double> repeated, outliers;
   bool level = false;  // offsets were taken out
   double noise = 0;    // of the middle sensor
 
@@ -103,8 +107,7 @@ struct Throughout {
                levels = apart(each([](const auto&one) { return std::log(one.usual_rms); }), times * kLeastLouder,
                               kUsualLevel, by_chance),
                slowly = apart(slower, kLeastSlower, kUsualSlow, by_chance);
-    std::vector<double> sorted = repeated;
-    const double usual = median_in_place(sorted);
+    const double repeats = middle_of(repeated), outlying = middle_of(outliers);
     std::vector<std::vector<std::string>> out(steady.size());
     for (std::size_t i = 0; i < steady.size(); ++i) {
       if (std::abs(gains[i]) > 1) out[i].push_back("gain " + brief_text(1 + steady[i]->gain, 3));
@@ -112,7 +115,9 @@ struct Throughout {
       if (levels[i] > 1) out[i].push_back("noise " + of.amount(steady[i]->usual_rms, i));
       if (!sure && slowly[i] > 1)  // sound sensors drift, and are late, unlike each other
         out[i].push_back(fmt::format("scatter {} times that from sample to sample", brief_text(*slow[i], 2)));
-      if (repeated[i] > usual + kLeastRepeated)
+      if (outliers[i] > std::max(outlying + kLeastOutliers, kOutliersOver * outlying))
+        out[i].push_back(fmt::format("outliers in {} of its stretches", percent_text(outliers[i], 2)));
+      if (repeated[i] > repeats + kLeastRepeated)
         out[i].push_back(fmt::format("{} of its samples repeat the one before", percent_text(repeated[i], 2)));
     }
     return out;
@@ -176,11 +181,8 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
                       Findings& warnings) {
   const Sensors of{names, units};
   ReadingMeter::Readings steady = meter.steady();
-  Throughout all{{}, meter.slow_scatter(steady), meter.repeated()};
-  std::vector<ReadingMeter::Change> changes = meter.changes(steady, true);
-  // Where most change it is what they see that does: motion, and how the sensors differ in it.
-  if (2 * changes.size() > steady.size()) changes.clear();
-  std::vector<Said> failing = changes_said(changes, of, clock);
+  Throughout all{{}, meter.slow_scatter(steady), meter.repeated(), meter.with_outliers(steady)};
+  std::vector<Said> failing = changes_said(meter.changes(steady, true), of, clock);
   for (const ReadingMeter::GainDrift& drift : meter.gain_drifts(kFalseAlarm)) {
     const auto said = [&](const Said& one) { return one.name == of.name(drift.sensor); };
     const double before = 1 + taken_out[drift.sensor].gain;
@@ -202,6 +204,13 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
   all.noise = median_in_place(rms);
   all.steady = std::move(steady);
   warn_of_apart(all, of, warnings);
+}
+
+bool doubts_sensors(const Finding& finding) {
+  constexpr std::string_view kCodes[] = {"sensor_failing",  "sensor_apart",    "sensor_unlike",
+                                         "frozen_sensor",   "constant_sensor", "sensor_without_samples",
+                                         "tilt_contradicts"};
+  return std::find(std::begin(kCodes), std::end(kCodes), finding.code) != std::end(kCodes);
 }
 
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,

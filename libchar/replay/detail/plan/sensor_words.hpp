@@ -20,6 +20,9 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
                       Findings& warnings);
 
+/// A finding that says of sensors that they fail, stand apart, or have no samples.
+bool doubts_sensors(const Finding& finding);
+
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
                      const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
 
