@@ -409,7 +409,7 @@ class Tally:
         self.count += 1
         self.slowest, self.largest = max(self.slowest, (seconds, name)), max(self.largest, (megabytes, name))
         faults = [fault for fault, there in (
-            (f"exit {code}", code not in (0, 2, 3, 4)), (f"{seconds:.1f} s", seconds > options.seconds),
+            (f"exit {code}", code not in (0, 2, 3, 4, 5)), (f"{seconds:.1f} s", seconds > options.seconds),
             (f"{megabytes:.0f} MB", megabytes > options.megabytes), ("internal error", "internal error" in said),
             ("no error said", code > 0 and len(ERROR.findall(said)) != 1)) if there]
         self.wrong += bool(faults)
