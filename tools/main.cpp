@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <span>
 
@@ -35,11 +36,12 @@ int main(int argc, char** argv) {
         "sensorchar", "Measure sensor noise, export noise models and compare sensor fusion, from recordings.",
         fmt::format("sensorchar {} ({})", libchar::version(), libchar::build()), "Begin with: sensorchar inspect LOG");
     std::vector<std::string> names;
-    for (const VerbEntry& verb : verbs()) {
-      line.add(verb, call.session);
-      names.push_back(verb.name);
-    }
+    for (const VerbEntry& verb : verbs()) names.push_back(verb.name);
     const std::vector<std::string> command = with_joined_verb(call.session.command, names);
+    // The options of the verb that is named; of all where a page or a refusal may show them.
+    const bool one = command.size() > 1 && std::find(names.begin(), names.end(), command[1]) != names.end();
+    for (const VerbEntry& verb : verbs())
+      if (!one || verb.name == command[1]) line.add(verb, call.session);
     ProgramUsage usage = line.usage();
     usage.released = SENSORCHAR_RELEASED;
     const auto page = generated(usage, command, columns_of_stdout().value_or(kPageColumns));

@@ -25,6 +25,7 @@
 #include "libchar/fit/detail/band/small_shape.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
+#include "libchar/fit/detail/curve/polish.hpp"
 #include "libchar/fit/detail/curve/power_law.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
@@ -68,8 +69,9 @@ BinProblem problem_of(const std::vector<PowerBin>& bins, const Band& band, doubl
   return band_problem(bins, band, rate_hz);
 }
 
+/// `report`: with coefficients, limits and residuals, not with theta and likelihood alone.
 Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, std::uint64_t samples,
-                const FitOptions& options) {
+                const FitOptions& options, bool report = true) {
   Attempt out{&bins, std::move(band), options, {}, 0};
   if (out.band.bottom_hz > 0) out.options.terms = {true, false, false, false, false};
   if (out.band.quantized) out.options.terms[kQuantization] = true;
@@ -83,12 +85,13 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   fit.samples = samples;
   fit.duration_s = static_cast<double>(samples) / rate_hz;
   fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
-  const ModelPoint best = report_coefficients(problem, decision, out.options, fit);
+  out.best = report ? report_coefficients(problem, decision, out.options, fit) : polish(problem, decision.at).at;
+  fit.theta = out.best.theta;
+  out.half_deviance = half_deviance(problem, out.best);
+  if (!report) return out;
   if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
-  describe_band(bins, out.band, problem, best, rate_hz, fit);
+  describe_band(bins, out.band, problem, out.best, rate_hz, fit);
   fit.goodness = goodness_of(inside_of(fit.residuals), count_of(only_positive(fit.theta)) + unknowns_of(out.band));
-  out.half_deviance = half_deviance(problem, best);
-  out.best = best;
   return out;
 }
 
@@ -143,14 +146,14 @@ void answer_low_frequencies(Attempt& now) {
   const Band rest = without_lowest(now);
   const auto left = static_cast<std::size_t>(std::count(rest.inside.begin(), rest.inside.end(), 1));
   if (left < 2 * count_of(now.options.terms) || rest.inside == now.band.inside) return;
-  const Attempt dropped = attempt(*now.bins, rest, now.fit.rate_hz, now.fit.samples, now.options);
+  const Attempt dropped = attempt(*now.bins, rest, now.fit.rate_hz, now.fit.samples, now.options, false);
   const double rejects = rejection(dropped, now.fit);
   const double limit = rejection_limit(now, dropped);
   const Goodness low = goodness_between(now.fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s));
   FitOptions with = now.options;
   with.terms[kRamp] = true;
   std::optional<Attempt> ramp;
-  if (!now.options.terms[kRamp]) ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
+  if (!now.options.terms[kRamp]) ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with, false);
   const double gain = ramp ? 2 * (now.half_deviance - ramp->half_deviance) : 0;
   if (std::isnan(rejects)) return;  // there is no likelihood to hold them against
   if (rejects < limit && low.p > 1e-3 && gain < kRampRatio) return;
@@ -158,8 +161,10 @@ void answer_low_frequencies(Attempt& now) {
   const std::string alarm =
       fmt::format("the slowest {} coefficients do not follow the rest (2 ln L {}; with a ramp {})", kLowest - 1,
                   ratio_text(rejects), ratio_text(gain));
-  const bool ramp_explains = ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit &&
-                             goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
+  const bool ramp_likely = ramp && gain > kRampRatio && rejection(dropped, ramp->fit) < limit;
+  if (ramp_likely) ramp = attempt(*now.bins, now.band, now.fit.rate_hz, now.fit.samples, with);
+  const bool ramp_explains =
+      ramp_likely && goodness_between(ramp->fit, 0, (kLowest + 0.5) / (2 * now.fit.duration_s)).p > 0.005;
   if (ramp_explains) {
     ramp->fit.remedies = now.fit.remedies;
     now = std::move(*ramp);
@@ -170,9 +175,9 @@ void answer_low_frequencies(Attempt& now) {
     return;
   }
   const auto count = static_cast<std::uint64_t>(std::count(now.band.inside.begin(), now.band.inside.end(), 1) -
-                                                std::count(dropped.band.inside.begin(), dropped.band.inside.end(), 1));
+                                                std::count(rest.inside.begin(), rest.inside.end(), 1));
   const std::vector<Remedy> before = now.fit.remedies;
-  now = dropped;
+  now = attempt(*now.bins, rest, now.fit.rate_hz, now.fit.samples, now.options);
   now.fit.remedies = before;
   now.fit.remedies.push_back(
       {"lowest_bins", alarm, fmt::format("the {} slowest bins left out of the fit", count), count});

@@ -64,6 +64,25 @@ TEST_CASE("upper limits: exact for the mean of few squares, that of chi-square f
   CHECK(rise_below(0.05, 2) == Approx(4.04).epsilon(0.001));  // two squares
 }
 
+TEST_CASE("a few rounded samples, some coefficients of which are none, are no shape of the spectrum") {
+  const std::vector<double> y = {0, -2e-3, 0, 2e-3, 0, 0, 0, 0, 0, 0};
+  const NoiseFit fit = fit_record(y, 100, nullptr, {});
+  for (const Coefficient& term : fit.term) CHECK((!term.value || *term.value > 1e-6));
+}
+
+TEST_CASE("a drift through a short record is no low-pass with a corner below it") {
+  test::Gaussian normal(1);
+  for (const int n : {64, 100, 200, 400, 800}) {
+    CAPTURE(n);
+    std::vector<double> y;
+    for (int i = 0; i < n; ++i) y.push_back(i + normal());
+    const NoiseFit fit = fit_record(y, 100, nullptr, {});
+    const Coefficient& white = fit[Term::white];
+    CHECK((!white.value || white.status == Status::misfit || *white.value == Approx(0.1).epsilon(0.5)));
+    CHECK((white.value || (white.upper95 && *white.upper95 > 0.08)));
+  }
+}
+
 TEST_CASE("upper limits of short records hold the truth, and white noise that flicker explains is not detected") {
   constexpr std::size_t n = 200;
   constexpr double kRate = 100, kFlicker = 1, kRounding = 0.05;

@@ -64,17 +64,7 @@ void add_findings(const std::vector<Finding>& findings, ChannelResult& result) {
 /// Of a series at most so many means, for what is slow: temperature.
 EventSeries coarse(const EventSeries& series) {
   constexpr std::size_t kMost = std::size_t{1} << 14U;  // a cycle of a few periods is lost in 2,000
-  const std::size_t each = (series.value.size() + kMost - 1) / kMost;
-  EventSeries out;
-  out.start_s = series.start_s;
-  out.step_s = series.step_s * static_cast<double>(each);
-  out.per_point = series.per_point * each;
-  for (std::size_t t = 0; t + each <= series.value.size(); t += each) {
-    double sum = 0;
-    for (std::size_t i = 0; i < each; ++i) sum += series.value[t + i];
-    out.value.push_back(sum / static_cast<double>(each));
-  }
-  return out;
+  return detail::means_of(series, std::max<std::size_t>(1, (series.value.size() + kMost - 1) / kMost));
 }
 
 class Finish {

@@ -163,6 +163,19 @@ EventSeries event_series(std::span<const double> whole, double rate_hz, std::siz
   return series;
 }
 
+EventSeries detail::means_of(const EventSeries& series, std::size_t each) {
+  EventSeries out;
+  out.start_s = series.start_s;
+  out.step_s = series.step_s * static_cast<double>(each);
+  out.per_point = series.per_point * each;
+  for (std::size_t i = 0; i < series.value.size() / each; ++i) {
+    double sum = 0;
+    for (std::size_t t = i * each; t < (i + 1) * each; ++t) sum += series.value[t];
+    out.value.push_back(sum / static_cast<double>(each));
+  }
+  return out;
+}
+
 std::vector<detail::Pause> detail::leave_out_pauses(EventSeries& series) {
   constexpr double kShare = 0.1;  // of the recorded values; shorter ones are bridged
   constexpr double kShortest = 16;

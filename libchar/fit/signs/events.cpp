@@ -39,6 +39,11 @@ constexpr double kMostOfEnds = 1e-3;   ///< of EventSeries::Noise: beyond, the f
 constexpr int kRounds = 4;
 constexpr std::size_t kMostPauses = 16;  ///< beyond, sessions are too many for offsets of their own
 constexpr double kTauDrop = 3.8415;      ///< chi-square of one degree of freedom, 95 %
+/// A first look takes means of the series, this many at least. What comes within so much of LR of an event there, more
+/// than means can hide of one, is looked for in the series itself.
+constexpr std::size_t kFirstLook = 3072;
+constexpr double kNearly = 6;
+constexpr double kNearlyGate = 0.85;  ///< a first look's gates, as shares of the others
 
 /// What a search has in hand.
 struct Hypothesis {
@@ -65,6 +70,7 @@ struct Search {
   std::vector<EventShape> offset{};
   std::size_t offsets() const { return offset.size(); }
   double instant(double at_s) const { return detail::with_pauses(pauses, at_s); }
+  double nearly = 0;  ///< of a first look: it ends where LR lacks less than this
 };
 
 /// The share of a step that a point has.
@@ -237,9 +243,13 @@ std::vector<EventKind> offered(const Search& search, const Hypothesis& now) {
   return kinds;
 }
 
-/// LR of a ramp, or of a cycle, that is no event and yet likelier than the walk in its place; 0: there is none.
-double walk_like_drift(const Hypothesis& now, const Trial& drift, double favoured) {
-  return drift.gain > favoured && drift.with.power.front() < kWalkGone * now.power.front() ? drift.gain : 0;
+/// LR of a ramp, or of a cycle, that is no event and yet likelier than the walk in its place; 0: there is none. In a
+/// first look also what comes near that.
+double walk_like_drift(const Search& search, const Hypothesis& now, const Trial& drift, double favoured) {
+  constexpr double kNear = 0.5, kNearlyGone = 0.7;
+  const bool looks = search.nearly > 0;
+  const double gone = drift.with.power.front() / now.power.front();
+  return drift.gain > (looks ? kNear : 1) * favoured && gone < (looks ? kNearlyGone : kWalkGone) ? drift.gain : 0;
 }
 
 /// The next event, if there is one; otherwise what the ramp is worth.
@@ -249,7 +259,8 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now, Eve
     const Candidate candidate = best_of(kind, search, now.fit, now.weight);
     const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
     const bool hidden = kind == EventKind::ramp && now.power[0] > kLikeWalk * now.power[1];
-    const double gate = hidden || kind == EventKind::cycle ? kRampGate : kGate;
+    const double gate =
+        (hidden || kind == EventKind::cycle ? kRampGate : kGate) * (search.nearly > 0 ? kNearlyGate : 1);
     if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
     double& threshold = trials.back().candidate.threshold;
@@ -258,12 +269,12 @@ std::optional<Trial> next_event(const Search& search, const Hypothesis& now, Eve
   }
   const auto best = std::max_element(trials.begin(), trials.end(),
                                      [](const Trial& a, const Trial& b) { return a.worth() < b.worth(); });
-  if (best == trials.end() || best->worth() <= 0) {
+  if (best == trials.end() || best->worth() <= -search.nearly) {
     for (const Trial& trial : trials)
       if (trial.candidate.shape.kind == EventKind::ramp)
-        found.drift_gain = walk_like_drift(now, trial, kFavoured);
+        found.drift_gain = walk_like_drift(search, now, trial, kFavoured);
       else if (trial.candidate.shape.kind == EventKind::cycle)
-        found.cycle_gain = walk_like_drift(now, trial, kCycleFavoured);
+        found.cycle_gain = walk_like_drift(search, now, trial, kCycleFavoured);
     return std::nullopt;
   }
   std::vector<EventKind> not_told;
@@ -503,10 +514,9 @@ void free_ends(Search& search) {
   search.offset.push_back({EventKind::step, static_cast<double>(search.grid.points - 1)});
 }
 
-}  // namespace
-
-EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, const EventOptions& asked,
-                        std::string_view unit) {
+/// The search of a series whose points are means of `each` of another.
+EventSearch search_series(const EventSeries& whole, std::size_t each, const NoisePowers& powers,
+                          const EventOptions& asked, std::string_view unit, double nearly) {
   EventSeries series = whole;
   const std::vector<detail::Pause> pauses = detail::leave_out_pauses(series);
   EventOptions options = asked;
@@ -516,8 +526,9 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   const std::size_t n = series.value.size();
   Dct dct(n);
   const std::span<const double> c = dct.transform(series.value);
-  Search search{series, powers,          options, {n, series.per_point}, std::max<std::size_t>(8, n / 500),
-                {},     gaps_of(series), pauses};
+  const std::size_t margin = std::max<std::size_t>(2, std::max<std::size_t>(8, n * each / 500) / each);
+  Search search{series, powers, options, {n, series.per_point}, margin, {}, gaps_of(series), pauses};
+  search.nearly = nearly;
   search.coefficients.assign(c.begin() + 1, c.end());
 
   Hypothesis now;
@@ -537,7 +548,8 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   EventSearch found;
   for (int round = 0; round <= options.most; ++round) {
     std::optional<Trial> next = next_event(search, now, found);
-    if (!next) break;
+    found.looks_like_one = nearly > 0 && (next || found.drift_gain > 0 || found.cycle_gain > 0);
+    if (!next || found.looks_like_one) break;
     found.more = round == options.most;
     if (found.more) break;
     now = std::move(next->with);
@@ -560,6 +572,19 @@ EventSearch find_events(const EventSeries& whole, const NoisePowers& powers, con
   if (!found.events.empty()) found.leverage = leverage_of(free_taus.column, free_taus.covariance, now.weight);
   found.power = std::move(now.power);
   return found;
+}
+
+}  // namespace
+
+EventSearch find_events(const EventSeries& series, const NoisePowers& powers, const EventOptions& options,
+                        std::string_view unit) {
+  std::size_t each = series.unseen_s.empty() ? series.value.size() / kFirstLook : 0;
+  while (each > 1 && series.value.size() % each != 0) --each;  // no point is lost, and the length transforms fast
+  if (each > 1) {
+    const EventSearch look = search_series(detail::means_of(series, each), each, powers, options, unit, kNearly);
+    if (!look.looks_like_one) return look;
+  }
+  return search_series(series, 1, powers, options, unit, 0);
 }
 
 }  // namespace libchar

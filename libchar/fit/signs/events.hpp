@@ -31,6 +31,7 @@ struct EventSearch {
   std::optional<Telegraph> telegraph;
   std::vector<double> leverage;   ///< what the events took of the degree of freedom of each c_k, k = 1.. at [k-1]
   bool more = false;              ///< stopped at `most` with more to find
+  bool looks_like_one = false;    ///< of a first look: an event, or nearly
   double drift_gain = 0;          ///< 2 ln L by which a ramp, too weak for an event, is likelier than a random walk
   double cycle_gain = 0;          ///< the same of a cycle
   std::vector<Finding> findings;  ///< one for each event, in the unit given

@@ -109,12 +109,12 @@ struct SpreadStamp {
 SpreadStamp spread_by_names(std::string_view line, char delimiter) {
   SpreadStamp found;
   const std::vector<std::string_view> cells = cells_of(line, delimiter);
+  std::vector<std::string_view> others;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const DatePart part = part_of_name(bare(cells[c]), found.has(DatePart::hour));
     const bool goes_on = found.count > 0 && c == found.first + found.count;
     if (part == DatePart::none || (found.count > 0 && !goes_on) || (goes_on && found.has(part))) {
-      const auto name = time_name(name_and_unit(std::string(bare(cells[c]))).first);
-      if (name && !name->letter) return {};  // a stamp of its own
+      others.push_back(bare(cells[c]));
       continue;
     }
     if (!goes_on) found.first = c;
@@ -123,7 +123,13 @@ SpreadStamp spread_by_names(std::string_view line, char delimiter) {
   }
   if (found.has(DatePart::year) && !found.has(DatePart::month) && found.has(DatePart::day))
     found.of(DatePart::of_year) = std::exchange(found.of(DatePart::day), 0);
-  if (found.count > 1 && cells.size() > found.count && found.whole()) found.delimiter = delimiter;
+  if (found.count < 2 || others.empty() || !found.whole()) return {};
+  const auto is_stamp = [](std::string_view cell) {
+    const auto name = time_name(name_and_unit(std::string(cell)).first);
+    return name && !name->letter;
+  };
+  if (std::any_of(others.begin(), others.end(), is_stamp)) return {};  // there is one already
+  found.delimiter = delimiter;
   return found;
 }
 
@@ -202,7 +208,8 @@ SpreadStamp spread_of(std::string_view front) {
     if (lines.back().ends_with('\r')) lines.back().remove_suffix(1);
     front.remove_prefix(end + 1);
   }
-  for (std::size_t head = 0; head < lines.size(); ++head)
+  for (std::size_t head = 0; head < lines.size(); ++head) {
+    if (lines[head].find_first_of("0123456789+-.") == 0) continue;  // a row of numbers: the most of them
     for (const char delimiter : {',', ';', '\t', '|', ' '}) {
       const SpreadStamp found = spread_by_names(lines[head], delimiter);
       if (found.delimiter == 0) continue;
@@ -211,6 +218,7 @@ SpreadStamp spread_of(std::string_view front) {
         ++(stamp_text(found, cells_of(lines[k], delimiter)) ? rows : others);
       if (rows >= kFewest && others < kMostHeader) return found;
     }
+  }
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "libchar/core/error.hpp"
@@ -117,13 +118,21 @@ Eigen::ArrayXd model_of(const BinProblem& problem, const ModelPoint& at) {
   return mixture_of(problem, at.theta) * shape_of(problem, at.shape);
 }
 
+double detail::deviance_of_bin(double energy, double model) {
+  constexpr double kNear = 0.1, kNone = 1e-26;
+  const double excess = (energy - model) / model;
+  if (std::abs(excess) < kNear) return excess - std::log1p(excess);
+  // A model so far above a bin is not near any maximum, but above what rounding left of a coefficient that is zero.
+  const double ratio = energy / model;
+  if (excess == -1 && ratio > kNone) return std::numeric_limits<double>::infinity();
+  return excess - std::log(ratio);
+}
+
 double half_deviance(const BinProblem& problem, const ModelPoint& at) {
   const Eigen::ArrayXd model = model_of(problem, at);
   double sum = 0;
-  for (Eigen::Index j = 0; j < problem.size(); ++j) {
-    const double excess = (problem.energy[j] - model[j]) / model[j];
-    sum += problem.dof[j] / 2 * (excess - std::log1p(excess));
-  }
+  for (Eigen::Index j = 0; j < problem.size(); ++j)
+    sum += problem.dof[j] / 2 * detail::deviance_of_bin(problem.energy[j], model[j]);
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 

@@ -62,6 +62,10 @@ Eigen::ArrayXd shape_of(const BinProblem& problem, const ShapeCoefficients& shap
 Eigen::ArrayXd mixture_of(const BinProblem& problem, const Mixture& theta);
 Eigen::ArrayXd model_of(const BinProblem& problem, const ModelPoint& at);
 double half_deviance(const BinProblem& problem, const ModelPoint& at);
+namespace detail {
+/// energy / model - 1 - ln(energy / model).
+double deviance_of_bin(double energy, double model);
+}  // namespace detail
 
 /// Expected information of theta at the point, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows); what the
 /// unknown shape takes of it is taken off.

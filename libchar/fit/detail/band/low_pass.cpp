@@ -147,6 +147,8 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins, double
 
   LowPassFit fit;
   fit.corner_hz = std::exp(x.back());
+  // Below all bins the slope of a walk, and no corner: N would be of a frequency that nobody has seen.
+  if (!(fit.corner_hz > bins.front().high_hz)) return std::nullopt;
   fit.half_deviance = summary.final_cost;
   for (std::size_t i = 0; i < terms.size(); ++i) fit.theta[terms[i]] = std::exp(x[i]);
   ceres::Covariance covariance(exact_covariance_options());

@@ -51,14 +51,17 @@ struct Posterior {
 };
 
 Posterior posterior_of(double z) {
-  constexpr double kReach = 8, kStep = 0.05;
+  constexpr int kReach = 160;  ///< steps
+  constexpr double kStep = 0.05;
   Posterior out;
-  for (double d = z - kReach; d < z + kReach; d += kStep) {
-    const double weight = std::exp(-0.5 * (z - d) * (z - d)) / (1 + d * d / (kScale * kScale));
+  for (int i = -kReach; i < kReach; ++i) {
+    const double apart = kStep * i, d = z + apart;
+    const double weight = std::exp(-0.5 * apart * apart) / (1 + d * d / (kScale * kScale));
     out.marginal += weight;
     out.mean += weight * d;
     out.square += weight * d * d;
   }
+  if (!(out.marginal > 0)) return {};  // of a z beyond all numbers
   out.mean /= out.marginal;
   out.square /= out.marginal;
   return out;

@@ -95,7 +95,7 @@ DevianceResidual deviance_residual(double energy, double model, double dof) {
       power *= -d;
     }
   } else {
-    shape = 2 * (d - std::log1p(d)) / (d * d);
+    shape = 2 * detail::deviance_of_bin(energy, model) / (d * d);
   }
   const double root = std::sqrt(dof / 2 * shape);
   return {d * root, -dof / (2 * root)};
