@@ -126,6 +126,8 @@ std::optional<Unit> with_factor(std::string_view text) {
 }  // namespace
 
 std::optional<Unit> find_unit(std::string_view text) {
+  constexpr std::size_t kLongest = 1024;  // of a name in a log
+  if (text.size() > kLongest) return std::nullopt;
   const std::string wanted = normal(text);
   if (wanted.empty()) return std::nullopt;
   // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a lone

@@ -187,6 +187,19 @@ void refuse_same_logs(const Manifest& manifest, const std::vector<LookedAt>& log
   }
 }
 
+/// The same without reading them: of one path.
+void refuse_same_paths(const Manifest& manifest) {
+  std::map<std::pair<std::string_view, std::size_t>, const FleetDevice*> first;
+  for (const FleetDevice& one : manifest.devices) {
+    const auto [at, fresh] = first.emplace(std::pair{std::string_view(one.log), one.options}, &one);
+    if (fresh) continue;
+    throw input_error("E0783", one.where)
+        .says("the logs of {} and {} are the same, byte by byte", printable(at->second->device), printable(one.device))
+        .got(one.log)
+        .hint("leave one of them out: it would count twice");
+  }
+}
+
 /// Of lists for each channel a unit of one channel has its own entry; the thermometer's would stand nowhere.
 void check_by_channel(const Manifest& manifest) {
   for (const CharacterizeOptions& one : manifest.options)
@@ -416,6 +429,7 @@ std::optional<FleetUnit> unit_of_plan(const std::string& file) {
 FleetPlan plan_fleet(const Manifest& manifest, const FleetPlanOptions& options, Progress& progress) {
   const auto limits = read_limits(manifest);
   if (options.by_channel) check_by_channel(manifest);
+  refuse_same_paths(manifest);
   const std::vector<LookedAt> logs = look_at_all(manifest, options.by_channel, progress);
   refuse_unreadable(manifest, logs, options.skip_unreadable);
   check_limits(manifest, logs, limits);

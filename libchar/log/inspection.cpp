@@ -32,7 +32,11 @@ class Meters final : public BlockSink {
       });
     });
   }
-  ChannelQuality quality(std::size_t channel, double rate_hz) const { return meters_[channel].finish(rate_hz); }
+  /// Once: the meter goes, as those of many channels take more than all that they say.
+  ChannelQuality quality(std::size_t channel, double rate_hz) {
+    const QualityMeter meter = std::move(meters_[channel]);
+    return meter.finish(rate_hz);
+  }
   std::vector<Trace> traces() const {
     std::vector<Trace> out;
     for (const TraceMeter& one : traces_) out.push_back(one.finish(kSmall));

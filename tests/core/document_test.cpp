@@ -1,5 +1,7 @@
 #include "libchar/core/document/document.hpp"
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -65,11 +67,31 @@ TEST_CASE("document: text that is no UTF-8, and text of the largest size, are to
   CHECK_THAT(refusal(std::string(kMaxDocumentBytes, ' ')), Catch::Contains("is empty"));
   CHECK_THAT(refusal(std::string(kMaxDocumentBytes + 1, ' ')),
              Catch::Contains("16777217 bytes exceeds the limit of 16777216"));
-  std::string list = "[";
-  for (std::size_t k = 1; k < kMaxDocumentBytes / 24; ++k) list += k > 1 ? ",1" : "1";  // the list is a value, too
-  CHECK(parse_json_document(list + "]", "f").list.size() == 699'049);
-  CHECK_THROWS_WITH(parse_json_document(list + ",1]", "f"), Catch::Contains("more than 699050 values"));
-  CHECK_THAT(refusal(list + ",1]"), Catch::Contains("more than 699050 values"));
+  std::string list = "[", lines = "- 1\n";
+  for (std::size_t k = 1; k < detail::kMaxDocumentValues; ++k) {  // the list is a value, too
+    list += k > 1 ? ",1" : "1";
+    lines += "- 1\n";
+  }
+  CHECK(parse_json_document(list + "]", "f").list.size() == detail::kMaxDocumentValues - 1);
+  CHECK_THROWS_WITH(parse_json_document(list + ",1]", "f"), Catch::Contains("more than 500000 values"));
+  CHECK_THAT(refusal(lines), Catch::Contains("more than 500000 values"));
+}
+
+TEST_CASE("document: what opens brackets and closes none is refused before the parser has read it to its end") {
+  // yaml-cpp keeps 200 bytes for each bracket until it knows that the first one is no key.
+  for (const char* piece : {"[", "{", "[a,", "[ \n", "[[],[],"}) {
+    CAPTURE(piece);
+    std::string text = "key: ";
+    while (text.size() < 3'000'000) text += piece;
+    rusage before{}, after{};
+    ::getrusage(RUSAGE_SELF, &before);
+    CHECK_THAT(refusal(text), Catch::Contains("f:1") || Catch::Contains("f:2"));
+    ::getrusage(RUSAGE_SELF, &after);
+    CHECK(after.ru_maxrss - before.ru_maxrss < 200 * 1024);  // kB
+  }
+  std::string numbers = "key: [[1";  // one that can be read at once
+  while (numbers.size() < 400'000) numbers += ", 1";
+  CHECK(parse_yaml_document(numbers + "]]", "f").find("key")->value.list.at(0).list.size() > 100'000);
 }
 
 TEST_CASE("document: whole numbers of either sign stay whole") {

@@ -116,3 +116,22 @@ TEST_CASE("one string that is not UTF-8 is found wherever it stands, and no othe
   }
   CHECK_THROWS(dump_json(Json{{"a", {{"b", {std::nan("")}}}}}));
 }
+
+TEST_CASE("JSON that nobody vouches for is read in linear time: as it stands, or the members asked for") {
+  const Json read =
+      detail::parse_loose_json(R"({"a": [1, -2, 2.5, "x", null, true, {"b": {}}], "c": {"a": []}, "d": 3})");
+  CHECK(read == Json::parse(R"({"a": [1, -2, 2.5, "x", null, true, {"b": {}}], "c": {"a": []}, "d": 3})"));
+  CHECK(detail::parse_loose_json(R"({"a": {"c": 1, "d": [2]}, "c": 1, "d": {"a": [{}]}, "e": [{}]})", {"c", "d"}) ==
+        Json::parse(R"({"c": 1, "d": {"a": [{}]}})"));
+  CHECK(detail::parse_loose_json("[1, [2]]", {"c"}) == Json::parse("[1, [2]]"));
+  for (const char* bad : {"", "{", "{} 1", "[1,]", "{\"a\": }", "nan"}) {
+    CAPTURE(bad);
+    CHECK(detail::parse_loose_json(bad).is_discarded());
+  }
+  CHECK(detail::parse_loose_json(std::string(1'000'000, '[')).is_discarded());
+  // By comparing each key with all before it this would take minutes.
+  std::string keys = "{\"k\": 1";
+  for (int k = 0; k < 400'000; ++k) keys += ", \"k" + std::to_string(k) + "\": 1";
+  CHECK(detail::parse_loose_json(keys + "}").size() == 400'001);
+  CHECK(parse_json(keys + "}", "f.json").size() == 400'001);
+}

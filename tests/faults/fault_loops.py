@@ -181,12 +181,14 @@ def finished(folder):
 
 
 def spread(count, most):
-    """So many of the numbers from 1 to count: each once at the beginning, then in growing steps to the end."""
+    """So many of the numbers from 1 to count: each once at either end, where a run begins and its files get their
+    names, then in growing steps to the middle."""
     if count <= most:
         return list(range(1, count + 1))
-    step = (math.log(count) - math.log(1)) / most
-    return sorted({min(count, max(1, round(math.exp(step * k)))) for k in range(most + 1)}
-                  | {count * k // most for k in range(1, most)})
+    half = max(1, most // 3)
+    step = math.log(count) / half
+    begin = {min(count, max(1, round(math.exp(step * k)))) for k in range(half + 1)}
+    return sorted(begin | {count + 1 - k for k in begin} | {max(1, count * k // most) for k in range(1, half)})
 
 
 class Verb:
@@ -241,7 +243,7 @@ class Verb:
             return self.sizes(kind)
         count = self.counts.get(kind, 0)
         most = 1 if self.bench.quick else self.bench.heap if kind == "malloc" else count
-        if self.bench.quick and kind == "kill":
+        if self.bench.quick and kind in ("kill", "malloc"):
             most = 6
         return spread(count, most)
 

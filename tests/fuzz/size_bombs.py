@@ -11,6 +11,7 @@ import json
 import lzma
 import os
 import pathlib
+import re
 import resource
 import sqlite3
 import struct
@@ -22,13 +23,17 @@ import zlib
 
 FIXTURES = pathlib.Path(__file__).resolve().parents[2] / "fixtures"
 MILLION = 1_000_000
+ERROR = re.compile(r"(?:^|: )error E\d{4}:", re.M)
 
 
 def csv_files():
     yield "million columns", b"c," * MILLION + b"\n" + b"1," * MILLION + b"\n"
-    yield "hundred thousand columns", (",".join(f"c{k}" for k in range(100_000)) + "\n"
-                                       + ("1," * 99_999 + "1\n") * 20).encode()
-    yield "colliding names", b"a," * 99_999 + b"a\n" + (b"1," * 99_999 + b"1\n") * 20
+    for columns in (50_000, 100_000):
+        yield f"{columns} columns", (",".join(f"c{k}" for k in range(columns)) + "\n"
+                                     + ("1," * (columns - 1) + "1\n") * 20).encode()
+    yield "colliding names", b"a," * 49_999 + b"a\n" + (b"1," * 49_999 + b"1\n") * 40
+    yield "stamped columns", b"t[s]," + b"a," * 9000 + b"a\n" + b"".join(
+        b"%d," % k + b"1," * 9000 + b"1\n" for k in range(500))
     yield "numbered names that collide", ((",".join(["a", "a_2", "a_3"] * 30_000) + "\n").encode()
                                           + b"1," * 89_999 + b"1\n")
     yield "names with units", (",".join(f"a{k} [m/s^2]" for k in range(50_000)) + "\n"
@@ -296,6 +301,7 @@ def table_files():
             "<I", size) + data)
     yield "wav", "more than there is", riff(2, 16, 0xFFFFFFF0, bytes(9_000_000))
     yield "wav", "as many channels as fit", riff(65_535, 8, 9_000_000, bytes(9_000_000))
+    yield "wav", "as many channels as are read", riff(50_000, 8, 9_000_000, bytes(9_000_000))
     yield "wav", "wide channels", riff(8191, 64, 9_000_000, bytes(9_000_000))
     yield "wav", "empty chunks", b"RIFF" + struct.pack("<I", 0) + b"WAVE" + b"junk\0\0\0\0" * 1_200_000
     four = lambda kind, rows, columns, name, data: struct.pack("<IIIII", kind, rows, columns, 0,
@@ -305,7 +311,8 @@ def table_files():
     yield "mat", "version 4, empty variables", four(0, 0, 2**31 - 1, b"a", b"") * 400_000
     yield "mat", "version 4, bytes as columns", four(50, 1, 9_000_000, b"a", bytes(9_000_000))
     yield "mat", "version 4, a long name", struct.pack("<IIIII", 0, 1, 1, 0, 2**31 - 1) + b"n" * 9_000_000
-    yield "jsonl", "many keys", (b"{" + b",".join(b'"k%d":1' % k for k in range(90_000)) + b"}\n") * 9
+    for keys in (50_000, 90_000):
+        yield "jsonl", f"{keys} keys", (b"{" + b",".join(b'"k%d":1' % k for k in range(keys)) + b"}\n") * 9
     yield "jsonl", "other keys in every line", b"".join(b'{"t":%d,"k%d":1}\n' % (k, k) for k in range(400_000))
     yield "jsonl", "deep", b'{"a":' * 1_900_000
     yield "jsonl", "arrays", b'{"a":[' + b"1," * 4_900_000
@@ -327,7 +334,9 @@ def table_files():
 def document_files():
     head = "format: sensor-model\nversion: 1\nchannel: a\nunit: V\ndensity: two-sided\nrate_hz: 100\n"
     yield "sensor.yaml", "many keys", ["model"], (head + "".join(f"k{k}: 1\n" for k in range(500_000))).encode()
-    yield "sensor.yaml", "deep", ["model"], (head + "white_noise: " + "[" * 1_000_000).encode()
+    for piece in ("[", "{", "[a,", "{a: ", "[[],[],", "- ", "? ", "k: "):
+        yield "sensor.yaml", f"{piece} again and again", ["model"], (
+            head + "white_noise: " + piece * (9_000_000 // len(piece))).encode()
     yield "sensor.yaml", "long text", ["model"], (head + "note: " + "x" * 9_000_000).encode()
     yield "sensor.yaml", "a list of millions", ["model"], (head + "l: [" + "1," * 4_900_000 + "1]").encode()
     yield "sensor.yaml", "many lines of nothing", ["model"], (head + "\n" * 9_000_000).encode()
@@ -376,29 +385,61 @@ def serve():
 
 
 class Runner:
-    def __init__(self, program):
+    def __init__(self, program, folder):
         self.program = program
         self.server = subprocess.Popen([sys.executable, __file__, "--serve"], stdin=subprocess.PIPE,
-                                       stdout=subprocess.PIPE, text=True)
+                                       stdout=subprocess.PIPE, text=True, cwd=folder)
 
-    def measured(self, words, path):
+    def measured(self, words):
         """Exit code, seconds of processor time, megabytes, what was said."""
-        print(json.dumps([self.program, words[0], str(path), *words[1:]]), file=self.server.stdin, flush=True)
+        print(json.dumps([self.program, *words]), file=self.server.stdin, flush=True)
         return json.loads(self.server.stdout.readline())
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+class Tally:
+    """What was run, and what of it was beyond the limits."""
+
+    def __init__(self, options):
+        self.options, self.count, self.wrong = options, 0, 0
+        self.slowest = self.largest = (0, "")
+
+    def add(self, name, size, done):
+        code, seconds, megabytes, said = done
+        options = self.options
+        self.count += 1
+        self.slowest, self.largest = max(self.slowest, (seconds, name)), max(self.largest, (megabytes, name))
+        faults = [fault for fault, there in (
+            (f"exit {code}", code not in (0, 2, 3, 4)), (f"{seconds:.1f} s", seconds > options.seconds),
+            (f"{megabytes:.0f} MB", megabytes > options.megabytes), ("internal error", "internal error" in said),
+            ("no error said", code > 0 and len(ERROR.findall(said)) != 1)) if there]
+        self.wrong += bool(faults)
+        if faults or options.verbose:
+            print(f"{name} ({size / 1e6:.1f} MB): {', '.join(faults) or 'well'}: exit {code}, "
+                  f"{seconds:.2f} s, {megabytes:.0f} MB, {said.strip()[-160:]!r}", flush=True)
+
+    def end(self):
+        options = self.options
+        print(f"{self.count} files, {self.wrong} beyond {options.seconds:g} s, {options.megabytes:g} MB or the "
+              f"contract; slowest {self.slowest[0]:.1f} s ({self.slowest[1]}), largest {self.largest[0]:.0f} MB "
+              f"({self.largest[1]})")
+        return 1 if self.wrong else 0
+
+
+def arguments(description):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=os.path.abspath)
     parser.add_argument("--only", default="")
     parser.add_argument("--seconds", type=float, default=2)
     parser.add_argument("--megabytes", type=float, default=256)
     parser.add_argument("--verbose", action="store_true")
-    options = parser.parse_args()
-    runner = Runner(options.program)
-    count = wrong = 0
-    slowest = largest = (0, "")
+    return parser
+
+
+def main():
+    options = arguments(__doc__).parse_args()
+    tally = Tally(options)
     with tempfile.TemporaryDirectory() as folder:
+        runner = Runner(options.program, folder)
         for suffix, name, words, data in all_files():
             if options.only not in f"{suffix}: {name}":
                 continue
@@ -409,22 +450,10 @@ def main():
             side = pathlib.Path(f"{path}.json")
             if sidecar is not None:
                 side.write_text(sidecar)
-            code, seconds, megabytes, said = runner.measured(words, path)
+            tally.add(f"{suffix}: {name}", len(data), runner.measured([words[0], str(path), *words[1:]]))
             side.unlink(missing_ok=True)
             path.unlink()
-            count += 1
-            slowest, largest = max(slowest, (seconds, name)), max(largest, (megabytes, name))
-            faults = [fault for fault, there in (
-                (f"exit {code}", code not in (0, 2, 3, 4)), (f"{seconds:.1f} s", seconds > options.seconds),
-                (f"{megabytes:.0f} MB", megabytes > options.megabytes), ("internal error", "internal error" in said),
-                ("no error said", code > 0 and said.count(" error ") != 1)) if there]
-            wrong += bool(faults)
-            if faults or options.verbose:
-                print(f"{suffix}: {name} ({len(data) / 1e6:.1f} MB): {', '.join(faults) or 'well'}: exit {code}, "
-                      f"{seconds:.2f} s, {megabytes:.0f} MB, {said.strip()[-160:]!r}", flush=True)
-    print(f"{count} files, {wrong} beyond {options.seconds:g} s, {options.megabytes:g} MB or the contract; slowest "
-          f"{slowest[0]:.1f} s ({slowest[1]}), largest {largest[0]:.0f} MB ({largest[1]})")
-    sys.exit(1 if wrong else 0)
+    sys.exit(tally.end())
 
 
 if __name__ == "__main__":

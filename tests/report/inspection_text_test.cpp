@@ -54,3 +54,18 @@ TEST_CASE("one line for each kind of finding: what the first channel says, and w
   CHECK_THAT(text, Contains("  gy: is it connected?\n"));
   CHECK_THAT(squeezed(text), Contains("n 0 "));  // the unit of numbers without one is not printed
 }
+
+TEST_CASE("of very many channels or topics the first thousand have a line, the others are counted") {
+  Inspection inspection;
+  inspection.info.file = "log.csv";
+  for (int c = 0; c < 1003; ++c) inspection.info.channels.push_back({"c" + std::to_string(c), "V", false});
+  inspection.quality.resize(1003);
+  const std::string text = inspection_text(inspection);
+  CHECK_THAT(text, Contains("  c999 ") && !Contains("c1000 ") && Contains("  … and 3 more, which JSON lists\n"));
+  inspection = {};
+  inspection.info.topics.resize(1002);
+  for (int t = 0; t < 1002; ++t) inspection.info.topics[static_cast<std::size_t>(t)].name = "/t" + std::to_string(t);
+  inspection.info.topics.back().sensor = true;
+  CHECK_THAT(inspection_text(inspection),
+             Contains("/t1001 ") && Contains("/t998 ") && !Contains("/t999 ") && Contains("… and 2 more"));
+}

@@ -86,7 +86,7 @@ OutputJournal read_journal(const fs::path& folder) {
   const fs::path path = journal_of(folder);
   const std::string text = file_text(path.string(), kMostJournalBytes);
   try {
-    const Json document = Json::parse(text);
+    const Json document = detail::parse_loose_json(text);
     OutputJournal journal;
     for (const Json& waiting : document.at("rename")) journal.rename.push_back(waiting_in(waiting));
     for (const Json& name : document.at("remove")) journal.remove.push_back(name_in(name));

@@ -11,8 +11,10 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <istream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <set>
+#include <streambuf>
 
 #include "libchar/core/file/file_text.hpp"
 #include "libchar/core/refusal.hpp"
@@ -58,6 +60,7 @@ class Builder : public YAML::EventHandler {
  public:
   explicit Builder(const std::string& file) : file_(file) {}
   Document take() { return std::move(root_); }
+  const YAML::Mark& place() const { return place_; }  // of the last value
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -92,6 +95,7 @@ class Builder : public YAML::EventHandler {
   struct Level {
     Document* node = nullptr;
     bool awaits_value = false;
+    std::set<std::string> keys = {};
   };
 
   Refusal refusal(const YAML::Mark& mark) const {
@@ -105,7 +109,7 @@ class Builder : public YAML::EventHandler {
   void add_key(const YAML::Mark& mark, Level& level, const std::string& key) {
     if (key.size() > kMaxKey) throw refusal(mark).says("a key is longer than {} characters", kMaxKey).got(key);
     if (level.node->map.size() >= kMaxKeys) throw refusal(mark).says("a map has more than {} keys", kMaxKeys).got(key);
-    if (level.node->find(key) != nullptr) throw refusal(mark).says("a key is repeated").got(key);
+    if (!level.keys.insert(key).second) throw refusal(mark).says("a key is repeated").got(key);
     level.node->map.push_back({key, mark.line + 1, mark.column + 1, {}});
     level.awaits_value = true;
   }
@@ -121,8 +125,9 @@ class Builder : public YAML::EventHandler {
   }
 
   Document* put(const YAML::Mark& mark, Document value) {
-    if (++values_ > kMaxDocumentBytes / 24)
-      throw input_error("E0522", file_).says("YAML of more than {} values", kMaxDocumentBytes / 24);
+    place_ = mark;
+    if (++values_ > detail::kMaxDocumentValues)
+      throw input_error("E0522", file_).says("YAML of more than {} values", detail::kMaxDocumentValues);
     value.line = mark.line + 1;
     value.column = mark.column + 1;
     Document* place = slot();
@@ -139,13 +144,39 @@ class Builder : public YAML::EventHandler {
       throw refusal(mark).says("is nested deeper than {} levels", kMaxDocumentDepth);
     if (!stack_.empty() && stack_.back().node->kind == Document::Kind::map && !stack_.back().awaits_value)
       throw refusal(mark).says("a list or map cannot be a key");
-    stack_.push_back({put(mark, scalar(kind, "")), false});
+    stack_.push_back({put(mark, scalar(kind, ""))});
   }
 
   const std::string& file_;
   Document root_;
   std::vector<Level> stack_;
   std::size_t values_ = 0;
+  YAML::Mark place_ = {};
+};
+
+// The document for the parser, which reads a list in brackets to its end before it says that one begins, in case it
+// is a key, and takes 200 bytes for each bracket on its way.
+class Feed : public std::streambuf {
+ public:
+  Feed(std::string_view text, const std::string& file, const Builder& builder) : file_(file), builder_(builder) {
+    char* const begin = const_cast<char*>(text.data());  // only read
+    setg(begin, begin, begin + text.size());
+  }
+
+ protected:
+  std::streamsize xsgetn(char* to, std::streamsize most) override {
+    constexpr std::ptrdiff_t kMostAhead = std::ptrdiff_t{1} << 19;
+    const YAML::Mark& place = builder_.place();
+    if (gptr() - eback() - place.pos > kMostAhead)
+      throw input_error("E0522", fmt::format("{}:{}:{}", file_, place.line + 1, place.column + 1))
+          .says("a value of more than {} bytes follows: a long text, or lists within lists in brackets", kMostAhead)
+          .hint("a document in JSON is read as such from a file called .json");
+    return std::streambuf::xsgetn(to, most);
+  }
+
+ private:
+  const std::string& file_;
+  const Builder& builder_;
 };
 
 void check_bytes(std::string_view text, const std::string& file) {
@@ -199,9 +230,10 @@ const DocumentEntry* Document::find(std::string_view key) const {
 Document parse_yaml_document(std::string_view text, const std::string& file) {
   check_bytes(text, file);
   try {
-    std::istringstream in{std::string(text)};
-    YAML::Parser parser(in);
     Builder builder(file);
+    Feed feed(text, file, builder);
+    std::istream in(&feed);
+    YAML::Parser parser(in);
     if (!parser.HandleNextDocument(builder)) throw input_error("E0522", file + ":1:1").says("holds no document");
     Builder second(file);
     if (parser.HandleNextDocument(second)) throw input_error("E0522", file).says("holds a second document");
@@ -234,7 +266,7 @@ Json as_json(const Document& node) {
     }
     case Document::Kind::map: {
       Json map = Json::object();
-      for (const DocumentEntry& entry : node.map) map[entry.key] = as_json(entry.value);
+      for (const DocumentEntry& entry : node.map) detail::add_member(map, entry.key, as_json(entry.value));
       return map;
     }
     case Document::Kind::null:

@@ -36,6 +36,9 @@ struct DocumentEntry {
 /// Limits of one document, YAML and JSON alike.
 inline constexpr std::size_t kMaxDocumentBytes = std::size_t{16} << 20U;
 inline constexpr std::size_t kMaxDocumentDepth = 64;
+namespace detail {
+inline constexpr std::size_t kMaxDocumentValues = 500000;  // each takes up to .3 kB
+}
 
 /// One YAML document of plain keys, texts and numbers: no aliases, anchors, tags, merge keys, duplicate keys or second
 /// document; depth <= 64, size <= 16 MiB, keys <= 1024 characters. A plain scalar that reads as a decimal number

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "libchar/core/document/document.hpp"
 #include "libchar/core/text/text.hpp"
 
 namespace libchar {
@@ -43,7 +44,71 @@ bool all_utf8(const Json& node) {
   return true;
 }
 
+// Builds what the events say; of a key that is repeated the first is found.
+class LooseReader : public nlohmann::json_sax<Json> {
+ public:
+  explicit LooseReader(const std::vector<std::string_view>& members) : members_(members) {}
+  Json take() { return std::move(root_); }
+
+  bool null() override { return put(nullptr); }
+  bool boolean(bool value) override { return put(value); }
+  bool number_integer(number_integer_t value) override { return put(value); }
+  bool number_unsigned(number_unsigned_t value) override { return put(value); }
+  bool number_float(number_float_t value, const string_t&) override { return put(value); }
+  bool string(string_t& value) override { return put(std::move(value)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    if (open_.size() == 1 && !members_.empty())
+      skipping_ = std::find(members_.begin(), members_.end(), name) == members_.end();
+    key_ = std::move(name);
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  Json* place(Json value) {
+    if (open_.empty()) return &(root_ = std::move(value));
+    Json& parent = *open_.back();
+    if (parent.is_object()) return &detail::add_member(parent, std::move(key_), std::move(value));
+    parent.push_back(std::move(value));
+    return &parent.back();
+  }
+  bool put(Json value) {
+    if (!skipping_) place(std::move(value));
+    return true;
+  }
+  bool open(Json value) {
+    if (open_.size() >= kMaxDocumentDepth) return false;
+    open_.push_back(skipping_ ? nullptr : place(std::move(value)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    if (open_.size() == 1) skipping_ = false;
+    return true;
+  }
+
+  const std::vector<std::string_view>& members_;
+  Json root_;
+  std::vector<Json*> open_;  // nothing is added beside an open one, so that it stays where it is
+  std::string key_;
+  bool skipping_ = false;  // a member of the outermost object that nobody asked for
+};
+
 }  // namespace
+
+Json& detail::add_member(Json& object, std::string key, Json value) {
+  return object.get_ref<Json::object_t&>().Container::emplace_back(std::move(key), std::move(value)).second;
+}
+
+Json detail::parse_loose_json(std::string_view text, const std::vector<std::string_view>& members) {
+  LooseReader reader(members);
+  return Json::sax_parse(text, &reader) ? reader.take() : Json(Json::value_t::discarded);
+}
 
 Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json json_number(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }

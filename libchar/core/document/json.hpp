@@ -16,6 +16,15 @@ using Json = nlohmann::ordered_json;
 /// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
 
+namespace detail {
+/// JSON of strangers, which may be large, in time linear in its size: nlohmann's own parser compares each key with all
+/// before it. Of the outermost object only these members, or all if there are none named. Discarded unless it is JSON
+/// of at most 64 levels.
+Json parse_loose_json(std::string_view text, const std::vector<std::string_view>& members = {});
+/// Adds a member that the object does not have.
+Json& add_member(Json& object, std::string key, Json value);
+}  // namespace detail
+
 /// JSON has no infinity and no NaN: infinite, NaN and absent values are null; a status next to them says why.
 Json json_number(double value);
 Json json_number(const std::optional<double>& value);

@@ -159,8 +159,8 @@ class Guard : public nlohmann::json_sax<Json> {
     return parent.kind == Document::Kind::list ? parent.list.emplace_back() : parent.map.back().value;
   }
   Document& put(Document::Kind kind, std::string text, std::size_t start) {
-    if (++values_ > kMaxDocumentBytes / 24)  // each takes up to .3 kB
-      throw input_error("E0605", file_).says("JSON of more than {} values", kMaxDocumentBytes / 24);
+    if (++values_ > detail::kMaxDocumentValues)
+      throw input_error("E0605", file_).says("JSON of more than {} values", detail::kMaxDocumentValues);
     Document& node = slot();
     const Place place = places_.at(start);
     node.kind = kind;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/file/file_text.hpp"
@@ -31,13 +32,22 @@ std::string digest_of(const std::string& path) {
   }
 }
 
-FileState state_of(const std::string& path, const std::string& digest) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored) || detail::is_of_the_kernel(path)) return FileState::missing;
-  if (digest.empty()) return FileState::there;
-  const std::string now = digest_of(path);
-  return now.empty() ? FileState::missing : now == digest ? FileState::same : FileState::changed;
-}
+/// Files against digests; each is read once, under however many names a document has it.
+class FileStates {
+ public:
+  FileState of(const std::string& path, const std::string& digest) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored) || detail::is_of_the_kernel(path)) return FileState::missing;
+    if (digest.empty()) return FileState::there;
+    const auto [known, fresh] = digests_.try_emplace(fs::canonical(path, ignored).string());
+    if (fresh) known->second = digest_of(path);
+    const std::string& now = known->second;
+    return now.empty() ? FileState::missing : now == digest ? FileState::same : FileState::changed;
+  }
+
+ private:
+  std::map<std::string, std::string> digests_;
+};
 
 std::string text_at(const Json& object, const char* key) {
   const auto it = object.is_object() ? object.find(key) : object.end();
@@ -55,31 +65,41 @@ const Json& list_at(const Json& object, const char* key) {
   return value.is_array() ? value : kEmpty;
 }
 
-CheckedFile checked_input(const Json& input, const std::string& inputs_in) {
+CheckedFile checked_input(const Json& input, const std::string& inputs_in, FileStates& states) {
   CheckedFile out{text_at(input, "path"), true, FileState::unknown};
   if (out.path == "standard input") return out;
   if (!inputs_in.empty()) out.path = (fs::path(inputs_in) / out.path).string();
-  out.state = state_of(out.path, text_at(input, "sha256"));
+  out.state = states.of(out.path, text_at(input, "sha256"));
   return out;
 }
 
 ResultCheck check_document(const fs::path& path, const Json& document, const std::string& inputs_in) {
   const Json& tool = member(document, "tool");
   ResultCheck out{path.string(), text_at(tool, "version"), text_at(tool, "build"), {}};
-  for (const Json& input : list_at(document, "input")) out.files.push_back(checked_input(input, inputs_in));
-  const Json& digests = member(document, "files_sha256");
+  FileStates states;
+  for (const Json& input : list_at(document, "input")) out.files.push_back(checked_input(input, inputs_in, states));
+  std::map<std::string, std::string> digests;
+  if (const Json& said = member(document, "files_sha256"); said.is_object())
+    for (const auto& [name, digest] : said.items())
+      if (digest.is_string()) digests.emplace(name, digest.get<std::string>());
   for (const Json& name : list_at(document, "files")) {
     if (!name.is_string()) continue;
     const fs::path file = path.parent_path() / fs::path(name.get<std::string>()).filename();
+    const auto digest = digests.find(name.get<std::string>());
     out.files.push_back(
-        {file.string(), false, state_of(file.string(), text_at(digests, name.get<std::string>().c_str()))});
+        {file.string(), false, states.of(file.string(), digest == digests.end() ? "" : digest->second)});
   }
   return out;
 }
 
+/// What a document says of its files. The rest of it, which may be anything, is passed over.
+Json named_parts(const std::string& path) {
+  return detail::parse_loose_json(file_text(path, kMostOfDocument), {"tool", "input", "files", "files_sha256"});
+}
+
 }  // namespace
 
-Json result_document(const std::string& path) { return Json::parse(file_text(path, kMostOfDocument), nullptr, false); }
+Json result_document(const std::string& path) { return detail::parse_loose_json(file_text(path, kMostOfDocument)); }
 
 std::string_view state_word(FileState state) {
   switch (state) {
@@ -117,7 +137,7 @@ std::vector<std::string> detail::result_documents(const std::string& folder_or_d
   }
   std::vector<std::string> out;
   for (const fs::path& path : documents) {
-    const Json document = result_document(path.string());
+    const Json document = named_parts(path.string());
     if (document.is_object() && document.contains("files") && document.contains("tool")) out.push_back(path.string());
   }
   if (out.empty())
@@ -131,7 +151,7 @@ std::vector<std::string> detail::result_documents(const std::string& folder_or_d
 std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in) {
   std::vector<ResultCheck> out;
   for (const std::string& path : detail::result_documents(folder_or_document))
-    out.push_back(check_document(path, result_document(path), inputs_in));
+    out.push_back(check_document(path, named_parts(path), inputs_in));
   return out;
 }
 

@@ -2,10 +2,12 @@
 // The owner of an unfinished file: a process, on this machine or on another. In a folder on a network, or shared by
 // two containers, a process number proves nothing about a process elsewhere.
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace libchar::detail {
@@ -67,6 +69,7 @@ class FolderLock {
   bool held() const { return held_; }
 
  private:
+  FolderLock(std::nullptr_t, std::string path) : path_(std::move(path)) {}
   bool take();
   std::string path_;
   int descriptor_ = -1;

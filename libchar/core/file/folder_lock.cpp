@@ -106,12 +106,12 @@ int opened_lock(const std::string& path, bool& for_writing) {
 
 /// Who removes the file unlocks it for nobody: what has been locked must be what stands there. Throws
 /// Error(output) where that cannot be known.
-bool is_still(int file, const std::string& path) {
+bool is_still(int& file, const std::string& path) {
   struct stat opened {
   }, named{};
   if (::fstat(file, &opened) != 0 || (::lstat(path.c_str(), &named) != 0 && errno != ENOENT)) {
     const int problem = errno;
-    ::close(file);
+    ::close(std::exchange(file, -1));
     throw output_error("E0501", path).says("cannot look at this lock: {}", std::strerror(problem));
   }
   return opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
@@ -145,8 +145,9 @@ bool FolderLock::take() {
   return true;
 }
 
+// By another constructor: behind its end what throws, memory that is refused included, gives the lock up.
 FolderLock::FolderLock(const fs::path& folder, double wait_s)
-    : path_(((folder.empty() ? fs::path(".") : folder) / kLockFile).string()) {
+    : FolderLock(nullptr, ((folder.empty() ? fs::path(".") : folder) / kLockFile).string()) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(wait_s);
   for (int pause_ms = 1;; pause_ms = std::min(2 * pause_ms, 16)) {

@@ -30,10 +30,7 @@ bool is_document(const std::filesystem::path& path) { return path.extension() ==
 
 /// Names that a document gives as files written with it: plain ones. The rest of it is passed over.
 std::vector<std::string> files_named_in(const std::string& text) {
-  const auto wanted = [](int depth, Json::parse_event_t event, const Json& value) {
-    return depth != 1 || event != Json::parse_event_t::key || value == "files";
-  };
-  const Json document = Json::parse(text, wanted, false);
+  const Json document = detail::parse_loose_json(text, {"files"});
   std::vector<std::string> names;
   if (!document.is_object() || !document.contains("files") || !document["files"].is_array()) return names;
   for (const Json& value : document["files"])

@@ -222,10 +222,10 @@ void WholeFile::prepare() {
   if (special_) return;
   // A nameless file gets a temporary name first: linkat cannot replace.
   for (int attempt = 0; temporary_.empty(); ++attempt) {
-    const std::string name = detail::temporary_name(path_, attempt);
+    std::string name = detail::temporary_name(path_, attempt);
     remember_unfinished(name);
     if (link_to(name)) {
-      temporary_ = name;
+      temporary_ = std::move(name);  // a copy might find no memory, and the file would stay
       break;
     }
     forget_unfinished(name);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/log/binary/number_type.hpp"
+#include "libchar/log/detail/row_source.hpp"
 
 namespace libchar {
 
@@ -30,7 +31,7 @@ struct NpyHeader {
 };
 
 inline constexpr std::size_t kMaxNpyHeader = 10000;
-inline constexpr std::uint64_t kMaxColumns = 100000;
+inline constexpr std::uint64_t kMaxColumns = detail::kMostChannels;
 
 /// Reads the header from the first bytes of a file (at least 12 + kMaxNpyHeader of them, or all
 /// there are) of `file_bytes` bytes. Throws Error(input) with the byte at fault.

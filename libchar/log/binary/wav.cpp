@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "libchar/core/refusal.hpp"
+#include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/binary/rows.hpp"
 #include "libchar/log/detail/format.hpp"
 
@@ -90,6 +91,8 @@ std::unique_ptr<RowSource> open_wav(const std::string& path, const ReadOptions& 
         .says("samples of {} bits in encoding {} are not read", header.bits, header.kind)
         .hint("PCM of 8, 16, 24 or 32 bits and floats are: ffmpeg -i FILE -c:a pcm_s24le log.wav");
   const std::uint64_t item = size_of(*type), row = item * header.channels;
+  if (header.channels > kMaxColumns)
+    throw wav_refusal(*file, 22).says("has {} channels, more than the limit of {}", header.channels, kMaxColumns);
   if (header.channels == 0 || header.rate_hz == 0 || header.row_bytes != row)
     throw wav_refusal(*file, 12).says("has a broken format: {} channels, {} Hz, {} bytes for each row", header.channels,
                                       header.rate_hz, header.row_bytes);

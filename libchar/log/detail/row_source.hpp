@@ -13,6 +13,10 @@
 
 namespace libchar {
 
+namespace detail {
+inline constexpr std::size_t kMostChannels = 50000;  ///< of a log, each of which takes 4 kB and more
+}
+
 /// A block of consecutive rows as the file has them.
 struct RowBlock {
   std::size_t rows = 0;

@@ -95,7 +95,8 @@ void TimeGrid::process(bool end) {
     waiting_ = 0;
     return;
   }
-  const std::size_t ahead = end ? 0 : RowsAtOnce::kMost + kRowsAhead;  // more than two packets
+  // More than two packets, of at most so many values.
+  const std::size_t ahead = end ? 0 : RowsAtOnce::most(source_.info().channels.size()) + kRowsAhead;
   while ((learned_ || ready(end)) && waiting_ > ahead && !window_.over) {
     if (!learned_) learn();
     Pending& front = pending_.front();

@@ -5,7 +5,11 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kStaging = 8192;  // rows assembled where the grid is irregular
+/// Rows assembled where the grid is irregular: fewer of very many channels.
+std::size_t most_staged(std::size_t channels) {
+  constexpr std::size_t kRows = 8192, kValues = std::size_t{1} << 21U;
+  return std::clamp<std::size_t>(kValues / std::max<std::size_t>(channels, 1), 1, kRows);
+}
 
 }  // namespace
 
@@ -30,15 +34,15 @@ void GridOutput::rows(const RowBlock& block, std::size_t from, std::size_t to) {
                        block.columns[c].begin() + static_cast<std::ptrdiff_t>(to));
   }
   staged_ += rows;
-  if (staged_ >= kStaging) flush();
+  if (staged_ >= most_staged(staging_.size())) flush();
 }
 
 void GridOutput::missing(std::uint64_t count) {
   while (count > 0) {
-    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, kStaging));
+    const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(count, most_staged(staging_.size())));
     staged_ += n;
     for (auto& column : staging_) column.resize(staged_, kMissing);
-    if (staged_ >= kStaging) flush();
+    if (staged_ >= most_staged(staging_.size())) flush();
     count -= n;
   }
 }

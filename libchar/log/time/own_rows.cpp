@@ -67,10 +67,21 @@ void OwnRows::judge() {
                                              static_cast<double>(rows_ - kept_) / static_cast<double>(rows_));
 }
 
+namespace {
+
+/// Of each channel: fewer of very many.
+std::size_t steps_kept(std::size_t channels) {
+  constexpr std::size_t kValues = std::size_t{1} << 21U, kFew = 64;
+  return std::max(kFew, kValues / std::max<std::size_t>(channels, 1));
+}
+
+}  // namespace
+
 void ChannelClocks::look(const RowBlock& rows, std::size_t from, std::size_t to) {
   constexpr std::size_t kLook = 65536, kSteps = 1024;
-  const auto enough = [](const Values& channel) {
-    return channel.steps.size() >= (channel.over_blanks.size() < kFewBlank ? kRowsForFew : kSteps);
+  const std::size_t most = steps_kept(rows.columns.size());
+  const auto enough = [&](const Values& channel) {
+    return channel.steps.size() >= std::min(most, channel.over_blanks.size() < kFewBlank ? kRowsForFew : kSteps);
   };
   channels_.resize(rows.columns.size());
   const std::size_t end = std::min(to, from + kLook - std::min(rows_, kLook));

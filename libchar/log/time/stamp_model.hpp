@@ -6,6 +6,7 @@
 //
 // What it says decides which longer step is a gap. Steps back (rollovers, restarts) are the matter of clock_breaks.hpp.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,6 +46,11 @@ struct RowsAtOnce {
   std::size_t rows = 0, shorter = 0, regular = 0;
 
   static constexpr std::size_t kMost = 1024, kRegular = 8, kFewest = 3;
+  /// Rows that are kept for this: fewer of very many channels.
+  static constexpr std::size_t most(std::size_t channels) {
+    constexpr std::size_t kValues = std::size_t{1} << 20U, kFew = 64;
+    return std::clamp(kValues / std::max<std::size_t>(channels, 1), kFew, kMost);
+  }
   /// The next row; false where no more are to be looked at.
   bool add(std::int64_t stamp);
   /// 0 where few steps are short, or none are regular; of stamps that only scatter half of them are.

@@ -102,11 +102,20 @@ std::vector<Cell> channel_row(const Channel& channel, const ChannelQuality& q) {
           Cell::shown(q.samples < 3 || constant ? "-" : brief_text(q.difference_kurtosis, 3), q.difference_kurtosis)};
 }
 
-Table channel_table(const Inspection& inspection) {
-  Table out("channel|unit|missing|mean|sd|min|max|LSB|saturated|kurtosis of differences");
-  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
-    out.add(channel_row(inspection.info.channels[c], inspection.quality[c]));
+/// The first rows of a table, and how many more there are.
+template <class RowOf>
+Table first_rows(std::string_view heads, std::size_t rows, RowOf&& row_of) {
+  constexpr std::size_t kShown = 1000;
+  Table out(heads);
+  for (std::size_t r = 0; r < std::min(rows, kShown); ++r) out.add(row_of(r));
+  if (rows > kShown) out.note = fmt::format("… and {} more, which JSON lists", rows - kShown);
   return out;
+}
+
+Table channel_table(const Inspection& inspection) {
+  return first_rows("channel|unit|missing|mean|sd|min|max|LSB|saturated|kurtosis of differences",
+                    inspection.quality.size(),
+                    [&](std::size_t c) { return channel_row(inspection.info.channels[c], inspection.quality[c]); });
 }
 
 // "angular_velocity.x, … and 34 more": enough to see what a topic is about.
@@ -127,12 +136,12 @@ std::vector<Cell> topic_row(const LogTopic& topic) {
 
 // What sensors write first, what cannot be read last.
 Table topic_table(const LogInfo& info) {
-  const auto rank = [](const LogTopic& topic) { return !topic.why_not.empty() ? 2 : topic.sensor ? 0 : 1; };
-  Table out("topic|type|rows|rate|fields");
-  for (const int wanted : {0, 1, 2})
-    for (const LogTopic& topic : info.topics)
-      if (rank(topic) == wanted) out.add(topic_row(topic));
-  return out;
+  const auto rank = [](const LogTopic* topic) { return !topic->why_not.empty() ? 2 : topic->sensor ? 0 : 1; };
+  std::vector<const LogTopic*> topics;
+  for (const LogTopic& topic : info.topics) topics.push_back(&topic);
+  std::stable_sort(topics.begin(), topics.end(), [&](auto* a, auto* b) { return rank(a) < rank(b); });
+  return first_rows("topic|type|rows|rate|fields", topics.size(),
+                    [&](std::size_t row) { return topic_row(*topics[row]); });
 }
 
 // One line for each kind of finding, not one for each channel: what the first says, and who is alike.

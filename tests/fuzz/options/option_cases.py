@@ -15,6 +15,7 @@ import tempfile
 import option_contract as contract
 import option_fuzz as fuzz
 import option_inputs as inputs
+import program as programs
 
 # Exit code, what standard error or output must say ("" nothing in particular), the command.
 CASES = [
@@ -130,13 +131,14 @@ def main():
         shutil.copytree(base, folder)
         before = contract.state(folder)
         for words, expected in cases:
-            done = fuzz.run(program, words, folder)
+            done = programs.run(program, words, folder)
             problem = says(words, done, expected) if expected else ""
-            problem = problem or contract.wrong(words, done, folder, before, fuzz.places(words), exits)
+            after = contract.state(folder)
+            problem = problem or contract.wrong(words, done, folder, (before, after), fuzz.places(words), exits)
             if problem:
                 wrong += 1
                 print(f"WRONG {problem}\n   {shlex.join(words)}")
-            before = fuzz.tidy(base, folder, before)
+            before = fuzz.tidy(base, folder, before, after)
     print(f"{len(cases)} commands, {wrong} wrong")
     sys.exit(1 if wrong else 0)
 

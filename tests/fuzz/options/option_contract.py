@@ -21,14 +21,16 @@ def exit_codes():
     return {code: [int(number) for number in numbers.split(",")] for code, numbers in rows}
 
 
-def state(folder):
+def state(folder, inside=""):
     """Path → what tells whether a file was touched."""
     out = {}
-    for root, _, files in os.walk(folder):
-        for name in files:
-            path = os.path.join(root, name)
-            status = os.lstat(path)
-            out[os.path.relpath(path, folder)] = (status.st_ino, status.st_mtime_ns, status.st_size)
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_dir(follow_symlinks=False):
+                out.update(state(entry.path, f"{inside}{entry.name}/"))
+            else:
+                status = entry.stat(follow_symlinks=False)
+                out[inside + entry.name] = (status.st_ino, status.st_mtime_ns, status.st_size)
     return out
 
 
@@ -84,10 +86,9 @@ def may_replace(name, words, outputs):
     return "--force" in words and name in outputs and not is_read
 
 
-def wrong_files(folder, before, code, outputs, words):
+def wrong_files(folder, before, after, code, outputs, words):
     """Inputs are as they were, results are where they were asked for, and a refused run leaves none; units of
     a fleet that are done stay done."""
-    after = state(folder)
     changed = [name for name in before if after.get(name) != before[name] and not may_replace(name, words, outputs)]
     if changed:
         return f"input changed: {', '.join(changed[:4])}"
@@ -110,8 +111,8 @@ def wrong_files(folder, before, code, outputs, words):
     return ""
 
 
-def wrong(words, done, folder, before, outputs, exits):
-    """done: (exit code or None, stdout, stderr, CPU seconds)."""
+def wrong(words, done, folder, states, outputs, exits):
+    """done: (exit code or None, stdout, stderr, CPU seconds); states: of the folder, before and after."""
     code, out, err, seconds = done
     text = err.decode(errors="replace")
     if code is None or seconds > (STRESS_S if "--stress" in words else SLOWEST_S):
@@ -121,4 +122,4 @@ def wrong(words, done, folder, before, outputs, exits):
     if "internal error" in text or code not in (0, 2, 3, 4, 5, 6, 75):
         return "internal error: " + text[-160:].replace("\n", " ")
     return (wrong_errors(code, text, exits) or wrong_texts(words, out, err) or wrong_json(words, code, out)
-            or wrong_files(folder, before, code, outputs, words))
+            or wrong_files(folder, *states, code, outputs, words))

@@ -20,6 +20,7 @@ import tempfile
 import option_contract as contract
 import option_fuzz as fuzz
 import option_inputs as inputs
+import program as programs
 import option_values as values
 
 PERMISSIONS = {"--quiet", "--color", "--threads", "--memory", "--strict", "--force", "--allow-outside", "--allow-read",
@@ -31,7 +32,7 @@ MEASURED = re.compile(r'"(?:command|measured|seconds|bytes|sha256|files_sha256|p
 def seen(program, words, base, folder):
     """What a command prints and writes, without what is measured; None where it is refused."""
     before = contract.state(folder)
-    code, out, err, _ = fuzz.run(program, words, folder)
+    code, out, err, _ = programs.run(program, words, folder)
     fresh = sorted(set(contract.state(folder)) - set(before))
     text = out.decode(errors="replace") + err.decode(errors="replace")
     for name in fresh:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Options in combination: option_fuzz.py PROGRAM [--seconds 60] [--runs N] [--seed 1] [--verb NAME] [--counts]
-[--sanitized]
+[--sanitized] [--server FORK_SERVER]
 
 Draws a verb, one to five of its options and a value for each from the program's own description
 (sensorchar --generate json), on a table of good inputs, and asks of every command what option_contract.py says.
@@ -11,7 +11,6 @@ import json
 import os
 import pathlib
 import random
-import resource
 import shlex
 import shutil
 import subprocess
@@ -22,9 +21,8 @@ import time
 import option_contract as contract
 import option_inputs as inputs
 import option_values as values
+import program as programs
 
-TIMEOUT = 30
-MEMORY = 8 << 30
 NOT_DRAWN = {"--help", "-h"}
 
 
@@ -64,40 +62,17 @@ def places(words):
     return out
 
 
-def limits():
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
-    if MEMORY:
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT, TIMEOUT))
-
-
-def run(program, words, folder):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    try:
-        done = subprocess.run([program, *words], cwd=folder, capture_output=True, timeout=4 * TIMEOUT,
-                              stdin=subprocess.DEVNULL, preexec_fn=limits, check=False)
-        code, out, err = done.returncode, done.stdout, done.stderr
-    except subprocess.TimeoutExpired as slow:
-        code, out, err = None, slow.stdout or b"", slow.stderr or b""
-    now = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return code, out, err, now.ru_utime + now.ru_stime - before.ru_utime - before.ru_stime
-
-
-def tidy(base, folder, before):
+def tidy(base, folder, before, after):
     """Back to the good inputs; cheap where nothing but new files came."""
-    after = contract.state(folder)
     if any(after.get(name) != before[name] for name in before):
         shutil.rmtree(folder)
         shutil.copytree(base, folder)
         return contract.state(folder)
     for name in set(after) - set(before):
         os.unlink(folder / name)
-    for root, folders, _ in os.walk(folder, topdown=False):
-        for one in folders:
-            path = pathlib.Path(root) / one
-            if not any(path.iterdir()) and not (base / path.relative_to(folder)).exists():
-                path.rmdir()
+    for root, folders, files in os.walk(folder, topdown=False):
+        if not folders and not files and not os.path.exists(base / os.path.relpath(root, folder)):
+            os.rmdir(root)
     return before
 
 
@@ -108,6 +83,7 @@ def options():
     parser.add_argument("--runs", type=int, default=10**9)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--verb")
+    parser.add_argument("--server", type=os.path.abspath, help="libfork_server.so: the program is loaded once")
     parser.add_argument("--counts", action="store_true", help="print how often each option appeared")
     parser.add_argument("--sanitized", action="store_true", help="a program built with the sanitizers: slower, and its "
                         "shadow of the memory takes terabytes of addresses")
@@ -115,8 +91,7 @@ def options():
 
 
 def allow_sanitizers():
-    global TIMEOUT, MEMORY
-    TIMEOUT, MEMORY = 4 * TIMEOUT, 0
+    programs.TIMEOUT, programs.MEMORY = 4 * programs.TIMEOUT, 0
     contract.SLOWEST_S *= 4
     contract.STRESS_S *= 4
     os.environ.setdefault("ASAN_OPTIONS", "detect_leaks=0:detect_odr_violation=0:allocator_may_return_null=1")
@@ -127,7 +102,7 @@ def say_counts(counts):
         print(f"  {n:6} {verb} {flag}")
 
 
-def fuzz(arguments, usage, base, folder):
+def fuzz(arguments, usage, run, base, folder):
     generator = random.Random(arguments.seed)
     exits, found, counts = contract.exit_codes(), {}, collections.Counter()
     shutil.copytree(base, folder)
@@ -137,15 +112,16 @@ def fuzz(arguments, usage, base, folder):
         runs += 1
         words, flags, outputs = drawn(usage, generator, arguments.verb)
         counts.update(flags)
-        done = run(arguments.program, words, folder)
+        done = run(words, folder)
         codes[done[0]] += 1
-        problem = contract.wrong(words, done, folder, before, outputs, exits)
+        after = contract.state(folder)
+        problem = contract.wrong(words, done, folder, (before, after), outputs, exits)
         if problem:
             key = (words[0], problem[:24])
             found[key] = found.get(key, 0) + 1
             if found[key] <= 2:
                 print(f"FOUND {problem}\n   {shlex.join(words)}", flush=True)
-        before = tidy(base, folder, before)
+        before = tidy(base, folder, before, after)
     print(f"seed {arguments.seed}: {runs} commands, exit codes {dict(codes)}, "
           f"{sum(found.values())} break the contract, in {len(found)} ways; "
           f"every option drawn at least {min(counts.values(), default=0)} times")
@@ -164,7 +140,13 @@ def main():
     with tempfile.TemporaryDirectory(dir=scratch) as top:
         base = pathlib.Path(top) / "base"
         inputs.make(arguments.program, base)
-        sys.exit(fuzz(arguments, usage, base, pathlib.Path(top) / "work"))
+        server = programs.Server(arguments.program, arguments.server, top) if arguments.server else None
+        run = server.run if server else lambda words, folder: programs.run(arguments.program, words, folder)
+        try:
+            sys.exit(fuzz(arguments, usage, run, base, pathlib.Path(top) / "work"))
+        finally:
+            if server:
+                server.stop()
 
 
 if __name__ == "__main__":

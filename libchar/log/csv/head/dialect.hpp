@@ -10,6 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/csv/line.hpp"
+#include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/recording.hpp"
 #include "libchar/log/time/calendar.hpp"
@@ -18,7 +19,7 @@ namespace libchar::csv {
 
 inline constexpr std::size_t kMaxLine = std::size_t{1} << 20U;  // 1 MiB
 inline constexpr std::size_t kMaxName = 1024;
-inline constexpr std::size_t kMaxColumns = 100001;       // 100 000 channels and the stamps
+inline constexpr std::size_t kMaxColumns = detail::kMostChannels + 1;  // and the stamps
 inline constexpr std::size_t kHeadBytes = 2 * kMaxLine;  // sniffed; holds at least one line of the longest kind
 
 struct Column {
