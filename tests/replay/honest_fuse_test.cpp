@@ -143,6 +143,26 @@ TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median
   CHECK(changes[0].to_end);
 }
 
+TEST_CASE("reading meter: a gain that is another one from some time on is one that drifts, and sound gains are none") {
+  for (const double at : {0.25, 0.65})
+    for (const double step : {-0.1, 0.}) {
+      test::Gaussian gauss(4);
+      Eigen::MatrixXd y(5, 24000);
+      for (Eigen::Index k = 0; k < y.cols(); ++k)
+        for (Eigen::Index i = 0; i < 5; ++i) {
+          const double gain =
+              1 + 0.005 * static_cast<double>(i - 2) + (i == 1 && static_cast<double>(k) > at * 24000 ? step : 0);
+          y(i, k) = gain * honest_truth(static_cast<int>(k)) + 0.1 * gauss();
+        }
+      detail::ReadingMeter meter(5, y.cols());
+      meter.push(y);
+      const auto found = meter.gain_drifts(0.003);
+      REQUIRE(found.size() == (step == 0 ? 0 : 1));
+      if (step != 0) CHECK(found[0].sensor == 1);
+      if (step != 0) CHECK(found[0].to - found[0].from == Approx(step).margin(0.03));
+    }
+}
+
 TEST_CASE("reading meter: of a log of more blocks than are kept every second one says the same") {
   constexpr Eigen::Index kInstants = 540000;  // 2109 blocks
   test::Gaussian gauss(3);

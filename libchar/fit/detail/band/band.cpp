@@ -255,14 +255,17 @@ struct Search {
                                 double hopeless) const {
     // A corner shows by what is beyond it; less damped it is a peak.
     // Two poles far apart, or a corner in the slowest coefficients, are a drift that is no noise.
-    constexpr double kInside = 0.5, kLow = 1.0 / 12, kDamped = 0.25, kOverdamped = 2, kPeriods = 12;
+    // Shelves and loops of high corners are what is left of other filters.
+    constexpr double kInside = 0.5, kDamped = 0.25, kOverdamped = 2, kPeriods = 12;
+    const bool low_pass = family == NamedShape::Family::second_order || family == NamedShape::Family::third_order;
+    const double highest = low_pass ? 0.2 : 1.0 / 12;
     if (members(bins, band).size() < kFewestBins) return std::nullopt;
     TermSet offered = terms;
     offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
     const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, offered, family, start, hopeless);
     if (!shape || shape->damping < kDamped || shape->damping > kOverdamped ||
         shape->pole_hz < kPeriods * 4 * slowest_hz() ||
-        shape->pole_hz > std::min(kInside * band.top_hz, kLow * rate_hz))
+        shape->pole_hz > std::min(kInside * band.top_hz, highest * rate_hz))
       return std::nullopt;
     // A shelf that is higher is an edge of something else; one that falls further may be a process above white noise.
     constexpr double kHighest = 4, kFurthest = 32;
@@ -295,7 +298,8 @@ struct Search {
 
   /// The widest band that passes with a filter or loop of low corner: found in the middle of the
   /// spectrum, then followed up and down.
-  std::optional<Trial> widest_named(const Band& from, NamedShape::Family family) const {
+  std::optional<Trial> widest_named(const Band& from, NamedShape::Family family,
+                                    const std::optional<NamedShape>& start = {}) const {
     constexpr int kCuts = 10, kMiddle = 2;
     const auto cut = [&](int steps) { return cut_at(from, bins, rate_hz / 2 * std::exp2(-kBandStep * steps)); };
     constexpr double kFar = 3000;  ///< of ln L that no step from a corner of the grid makes good
@@ -304,7 +308,7 @@ struct Search {
     plain.orders = static_cast<int>(unknowns_of(family));
     const std::optional<Trial> rival = at(plain);
     const std::optional<Trial> middle =
-        named_in(cut(kMiddle), family, std::nullopt, rival ? rival->half_deviance + kFar : kNever);
+        named_in(cut(kMiddle), family, start, rival ? rival->half_deviance + kFar : kNever);
     if (!middle || !needed(*middle)) return std::nullopt;
     NamedShape shape = middle->band.named;
     for (int steps = 0; steps < kCuts; ++steps) {
@@ -343,7 +347,18 @@ struct Search {
       if (!best || wider || same) best = std::move(trial);
     }
     if (!best) return std::nullopt;
+    if (best->band.named.family == Family::second_order) add_pole(from, *best);
     return best->band;
+  }
+
+  /// Three poles where they are likelier than two.
+  void add_pole(const Band& from, Trial& best) const {
+    constexpr double kWorth = 1.5;  ///< of ln L
+    std::optional<Trial> third = widest_named(from, NamedShape::Family::third_order, best.band.named);
+    if (!third) return;
+    const bool wider = third->band.top_hz > 1.01 * best.band.top_hz;
+    const bool same = third->band.top_hz > 0.99 * best.band.top_hz;
+    if (wider || (same && third->half_deviance < best.half_deviance - kWorth)) best = std::move(*third);
   }
 
   /// Without its broad peaks and their skirts, the highest first, each seen beside what is left of the others.
@@ -667,6 +682,17 @@ double slow_end_of(const Search& search, const Trial& trial) {
   return std::min(slow, dof > 0 ? energy / dof : slow) / most;
 }
 
+/// Whether a straight line in the unknowns of the shape does the work of the shape: then its maximum is elsewhere.
+bool is_far_from_maximum(const Search& search, const Trial& trial) {
+  constexpr double kFar = 0.3;  ///< of the logarithm
+  const std::vector<PowerBin> inside = bins_of(search.bins, trial.band, search.rate_hz);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const double moved = std::log(expected_energy(inside[i], trial.theta) * trial.ratio[i] / inside[i].energy);
+    if (std::abs(moved) > kFar) return true;
+  }
+  return false;
+}
+
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it. A walk
 /// leaves a plateau behind a high-pass, as processes do: then it is none, and the band has `doubtful_end`.
 std::optional<Band> high_passed(const Search& search, Trial& unshaped, double slowest_hz) {
@@ -705,7 +731,7 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
   const std::optional<Trial> trial = search.at(band);
-  if (!trial || !trial->band.passes) return std::nullopt;
+  if (!trial || !trial->band.passes || is_far_from_maximum(search, *trial)) return std::nullopt;
   unshaped.band.doubtful_end = slow_end_of(search, *trial) > kFalls;
   return unshaped.band.doubtful_end ? std::nullopt : std::optional(trial->band);
 }

@@ -143,7 +143,7 @@ std::optional<LowPassFit> fit_low_pass(const std::vector<PowerBin>& bins, double
   ceres::Solver::Summary summary;
   count_work(WorkKind::descents, 1);
   ceres::Solve(exact_solver_options(200), &problem, &summary);
-  if (!has_covariance(summary, problem)) return std::nullopt;
+  if (!has_covariance(problem)) return std::nullopt;
 
   LowPassFit fit;
   fit.corner_hz = std::exp(x.back());

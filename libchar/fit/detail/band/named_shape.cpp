@@ -38,21 +38,24 @@ double corner_of_square(double square, double rate_hz) {
 
 struct Unknowns {
   NamedShape::Family family = NamedShape::Family::none;
-  std::array<double, 4> x{};  ///< ln s_p, ln zeta, ln s_z, tilt
+  std::array<double, 4> x{};  ///< ln s_p, ln zeta, ln s_z or ln s_r, tilt
 };
 
 Unknowns unknowns(const NamedShape& shape, double rate_hz) {
+  const double third_hz = std::max(shape.zero_hz, shape.real_pole_hz);
   return {shape.family,
           {std::log(square_of_corner(shape.pole_hz, rate_hz)), std::log(shape.damping),
-           shape.zero_hz > 0 ? std::log(square_of_corner(shape.zero_hz, rate_hz)) : 0, shape.tilt}};
+           third_hz > 0 ? std::log(square_of_corner(third_hz, rate_hz)) : 0, shape.tilt}};
 }
 NamedShape shape_of(const Unknowns& u, double rate_hz) {
   NamedShape shape;
   shape.family = u.family;
   shape.pole_hz = corner_of_square(std::exp(u.x[0]), rate_hz);
-  const bool pair = u.family == NamedShape::Family::second_order || u.family == NamedShape::Family::loop;
+  using Family = NamedShape::Family;
+  const bool pair = u.family == Family::second_order || u.family == Family::third_order || u.family == Family::loop;
   shape.damping = pair ? std::exp(u.x[1]) : 1;
-  shape.zero_hz = u.family == NamedShape::Family::second_order ? 0 : corner_of_square(std::exp(u.x[2]), rate_hz);
+  const double third_hz = u.family == Family::second_order ? 0 : corner_of_square(std::exp(u.x[2]), rate_hz);
+  (u.family == Family::third_order ? shape.real_pole_hz : shape.zero_hz) = third_hz;
   return shape;
 }
 
@@ -115,8 +118,9 @@ class Gain {
     double gain = 1 / below;
     if (family_ != NamedShape::Family::second_order) {
       const double z = s / zero_;
-      gain *= 1 + z;
-      out.slope[2] -= z / (1 + z);
+      const bool pole = family_ == NamedShape::Family::third_order;
+      gain = pole ? gain / (1 + z) : gain * (1 + z);
+      out.slope[2] += (pole ? 1 : -1) * z / (1 + z);
     }
     // Filters made by the bilinear transform have zeros at half the rate: |H|² ~ (1 - s)^c, c = 1, 2.
     out.slope[3] += nyquist;
@@ -214,6 +218,15 @@ std::vector<Unknowns> grid(NamedShape::Family family, const std::vector<PowerBin
   return out;
 }
 
+/// A pair of poles less damped, and a real pole about it: Butterworth's three look like one pair, well damped.
+std::vector<Unknowns> of_third_order(const Unknowns& second) {
+  std::vector<Unknowns> out;
+  for (const double real : {0.7, 2.0, 8.0})
+    out.push_back(
+        {NamedShape::Family::third_order, {second.x[0], second.x[1] + std::log(0.7), second.x[0] + std::log(real), 0}});
+  return out;
+}
+
 }  // namespace
 
 std::size_t unknowns_of(NamedShape::Family family) {
@@ -236,12 +249,15 @@ std::array<double, 4> named_log_slopes(const NamedShape& shape, const PowerBin& 
 std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms,
                                           NamedShape::Family family, const std::optional<NamedShape>& start,
                                           double hopeless) {
-  const int steps = start ? 4 : 12;  // the next, narrower band goes on from here
+  const bool goes_on = start && start->family == family;
+  // In the next, narrower band few steps are left; the start of a high-pass is a corner of a grid.
+  const int steps = goes_on && family != NamedShape::Family::high_pass ? 4 : 12;
   const Fit fit(inside, rate_hz, terms);
   Unknowns best;
   double value = std::numeric_limits<double>::infinity();
-  const std::vector<Unknowns> starts =
-      start ? std::vector<Unknowns>{unknowns(*start, rate_hz)} : grid(family, inside, rate_hz);
+  const std::vector<Unknowns> starts = goes_on ? std::vector<Unknowns>{unknowns(*start, rate_hz)}
+                                       : start ? of_third_order(unknowns(*start, rate_hz))
+                                               : grid(family, inside, rate_hz);
   for (const Unknowns& at : starts) {
     const double there = fit.deviance(at);
     if (!(there < value)) continue;
@@ -252,7 +268,8 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, d
   for (int i = 0; i < steps && fit.step(best, value); ++i) {
   }
   const NamedShape shape = shape_of(best, rate_hz);
-  if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) || !std::isfinite(shape.zero_hz))
+  if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) || !std::isfinite(shape.zero_hz) ||
+      !std::isfinite(shape.real_pole_hz))
     return std::nullopt;
   return shape;
 }
@@ -273,8 +290,10 @@ std::string named_shape_text(const NamedShape& shape) {
     return fmt::format("a shelf, {} times between {} Hz and {} Hz", brief_text(shape.pole_hz / shape.zero_hz, 3),
                        brief_text(std::min(shape.pole_hz, shape.zero_hz), 3),
                        brief_text(std::max(shape.pole_hz, shape.zero_hz), 3));
-  std::string text = fmt::format("a second-order low-pass at {} Hz, damping {}", brief_text(shape.pole_hz, 3),
-                                 brief_text(shape.damping, 2));
+  const bool third = shape.family == NamedShape::Family::third_order;
+  std::string text = fmt::format("a {}-order low-pass at {} Hz, damping {}", third ? "third" : "second",
+                                 brief_text(shape.pole_hz, 3), brief_text(shape.damping, 2));
+  if (third) text += fmt::format(", and at {} Hz", brief_text(shape.real_pole_hz, 3));
   if (shape.family == NamedShape::Family::loop)
     text += fmt::format(", with a zero at {} Hz", brief_text(shape.zero_hz, 3));
   return text;

@@ -15,18 +15,20 @@ namespace libchar {
 /// what another filter does far above:
 ///   shelf:        D = 1 + s/s_p                           (one pole, one zero)
 ///   second_order: D = (1 - s/s_p)² + 4 zeta² s/s_p, no zero
+///   third_order:  D = the same times 1 + s/s_r, no zero
 ///   loop:         the same with the zero                  (alpha-beta trackers, closed loops)
 /// and high_pass:    |H|² = (s/s_p) / (1 + s/s_p)            (AC coupling, complementary outputs)
 struct NamedShape {
-  enum class Family { none, shelf, second_order, loop, high_pass };
+  enum class Family { none, shelf, second_order, third_order, loop, high_pass };
   Family family = Family::none;
   double pole_hz = 0, zero_hz = 0;  ///< corners; above half the rate where the slope begins there
   double damping = 1;
-  double tilt = 0;  ///< c
+  double tilt = 0;          ///< c
+  double real_pole_hz = 0;  ///< of the third order
   bool operator==(const NamedShape&) const = default;
 };
 
-/// Unknowns of a family: ln s_p, then ln zeta, then ln s_z, then c.
+/// Unknowns of a family: ln s_p, then ln zeta, then ln s_z or ln s_r, then c.
 std::size_t unknowns_of(NamedShape::Family family);
 /// ln |H|², a mean over the bin.
 double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_hz);
@@ -34,7 +36,7 @@ double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_
 std::array<double, 4> named_log_slopes(const NamedShape& shape, const PowerBin& bin, double rate_hz);
 
 /// The likeliest shape of a family with all `terms` free; from the best of a grid where there is no
-/// start, none where even that has a half deviance above `hopeless`.
+/// start (one of second order starts one of third), none where even that has a half deviance above `hopeless`.
 std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms,
                                           NamedShape::Family family, const std::optional<NamedShape>& start = {},
                                           double hopeless = 1e300);

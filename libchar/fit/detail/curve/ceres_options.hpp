@@ -16,7 +16,8 @@ ceres::Solver::Options exact_solver_options(int most_iterations);
 /// Of a covariance at the solution, with directions that the data do not determine left out.
 ceres::Covariance::Options exact_covariance_options();
 
-/// Can the covariance be asked for at all: has the solver a solution, and the problem a cost where it stands?
-bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem);
+/// Can the covariance be asked for at all: has the problem a cost where the solver left it? One that began at the
+/// maximum finds no step and calls that a failure.
+bool has_covariance(ceres::Problem& problem);
 
 }  // namespace libchar

@@ -39,8 +39,9 @@ ceres::Covariance::Options exact_covariance_options() {
 }
 
 // Where the cost cannot be computed Ceres 2.1 factors an empty matrix.
-bool has_covariance(const ceres::Solver::Summary& summary, ceres::Problem& problem) {
-  return summary.IsSolutionUsable() && problem.Evaluate({}, nullptr, nullptr, nullptr, nullptr);
+bool has_covariance(ceres::Problem& problem) {
+  double cost = 0;
+  return problem.Evaluate({}, &cost, nullptr, nullptr, nullptr) && std::isfinite(cost);
 }
 
 namespace {
@@ -137,7 +138,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     result.half_deviance = value;
   }
 
-  result.known = has_covariance(summary, solver_problem);
+  result.known = has_covariance(solver_problem);
   if (!result.known) return result;
   ceres::Covariance covariance(exact_covariance_options());
   const std::size_t p = terms.size(), all = p + shapes;

@@ -322,50 +322,72 @@ std::vector<std::optional<double>> ReadingMeter::slow_scatter(const Readings& re
   return out;
 }
 
-// Weighted least squares of the parts' gains b_p on their places in the log, weights W_p = sum (u - mean u)^2.
+namespace {
+
+constexpr std::size_t kParts = 8, kLeastParts = 6;
+
+struct PartGain {
+  double weight = 0, gain = 0, at = 0;  ///< of 0 to 1 in the log
+  double variance = 0;                  ///< of the gain, by what those of its blocks scatter
+};
+
+}  // namespace
+
+// Weighted least squares of the parts' gains b_p, weights W_p = sum (u - mean u)^2, on their places in the log, or on
+// being behind one of their ends: the one that is furthest beyond its error.
 std::optional<ReadingMeter::Line> ReadingMeter::gain_line(std::size_t sensor) const {
-  constexpr std::size_t kParts = 8, kLeastParts = 6;
-  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0, used = 0;
+  std::vector<PartGain> parts;
   for (std::size_t part = 0; part < kParts; ++part) {
-    double uu = 0, ur = 0, rr = 0, n = 0;
-    for (std::size_t k = part * blocks_.size() / kParts; k < (part + 1) * blocks_.size() / kParts; ++k) {
-      const Sums& s = blocks_[k][sensor];
-      if (s.n < kLeastInBlock) continue;
-      uu += s.uu - s.u * s.u / s.n;
-      ur += s.ur - s.u * s.r / s.n;
-      rr += s.rr - s.r * s.r / s.n;
-      n += s.n;
-    }
-    if (!(n > 0) || !(uu > 0)) continue;
-    const double gain = ur / uu, noise = rr - gain * ur, at = (static_cast<double>(part) + 0.5) / kParts;
-    if (!(uu > kLeastSignal * noise)) continue;  // the noise of the median would be taken for the gain's
-    w += uu;
-    wx += uu * at;
-    wy += uu * gain;
-    wxx += uu * at * at;
-    wxy += uu * at * gain;
-    wyy += uu * gain * gain;
-    used += 1;
+    double uu = 0, ur = 0, rr = 0, scatter = 0;
+    const auto each = [&](const auto& work) {
+      for (std::size_t k = part * blocks_.size() / kParts; k < (part + 1) * blocks_.size() / kParts; ++k) {
+        const Sums& s = blocks_[k][sensor];
+        if (s.n >= kLeastInBlock) work(s.uu - s.u * s.u / s.n, s.ur - s.u * s.r / s.n, s.rr - s.r * s.r / s.n);
+      }
+    };
+    each([&](double a, double b, double c) { uu += a, ur += b, rr += c; });
+    if (!(uu > 0) || !(uu > kLeastSignal * (rr - ur * ur / uu))) continue;  // the median's noise would be the gain's
+    const double gain = ur / uu;
+    each([&](double a, double b, double) { scatter += (b - gain * a) * (b - gain * a); });
+    parts.push_back({uu, gain, (static_cast<double>(part) + 0.5) / kParts, scatter / uu / uu});
   }
-  if (used < kLeastParts) return std::nullopt;
-  const double x = wx / w, y = wy / w, sxx = wxx - w * x * x, slope = (wxy - w * x * y) / sxx;
-  const double left = std::max(0.0, wyy - w * y * y - slope * slope * sxx), dof = used - 2;
-  return Line{y - slope * x, y + slope * (1 - x), std::sqrt(left / dof / sxx), dof};
+  if (parts.size() < kLeastParts) return std::nullopt;
+  std::optional<Line> out;
+  for (std::size_t end = 0; end < parts.size(); ++end) {
+    const auto place = [&](const PartGain& one) { return end == 0 ? one.at : one.at < parts[end].at ? 0.0 : 1.0; };
+    double w = 0, x = 0, y = 0, xx = 0, xy = 0, variance = 0;
+    for (const PartGain& one : parts) {
+      w += one.weight;
+      x += one.weight * place(one);
+      y += one.weight * one.gain;
+    }
+    x /= w;
+    y /= w;
+    for (const PartGain& one : parts) {
+      const double by = one.weight * (place(one) - x);
+      xx += by * (place(one) - x);
+      xy += by * one.gain;
+      variance += by * by * one.variance;
+    }
+    const Line line{y - xy / xx * x, y + xy / xx * (1 - x), std::sqrt(variance) / xx};
+    if (!out || line.change() * out->error > out->change() * line.error) out = line;
+  }
+  return out;
 }
 
 std::vector<ReadingMeter::GainDrift> ReadingMeter::gain_drifts(double false_alarm) const {
   std::vector<std::optional<Line>> lines;
   for (std::size_t i = 0; i < n_; ++i) lines.push_back(gain_line(i));
-  const auto size = [](const Line& line) { return std::abs(line.to - line.from); };
   std::vector<GainDrift> out;
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<double> others;
     for (std::size_t j = 0; j < n_; ++j)
-      if (j != i && lines[j]) others.push_back(size(*lines[j]));
+      if (j != i && lines[j]) others.push_back(lines[j]->change());
     if (!lines[i] || others.size() < 2) continue;
     const Line& line = *lines[i];
-    const double chance = student_quantile(1 - false_alarm / (2 * static_cast<double>(n_)), line.dof) * line.error;
-    if (size(line) > std::max({kLeastDrift, kBeyondUsual * median_in_place(others), chance}))
+    const double rare = false_alarm / (2 * static_cast<double>(n_ * kParts));
+    const double chance = student_quantile(1 - rare, static_cast<double>(blocks_.size())) * line.error;
+    if (line.change() > std::max({kLeastDrift, kBeyondUsual * median_in_place(others), chance}))
       out.push_back({i, line.from, line.to});
   }
   return out;

@@ -9,6 +9,7 @@
 // sensors leaves fewer than half of them out.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -72,7 +73,7 @@ class ReadingMeter {
   /// Of each sensor the share of its samples that repeat the one before: coarse steps, or values that are held.
   std::vector<double> repeated() const;
 
-  /// A gain that moves from one end of the log to the other (a line through those of eight parts, each
+  /// A gain that moves from one end of the log to the other (a line or a step through those of eight parts, each
   /// from what is left of the means of its blocks), by more than chance does in a sound array in so many.
   struct GainDrift {
     std::size_t sensor = 0;
@@ -90,7 +91,8 @@ class ReadingMeter {
     std::int64_t last = -1;  // instant of these
   };
   struct Line {
-    double from = 0, to = 0, error = 0, dof = 0;  // at both ends; of their difference
+    double from = 0, to = 0, error = 0;  // at both ends; of their difference
+    double change() const { return std::abs(to - from); }
   };
   struct Fit {
     double mean = 0, rms = 0;
