@@ -353,7 +353,7 @@ struct Search {
 
   /// Three poles where they are likelier than two.
   void add_pole(const Band& from, Trial& best) const {
-    constexpr double kWorth = 1.5;  ///< of ln L
+    constexpr double kWorth = 2.5;  ///< of ln L
     std::optional<Trial> third = widest_named(from, NamedShape::Family::third_order, best.band.named);
     if (!third) return;
     const bool wider = third->band.top_hz > 1.01 * best.band.top_hz;
@@ -665,32 +665,27 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
 double slow_end_of(const Search& search, const Trial& trial) {
   Band all = trial.band;
   std::fill(all.inside.begin(), all.inside.end(), 1);
-  const std::vector<PowerBin> inside = bins_of(search.bins, all, search.rate_hz);
-  double slowest_hz = std::numeric_limits<double>::infinity(), slow = 0, most = 0;
-  double energy = 0, dof = 0;
-  for (const PowerBin& bin : inside) {
-    const double model = expected_energy(bin, trial.theta);
+  const std::vector<PowerBin> bins = bins_of(search.bins, all, search.rate_hz);
+  double slowest_hz = std::numeric_limits<double>::infinity(), shape = 1, most = 0;
+  // Inside, the model with what a straight line in the unknowns adds to the shape; below, as in the slowest bin inside.
+  for (std::size_t i = 0; i < trial.index.size(); ++i) {
+    const PowerBin& bin = bins[trial.index[i]];
+    const double model = search.bins[trial.index[i]].energy / trial.ratio[i];
     most = std::max(most, model);
+    if (bin.frequency_hz >= slowest_hz) continue;
+    slowest_hz = bin.frequency_hz;
+    shape = model / expected_energy(bin, trial.theta);
+  }
+  double slow = most, energy = 0, dof = 0;
+  for (const PowerBin& bin : bins) {
     if (bin.high_hz < trial.band.named.pole_hz / 3) {
       energy += bin.dof * bin.energy;
       dof += bin.dof;
     }
-    if (bin.frequency_hz >= slowest_hz) continue;
-    slowest_hz = bin.frequency_hz;
-    slow = model;
+    if (bin.frequency_hz > slowest_hz) continue;
+    slow = std::min(slow, shape * expected_energy(bin, trial.theta));
   }
   return std::min(slow, dof > 0 ? energy / dof : slow) / most;
-}
-
-/// Whether a straight line in the unknowns of the shape does the work of the shape: then its maximum is elsewhere.
-bool is_far_from_maximum(const Search& search, const Trial& trial) {
-  constexpr double kFar = 0.3;  ///< of the logarithm
-  const std::vector<PowerBin> inside = bins_of(search.bins, trial.band, search.rate_hz);
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    const double moved = std::log(expected_energy(inside[i], trial.theta) * trial.ratio[i] / inside[i].energy);
-    if (std::abs(moved) > kFar) return true;
-  }
-  return false;
 }
 
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it. A walk
@@ -731,7 +726,7 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
   const std::optional<Trial> trial = search.at(band);
-  if (!trial || !trial->band.passes || is_far_from_maximum(search, *trial)) return std::nullopt;
+  if (!trial || !trial->band.passes) return std::nullopt;
   unshaped.band.doubtful_end = slow_end_of(search, *trial) > kFalls;
   return unshaped.band.doubtful_end ? std::nullopt : std::optional(trial->band);
 }
