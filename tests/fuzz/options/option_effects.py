@@ -33,12 +33,13 @@ def seen(program, words, base, folder):
     """What a command prints and writes, without what is measured; None where it is refused."""
     before = contract.state(folder)
     code, out, err, _ = programs.run(program, words, folder)
-    fresh = sorted(set(contract.state(folder)) - set(before))
+    after = contract.state(folder)
+    fresh = sorted(set(after) - set(before))
     text = out.decode(errors="replace") + err.decode(errors="replace")
     for name in fresh:
         text += f"{name}:" + (folder / name).read_bytes().decode("latin-1")
-    changed = any(contract.state(folder).get(name) != before[name] for name in before)
-    fuzz.tidy(base, folder, before)
+    changed = any(after.get(name) != before[name] for name in before)
+    fuzz.tidy(base, folder, before, after)
     if code in (1, 2, 3, 4, 5) or code is None:
         return None
     return changed, "\n".join(line for line in text.splitlines() if not MEASURED.search(line))

@@ -217,7 +217,9 @@ TauSearch search_tau(const std::vector<PowerBin>& bins, const Band& band, double
   TauSearch out;
   out.without = likelihood.without().half_deviance;
   out.peak = most_likely(likelihood, fewest_samples / rate_hz, kLongest * duration_s);
-  out.ratio = std::max(0.0, 2 * (out.without - out.peak.half_deviance));
+  constexpr double kNone = 1e-6;  // of the difference of two sums: their rounding, and where the descents ended
+  const double ratio = 2 * (out.without - out.peak.half_deviance);
+  out.ratio = ratio > kNone ? ratio : 0;
   return out;
 }
 
