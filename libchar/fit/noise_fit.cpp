@@ -22,6 +22,7 @@
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/contradiction.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
+#include "libchar/fit/detail/band/neighbours.hpp"
 #include "libchar/fit/detail/band/small_shape.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/gauss_markov_fit.hpp"
@@ -328,7 +329,9 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     process = choose_gauss_markov(bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   std::optional<PowerLawChoice> law;
   if (process) law = choose_power_law(bins, band, rate_hz, options.terms);
-  if (law && process->needed && is_likelier(*process, *law)) law.reset();
+  if (law && process->needed && (!law->needed || is_likelier(*process, *law))) law.reset();
+  const std::optional<PowerLawChoice> possible = law && !law->needed ? law : std::nullopt;
+  if (possible) law.reset();
   if (law) process.reset();
   if (law) band = law->band;
   if (process) band = process->band;
@@ -343,8 +346,10 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     if (!now.band.law) answer_low_frequencies(now);
     report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
+    if (band_options.small_shapes && !law) reach_to_neighbours(bins, now.band, now.fit);
     if (now.band.doubtful_end && !law && !(process && process->needed)) report_doubtful_end(now.fit);
     if (band_options.small_shapes && now.band.passes) average_over_shapes(now);
+    if (band_options.small_shapes && possible) reach_to_law(*possible, now.fit);
   }
   judge(now.fit, now.band.passes, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);

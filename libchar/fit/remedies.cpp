@@ -12,10 +12,12 @@
 
 namespace libchar {
 
-double spike_alarm(std::uint64_t samples) {
-  // Kurtosis of n differences of white noise scatters by sqrt(24/n) times 1.4 for their correlation of -1/2.
-  return std::max(3.1, 3 + 7 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1))));
+double detail::kurtosis_sd(std::uint64_t samples) {
+  // sqrt(24/n), times 1.4 for the correlation of -1/2 of neighbours.
+  return 1.4 * std::sqrt(24.0 / static_cast<double>(std::max<std::uint64_t>(samples, 1)));
 }
+
+double spike_alarm(std::uint64_t samples) { return std::max(3.1, 3 + 5 * detail::kurtosis_sd(samples)); }
 
 double kurtosis_of_differences(std::span<const double> record) {
   Moments moments;

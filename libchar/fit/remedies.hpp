@@ -43,6 +43,8 @@ void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 Remedy lines_remedy(std::uint64_t clipped);
 
 namespace detail {
+/// Standard deviation of the kurtosis of first differences of white noise.
+double kurtosis_sd(std::uint64_t samples);
 /// What is said of lines that were left out. `in_allan`: the Allan curve has them, and disagrees.
 Finding lines_finding(const ClippedBins& lines, bool in_allan);
 /// Share of the power that lines hold, of the samples or of their differences: the larger.

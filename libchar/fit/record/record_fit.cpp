@@ -43,13 +43,25 @@ void widen(double wider, Coefficient& term) {
                value * std::pow(term.ci95.high / value, wider)};
 }
 
+/// Outliers that cannot be taken out of N: a share p of them, of s standard deviations, makes the excess kurtosis of
+/// the differences p s^4 / 2 and N too large by p s^2 / 2. Larger ones that make the same kurtosis move N less,
+/// smaller ones cannot be distinguished from noise: the interval of N reaches down to where it is without them, as
+/// far as those below the alarm go.
+void reach_below_outliers(double difference_kurtosis, std::uint64_t samples, Coefficient& white) {
+  constexpr double kSmallest = 3.5, kDeviates = 2;  ///< standard deviations of an outlier; of the kurtosis
+  const double excess = std::min(difference_kurtosis, spike_alarm(samples)) - 3;
+  if (!white.value || !(excess > kDeviates * detail::kurtosis_sd(samples))) return;
+  white.ci95.low *= std::max(0.0, 1 - excess / (kSmallest * kSmallest));
+}
+
 // Widens the interval and covariance of the white noise by what heavy tails add, and says so;
 // nothing where the kurtosis of first differences is below `spike_alarm(samples)`, as of Gaussian
 // noise. `samples` without the missing ones.
 void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit& fit) {
-  if (!(difference_kurtosis > spike_alarm(samples))) return;
   constexpr auto kWhite = static_cast<std::size_t>(Term::white);
   Coefficient& white = fit.term[kWhite];
+  reach_below_outliers(difference_kurtosis, samples, white);
+  if (!(difference_kurtosis > spike_alarm(samples))) return;
   double& variance = fit.covariance[kWhite][kWhite];
   if (!white.value || !(variance > 0)) return;
   const double more = 2 * (difference_kurtosis - 3) / static_cast<double>(samples);

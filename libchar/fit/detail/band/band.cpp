@@ -347,18 +347,30 @@ struct Search {
       if (!best || wider || same) best = std::move(trial);
     }
     if (!best) return std::nullopt;
-    if (best->band.named.family == Family::second_order) add_pole(from, *best);
+    if (best->band.named.family == Family::second_order) {
+      const NamedShape second = best->band.named;
+      add_root(from, Family::third_order, second, *best);
+      if (best->band.top_hz < 0.99 * rate_hz / 2) add_root(from, Family::loop, {}, *best);
+    }
     return best->band;
   }
 
-  /// Three poles where they are likelier than two.
-  void add_pole(const Band& from, Trial& best) const {
+  /// The corner of a filter looks like a peak on a spectrum without a shape: a filter that describes more bins than are
+  /// left between the peaks takes their place.
+  Band corner_or(const Band& between, const Band& whole) const {
+    const std::optional<Band> filter = named(whole);
+    return filter && members(bins, *filter).size() > members(bins, between).size() ? *filter : between;
+  }
+
+  /// A pole or a zero more, where that describes a wider band or is likelier.
+  void add_root(const Band& from, NamedShape::Family family, const std::optional<NamedShape>& start,
+                Trial& best) const {
     constexpr double kWorth = 2.5;  ///< of ln L
-    std::optional<Trial> third = widest_named(from, NamedShape::Family::third_order, best.band.named);
-    if (!third) return;
-    const bool wider = third->band.top_hz > 1.01 * best.band.top_hz;
-    const bool same = third->band.top_hz > 0.99 * best.band.top_hz;
-    if (wider || (same && third->half_deviance < best.half_deviance - kWorth)) best = std::move(*third);
+    std::optional<Trial> more = widest_named(from, family, start);
+    if (!more) return;
+    const bool wider = more->band.top_hz > 1.01 * best.band.top_hz;
+    const bool same = more->band.top_hz > 0.99 * best.band.top_hz;
+    if (wider || (same && more->half_deviance < best.half_deviance - kWorth)) best = std::move(*more);
   }
 
   /// Without its broad peaks and their skirts, the highest first, each seen beside what is left of the others.
@@ -782,7 +794,8 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
       named && named->band.passes && worth(*named) && explains_nulls(bins, rate_hz, *named))
     return named->band;
   if (peaked)
-    if (const std::optional<Band> between = search.between_peaks(search.without_peaks(whole))) return *between;
+    if (const std::optional<Band> between = search.between_peaks(search.without_peaks(whole)))
+      return search.corner_or(*between, whole);
   Band low_pass = whole;
   TermSet offered = terms;
   offered[kLentTerm] = offered[kLentTerm] || options.tau_s;

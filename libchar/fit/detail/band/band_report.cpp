@@ -253,10 +253,48 @@ void report_two_levels(const NamedShape& shape, NoiseFit& fit) {
   fit.findings.push_back(std::move(both));
 }
 
+/// Mean density between two shares of half the rate.
+double density_between(const NoiseFit& fit, double from, double to) {
+  double sum = 0, dof = 0;
+  for (const FitResidual& residual : fit.residuals) {
+    const double share = 2 * residual.frequency_hz / fit.rate_hz;
+    if (share < from || share > to) continue;
+    sum += residual.dof * residual.measured;
+    dof += residual.dof;
+  }
+  return dof > 0 ? sum / dof : 0;
+}
+
+/// A free shape that falls to a level that the top octave keeps: the same two levels. A filter goes on falling, or its
+/// stop band is far lower.
+void report_floor(const Band& band, NoiseFit& fit) {
+  constexpr int kFree = 3;  ///< coefficients
+  constexpr double kLevel = 0.1, kHighest = 0.7, kLowest = 1.0 / 32;
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  if (band.named.family != NamedShape::Family::none || band.orders < kFree || !white.value ||
+      white.status != Status::detected)
+    return;
+  const double below = density_between(fit, 0.5, 0.7), top = density_between(fit, 0.7, 1);
+  const double share = top / (*white.value * *white.value);
+  if (!(std::abs(top / below - 1) < kLevel && share > kLowest && share < kHighest)) return;
+  white.status = Status::undetermined;
+  white.ci95.low = std::min(white.ci95.low, std::sqrt(std::min(top, below)));
+  Finding both =
+      finding("undetermined",
+              fmt::format("The spectrum falls to a level of {} and keeps it: a filter behind white noise and "
+                          "other noise added to it, or white noise of that level and a process. N is the "
+                          "level of the slow side.",
+                          brief_text(std::sqrt(top))),
+              "N is undetermined: its spectrum has two levels");
+  both.severity = Severity::caution;
+  fit.findings.push_back(std::move(both));
+}
+
 }  // namespace
 
 void report_corner(const Band& band, NoiseFit& fit) {
   report_two_levels(band.named, fit);
+  report_floor(band, fit);
   if (band.named.family != NamedShape::Family::high_pass) return;
   fit.findings.push_back(finding("high_passed",
                                  fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an "

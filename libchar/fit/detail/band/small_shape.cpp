@@ -153,8 +153,11 @@ Answers answers_of(const Slopes& slopes, const std::vector<PowerBin>& inside, co
 }
 
 /// exp(x), and beyond one its tangent: a term that is a small part of the record grows by as much as the shape takes
-/// from the others, not by as many times.
-double grown(double x) { return x <= 1 ? std::exp(x) : std::numbers::e * x; }
+/// from the others, not by as many times; it falls in the same way, and never to zero.
+double grown(double x) {
+  if (x < 0) return 1 / grown(-x);
+  return x <= 1 ? std::exp(x) : std::numbers::e * x;
+}
 
 /// A coefficient after ln theta was moved by `shift` and got `variance` more.
 void move_term(double shift, double variance, Coefficient& term) {

@@ -307,7 +307,7 @@ std::optional<Band> band_of_two(const std::vector<PowerBin>& bins, double rate_h
   const double white = faster.at.theta[0], plateau = process_at(faster.at.theta[kFaster], faster.tau_s, 0);
   if (!(white > kFloor * plateau && plateau > kSteep * white)) return std::nullopt;
   const auto law = choose_power_law(bins, band, rate_hz, terms);
-  if (law && law->half_deviance < faster.half_deviance + kOverLaw) return std::nullopt;
+  if (law && law->needed && law->half_deviance < faster.half_deviance + kOverLaw) return std::nullopt;
   band.tau_s = faster.slower_s;
   if (!(faster.tau_s > kFastest / rate_hz)) return as_shelf(bins, rate_hz, terms, band, faster.tau_s, plateau / white);
   band.faster_s = faster.tau_s;

@@ -22,6 +22,7 @@ constexpr auto kWalkColumn = static_cast<Eigen::Index>(Term::walk);
 constexpr auto kQuantizationColumn = static_cast<Eigen::Index>(Term::quantization);
 constexpr auto kLawColumn = static_cast<Eigen::Index>(Term::ramp);
 constexpr double kLawNeeded = 8, kLawNeededBehind = 16;      ///< of 2 lnL, and the same with a free shape
+constexpr double kLawPossible = 1;                           ///< from which on N is not known without it
 constexpr double kLeastExponent = 0.3, kMostExponent = 1.9;  ///< of the exponent
 constexpr double kFromTerms = 3;                             ///< standard deviations from 1 and from 2
 
@@ -117,11 +118,11 @@ std::optional<PowerLawChoice> law_in(const std::vector<PowerBin>& bins, const Ba
   const ScoringResult best = law(out.exponent);
   out.half_deviance = best.half_deviance;
   out.likelihood_ratio = 2 * (terms_alone - best.half_deviance);
-  if (!(out.likelihood_ratio > (band.orders > 0 ? kLawNeededBehind : kLawNeeded)) ||
-      !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
+  if (!(out.likelihood_ratio > kLawPossible) || !(best.at.theta[kWhiteColumn] > 0) || !(best.at.theta[kLawColumn] > 0))
     return std::nullopt;
+  out.needed = out.likelihood_ratio > (band.orders > 0 ? kLawNeededBehind : kLawNeeded);
   for (const double whole : {1.0, 2.0})
-    if (std::abs(out.exponent - whole) < kFromTerms * out.exponent_sd) return std::nullopt;
+    out.needed = out.needed && !(std::abs(out.exponent - whole) < kFromTerms * out.exponent_sd);
   out.band = band;
   if (band.orders == 0) out.band.law = {out.exponent, best.at.theta[kWhiteColumn], best.at.theta[kLawColumn]};
   out.white = std::sqrt(best.at.theta[kWhiteColumn]);
@@ -143,9 +144,18 @@ std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins
   if (!terms[kWhiteColumn] || !terms[kFlickerColumn] || !terms[kWalkColumn] || terms[kLawColumn]) return std::nullopt;
   if (band.orders > 0 || band.low_pass || band.quantized || band.top_hz < 0.99 * rate_hz / 2) {
     const auto law = law_in(bins, whole_band(bins, rate_hz), rate_hz, terms);
-    if (law && describes(law->band, bins, rate_hz) && !terms_are_likelier(band, bins, rate_hz, terms, *law)) return law;
+    if (law && law->needed && describes(law->band, bins, rate_hz) &&
+        !terms_are_likelier(band, bins, rate_hz, terms, *law))
+      return law;
   }
   return band.passes ? law_in(bins, band, rate_hz, terms) : std::nullopt;
+}
+
+void reach_to_law(const PowerLawChoice& law, NoiseFit& fit) {
+  Coefficient& white = fit.term[kWhiteColumn];
+  if (!white.value) return;
+  const double spread = std::exp(kNormal95 * law.white_log_sd / 2);
+  white.ci95 = {std::min(white.ci95.low, law.white / spread), std::max(white.ci95.high, law.white * spread)};
 }
 
 void answer_power_law(const PowerLawChoice& law, NoiseFit& fit) {

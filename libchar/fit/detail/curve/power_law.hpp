@@ -13,6 +13,7 @@ struct PowerLawChoice {
   Band band;  ///< in which it was found; its `law` is set where that describes it without a shape
   double exponent = 1, exponent_sd = 0;
   double half_deviance = 0;
+  bool needed = false;                 ///< the terms are rejected; else the law is likelier, and they may be right
   double likelihood_ratio = 0;         ///< 2 (lnL of white noise and the law - lnL of all offered terms)
   double white = 0, white_log_sd = 0;  ///< Q, and the sd of ln Q² with h and alpha unknown
 };
@@ -22,6 +23,9 @@ struct PowerLawChoice {
 /// is cut or has a shape; else in `band`.
 std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms);
+
+/// The interval of white noise reaches to where it is with a law that is not needed.
+void reach_to_law(const PowerLawChoice& law, NoiseFit& fit);
 
 /// White noise as it is beside the law; flicker and walk stand in for it and are borne out by nothing.
 void answer_power_law(const PowerLawChoice& law, NoiseFit& fit);
