@@ -95,6 +95,7 @@ std::size_t label_length(std::string_view text) {
   while (i < text.size() &&
          (letter(text[i]) || is_digit(text[i]) || text[i] == '.' || text[i] == '-' || text[i] == '[' || text[i] == ']'))
     ++i;
+  if (i < text.size() && text[i] == '(') i = std::min(text.find(')', i), text.size() - 1) + 1;  // "ax(g): 0.02"
   while (i < text.size() && text[i] == ' ') ++i;
   if (i + 1 >= text.size() || (text[i] != '=' && text[i] != ':')) return 0;
   ++i;
@@ -139,6 +140,8 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
   if (cell.kind != Cell::bad) return CellKind::number;
   if (const auto stamp = read_calendar(text))
     return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
+  if (const std::size_t label = label_length(text); label > 0 && !field.quoted && is_digit(text[label]))
+    return cell_kind({std::string(text.substr(label)), field.offset + label, false}, style);  // "time=2024-05-01T…"
   const bool word = field.quoted || (like_words(text) && !number_and_unit(text));
   return word ? CellKind::word : CellKind::odd;
 }
