@@ -163,6 +163,17 @@ TEST_CASE("settings of oscilloscopes beside the names, and rates in front of the
       "Accelerometer X,Accelerometer Y\n" +
           rows("{1},{2}"),
       30);
+  check_field_log(
+      "channel names:\t\nai0\tai1\nstart times:\n5/1/2024 12:00:00.0\t5/1/2024 12:00:00.0\ndt:\n0.001\t0.001\ndata:\n" +
+          rows("{1}\t{2}"),
+      1000);
+  const Recording meter = read_text("\"Reading\",\"Sample\",\"Start Time\"\n" + field_text([](int k) {
+                                      return fmt::format("\"{}\",\"{} V DC\",\"5/1/2024 12:{:02}:{:02} PM\"", k + 1,
+                                                         field_value(k, 1), k / 60, k % 60);
+                                    }));
+  CHECK(meter.info.time.rate_hz == Approx(1));
+  CHECK(meter.info.channels.back().name == "Sample");
+  CHECK_THAT(failure("t_s,raw\n0,7\n0.1,0x1F\n0.2,9\n"), Catch::Contains("int(x, 16)"));
   // Other frequencies are no rate.
   CHECK(read_text("Lowpass at 5 Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == 0);
   CHECK(read_text("# IMU sampled at 50Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == Approx(50));

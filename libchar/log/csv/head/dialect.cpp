@@ -178,7 +178,7 @@ void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
     throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
-  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study))) return;
+  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study) || named_by_signal_express(study))) return;
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
