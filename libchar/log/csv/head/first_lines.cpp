@@ -100,7 +100,7 @@ double interval_of(const Statement& said) {
   if (unit == "ms") factor = 1e-3;
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
-  return ends_with_any(key, kKeys) || key == "dt" ? *said.number * factor : 0;
+  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" ? *said.number * factor : 0;
 }
 
 }  // namespace
@@ -111,6 +111,9 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
   if (before != std::string::npos)
     return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
+  const std::size_t at = lower.find(" at "), hertz = lower.find(" hz", at);  // ActiGraph: "at 30 Hz"
+  if (hertz != std::string::npos && at + 4 < hertz)
+    if (const auto rate = parse_double(std::string_view(lower).substr(at + 4, hertz - at - 4))) return rate;
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -144,15 +147,16 @@ struct LineCensus {
   bool words() const { return fits && good == 0 && bad > 0; }
 };
 
-LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style) {
+LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style, bool labels) {
   LineCensus out;
   out.fits = line.size() == kinds.size();
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
     const CellKind kind = cell_kind(line[c], style);
     if (kind == CellKind::blank) continue;
-    const bool good =
-        kinds[c] == ColumnKind::number ? kind == CellKind::number : kind > CellKind::number && kind < CellKind::word;
+    const bool labelled = !labels && label_length(line[c].text) > 0;  // "Serial: 12345" above plain numbers
+    const bool good = !labelled && (kinds[c] == ColumnKind::number ? kind == CellKind::number
+                                                                   : kind > CellKind::number && kind < CellKind::word);
     ++(good ? out.good : out.bad);
   }
   return out;
@@ -165,6 +169,15 @@ bool unit_cell(std::string_view text) {
     return true;
   const std::string lower = ascii_lower(text);
   return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
+}
+
+/// "5s", "15s", "20d", "14n" below the names: widths and types of an RDB table (USGS).
+bool line_of_types(const Cells& line) {
+  return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
+           const std::size_t digits = field.text.find_first_not_of("0123456789");
+           return digits > 0 && digits + 1 == field.text.size() &&
+                  std::string_view("sdn").find(field.text.back()) != std::string_view::npos;
+         });
 }
 
 bool line_of_units(const Cells& line) {
@@ -224,10 +237,13 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   if (campbell(lines)) return {4, 1, 2};
   if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
   if (numbers_columns(lines, style)) return {1, 0, {}};
+  if (lines.size() > 2 && line_of_types(lines[1])) return {2, 0, {}};
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());
-  for (const Cells& line : lines) census.push_back(census_of(line, kinds, style));
+  const bool labels = std::any_of(lines.back().begin(), lines.back().end(),
+                                  [](const Field& field) { return label_length(field.text) > 0; });
+  for (const Cells& line : lines) census.push_back(census_of(line, kinds, style, labels));
   const auto first_row =
       std::find_if(census.begin(), census.end(), [](const LineCensus& line) { return line.row() && line.good > 0; });
   if (first_row == census.end() && census[0].fits && census[0].bad > 0) {  // a header, then damage
