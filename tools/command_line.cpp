@@ -58,6 +58,15 @@ std::string say_unknown(const CLI::App& app) {
   return line;
 }
 
+// A second log where one is read: the files of an array are a recording together.
+std::string hint_for_extra(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining(true), known = option_names(chosen(app));
+  struct stat status {};
+  if (!rest.empty() && ::stat(rest.front().c_str(), &status) == 0 && std::ranges::count(known, "--topic") > 0)
+    return "logs of one array go into a folder of their own, which then is the recording (--topic '*')";
+  return full_name(app) + " --help";
+}
+
 // A file in the place of the verb is looked at.
 std::vector<std::string> with_verb(const CLI::App& app, const std::vector<std::string>& command) {
   std::vector<std::string> full = command;
@@ -536,9 +545,8 @@ std::vector<ParsedWord> CommandLine::parsed(const std::vector<std::string>& argv
 }
 
 std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv) {
-  const auto refuse = [&](const char* code, const std::string& what) {
-    const std::string name = full_name(*app_);
-    throw libchar::usage_error(code, name).says(what).hint(name + " --help");
+  const auto refuse = [&](const char* code, const std::string& what, const std::string& hint) {
+    throw libchar::usage_error(code, full_name(*app_)).says(what).hint(hint);
   };
   try {
     parse(argv);
@@ -547,9 +555,9 @@ std::optional<std::string> CommandLine::run(const std::vector<std::string>& argv
     app_->exit(answer, out, err);
     return out.str();
   } catch (const CLI::ExtrasError&) {
-    refuse("E0204", say_unknown(*app_));
+    refuse("E0204", say_unknown(*app_), hint_for_extra(*app_));
   } catch (const CLI::ParseError& error) {
-    refuse("E0205", error.what());
+    refuse("E0205", error.what(), full_name(*app_) + " --help");
   }
   return std::nullopt;
 }

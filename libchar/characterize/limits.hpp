@@ -31,7 +31,8 @@ struct LimitJudgement {
   std::string sentence;  ///< how it was decided, with numbers
 };
 
-/// A limit as its file says it, and in the unit of the values that are held against it: "0.4 deg/√h (0.006667 deg/s·√s)".
+/// A limit as its file says it, and in the unit of the values that are held against it: "0.4 deg/√h (0.006667
+/// deg/s·√s)".
 std::string limit_text(const std::string& text, double most, const std::string& unit);
 
 struct LimitReport {

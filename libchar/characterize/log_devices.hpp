@@ -21,8 +21,9 @@ struct LogHat {
   CorneredHat hat;
 };
 
-/// Three or more channels that measure the same at once: the deviation of each. `differences`: three channels are a - b, b - c and c - a
-/// instead, and the devices are called after them. Reads the log whole. Throws as read_recording and cornered_hat.
+/// Three or more channels that measure the same at once: the deviation of each. `differences`: three channels are a -
+/// b, b - c and c - a instead, and the devices are called after them. Reads the log whole. Throws as read_recording and
+/// cornered_hat.
 LogHat log_cornered_hat(const std::string& path, const LogAllanOptions& options, bool differences,
                         Progress& progress = no_progress());
 

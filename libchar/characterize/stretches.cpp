@@ -71,8 +71,8 @@ void check_cover(const std::vector<OrderedState>& states) {
   if (next < leaves) refuse_hole(*before, next, leaves - 1, "behind");
 }
 
-/// Of each channel, in the order of their leaves. Throws Error(input) by name unless they are of one log and of these settings (E0724)
-/// and cover it, no leaf of a channel twice (E0725).
+/// Of each channel, in the order of their leaves. Throws Error(input) by name unless they are of one log and of these
+/// settings (E0724) and cover it, no leaf of a channel twice (E0725).
 std::vector<std::vector<OrderedState>> states_in_order(std::span<const NamedState> states,
                                                        const std::string& settings) {
   std::vector<OrderedState> all;

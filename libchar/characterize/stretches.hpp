@@ -8,7 +8,8 @@
 //   const LogInfo head = read_log_head(path, options.reading);              // channel_names.hpp; head.rows: samples
 //   if (const auto why = why_not_divided(head, options); !why.empty()) …    // why
 //   const std::uint64_t leaves = leaves_of(head.rows);
-//   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);   // on one machine: a file for each channel
+//   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);   // on one machine: a file for each
+//   channel
 //   …                                                                               // {leaves / 2, leaves} on another
 //   result = characterize_from_stretches({{state_in_file("a.state"), state_in_file("b.state")}}, options);
 

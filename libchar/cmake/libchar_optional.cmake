@@ -1,5 +1,6 @@
-# libchar_optional(WORD HEADER LIBRARY): a library that a reader uses where it is installed. LIBCHAR_HAVE_WORD in libchar_have.hpp is 1 or 0; a
-# library that is there is linked by its plain name, so that who links the installed archive needs nothing but the library.
+# libchar_optional(WORD HEADER LIBRARY [LATE]): a library that a reader uses where it is installed. LIBCHAR_HAVE_WORD in libchar_have.hpp is 1 or 0; a
+# library that is there is linked by its plain name, so that who links the installed archive needs nothing but the library, or loaded when it
+# is needed (libchar_late).
 # libchar_optional_header() writes that header when all have been asked for.
 function(libchar_optional word header library)
   find_path(LIBCHAR_${word}_INCLUDE ${header} PATH_SUFFIXES hdf5/serial)
@@ -8,7 +9,14 @@ function(libchar_optional word header library)
   set(have 0)
   if(LIBCHAR_${word}_INCLUDE AND LIBCHAR_${word}_LIBRARY)
     set(have 1)
-    target_link_libraries(libchar_curves PRIVATE ${library})
+    if("${ARGN}" STREQUAL "LATE")
+      libchar_late(${word} "${LIBCHAR_${word}_LIBRARY}")
+    endif()
+    if(LIBCHAR_LATE_${word})
+      set_property(GLOBAL APPEND_STRING PROPERTY LIBCHAR_HAVE "#define LIBCHAR_LATE_${word} \"${LIBCHAR_LATE_${word}}\"\n")
+    else()
+      target_link_libraries(libchar_curves PRIVATE ${library})
+    endif()
     target_include_directories(libchar_curves SYSTEM PRIVATE "${LIBCHAR_${word}_INCLUDE}")
   else()
     message(STATUS "built without ${library}: ${header} is not installed")

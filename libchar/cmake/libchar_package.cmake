@@ -55,18 +55,40 @@ It simulates sensors from the result, exports their numbers to Kalibr, Gazebo,
 PX4, GTSAM and other programs, and compares many fusion algorithms on
 recordings of sensor arrays.")
 
+# package_of(FILE WORD): the package that installed FILE.
+function(package_of file word)
+  execute_process(COMMAND dpkg-query -S "${file}" OUTPUT_VARIABLE owner ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+  string(REGEX MATCH "^[a-z0-9.+-]+" package "${owner}")
+  set(${word} "${package}" PARENT_SCOPE)
+endfunction()
+
 # The archives link what readers of some formats use as well (libchar_optional): each library is in the package that installed it.
 get_cmake_property(variables CACHE_VARIABLES)
 list(FILTER variables INCLUDE REGEX "^LIBCHAR_[A-Z0-9]+_LIBRARY$")
 set(optional_packages "")
 foreach(variable IN LISTS variables)
   if(${variable})
-    execute_process(COMMAND dpkg-query -S "${${variable}}" OUTPUT_VARIABLE owner ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
-    if(owner MATCHES "^([a-z0-9.+-]+)")
-      string(APPEND optional_packages ", ${CMAKE_MATCH_1}")
+    package_of("${${variable}}" package)
+    if(package)
+      string(APPEND optional_packages ", ${package}")
     endif()
   endif()
 endforeach()
+
+# What no tool finds in the program, because it is loaded when it is needed (libchar_late).
+get_property(late_libraries GLOBAL PROPERTY LIBCHAR_LATE_LIBRARIES)
+set(late_packages "")
+foreach(library IN LISTS late_libraries)
+  package_of("${library}" package)
+  if(package)
+    list(APPEND late_packages "${package}")
+  endif()
+endforeach()
+list(JOIN late_libraries "\n" late_lines)
+list(JOIN late_packages ", " late_packages)
+file(WRITE "${CMAKE_BINARY_DIR}/late_libraries" "${late_lines}\n")
+file(WRITE "${CMAKE_BINARY_DIR}/late_packages" "${late_packages}\n")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${late_packages}")
 
 if(CAIRO_FOUND)
   string(APPEND optional_packages ", libcairo2-dev, pkg-config")

@@ -130,8 +130,8 @@ std::optional<Unit> find_unit(std::string_view text) {
   if (text.size() > kLongest) return std::nullopt;
   const std::string wanted = normal(text);
   if (wanted.empty()) return std::nullopt;
-  // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a lone
-  // capital G is refused because half the field means gauss by it and the other half gravity.
+  // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a
+  // lone capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
   for (const UnitRow& row : kUnits)
     if (listed(row.spellings, wanted) && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))

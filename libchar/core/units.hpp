@@ -40,15 +40,16 @@ struct Unit {
   static std::optional<double> sample_factor(std::string_view from, std::string_view to);
 };
 
-/// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as they are written
-/// them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
+/// Reads "deg/s", "°/s", "dps", "rad s^-1", "m/s^2", "m s^-2", "g", "mg", "uT", "degC"… with case and blanks as they
+/// are written them; nothing for an unknown text. A numeric factor in front ("1/16.4 deg/s") is part of the unit.
 std::optional<Unit> find_unit(std::string_view text);
 
 /// What a number in `from` is multiplied by to be one in `to`: 1 where either is not known; nothing where they
 /// are of two quantities.
 std::optional<double> unit_factor(std::string_view from, std::string_view to);
 
-/// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of it.
+/// What a unit alone leaves open: the sides of a density; or that it is not the term but the lowest Allan deviation of
+/// it.
 enum class Reading { plain, one_sided, two_sided, floor };
 template <>
 inline constexpr auto enum_table<Reading> = std::to_array<EnumWord<Reading>>({{Reading::plain, ""},
@@ -64,14 +65,15 @@ struct HabitualValue {
   Reading reading = Reading::plain;
 };
 
-/// The habitual units of a term ("white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp") for a channel
-/// in `unit`; empty when the unit is unknown or the field has no habit.
+/// The habitual units of a term ("white_noise", "bias_instability", "random_walk", "quantization", "rate_ramp") for a
+/// channel in `unit`; empty when the unit is unknown or the field has no habit.
 std::vector<HabitualValue> habitual_units(std::string_view term, std::string_view unit);
 
 /// Unit text of a term's coefficient for a channel unit U: "U·√s" or "U/√Hz" for white noise, U, "U/√s", "U·s", "U/s".
 std::string term_unit(std::string_view term, std::string_view unit);
 
-/// For readers: "U" where no unit is stated, "" for a ratio ("1"), else the unit; and the same of a term's coefficient: "√s", "1/√s".
+/// For readers: "U" where no unit is stated, "" for a ratio ("1"), else the unit; and the same of a term's coefficient:
+/// "√s", "1/√s".
 std::string shown_unit(std::string_view unit);
 std::string shown_term_unit(std::string_view term, std::string_view unit);
 

@@ -57,7 +57,8 @@ struct FitBand {
 struct GaussMarkovFit {
   Coefficient sigma;  ///< standard deviation, in the channel's unit
   Coefficient tau_s;  ///< correlation time; an interval without an upper end is infinite
-  /// false: looked for and not needed. Undetermined: with white noise alone it is as likely as the terms, which are the model.
+  /// false: looked for and not needed. Undetermined: with white noise alone it is as likely as the terms, which are the
+  /// model.
   bool in_model = true;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What is done about data that break the model, each only when its alarm asks: spikes and lines. What the spectrum asks for is the
-// band's (detail/band.hpp), what the record shows in time the events' (events.hpp).
+// What is done about data that break the model, each only when its alarm asks: spikes and lines. What the spectrum asks
+// for is the band's (detail/band.hpp), what the record shows in time the events' (events.hpp).
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,6 @@
-// Individuals chart (Montgomery, Introduction to Statistical Quality Control, 6.4): sigma = mean |x_i - x_{i-1}| / d2, d2 = 2/sqrt(pi) =
-// 1.128, limits at the mean ± 3 sigma. How often chance leaves them or stays on a side: the zone rules below.
+// Individuals chart (Montgomery, Introduction to Statistical Quality Control, 6.4): sigma = mean |x_i - x_{i-1}| / d2,
+// d2 = 2/sqrt(pi) = 1.128, limits at the mean ± 3 sigma. How often chance leaves them or stays on a side: the zone
+// rules below.
 
 #include "libchar/lot/control_chart.hpp"
 
@@ -13,14 +14,16 @@
 
 namespace libchar {
 
-// Western Electric, Statistical Quality Control Handbook (1956), 25; Nelson, J. Quality Technology 16 (1984) 237. With z = (x - centre) / sigma,
-// on either side: z > 3; two of three > 2; four of five > 1; eight of eight > 0; the value that completes them is one of them. Each is
-// expected as often as a window begins to hold it that did not one value before: with the probability b that a value is beyond, the sum over
-// all patterns of the window and the value before it.
-// Together they signal every 91.75 values of a process that stays where it is (Champ & Woodall, Technometrics 29 (1987) 393), so that nearly
-// every chart of a few hundred has a signal: it is a hint. An alarm is what chance does not bring: more signals of a rule than
-// expected (binomial), a value so far off that n of them do not let expect it (Student's t; a mean moving range has .62 (n - 1) degrees of
-// freedom), or a stretch on one side longer than n values have, each rule with a quarter of 1 %.
+// Western Electric, Statistical Quality Control Handbook (1956), 25; Nelson, J. Quality Technology 16 (1984) 237. With
+// z = (x - centre) / sigma, on either side: z > 3; two of three > 2; four of five > 1; eight of eight > 0; the value
+// that completes them is one of them. Each is expected as often as a window begins to hold it that did not one value
+// before: with the probability b that a value is beyond, the sum over all patterns of the window and the value before
+// it.
+// Together they signal every 91.75 values of a process that stays where it is (Champ & Woodall, Technometrics 29 (1987)
+// 393), so that nearly every chart of a few hundred has a signal: it is a hint. An alarm is what chance does not bring:
+// more signals of a rule than expected (binomial), a value so far off that n of them do not let expect it (Student's t;
+// a mean moving range has .62 (n - 1) degrees of freedom), or a stretch on one side longer than n values have, each
+// rule with a quarter of 1 %.
 
 namespace {
 
@@ -158,10 +161,12 @@ ControlChart control_chart(std::span<const double> values) {
 
 // Freedman & Diaconis, Z. Wahrscheinlichkeitstheorie verw. Gebiete 57 (1981) 453.
 
-// P_pk = (U - mean) / (3 s) of an upper limit U. Its variance, to first order, from the standard errors of mean and ln s (Bissell, Appl.
-// Stat. 39 (1990) 331, has those of a sample without uncertainties: 1/(3 sqrt n) and 1/sqrt(2 (n - 1))):
+// P_pk = (U - mean) / (3 s) of an upper limit U. Its variance, to first order, from the standard errors of mean and ln
+// s (Bissell, Appl. Stat. 39 (1990) 331, has those of a sample without uncertainties: 1/(3 sqrt n) and 1/sqrt(2 (n -
+// 1))):
 //   var P = (se mean / (3 s))² + P² (se ln s)²
-// Where a spread of zero is not excluded the interval is what its upper end and both ends of the mean give, and has no upper end.
+// Where a spread of zero is not excluded the interval is what its upper end and both ends of the mean give, and has no
+// upper end.
 
 void add_ppk(const RandomEffects& effects, double limit, Capability& out) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

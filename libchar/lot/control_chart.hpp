@@ -88,7 +88,8 @@ struct Capability {
   /// (limit - mean) / (3 spread) in logarithms, by the devices' own mean and spread; infinite: no spread is seen
   std::optional<double> ppk;
   Interval ppk_ci95;
-  /// The same with the deviation from one device to the next of the control chart, which holds the uncertainty of each as well.
+  /// The same with the deviation from one device to the next of the control chart, which holds the uncertainty of each
+  /// as well.
   std::optional<double> cpk;
   double above = 0;  ///< share of devices above the limit that a normal distribution with that ppk has
 };
@@ -96,14 +97,16 @@ struct Capability {
 /// Fills ppk, its interval and `above`. `limit` as what `effects` is of.
 void add_ppk(const RandomEffects& effects, double limit, Capability& out);
 
-/// Bins of one width; distant values are in `below` and `above`, so that one wild value does not squeeze all others into a bin.
+/// Bins of one width; distant values are in `below` and `above`, so that one wild value does not squeeze all others
+/// into a bin.
 struct Histogram {
   double low = 0, step = 1;          ///< bin k reaches from low + k step to the next
   std::vector<std::uint64_t> count;  ///< empty: of no values
   std::uint64_t below = 0, above = 0;
 };
 
-/// Width by Freedman & Diaconis, 2 (interquartile range) / n^(1/3); 1 to 60 bins within eight robust deviations of the median.
+/// Width by Freedman & Diaconis, 2 (interquartile range) / n^(1/3); 1 to 60 bins within eight robust deviations of the
+/// median.
 Histogram histogram_of(std::span<const double> values);
 
 }  // namespace libchar

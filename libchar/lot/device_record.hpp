@@ -1,5 +1,6 @@
 #pragma once
-// What a lot needs to know of one characterized device, in one line of JSON: a hundred thousand of them are read in seconds.
+// What a lot needs to know of one characterized device, in one line of JSON: a hundred thousand of them are read in
+// seconds.
 //
 //   DeviceRecord record = record_of(characterize("imu7.csv"));
 //   record.device = "imu7";
@@ -93,14 +94,17 @@ struct DeviceRecord {
   bool operator==(const DeviceRecord&) const = default;
 };
 
-/// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is not a bias.
+/// What a lot looks at. Device, type, batch, settings and report are the caller's to fill; the mean of a phase is not a
+/// bias.
 DeviceRecord record_of(const Characterization& result, SampleKind data = SampleKind::rate);
 
-/// Of logs side by side: each is a device that is called as its file is (names_of_logs). Throws Error(input) for one recording twice.
+/// Of logs side by side: each is a device that is called as its file is (names_of_logs). Throws Error(input) for one
+/// recording twice.
 std::vector<DeviceRecord> records_of(std::span<const Characterization> results, SampleKind data = SampleKind::rate);
 
-/// Once all channels of a recording are in its record. A single channel in °C among others is a thermometer: its mean is the temperature of
-/// a recording that says none, and it has no turn-on bias and no temperature coefficient itself. Where nothing was fitted, `problem` says why.
+/// Once all channels of a recording are in its record. A single channel in °C among others is a thermometer: its mean
+/// is the temperature of a recording that says none, and it has no turn-on bias and no temperature coefficient itself.
+/// Where nothing was fitted, `problem` says why.
 void finish_record(DeviceRecord& record);
 
 /// Where its log was read and nothing in it could be fitted: why, in a sentence; else "".

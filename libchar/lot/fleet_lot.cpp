@@ -1,5 +1,5 @@
-// Coefficients are compared as logarithms. Means and spreads are those of core/random_effects.hpp: what the records' lengths alone make
-// the values scatter is taken out, so that the spread is that of the devices.
+// Coefficients are compared as logarithms. Means and spreads are those of core/random_effects.hpp: what the records'
+// lengths alone make the values scatter is taken out, so that the spread is that of the devices.
 #include "libchar/lot/fleet_lot.hpp"
 
 #include <fmt/format.h>

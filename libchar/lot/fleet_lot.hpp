@@ -1,6 +1,6 @@
 #pragma once
-// A fleet's devices side by side: what they have in common by type, channel and batch, who does not belong to it, and who keeps a
-// data sheet's limits.
+// A fleet's devices side by side: what they have in common by type, channel and batch, who does not belong to it, and
+// who keeps a data sheet's limits.
 //
 //   FleetLot lot = fleet_lot(records);
 //   for (const QuantityLot& q : lot.quantities) …   // "gyro_x", bias instability: mean, spread, batches, chart
@@ -28,7 +28,8 @@ struct LotCounts;
 struct LeftOut {
   double share = 0;    ///< of the devices that have a result: not detected or doubtful
   Interval mean_ci95;  ///< of all of them, in the unit of the values: holds what is possible whichever they are
-  /// The mean of those counted is off by this factor at most: too large, of a temperature coefficient too far from zero.
+  /// The mean of those counted is off by this factor at most: too large, of a temperature coefficient too far from
+  /// zero.
   double factor = 1;
   double spread_high = 0;  ///< upper end of the spread of all; NaN of a temperature coefficient
 };
@@ -37,7 +38,8 @@ struct LeftOut {
 std::optional<LeftOut> left_out(DeviceQuantity quantity, const LotCounts& counts, std::span<const double> value,
                                 std::span<const double> variance, const RandomEffects& effects);
 
-// Which batch each device of a fleet is of. A batch is of a production lot: a device has one, whatever its recordings say.
+// Which batch each device of a fleet is of. A batch is of a production lot: a device has one, whatever its recordings
+// say.
 
 struct DeviceBatches {
   std::vector<std::size_t> device_of;  ///< of each record; devices are numbered as they come
@@ -106,12 +108,13 @@ struct BatchDifference {
   double p = 1;       ///< of as large differences of batches that are alike
 };
 
-/// Recordings of a device that lie as far apart, in °C, are at several temperatures: a line through their biases has a slope, and does not
-/// mean what a temperature that is stated to a degree is off by (1 °C of 10 make the slope too small by 2 %).
+/// Recordings of a device that lie as far apart, in °C, are at several temperatures: a line through their biases has a
+/// slope, and does not mean what a temperature that is stated to a degree is off by (1 °C of 10 make the slope too
+/// small by 2 %).
 inline constexpr double kLeastTemperatureSpan = 10;
 
-/// From recording to recording of one device: for a turn-on bias, its repeatability; what temperature does to it is taken out of devices that
-/// were recorded at several.
+/// From recording to recording of one device: for a turn-on bias, its repeatability; what temperature does to it is
+/// taken out of devices that were recorded at several.
 struct RepeatedDevices {
   /// With more recordings that count than it takes for their mean, or their line over temperature; and those.
   std::size_t devices = 0, recordings = 0;
@@ -129,8 +132,8 @@ struct DeviceSlope {
   Interval ci95;
 };
 
-/// Devices that were recorded at several temperatures. Of a turn-on bias: it is theirs at `reference_c`, by their lines. Of a temperature
-/// coefficient: it is the slope of these lines.
+/// Devices that were recorded at several temperatures. Of a turn-on bias: it is theirs at `reference_c`, by their
+/// lines. Of a temperature coefficient: it is the slope of these lines.
 struct TemperatureRuns {
   std::size_t devices = 0, recordings = 0;
   Interval range_c;
@@ -155,8 +158,8 @@ struct FleetOutlier {
   std::string sentence;
 };
 
-/// One quantity of one channel of all devices of a type, or of all channels of a kind. What was recorded in several units of one quantity
-/// is converted to that of most recordings.
+/// One quantity of one channel of all devices of a type, or of all channels of a kind. What was recorded in several
+/// units of one quantity is converted to that of most recordings.
 struct QuantityLot {
   std::string type, group;  ///< "gyro_x", or "angular_rate in deg/s"
   bool of_kind = false;
@@ -234,7 +237,8 @@ struct LotDifference {
   std::string channel_unit, unit;
   LotCounts counts_a, counts_b;
   LotFigures a, b;
-  /// Mean of B over that of A where the quantity is compared as logarithm, else B less A. The interval is of this one alone.
+  /// Mean of B over that of A where the quantity is compared as logarithm, else B less A. The interval is of this one
+  /// alone.
   double change = 1;
   Interval change_ci95;
   double p_mean = 1, p_spread = 1;  ///< of as large a difference of lots that are alike

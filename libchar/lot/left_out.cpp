@@ -1,11 +1,13 @@
-// Not detected are the small ones, doubtful those beside the threshold. Taking them as censored at their upper limits was given up: a limit is
-// not the threshold that the device was below, the errors of fits beside it are far from normal, and constants that were right for random
-// walks were wrong for bias instabilities. What can be said is how far it goes at most. Of a normal distribution of which the lowest share f is
-// missing (Cohen, Truncated and Censored Samples, 1991), with z the quantile of f and l = phi(z) / (1 - f),
+// Not detected are the small ones, doubtful those beside the threshold. Taking them as censored at their upper limits
+// was given up: a limit is not the threshold that the device was below, the errors of fits beside it are far from
+// normal, and constants that were right for random walks were wrong for bias instabilities. What can be said is how far
+// it goes at most. Of a normal distribution of which the lowest share f is missing (Cohen, Truncated and Censored
+// Samples, 1991), with z the quantile of f and l = phi(z) / (1 - f),
 //   mean of the others = mean + l sd,   their variance = (1 - l (l - z)) sd²
-// and no other share f that is missing moves the mean further. sd is that of the values, spread and uncertainty together, since what is too
-// small is so as it was measured: from the scatter of those counted, at its 97.5 % limit. Temperature coefficients that are not detected
-// are about zero: the mean of all is between 1 - f of the mean of those detected and that.
+// and no other share f that is missing moves the mean further. sd is that of the values, spread and uncertainty
+// together, since what is too small is so as it was measured: from the scatter of those counted, at its 97.5 % limit.
+// Temperature coefficients that are not detected are about zero: the mean of all is between 1 - f of the mean of those
+// detected and that.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Means: Welch's t (Biometrika 34 (1947) 28) of the random-effects means, whose standard errors are Hartung and Knapp's
-// (core/random_effects.hpp). Spreads: detail/equal_spread.cpp. All tests together: Holm (Scand. J. Stat. 6 (1979) 65): the i-th smallest of
-// m probabilities times m - i + 1, never less than the one before.
+// (core/random_effects.hpp). Spreads: detail/equal_spread.cpp. All tests together: Holm (Scand. J. Stat. 6 (1979) 65):
+// the i-th smallest of m probabilities times m - i + 1, never less than the one before.
 #include <fmt/format.h>
 
 #include <algorithm>

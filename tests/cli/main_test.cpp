@@ -65,6 +65,7 @@ TEST_CASE("slips on the command line are exit code 2, one line on stderr, with t
     std::vector<std::string> arguments;
     std::string says;
   };
+  const std::string log = test::fixture("imu_at_rest.csv").string();
   const std::vector<Slip> slips = {{{}, "which verb?"},
                                    {{"inspcet", "a.csv"}, "did you mean inspect?"},
                                    {{"--verison"}, "did you mean --version?"},
@@ -81,7 +82,8 @@ TEST_CASE("slips on the command line are exit code 2, one line on stderr, with t
                                    {{"inspect", "a.csv", "--threads", "1e3"}, "expected a whole number"},
                                    {{"inspect", "a.csv", "--delimiter", "abc"}, "one character"},
                                    {{"convert", "a.csv"}, "--output is required"},
-                                   {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"}};
+                                   {{"convert", "a.csv", "b.csv", "-o", "c.csv"}, "one argument too many"},
+                                   {{"convert", log, log, "-o", "c.csv"}, "go into a folder of their own"}};
   for (const Slip& slip : slips) {
     const auto ran = test::run(slip.arguments);
     INFO(slip.says << " <- " << ran.err);

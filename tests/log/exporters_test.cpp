@@ -590,7 +590,7 @@ std::vector<Export> bench_exports() {
       {"Stable32",
        "# File: PHASE.DAT\r\n# Tau: 1.0\r\n" + lines(12, [](int k) { return fmt::format("{:.6e}\r\n", 1e-9 * k); }),
        "c0[]",
-       0,
+       1,
        kNoStart,
        {0},
        "no header"});

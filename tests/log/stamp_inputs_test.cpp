@@ -110,6 +110,22 @@ TimedRows with_duty(const Rules& rules, std::size_t on, double off_s) {
   return out;
 }
 
+/// A host that hangs 1.5 s in every 7, and then writes at once what it missed.
+TimedRows hung(const Rules& rules) {
+  TimedRows out = even_rows(rules);
+  const double first = out.instants.front();
+  std::size_t rows = 0;
+  double before = 0;
+  for (double& t : out.instants) {
+    const double phase = std::fmod(t - first + 4, 7);
+    rows = phase < 1.5 ? rows + 1 : 0;
+    if (rows > 0) t += 1.5 - phase + 2e-4 * static_cast<double>(rows);
+    before = t = std::max(t, before + 1e-5);
+  }
+  out.unsure += out.missing > 0 ? 2 : 0;
+  return out;
+}
+
 struct Cause {
   std::string name;
   std::function<TimedRows(const Rules&)> make;
@@ -132,6 +148,7 @@ const std::vector<Cause> kCauses = {
     {"duty cycle", [](const Rules& r) { return with_duty(r, 400, 20); }, "gap"},
     {"packets of 11", [](const Rules& r) { return in_packets(r, 11, 0.7345); }, "packets"},
     {"packets of 5", [](const Rules& r) { return in_packets(r, 5, 0.02); }, "packets"},
+    {"a host that hangs", hung, "late_stamp"},
     {"packets of equal stamps", [](const Rules& r) { return in_packets(r, 4, 0); }, "coarse_stamps"},
     {"a clock of one interval",
      [](const Rules& r) {
@@ -170,6 +187,13 @@ const std::vector<Cause> kCauses = {
        return out;
      },
      "wild_stamp"},
+    {"24 bits of ms",
+     [](const Rules& r) {
+       TimedRows out = even_rows(r);
+       for (double& t : out.instants) t = std::fmod(t + 16777.216 - 1010, 16777.216);
+       return out;
+     },
+     "clock_rollover"},
     {"32 bits of us",
      [](const Rules& r) {
        TimedRows out = even_rows(r);
@@ -231,4 +255,42 @@ TEST_CASE("stamps of every cause, unit, jitter and gap: the right rate and no ga
           if (*cause.warning != '\0') CHECK(count(r, cause.warning) > 0);
         }
   CHECK(inputs >= 150);
+}
+
+TEST_CASE("a pause over the end of a log, whose rows came at once, holds no missing ones") {
+  for (const double pause : {0.3, 1.0, 4.0})
+    for (const double rows_written : {0.8, 1.0}) {
+      TimedRows rows = even_rows({});
+      const double from = rows.instants.back() - rows_written * pause + 0.005;
+      std::size_t late = 0;
+      for (double& t : rows.instants)
+        if (t >= from) t = from + pause + 2e-4 * static_cast<double>(late++);
+      INFO(pause << " s, of which rows were written for " << rows_written);
+      const Recording r = read_text(text_of(rows, kClocks[2]));
+      CHECK(r.info.time.missing_samples == 0);
+      CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("packets of more rows than tell a usual step from a pause, of which some are lost") {
+  for (const std::size_t size : {45, 60, 100})
+    for (const double jitter : {0.0, 0.1})
+      for (const bool lost : {false, true}) {
+        Rules rules;
+        rules.jitter = jitter;
+        rules.rows = 24000;
+        TimedRows rows = in_packets(rules, size, 0.01);
+        const std::size_t first = 70 * size;
+        if (lost)
+          rows.instants.erase(rows.instants.begin() + static_cast<std::ptrdiff_t>(first),
+                              rows.instants.begin() + static_cast<std::ptrdiff_t>(first + 2 * size));
+        INFO(size << " rows, jitter " << jitter << ", lost " << lost);
+        const Recording r = read_text(text_of(rows, kClocks[2]));
+        CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+        CHECK(r.info.time.missing_samples == (lost ? 2 * size : 0));
+        CHECK(count(r, "packets") == 1);
+        ReadOptions inside;
+        inside.rate_hz = 10000;
+        CHECK(read_text(text_of(rows, kClocks[2]), inside).info.time.rate_hz == Approx(10000).epsilon(1e-3));
+      }
 }

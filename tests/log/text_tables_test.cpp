@@ -41,10 +41,10 @@ std::string outcome(const std::string& path, const ReadOptions& options = {}) {
   return "read";
 }
 
-struct Written {
+struct StoredTable {
   test::TemporaryFolder folder;
   std::string path;
-  Written(const std::string& name, const std::string& bytes) : path((folder / name).string()) {
+  StoredTable(const std::string& name, const std::string& bytes) : path((folder / name).string()) {
     std::ofstream(path, std::ios::binary) << bytes;
   }
 };
@@ -68,17 +68,17 @@ TEST_CASE("JSON lines: paths are channels, numbers keep their digits") {
 
 TEST_CASE("JSON: an array of objects, keys in any order, keys that come late") {
   std::string text = "[ {\"t\":0,\"x [V]\":1},\n  {\"x [V]\":2.5,\"t\":1}, {\"t\":2,\"x [V]\":3,\"y\":NaN} ]";
-  const Recording log = read_recording(Written("a.json", text).path);
+  const Recording log = read_recording(StoredTable("a.json", text).path);
   CHECK(names(log) == "x[V] y ");
   CHECK(log.samples[0] == std::vector<double>{1, 2.5, 3});
   text = "{\"t\":0,\"x\":1}\n";
   for (int k = 1; k < 20000; ++k)
     text += "{\"t\":" + std::to_string(k) + ",\"x\":1" + (k > 19990 ? ",\"late\":2}\n" : "}\n");
-  CHECK(read_recording(Written("a.jsonl", text).path).info.warnings.find("late_key")->count == 9);
+  CHECK(read_recording(StoredTable("a.jsonl", text).path).info.warnings.find("late_key")->count == 9);
 }
 
 TEST_CASE("JSON that is broken is refused with the number of the object, a cut end is said") {
-  const auto said = [](const std::string& text) { return outcome(Written("a.jsonl", text).path); };
+  const auto said = [](const std::string& text) { return outcome(StoredTable("a.jsonl", text).path); };
   CHECK_THAT(said("{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":}\n"), Catch::Contains("object 2") && Catch::Contains("E0337"));
   CHECK_THAT(said("{\"t\":0,\"x\":1}\nfoo\n"), Catch::Contains("broken object: foo") && Catch::Contains("(object 2)"));
   CHECK_THAT(said("{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":2}\n{\"t\":2,\"x\":\"4 V or 5\"}\n"),
@@ -88,7 +88,7 @@ TEST_CASE("JSON that is broken is refused with the number of the object, a cut e
   std::string deep;
   for (int k = 0; k < 10000; ++k) deep += "{\"a\":";
   CHECK_THAT(said(deep + "1" + std::string(10000, '}')), Catch::Contains("E0337"));
-  const Written cut("a.jsonl", "{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":2}\n{\"t\":2,\"x\":3}\n{\"t\":3,\"x\"");
+  const StoredTable cut("a.jsonl", "{\"t\":0,\"x\":1}\n{\"t\":1,\"x\":2}\n{\"t\":2,\"x\":3}\n{\"t\":3,\"x\"");
   const Recording log = read_recording(cut.path);
   CHECK(log.samples[0].size() == 3);
   CHECK(log.info.warnings.find("compressed_cut") != nullptr);
@@ -110,7 +110,7 @@ std::string segment(const std::string& clock, const std::string& x0, const std::
 
 TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments go on") {
   const std::string two = "X_Value\tA\tB";
-  const auto read = [](const std::string& text) { return read_recording(Written("a.lvm", text).path); };
+  const auto read = [](const std::string& text) { return read_recording(StoredTable("a.lvm", text).path); };
   const Recording one = read(lvm("One", segment("12:00:00,5", "0", two) + "0,00\t1,5\t2\tready\n0,01\t2,5\t3\n\t\n" +
                                             segment("12:00:00,52", "0", two) + "0,00\t3,5\t4\n0,01\t4,5\t5\n"));
   CHECK(names(one) == "A[Volts] B[Volts] ");
@@ -122,16 +122,17 @@ TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments 
   const std::string multi = segment("12:00:00,5", "0", "X_Value\tA\tX_Value\tB");
   const Recording each = read(lvm("Multi", multi + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n0,02\t3\t0,02\t4\n"));
   CHECK(each.samples[1] == std::vector<double>{2, 3, 4});
-  CHECK_THAT(outcome(Written("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
+  CHECK_THAT(outcome(StoredTable("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
              Catch::Contains("E0340") && Catch::Contains("clocks of their own"));
-  CHECK_THAT(outcome(Written("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));
+  CHECK_THAT(outcome(StoredTable("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));
 }
 
 TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
   ReadOptions options;
   options.rate_hz = 40;
   const Recording vn = read_recording(
-      Written("a.txt", "$VNGYR,+00.1,-0.2,+3.5*5D\r\n$VNERR,03*72\r\n$VNGYR,+00.2,-0.25,+3.25*5D\r\n").path, options);
+      StoredTable("a.txt", "$VNGYR,+00.1,-0.2,+3.5*5D\r\n$VNERR,03*72\r\n$VNGYR,+00.2,-0.25,+3.25*5D\r\n").path,
+      options);
   CHECK(names(vn) == "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
   CHECK(vn.samples[2] == std::vector<double>{3.5, 3.25});
   CHECK(vn.info.warnings.find("comment_line")->count == 1);
@@ -139,16 +140,16 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
   for (int k = 0; k < 8; ++k)
     text += "#RAWIMUSXA,COM1,0,81.5,FINESTEERING,1724,219418.0,004c,22ff,5;00,11,1724,219418.0" + std::to_string(k) +
             "0,111607,43088060," + std::to_string(k) + ",-3033352,186983,-132863,823*5aa97065\n";
-  const Recording nov = read_recording(Written("a.asc", text).path);
+  const Recording nov = read_recording(StoredTable("a.asc", text).path);
   CHECK(nov.info.time.rate_hz == Approx(100));
   CHECK(names(nov) == "acc_z acc_y acc_x gyro_z gyro_y gyro_x ");
   CHECK(nov.samples[1][7] == -7);
   CHECK(nov.samples[4][0] == 132863);
   const Recording attitude = read_recording(
-      Written("a.txt",
-              "$VNRRG,1,VN-100*2B\n$VNYMR,+010.1,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.5,"
-              "-00.002*65\n$VNYMR,+010.2,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.25,"
-              "-00.002*65\n")
+      StoredTable("a.txt",
+                  "$VNRRG,1,VN-100*2B\n$VNYMR,+010.1,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.5,"
+                  "-00.002*65\n$VNYMR,+010.2,-000.1,+000.2,+1.0,+0.1,-0.2,+00.1,-00.2,-09.8,+00.001,-00.25,"
+                  "-00.002*65\n")
           .path,
       options);
   CHECK(attitude.info.channels.size() == 12);
@@ -161,7 +162,7 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
     std::string lines;
     for (int k = 0; k < 8; ++k)
       lines += fmt::format("{},1724,219418.0;{}*5aa97065\n", name, fmt::format(fmt::runtime(line), k));
-    const Recording read = read_recording(Written("a.asc", lines).path);
+    const Recording read = read_recording(StoredTable("a.asc", lines).path);
     INFO(name);
     CHECK(read.info.time.rate_hz == Approx(100));
     CHECK(read.samples[channel][3] == value);
@@ -170,9 +171,9 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
 
 TEST_CASE("Shimmer: a line between names and units says that values are calibrated") {
   const Recording log = read_recording(
-      Written("a.csv",
-              "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
-              "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
+      StoredTable("a.csv",
+                  "Unit\tUnit\tUnit\nTimestamp\tAccel X\tGyro X\nCAL\tCAL\tCAL\nms\tm/(s^2)\tdeg/s\n0.0\t0.5\t0.1\n"
+                  "10.0\t0.5\t0.25\n20.0\t0.5\t0.2\n30.0\t0.5\t0.3\n")
           .path);
   CHECK(names(log) == "Accel X[m/(s^2)] Gyro X[deg/s] ");
   CHECK(log.samples[1][1] == 0.25);
@@ -241,14 +242,15 @@ TEST_CASE("a cut or broken workbook, archive or sound ends in a sentence or in w
     const std::string suffix = std::filesystem::path(name).extension().string();
     for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 97) {
       INFO(name << " " << length);
-      CHECK(!outcome(Written("a" + suffix, bytes.substr(0, length)).path, topic(suffix == ".zip" ? "Gyroscope" : ""))
-                 .empty());
+      CHECK(
+          !outcome(StoredTable("a" + suffix, bytes.substr(0, length)).path, topic(suffix == ".zip" ? "Gyroscope" : ""))
+               .empty());
     }
     for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 211) {
       INFO(name << " byte " << at);
       std::string broken = bytes;
       broken[at] = static_cast<char>(~broken[at]);
-      CHECK(!outcome(Written("a" + suffix, broken).path).empty());
+      CHECK(!outcome(StoredTable("a" + suffix, broken).path).empty());
     }
   }
 }
@@ -259,7 +261,7 @@ TEST_CASE("JSON lines: what is no object is a row that cannot be read, and the o
     for (int i = 0; i < 100; ++i)
       text +=
           i == 50 ? broken + "\n" : "{\"t\": " + std::to_string(0.01 * i) + ", \"x\": " + std::to_string(i % 7) + "}\n";
-    const Written log("log.jsonl", text);
+    const StoredTable log("log.jsonl", text);
     INFO(broken);
     if (broken != R"({"t" 0.5})") {
       CHECK(outcome(log.path).find("`drop_bad_rows`") != std::string::npos);

@@ -25,7 +25,7 @@ enum class Header { none, names, units_in_names, units_below, count };
 enum class Quotes { none, header, words, all, count };
 enum class Front { none, comments, semicolons, preamble, utf16, count };
 
-struct Written {
+struct WrittenDialect {
   char delimiter = ',';
   bool comma = false, crlf = false;
   Stamps stamps = Stamps::seconds;
@@ -57,18 +57,18 @@ std::string in_quotes(const std::string& text) {
   return out + '"';
 }
 
-std::string line_of(const Written& w, const std::vector<std::string>& cells) {
+std::string line_of(const WrittenDialect& w, const std::vector<std::string>& cells) {
   std::string out;
   for (std::size_t c = 0; c < cells.size(); ++c) out += (c == 0 ? "" : std::string(1, w.delimiter)) + cells[c];
   return out + (w.crlf ? "\r\n" : "\n");
 }
 
 // Seconds between rows: a tenth, and a minute where no fraction is written.
-double step_of(const Written& w) {
+double step_of(const WrittenDialect& w) {
   return w.stamps == Stamps::slashes ? 60 : w.stamps == Stamps::date_and_clock ? 1 : 0.1;
 }
 
-std::vector<std::string> stamp_cells(const Written& w, std::size_t row) {
+std::vector<std::string> stamp_cells(const WrittenDialect& w, std::size_t row) {
   const auto clock = [&](std::size_t tenths) {
     return fmt::format("{:02d}:{:02d}:{:02d}", tenths / 36000 % 24, tenths / 600 % 60, tenths / 10 % 60);
   };
@@ -93,20 +93,20 @@ std::vector<std::string> stamp_cells(const Written& w, std::size_t row) {
   }
 }
 
-std::vector<std::string> stamp_names(const Written& w) {
+std::vector<std::string> stamp_names(const WrittenDialect& w) {
   if (w.stamps == Stamps::none) return {};
   if (w.stamps == Stamps::date_and_clock) return {"Datum", "Uhrzeit"};
   if (w.stamps == Stamps::seconds || w.stamps == Stamps::epoch_ms) return {"time"};
   return {"Timestamp"};
 }
 
-std::string number(const Written& w, double value) {
+std::string number(const WrittenDialect& w, double value) {
   std::string text = fmt::format("{:.{}f}", value, w.digits);
   if (w.comma) std::replace(text.begin(), text.end(), '.', ',');
   return text;
 }
 
-std::string words(const Written& w, std::size_t row) {
+std::string words(const WrittenDialect& w, std::size_t row) {
   static constexpr const char* kStates[] = {"OK", "idle", "moving", "OK"};
   switch (w.words) {
     case Words::dense:
@@ -124,14 +124,14 @@ std::string words(const Written& w, std::size_t row) {
   }
 }
 
-void write_front(Written& w) {
+void write_front(WrittenDialect& w) {
   const std::string end = w.crlf ? "\r\n" : "\n";
   if (w.front == Front::comments) w.text += "# Logger 17, made in May; serial 4" + end + "# bench" + end;
   if (w.front == Front::semicolons) w.text += "; Logger 17, made in May" + end + "; bench" + end;
   if (w.front == Front::preamble) w.text += "Logger type 17" + end + "Booting... ok" + end + "IMU found at 0x68" + end;
 }
 
-void write_header(Written& w) {
+void write_header(WrittenDialect& w) {
   if (w.header == Header::none) return;
   std::vector<std::string> names = stamp_names(w), units(names.size(), "");
   const bool brackets = w.header == Header::units_in_names;
@@ -149,7 +149,7 @@ void write_header(Written& w) {
   if (w.header == Header::units_below) w.text += line_of(w, units);
 }
 
-void write_rows(Written& w, std::mt19937_64& random) {
+void write_rows(WrittenDialect& w, std::mt19937_64& random) {
   std::normal_distribution<double> noise(0, 1);
   w.values.assign(w.columns, {});
   for (std::size_t row = 0; row < w.rows; ++row) {
@@ -171,7 +171,7 @@ void write_rows(Written& w, std::mt19937_64& random) {
 }
 
 // What no writer of tables writes, or nobody can tell: cells that are not kept apart.
-bool sensible(const Written& w) {
+bool sensible(const WrittenDialect& w) {
   if (w.delimiter == ',' && w.comma && w.quotes != Quotes::all) return false;
   if (w.delimiter == ' ' && w.header == Header::units_below) return false;
   if (w.delimiter == ' ' && (w.words == Words::sparse || w.words == Words::late)) return w.quotes == Quotes::all;
@@ -189,10 +189,10 @@ std::string utf16(const std::string& text) {
   return out;
 }
 
-Written written(std::mt19937_64& random) {
+WrittenDialect written(std::mt19937_64& random) {
   static constexpr std::size_t kRows[] = {5, 8, 20, 60, 130, 400, 5000};
   for (;;) {
-    Written w;
+    WrittenDialect w;
     w.delimiter = ",;\t "[random() % 4];
     w.comma = random() % 2 == 0;
     w.crlf = random() % 3 == 0;
@@ -216,7 +216,7 @@ Written written(std::mt19937_64& random) {
 }
 
 // "" when all is right, else what is wrong.
-std::string wrong(const Written& w, const Recording& r) {
+std::string wrong(const WrittenDialect& w, const Recording& r) {
   if (r.info.channels.size() != w.columns) return fmt::format("{} channels", r.info.channels.size());
   for (std::size_t c = 0; c < w.columns; ++c) {
     if (r.samples[c] != w.values[c]) return fmt::format("values of channel {}", c);
@@ -238,7 +238,7 @@ TEST_CASE("written dialects: none is read wrong in silence, 98 of 100 are read")
   int read = 0, silent = 0;
   std::string report;
   for (int i = 0; i < kDialects; ++i) {
-    const Written w = written(random);
+    const WrittenDialect w = written(random);
     ReadOptions options;
     if (w.stamps == Stamps::none) options.rate_hz = 10;
     try {

@@ -1,10 +1,11 @@
-// Whether runs have one set of coefficients: T = 2 (sum of the runs' ln L with their own - with common coefficients), the shape and
-// band held. Its distribution is not chi-square (coefficients at zero, bins of one degree of freedom), so it is simulated: runs of
-// the same bins from the common coefficients, energies as the likelihood has them, until ten are as large (Besag & Clifford,
-// Biometrika 78 (1991) 301). Then the run of the largest ratio is named where that is beyond the largest of any by chance, left out,
-// and the rest tested again. Where the rest is alike, the coefficients are its own.
-// Turn-on bias: means of runs scatter by the noise (the Allan deviation of the run's length) and by the spread that is sought
-// (core/random_effects.hpp). What the bias does between runs that were not switched off is in the spread as well.
+// Whether runs have one set of coefficients: T = 2 (sum of the runs' ln L with their own - with common coefficients),
+// the shape and band held. Its distribution is not chi-square (coefficients at zero, bins of one degree of freedom), so
+// it is simulated: runs of the same bins from the common coefficients, energies as the likelihood has them, until ten
+// are as large (Besag & Clifford, Biometrika 78 (1991) 301). Then the run of the largest ratio is named where that is
+// beyond the largest of any by chance, left out, and the rest tested again. Where the rest is alike, the coefficients
+// are its own. Turn-on bias: means of runs scatter by the noise (the Allan deviation of the run's length) and by the
+// spread that is sought (core/random_effects.hpp). What the bias does between runs that were not switched off is in the
+// spread as well.
 #include "libchar/characterize/compare/runs.hpp"
 
 #include <fmt/format.h>
@@ -186,8 +187,8 @@ Mixture at_most(const NoiseFit& fit) {
   return theta;
 }
 
-/// Variance by which flicker moves the mean of a run, beyond its Allan variance there, when runs may lie a year apart: what its
-/// density B²/(2 pi f) holds between 1/year and 1/length.
+/// Variance by which flicker moves the mean of a run, beyond its Allan variance there, when runs may lie a year apart:
+/// what its density B²/(2 pi f) holds between 1/year and 1/length.
 double slower_flicker(const Mixture& theta, double length_s) {
   constexpr double kYear = 3.15576e7;
   return theta[static_cast<std::size_t>(Term::flicker)] / std::numbers::pi * std::max(0.0, std::log(kYear / length_s));
@@ -207,7 +208,8 @@ void find_bias(std::span<const Characterization> runs, PooledChannel& out) {
   }
   if (out.runs.size() < 2 || !(*std::min_element(least.begin(), least.end()) > 0)) return;
   out.bias = random_effects(mean, least);
-  // Slow noise that was not detected may be there, and flicker goes on between the runs: nothing is claimed that they could have done.
+  // Slow noise that was not detected may be there, and flicker goes on between the runs: nothing is claimed that they
+  // could have done.
   const RandomEffects careful = random_effects(mean, most);
   out.bias->spread_ci95.low = std::min(out.bias->spread_ci95.low, careful.spread_ci95.low);
   out.bias->p = careful.p;

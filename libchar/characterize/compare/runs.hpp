@@ -1,6 +1,6 @@
 #pragma once
-// Several runs of one sensor, switched off and on between them: one set of noise coefficients by one likelihood, whether they have
-// one, and how much the bias changes from one turn-on to the next.
+// Several runs of one sensor, switched off and on between them: one set of noise coefficients by one likelihood,
+// whether they have one, and how much the bias changes from one turn-on to the next.
 
 #include <cstdint>
 #include <span>
@@ -57,8 +57,8 @@ struct PooledRuns {
   std::string verdict;                ///< a paragraph for all channels
 };
 
-/// Throws Error(input) where the runs are not of one sensor: channels, units or rates that differ, one file twice, a run without a
-/// fit; Error(usage) for fewer than two.
+/// Throws Error(input) where the runs are not of one sensor: channels, units or rates that differ, one file twice, a
+/// run without a fit; Error(usage) for fewer than two.
 PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& options = {});
 
 /// The same file twice is one recording. Throws Error(input).

@@ -34,7 +34,8 @@ struct ChannelVerification {
   std::vector<TermVerification> terms;
   std::vector<PointVerification> points;
   bool agrees = false;
-  /// the coefficients agree, and no averaging time is further off than `VerifyOptions::tolerable`: true where all agrees
+  /// the coefficients agree, and no averaging time is further off than `VerifyOptions::tolerable`: true where all
+  /// agrees
   bool nearly = false;
   std::vector<std::string> sentences;  ///< the verdict first, then what disagrees
 };

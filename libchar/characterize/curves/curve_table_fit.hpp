@@ -16,7 +16,7 @@ struct CurveTableOptions {
   bool is_allan = true;      ///< deviations over s; else spectral densities over Hz
   Sides sides = Sides::one;  ///< of spectral densities
   std::optional<bool>
-      root;  ///< values are roots (deviation, U/√Hz); none: as the header says, else deviations are and densities are not
+      root;  ///< values are roots (deviation, U/√Hz); unset: by the header, else deviations are, densities are not
   std::optional<double> duration_s;  ///< of the record behind an Allan curve: gives honest intervals
   ReadOptions reading;               ///< its channels, units and rate, and what a table of numbers needs
   FitOptions fit;
@@ -32,9 +32,9 @@ struct CurveTableFit {
   std::vector<ChannelFit> channels;
 };
 
-/// Reads a table whose header names its curves, or one whose first column is the averaging time or the frequency and whose others
-/// are curves, and fits each. Throws as read_log and fit_curve, Error(input) for fewer than two columns, Error(usage) where no curve has
-/// the names wanted.
+/// Reads a table whose header names its curves, or one whose first column is the averaging time or the frequency and
+/// whose others are curves, and fits each. Throws as read_log and fit_curve, Error(input) for fewer than two columns,
+/// Error(usage) where no curve has the names wanted.
 CurveTableFit fit_curve_table(const std::string& path, const CurveTableOptions& options = {},
                               Progress& progress = no_progress());
 

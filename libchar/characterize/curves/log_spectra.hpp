@@ -30,7 +30,8 @@ struct LogCrossSpectrum {
   CrossSpectrum cross;
 };
 
-/// Of the channels `first` and `second`, by name or place (c0 …). Reads these two only. Throws as read_recording and cross_spectrum.
+/// Of the channels `first` and `second`, by name or place (c0 …). Reads these two only. Throws as read_recording and
+/// cross_spectrum.
 LogCrossSpectrum log_cross_spectrum(const std::string& path, const std::string& first, const std::string& second,
                                     const CharacterizeOptions& options, Progress& progress = no_progress());
 
@@ -40,7 +41,8 @@ struct LogSpectrograms {
   std::vector<Spectrogram> spectrograms;  ///< a channel each
 };
 
-/// With segments of `options.spectrum.segment` samples or `options.segment_s`. Reads the log whole. Throws as read_recording and spectrogram.
+/// With segments of `options.spectrum.segment` samples or `options.segment_s`. Reads the log whole. Throws as
+/// read_recording and spectrogram.
 LogSpectrograms log_spectrograms(const std::string& path, const CharacterizeOptions& options,
                                  Progress& progress = no_progress());
 

@@ -37,11 +37,12 @@ std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, d
   return std::sqrt(variance);
 }
 
-// A variance that is a sum of estimates V_i with intervals l_i..u_i has the interval (MOVER: Zou and Donner, Statistics in Medicine 27,
+// A variance that is a sum of estimates V_i with intervals l_i..u_i has the interval (MOVER: Zou and Donner, Statistics
+// in Medicine 27,
 // 2008)
 //   V - sqrt(sum (V_i - l_i)²) .. V + sqrt(sum (u_i - V_i)²),
-// wide enough where estimates are negatively correlated, as those of flicker and walk are. A shape multiplies it as a whole; what
-// differs between stretches is added on the logarithm.
+// wide enough where estimates are negatively correlated, as those of flicker and walk are. A shape multiplies it as a
+// whole; what differs between stretches is added on the logarithm.
 std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, double m, double dt_s) {
   const auto deviation = model_deviation(fit, type, m, dt_s);
   if (!deviation) return std::nullopt;

@@ -1,6 +1,6 @@
 #pragma once
-// What a set of output files still has to do once all of it is on disk: written down before the first file gets its name, so that an
-// interrupted run can be finished by the next one.
+// What a set of output files still has to do once all of it is on disk: written down before the first file gets its
+// name, so that an interrupted run can be finished by the next one.
 
 #include <cstdint>
 #include <filesystem>
@@ -34,9 +34,9 @@ JournalFile journal_file(const std::filesystem::path& folder, const OutputJourna
 /// A file as it lies there now. Throws Error(output) where it does not.
 WaitingFile waiting_file(const std::filesystem::path& folder, const std::string& temporary, const std::string& name);
 
-/// Does what was written down and removes the journal. What is done already is passed over, so that it can be done again after a kill.
-/// Throws Error(output) where a name cannot be given, or where a file is under neither of its names: then the
-/// journal stays, unless nothing has been done yet.
+/// Does what was written down and removes the journal. What is done already is passed over, so that it can be done
+/// again after a kill. Throws Error(output) where a name cannot be given, or where a file is under neither of its
+/// names: then the journal stays, unless nothing has been done yet.
 void run_journal(const std::filesystem::path& folder, const OutputJournal& journal);
 
 /// Does what the folder's journal says, as `run_journal`; nothing where there is none.

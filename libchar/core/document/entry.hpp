@@ -1,5 +1,6 @@
 #pragma once
-// What a document says, before it is written: keys with their values, in order. JSON and YAML come from the same entries.
+// What a document says, before it is written: keys with their values, in order. JSON and YAML come from the same
+// entries.
 
 #include <cstdint>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
-// JSON at the borders: nlohmann's type, with the guards it lacks. Whoever builds a document includes <nlohmann/json.hpp>.
+// JSON at the borders: nlohmann's type, with the guards it lacks. Whoever builds a document includes
+// <nlohmann/json.hpp>.
 
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
@@ -12,8 +13,8 @@ namespace libchar {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses one JSON document strictly: no duplicate keys, no NaN or Infinity, numbers that fit a double, depth <= 64, valid
-/// UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
+/// Parses one JSON document strictly: no duplicate keys, no NaN or Infinity, numbers that fit a double, depth <= 64,
+/// valid UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
 
 namespace detail {
@@ -35,8 +36,8 @@ std::string json_text(std::string_view text);
 /// The document with every string that is not UTF-8 escaped by `printable`.
 Json with_valid_text(Json document);
 
-/// The document as text, doubles in shortest round-trip form, two-space indent, newline at the end. Strings that are not
-/// UTF-8 are escaped by `printable`. A NaN or infinity in the document is a programmer's mistake and throws.
+/// The document as text, doubles in shortest round-trip form, two-space indent, newline at the end. Strings that are
+/// not UTF-8 are escaped by `printable`. A NaN or infinity in the document is a programmer's mistake and throws.
 std::string dump_json(const Json& document);
 
 // Where two documents differ, and by how many digits their numbers agree.

@@ -32,18 +32,18 @@ struct ResultCheck {
   bool holds() const;  ///< nothing changed, nothing missing
 };
 
-/// One of them, which may be larger than a document that people write; discarded if it is not JSON. Throws Error(input) where it cannot be
-/// read.
+/// One of them, which may be larger than a document that people write; discarded if it is not JSON. Throws Error(input)
+/// where it cannot be read.
 Json result_document(const std::string& path);
 
 namespace detail {
-/// All documents in a folder that name files of theirs, or the one document. Throws Error(input) where there is none, or one cannot be
-/// read, and Error(output) where a run was interrupted there.
+/// All documents in a folder that name files of theirs, or the one document. Throws Error(input) where there is none,
+/// or one cannot be read, and Error(output) where a run was interrupted there.
 std::vector<std::string> result_documents(const std::string& folder_or_document);
 }  // namespace detail
 
-/// The files of each of the `detail::result_documents`. Paths of inputs are those of the document, below `inputs_in` where they are relative
-/// ("": as they are).
+/// The files of each of the `detail::result_documents`. Paths of inputs are those of the document, below `inputs_in`
+/// where they are relative ("": as they are).
 std::vector<ResultCheck> check_results(const std::string& folder_or_document, const std::string& inputs_in = "");
 
 }  // namespace libchar

@@ -25,8 +25,9 @@ bool is_beneath(const std::filesystem::path& file, const std::filesystem::path& 
 bool is_of_the_kernel(const std::filesystem::path& file);
 }  // namespace detail
 
-/// Of a folder of tables these in the order of their names; else the file itself and, of a metadata.yaml of rosbag2, the parts behind it in their order, all of its folder. Throws Error(input) for a
-/// part that is not there and a list that cannot be read.
+/// Of a folder of tables these in the order of their names; else the file itself and, of a metadata.yaml of rosbag2,
+/// the parts behind it in their order, all of its folder. Throws Error(input) for a part that is not there and a list
+/// that cannot be read.
 std::vector<std::string> files_of_log(const std::string& file);
 
 /// What to call a log in the names of files: its name without suffix, of a recording of rosbag2 that of its folder.

@@ -148,7 +148,8 @@ void give_names(const std::vector<WholeFile*>& files, const std::vector<std::str
   hand_over();
 }
 
-/// Files of one folder. Devices and pipes are written through and need no journal: nor may they stand where one can be written.
+/// Files of one folder. Devices and pipes are written through and need no journal: nor may they stand where one can be
+/// written.
 void commit_set(const std::vector<WholeFile*>& files, const std::filesystem::path& folder) {
   const auto special = [](const WholeFile* file) { return file->special(); };
   if (files.size() == 1 || std::all_of(files.begin(), files.end(), special)) {
@@ -272,7 +273,8 @@ bool plain_ascii(std::uint32_t c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
 }
 
-// What beyond ASCII is no letter, digit or sign with a shape of its own: controls, blanks, invisible and private characters.
+// What beyond ASCII is no letter, digit or sign with a shape of its own: controls, blanks, invisible and private
+// characters.
 bool unusual(std::uint32_t c) {
   return c <= 0xA0 || c == 0xAD || c == 0x061C || c == 0x1680 || c == 0x180E || (c >= 0x2000 && c <= 0x206F) ||
          c == 0x3000 || (c >= 0xE000 && c <= 0xF8FF) || c == 0xFEFF || (c >= 0xFFF0 && c <= 0xFFFF) || c >= 0xE0000;

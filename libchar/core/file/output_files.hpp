@@ -20,23 +20,23 @@ struct OutputFile {
 void check_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
                    const std::vector<std::string>& inputs, bool force);
 
-/// The same where nothing is made yet: files of a folder that does not exist cannot be in the way. For results whose other names are known
-/// only once they are there.
+/// The same where nothing is made yet: files of a folder that does not exist cannot be in the way. For results whose
+/// other names are known only once they are there.
 void foresee_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
                      const std::vector<std::string>& inputs, bool force);
 
-/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be done is
-/// written down first (a journal in the folder), so that the next run finishes what a killed one began, and the folder is locked
-/// meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names as its files ("files") and
-/// the new one does not is removed. Throws Error(output) when one exists and `force` is false, is one of `inputs`, or another run
-/// keeps writing there. `streamed` are files of the set that were written piece by piece, in the same folder. Returns the names
-/// that were removed.
+/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be
+/// done is written down first (a journal in the folder), so that the next run finishes what a killed one began, and the
+/// folder is locked meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names
+/// as its files ("files") and the new one does not is removed. Throws Error(output) when one exists and `force` is
+/// false, is one of `inputs`, or another run keeps writing there. `streamed` are files of the set that were written
+/// piece by piece, in the same folder. Returns the names that were removed.
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, const std::filesystem::path& folder,
                                        const std::vector<std::string>& inputs, bool force,
                                        const std::vector<WholeFile*>& streamed = {});
 
-/// Gives files that were written piece by piece their names together, as `write_outputs` does; those of another folder than the
-/// first file's follow as a set of their own. Throws Error(output).
+/// Gives files that were written piece by piece their names together, as `write_outputs` does; those of another folder
+/// than the first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
 /// An input is never overwritten: throws Error(output) where the output is the input or a part of it: a file of
@@ -52,8 +52,8 @@ namespace detail {
 WrittenFile as_written(const OutputFile& file);
 }
 
-/// Into a document among them: "files", their names in the folder (what a later run may remove), and "files_sha256", the digest of each
-/// but the documents themselves (what `check_results` looks at).
+/// Into a document among them: "files", their names in the folder (what a later run may remove), and "files_sha256",
+/// the digest of each but the documents themselves (what `check_results` looks at).
 void name_files(Json& document, const std::vector<OutputFile>& outputs);
 void name_files(Json& document, const std::vector<WrittenFile>& outputs);
 
@@ -63,18 +63,19 @@ namespace detail {
 std::vector<std::string> named_files(const std::string& document_file);
 }
 
-/// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than others. Of a
-/// file, where it is one of them.
+/// Throws Error(output) where a run was interrupted while the folder's files got their names: some may be older than
+/// others. Of a file, where it is one of them.
 void refuse_interrupted(const std::filesystem::path& folder_or_file);
 
 // File names from names that a log brought along.
 
-/// A file name for a channel: letters of any script, digits, '.', '_' and '-' are kept; blanks, other ASCII, controls and bytes that are
-/// not UTF-8 become '_'; never empty, never starting with '.', at most 100 bytes of whole characters.
+/// A file name for a channel: letters of any script, digits, '.', '_' and '-' are kept; blanks, other ASCII, controls
+/// and bytes that are not UTF-8 become '_'; never empty, never starting with '.', at most 100 bytes of whole
+/// characters.
 std::string file_name_for(std::string_view channel);
 
-/// The same, with _2, _3… behind it when an earlier name differs by nothing or by capitals only (some file systems do not tell
-/// those apart). `taken` remembers the names given, in small letters.
+/// The same, with _2, _3… behind it when an earlier name differs by nothing or by capitals only (some file systems do
+/// not tell those apart). `taken` remembers the names given, in small letters.
 std::string unused_file_name_for(std::string_view channel, std::set<std::string>& taken);
 
 }  // namespace libchar

@@ -1,7 +1,7 @@
 #pragma once
-// Output files are whole or absent: written under no name (or a temporary one) in the target's folder, flushed to disk and
-// given their name only by commit(). Until then they are locked: no other run, here or on another machine,
-// takes them for litter.
+// Output files are whole or absent: written under no name (or a temporary one) in the target's folder, flushed to disk
+// and given their name only by commit(). Until then they are locked: no other run, here or on another machine, takes
+// them for litter.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,9 +12,10 @@ namespace libchar {
 
 class WholeFile {
  public:
-  /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false or the file is read-only, or when the folder
-  /// cannot be written. A file that is overwritten hands on its owner, group and rights. A device, a pipe or an open file of this
-  /// process (/dev/stdout) is written through as bytes come: it can be neither replaced nor kept back.
+  /// Opens for writing. Throws Error(output) when `path` exists and `overwrite` is false or the file is read-only, or
+  /// when the folder cannot be written. A file that is overwritten hands on its owner, group and rights. A device, a
+  /// pipe or an open file of this process (/dev/stdout) is written through as bytes come: it can be neither replaced
+  /// nor kept back.
   explicit WholeFile(std::string path, bool overwrite = false);
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -24,8 +25,8 @@ class WholeFile {
 
   void write(std::string_view bytes);
   void write(const void* data, std::size_t size) { write({static_cast<const char*>(data), size}); }
-  /// Replaces bytes at `offset` that were written before (for headers that hold a count). Throws Error(output) where more was
-  /// written than is kept back and the file is a pipe.
+  /// Replaces bytes at `offset` that were written before (for headers that hold a count). Throws Error(output) where
+  /// more was written than is kept back and the file is a pipe.
   void rewrite(std::size_t offset, std::string_view bytes);
   /// All bytes get to the disk.
   void flush_to_disk();
@@ -60,7 +61,8 @@ class WholeFile {
   bool flushed_ = false, on_disk_ = false, overwrite_ = false, special_ = false;
 };
 
-/// The path leads to a device, a pipe or an open file of this process (/dev/stdout): its folder is not a place for files.
+/// The path leads to a device, a pipe or an open file of this process (/dev/stdout): its folder is not a place for
+/// files.
 bool writes_through(const std::string& path);
 
 /// Throws what the constructor of WholeFile would, before any work is done for the file; leaves nothing behind.

@@ -52,7 +52,8 @@ PivotedSolution pivoted_least_squares(const MatrixXd& a, const VectorXd& b, std:
     if (!std::isfinite(s)) s = 1;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(a * scale.asDiagonal());
   if (threshold) qr.setThreshold(*threshold);
-  // By hand: Eigen's solve() goes by pivots that are not exactly zero, and what rounding leaves of a column twice is none of these.
+  // By hand: Eigen's solve() goes by pivots that are not exactly zero, and what rounding leaves of a column twice is
+  // none of these.
   const Eigen::Index rank = qr.rank();
   const VectorXd rotated = qr.householderQ().setLength(rank).adjoint() * b;
   const VectorXd solved =

@@ -30,7 +30,8 @@ Eigen::MatrixXd column_basis(const Eigen::MatrixXd& a);
 
 /// argmin |A x - b| for each column b by Householder QR; A of full column rank.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-/// argmin |A x - b| by QR of columns scaled to length one, with pivoting; columns that say nothing beyond the others get zero.
+/// argmin |A x - b| by QR of columns scaled to length one, with pivoting; columns that say nothing beyond the others
+/// get zero.
 struct PivotedSolution {
   Eigen::VectorXd x;
   Eigen::Index rank = 0;

@@ -121,7 +121,8 @@ double chi_square_density(double x, double dof) {
   return boost::math::gamma_p_derivative(dof / 2, x / 2, Policy()) / 2;
 }
 
-// Both by their recurrences up to an argument of ten, and from there by their asymptotic series (M. Abramowitz and I. A. Stegun, 6.3.18 and
+// Both by their recurrences up to an argument of ten, and from there by their asymptotic series (M. Abramowitz and I.
+// A. Stegun, 6.3.18 and
 // 6.4.12).
 LogMoments chi_square_log_moments(double dof) {
   double x = dof / 2, psi = -std::log(x), derivative = 0;

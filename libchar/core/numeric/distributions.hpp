@@ -23,7 +23,8 @@ double binomial_tail(double k, double trials, double each);
 
 // The chi-square distribution at fractional and huge degrees of freedom.
 
-/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability < 1; relative error 10⁻¹².
+/// Quantile of chi-square with `dof` > 0 (fractional allowed) degrees of freedom, 0 < probability < 1; relative error
+/// 10⁻¹².
 double chi_square_quantile(double probability, double dof);
 /// The value exceeded with probability `tail`: the same quantile with no digits lost in 1 - tail.
 double chi_square_upper_quantile(double tail, double dof);
@@ -34,8 +35,8 @@ double chi_square_tail(double x, double dof);
 /// Probability density at x.
 double chi_square_density(double x, double dof);
 
-/// Mean and variance of ln(X / dof): psi(dof/2) - ln(dof/2) and psi'(dof/2). For few degrees of freedom the logarithm of a mean of squares
-/// is far below that of its expectation, and scatters by more than 2/dof.
+/// Mean and variance of ln(X / dof): psi(dof/2) - ln(dof/2) and psi'(dof/2). For few degrees of freedom the logarithm
+/// of a mean of squares is far below that of its expectation, and scatters by more than 2/dof.
 struct LogMoments {
   double mean = 0, variance = 0;
 };

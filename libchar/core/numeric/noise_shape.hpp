@@ -23,8 +23,8 @@ struct NoiseShape {
 template <>
 inline constexpr auto enum_table<NoiseShape::Kind> = enum_words<NoiseShape::Kind, "none boxcar bartlett measured">;
 
-/// Power gain at a frequency, 0 < f <= rate/2. boxcar: (sin(pi f m dt) / (m sin(pi f dt)))²; bartlett: its square; measured: that
-/// of the nearest point in ln f, 1 from a sixteenth of an octave below the first.
+/// Power gain at a frequency, 0 < f <= rate/2. boxcar: (sin(pi f m dt) / (m sin(pi f dt)))²; bartlett: its square;
+/// measured: that of the nearest point in ln f, 1 from a sixteenth of an octave below the first.
 double shape_ratio(const NoiseShape& shape, double frequency_hz, double rate_hz);
 
 }  // namespace libchar

@@ -25,7 +25,8 @@ struct PresentMean {
   std::size_t count = 0;  ///< of finite ones
 };
 
-/// Mean of the finite ones, about the first of them: an offset costs no digits. NaN where there is none; at least one sample.
+/// Mean of the finite ones, about the first of them: an offset costs no digits. NaN where there is none; at least one
+/// sample.
 PresentMean present_mean(std::span<const double> samples);
 /// The mean alone.
 double mean_present(std::span<const double> samples);

@@ -1,13 +1,15 @@
-// Q(s²) = sum_i (y_i - mu(s²))² / (v_i + s²), mu the mean with weights w_i = 1 / (v_i + s²), is chi-square with k - 1 degrees of
-// freedom at the true s² and falls as s² grows. So Q(s²) = k - 1 gives the spread (Paule & Mandel, J. Res. NBS 87 (1982) 377), and
-// its 2.5 and 97.5 % quantiles an exact interval (Viechtbauer, Stat. Med. 26 (2007) 37). Values that lie closer together than their
-// uncertainties let expect would give an upper limit of nearly nothing: it is not made less than it would be at the median of Q
-// (power-constrained limit, Cowan et al., arXiv:1105.3166). Interval of the mean: Hartung & Knapp, Stat. Med. 20 (2001) 3875, not
-// narrower than by the weights alone (Röver et al., BMC Med. Res. Methodol. 15 (2015) 99). Outliers by the generalised extreme
-// deviate (Rosner, Technometrics 25 (1983) 165), with deleted residuals; its
-// tests in a row take half of the probability each (measured: at most .9 % of 2000 lots of 4 to 40 for 1 %). That costs the cube of the
-// count: of many values, those far off are taken out together, beginning with those far from the median, until who is out and who is in
-// agree with what the values inside let expect; a value's own part in mean and spread is taken out to first order there.
+// Q(s²) = sum_i (y_i - mu(s²))² / (v_i + s²), mu the mean with weights w_i = 1 / (v_i + s²), is chi-square with k - 1
+// degrees of freedom at the true s² and falls as s² grows. So Q(s²) = k - 1 gives the spread (Paule & Mandel, J. Res.
+// NBS 87 (1982) 377), and its 2.5 and 97.5 % quantiles an exact interval (Viechtbauer, Stat. Med. 26 (2007) 37). Values
+// that lie closer together than their uncertainties let expect would give an upper limit of nearly nothing: it is not
+// made less than it would be at the median of Q (power-constrained limit, Cowan et al., arXiv:1105.3166). Interval of
+// the mean: Hartung & Knapp, Stat. Med. 20 (2001) 3875, not narrower than by the weights alone (Röver et al., BMC Med.
+// Res. Methodol. 15 (2015) 99). Outliers by the generalised extreme deviate (Rosner, Technometrics 25 (1983) 165), with
+// deleted residuals; its
+// tests in a row take half of the probability each (measured: at most .9 % of 2000 lots of 4 to 40 for 1 %). That costs
+// the cube of the count: of many values, those far off are taken out together, beginning with those far from the
+// median, until who is out and who is in agree with what the values inside let expect; a value's own part in mean and
+// spread is taken out to first order there.
 #include "libchar/core/numeric/random_effects.hpp"
 
 #include "libchar/core/not_known.hpp"
@@ -104,7 +106,8 @@ std::vector<double> deviations(std::span<const double> y, std::span<const double
       continue;
     }
     const double share = weight / at.weights, own = weight * off * off / (1 - share);
-    // Q of the others is less by `own` and wants to be less by 1: the spread that does that. For equal uncertainties it is exact.
+    // Q of the others is less by `own` and wants to be less by 1: the spread that does that. For equal uncertainties it
+    // is exact.
     const double less = slope > 0 ? std::max(0.0, square + (1 - own) / slope * (count - 1) / (count - 2)) : square;
     out[i] = off / (1 - share) / std::sqrt(v[i] + less + (v[i] + less) / (1 / weight) / (at.weights * (1 - share)));
   }

@@ -32,9 +32,10 @@ struct Outlier {
 
 inline constexpr std::size_t kFewestForOutliers = 4;
 
-/// Values that the others do not let expect: each against the mean and spread of the others (deleted residual, Student's t), the
-/// worst taken out first, then the worst of the rest, up to a third of them; those up to the last with p < `probability`. A p that was
-/// hidden by another outlier is given as `probability`. Nobody, of fewer than kFewestForOutliers values.
+/// Values that the others do not let expect: each against the mean and spread of the others (deleted residual,
+/// Student's t), the worst taken out first, then the worst of the rest, up to a third of them; those up to the last
+/// with p < `probability`. A p that was hidden by another outlier is given as `probability`. Nobody, of fewer than
+/// kFewestForOutliers values.
 std::vector<Outlier> find_outliers(std::span<const double> value, std::span<const double> variance,
                                    double probability = 0.01);
 
@@ -71,8 +72,9 @@ inline Weighted weighted(std::span<const double> y, std::span<const double> v, d
   return out;
 }
 
-/// x >= 0 at which a falling function takes the value; 0 when it is below it there already. Bracketed from `scale` on in steps of 4, then
-/// false position that halves the weight of an end that stays (Illinois: Dowell & Jarratt, BIT 11 (1971) 168), bisection where that stalls.
+/// x >= 0 at which a falling function takes the value; 0 when it is below it there already. Bracketed from `scale` on
+/// in steps of 4, then false position that halves the weight of an end that stays (Illinois: Dowell & Jarratt, BIT 11
+/// (1971) 168), bisection where that stalls.
 template <class Function>
 double falls_to(Function&& f, double value, double scale) {
   double low = 0, above = f(0.0) - value, high = scale, below = f(high) - value;

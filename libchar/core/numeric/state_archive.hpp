@@ -1,10 +1,11 @@
 #pragma once
-// Partial states as bytes: what one machine has found of its part of a log, for another to go on from. Every number comes back with
-// the bits it had, on any machine, and changed bytes are detected, never read:
+// Partial states as bytes: what one machine has found of its part of a log, for another to go on from. Every number
+// comes back with the bits it had, on any machine, and changed bytes are detected, never read:
 //
 //   magic (8 bytes) | version (4) | length of the content (8) | kind (text) and content | SHA-256 of all before it (32)
 //
-// Integers and doubles are little-endian, a long double is its 64-bit mantissa and exponent, a text or a list has its length in front.
+// Integers and doubles are little-endian, a long double is its 64-bit mantissa and exponent, a text or a list has its
+// length in front.
 //
 // A layout is said once: `at(sums.samples, sums.power)` writes members where `at` is a writer, and fills them where
 // it is a reader.
@@ -72,7 +73,8 @@ class StateWriter {
 
 class StateReader {
  public:
-  /// `name`: of the state, for messages. The bytes must stay. Throws Error(input) unless they are whole, of this kind and version.
+  /// `name`: of the state, for messages. The bytes must stay. Throws Error(input) unless they are whole, of this kind
+  /// and version.
   StateReader(std::string_view bytes, std::string name, std::string_view kind, std::uint32_t version);
 
   std::uint64_t number();

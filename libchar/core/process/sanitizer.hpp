@@ -1,5 +1,6 @@
 #pragma once
-// Is this compiled with the address sanitizer, which brings a heap of its own? gcc says so by a macro, clang by a feature.
+// Is this compiled with the address sanitizer, which brings a heap of its own? gcc says so by a macro, clang by a
+// feature.
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

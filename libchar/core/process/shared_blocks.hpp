@@ -1,7 +1,7 @@
 #pragma once
-// Blocks of one stream of samples that two stages want transformed, and one of them transforms: Welch's spectrum goes by
-// halves of its segments, the fit wants the squared cosine transforms of just such blocks, and those cost next to nothing
-// in parallel with a Fourier transform of the same samples. The two do not know each other:
+// Blocks of one stream of samples that two stages want transformed, and one of them transforms: Welch's spectrum goes
+// by halves of its segments, the fit wants the squared cosine transforms of just such blocks, and those cost next to
+// nothing in parallel with a Fourier transform of the same samples. The two do not know each other:
 //
 //   SharedBlocks blocks(length, taker);             // taker: the stage that only wants the squares
 //   if (blocks.offer(samples, whole)) …             // the stage that transforms, block after block: true asks for the
@@ -18,8 +18,8 @@ namespace libchar {
 /// A stage that gets every sample of a stream once and in order, some of them as blocks that somebody else transforms.
 class BlockTaker {
  public:
-  /// A whole block, without missing samples, whose squared orthonormal DCT-II somebody else adds up: true. False, and nothing
-  /// taken, when another block is under way: then it has to be pushed.
+  /// A whole block, without missing samples, whose squared orthonormal DCT-II somebody else adds up: true. False, and
+  /// nothing taken, when another block is under way: then it has to be pushed.
   virtual bool take_block(std::span<const double> samples) = 0;
   /// Samples outside of every block; missing ones are NaN.
   virtual void push(std::span<const double> samples) = 0;
@@ -36,7 +36,8 @@ class SharedBlocks {
 
   std::uint64_t length() const { return length_; }
 
-  /// The next `length` samples, in which none is missing when they are `whole`. True: their squared transform is wanted.
+  /// The next `length` samples, in which none is missing when they are `whole`. True: their squared transform is
+  /// wanted.
   bool offer(std::span<const double> samples, bool whole) {
     if (whole && taker_->take_block(samples)) return true;
     taker_->push(samples);

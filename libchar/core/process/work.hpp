@@ -1,6 +1,6 @@
 #pragma once
-// How much was done, in counts that are the same on every machine and for any number of threads: what shows that nothing is computed
-// that nobody reads.
+// How much was done, in counts that are the same on every machine and for any number of threads: what shows that
+// nothing is computed that nobody reads.
 
 #include <array>
 #include <cstddef>

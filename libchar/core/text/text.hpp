@@ -16,8 +16,8 @@ std::size_t first_invalid_utf8(std::string_view text);
 /// Each byte of ISO 8859-1 as the character that it is.
 std::string latin1_to_utf8(std::string_view text);
 
-/// Text of Windows-1252, which is ISO 8859-1 with more quotes, dashes and the euro sign; nothing when a byte means none of its
-/// characters.
+/// Text of Windows-1252, which is ISO 8859-1 with more quotes, dashes and the euro sign; nothing when a byte means none
+/// of its characters.
 std::optional<std::string> windows1252_to_utf8(std::string_view text);
 
 /// Length of the valid UTF-8 sequence that starts at text[i], 0 when there is none; `code` receives the code point.

@@ -18,12 +18,42 @@
 #include <numbers>
 
 #include "libchar/core/numeric/whole.hpp"
+#include "libchar/core/process/late_library.hpp"
 #include "libchar/core/process/version.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 
 namespace libchar {
 namespace {
+
+#ifdef LIBCHAR_LATE_CAIRO
+detail::LateLibrary cairo(LIBCHAR_LATE_CAIRO), fontconfig(LIBCHAR_LATE_FONTCONFIG);
+#define L(name) LIBCHAR_LATE(cairo, name);
+// clang-format off
+L(cairo_arc) L(cairo_clip) L(cairo_close_path) L(cairo_create) L(cairo_destroy) L(cairo_fill)
+L(cairo_font_face_destroy) L(cairo_font_options_create) L(cairo_font_options_destroy)
+L(cairo_font_options_set_antialias) L(cairo_font_options_set_hint_metrics) L(cairo_font_options_set_hint_style)
+L(cairo_ft_font_face_create_for_pattern) L(cairo_image_surface_create) L(cairo_line_to) L(cairo_move_to)
+L(cairo_new_path) L(cairo_new_sub_path) L(cairo_paint) L(cairo_pdf_surface_create_for_stream)
+L(cairo_pdf_surface_set_metadata) L(cairo_rectangle) L(cairo_restore) L(cairo_rotate) L(cairo_save) L(cairo_scale)
+L(cairo_set_dash) L(cairo_set_font_face) L(cairo_set_font_options) L(cairo_set_font_size) L(cairo_set_line_join)
+L(cairo_set_line_width) L(cairo_set_source_rgba) L(cairo_show_page) L(cairo_show_text) L(cairo_status)
+L(cairo_status_to_string) L(cairo_stroke) L(cairo_surface_destroy) L(cairo_surface_finish) L(cairo_surface_status)
+L(cairo_surface_write_to_png_stream) L(cairo_text_extents) L(cairo_text_path) L(cairo_translate)
+// clang-format on
+#undef L
+#define L(name) LIBCHAR_LATE(fontconfig, name);
+    // clang-format off
+L(FcConfigSubstitute) L(FcDefaultSubstitute) L(FcFontMatch) L(FcPatternAddBool) L(FcPatternAddInteger)
+L(FcPatternAddString) L(FcPatternCreate) L(FcPatternDestroy) L(FcPatternGetString)
+// clang-format on
+#undef L
+            bool is_here() {
+  return cairo.is_here() && fontconfig.is_here();
+}
+#else
+bool is_here() { return true; }
+#endif
 
 struct SurfaceCloser {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -271,7 +301,7 @@ void add_resolution(std::string& png, double dpi) {
 
 }  // namespace
 
-bool has_cairo() { return true; }
+bool has_cairo() { return is_here(); }
 
 std::string pdf_of(const Drawing& drawing, Findings& warnings) {
   const Faces faces = faces_of(warnings);

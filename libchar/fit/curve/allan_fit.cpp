@@ -2,8 +2,8 @@
 // model's exact covariance:
 //   theta <- argmin_{theta >= 0} (a - A theta)' C(theta_old)^-1 (a - A theta),  repeated until the
 //   fitted curve stands still
-// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing: each
-// round that moves no less than the one before halves the step.
+// (generalised least squares; docs/theory/fit.md). There is no objective behind the reweighting, so that it may swing:
+// each round that moves no less than the one before halves the step.
 #include "libchar/fit/curve/allan_fit.hpp"
 
 #include <fmt/format.h>

@@ -8,7 +8,8 @@
 
 namespace libchar {
 
-/// What a record of this length can give at best, before any fit, for assumed coefficients: relative sd per term (nothing if absent).
+/// What a record of this length can give at best, before any fit, for assumed coefficients: relative sd per term
+/// (nothing if absent).
 std::array<std::optional<double>, kTerms> cramer_rao(const Mixture& theta, double rate_hz, double samples,
                                                      const TermSet& fitted);
 

@@ -7,12 +7,13 @@
 //   neither                 the scatter about the fit says it: equal relative errors, of a spectrum a power of
 //                           the frequency (detail/curve/curve_likelihood.hpp); neighbouring residuals that go
 //                           the same way count as fewer points, n (1-r)/(1+r).
-// Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in the logarithm of
-// the abscissa: means of ln x and ln y by their weights, with the weight of all of them.
-// Where stated uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
-// out, point by point, until the terms describe the rest: a sensor's filter shows there, and nearly all of the weight is there. Where
-// no half of the points is described, nothing is borne out: status misfit, and the scatter takes the place of the uncertainties, in
-// the decisions (differences of chi-square over chi-square a degree of freedom) as in the intervals.
+// Of a curve of more than 512 points neighbours are put together first, in at most that many groups that are even in
+// the logarithm of the abscissa: means of ln x and ln y by their weights, with the weight of all of them. Where stated
+// uncertainties (or a record's length) are contradicted by the scatter about the fit, the fast end of the curve is left
+// out, point by point, until the terms describe the rest: a sensor's filter shows there, and nearly all of the weight
+// is there. Where no half of the points is described, nothing is borne out: status misfit, and the scatter takes the
+// place of the uncertainties, in the decisions (differences of chi-square over chi-square a degree of freedom) as in
+// the intervals.
 #include "libchar/fit/curve/curve_fit.hpp"
 
 #include <fmt/format.h>
@@ -482,8 +483,8 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
   if (curve.x.size() > kMostPoints && curve.group.empty()) return fit_in_range(grouped(curve), options);
   const TermSet offered = offered_to(curve, options);
   NoiseFit whole = fit_points(curve, offered, options, 1);
-  // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length alone does not
-  // give the covariance of a part of its curve.
+  // A scatter that is estimated from the points themselves contradicts nothing. Without the rate, the record's length
+  // alone does not give the covariance of a part of its curve.
   const bool judged = !curve.relative_sd.empty() || (curve.duration_s && curve.is_allan);
   const bool divisible = !curve.relative_sd.empty() || curve.rate_hz;
   if (!judged || whole.goodness.p >= kDescribed) return whole;

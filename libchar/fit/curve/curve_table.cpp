@@ -132,7 +132,8 @@ class Reader {
         .got(cell.text);
   }
 
-  // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for chi-square.
+  // Of the deviation (root), to first order half of the relative sd of its square, which is sqrt(2 / edf) for
+  // chi-square.
   std::optional<double> relative_sd(const TextRow& row, double y, bool root) const {
     const auto cell = [&](const std::optional<std::size_t>& column) {
       return column ? number_in(row.cells[*column], decimal_) : std::nullopt;

@@ -13,7 +13,8 @@ namespace libchar {
 struct NamedCurve {
   std::string name, unit;
   DigitisedCurve curve;
-  /// Of our own tables, for those who draw them; as long as the curve, or empty where there is no such column. NaN: an empty cell.
+  /// Of our own tables, for those who draw them; as long as the curve, or empty where there is no such column. NaN: an
+  /// empty cell.
   std::vector<double> low68, high68, low95, high95, model;
   std::string kind;        ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
   std::string value_unit;  ///< in the column `unit`, unchanged
@@ -26,11 +27,12 @@ struct CurveTable {
   std::string sha256;
 };
 
-/// Curves of a table with a header that names them: averaging time (tau, tau_s, x) or frequency (frequency_hz, frequency, f, x),
-/// values (deviation, adev, oadev, sigma, value; avar, variance; psd), and if present: channel, unit, curve, and what says
-/// how well a value is known, in this order: edf or dof; low68 and high68; rel_err or relative_error (a fraction, or percent when
-/// its header says %; one standard deviation of the value); error, sd or uncertainty (in the unit of the value). One curve for each name in the channel column, in the order of their first rows. Nothing when the header does not
-/// name an abscissa and a value: such a file is a plain table of numbers.
+/// Curves of a table with a header that names them: averaging time (tau, tau_s, x) or frequency (frequency_hz,
+/// frequency, f, x), values (deviation, adev, oadev, sigma, value; avar, variance; psd), and if present: channel, unit,
+/// curve, and what says how well a value is known, in this order: edf or dof; low68 and high68; rel_err or
+/// relative_error (a fraction, or percent when its header says %; one standard deviation of the value); error, sd or
+/// uncertainty (in the unit of the value). One curve for each name in the channel column, in the order of their first
+/// rows. Nothing when the header does not name an abscissa and a value: such a file is a plain table of numbers.
 /// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
 
@@ -39,8 +41,8 @@ namespace detail {
 double abscissa_factor(const std::string& unit, bool is_allan);
 }  // namespace detail
 
-/// "allan", "psd" or "allan or psd" where the header of a file can only be that of such a table ("x" and "value" may be a log's); empty
-/// otherwise, and for what is not a regular file. Throws nothing about the file.
+/// "allan", "psd" or "allan or psd" where the header of a file can only be that of such a table ("x" and "value" may be
+/// a log's); empty otherwise, and for what is not a regular file. Throws nothing about the file.
 std::string curve_in_header(const std::string& path);
 
 }  // namespace libchar

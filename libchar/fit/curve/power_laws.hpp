@@ -1,5 +1,6 @@
 #pragma once
-// A clock's noise in its own words: S_y(f) = h_2 f² + h_1 f + h_0 + h_-1/f + h_-2/f², one-sided, of the fractional frequency.
+// A clock's noise in its own words: S_y(f) = h_2 f² + h_1 f + h_0 + h_-1/f + h_-2/f², one-sided, of the fractional
+// frequency.
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,7 @@
 // AVAR(m) = AVAR of the terms + integral over 0..fs/2 of (|H|² - 1) S(f) 4 sin⁴(pi f m dt) / (m sin(pi f dt))² df
-// with two-sided S (SP 1065, 5.2, for samples instead of a continuous rate). The terms' part is exact; the integral goes over
-// stretches of a sixteenth of an octave from the top down to where the shape is one, with nodes enough for the sine, or its mean of
+// with two-sided S (SP 1065, 5.2, for samples instead of a continuous rate). The terms' part is exact; the integral
+// goes over stretches of a sixteenth of an octave from the top down to where the shape is one, with nodes enough for
+// the sine, or its mean of
 // 3/8 where a stretch holds many periods.
 #include "libchar/fit/curve/shaped_curves.hpp"
 

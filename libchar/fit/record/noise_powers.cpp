@@ -33,8 +33,8 @@ double mean_of(std::span<const double> values, std::size_t from, std::size_t to)
 
 constexpr std::array kSeriesTerms = {Term::white, Term::flicker, Term::walk, Term::quantization};
 
-/// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same whatever is taken out
-/// of the series.
+/// What the noise terms of theta = 1 put into the coefficients of a series of a length, and into its bins: the same
+/// whatever is taken out of the series.
 struct SeriesUnits {
   std::size_t points = 0, per_point = 0;
   double step_s = 0;
@@ -113,7 +113,8 @@ bool describes(const std::vector<PowerBin>& bins, const Mixture& theta) {
 
 }  // namespace
 
-// From the slow end up: a filter's slope at the top has ten thousand coefficients and would bend the slow noise to its own use.
+// From the slow end up: a filter's slope at the top has ten thousand coefficients and would bend the slow noise to its
+// own use.
 NoisePowers fitted_powers() {
   const auto kept = std::make_shared<SeriesUnits>();
   return [kept](const EventSeries& series) {

@@ -10,8 +10,8 @@ namespace libchar {
 /// Of a series, by the noise that is fitted to it.
 using NoisePowers = std::function<EventSeries::Noise(const EventSeries& series)>;
 
-/// The mixture of white noise, flicker, walk and quantization (white phase noise of a clock) that fits a series from its
-/// slowest coefficients up, as far as it describes them: what `find_events` uses where the caller has no better.
+/// The mixture of white noise, flicker, walk and quantization (white phase noise of a clock) that fits a series from
+/// its slowest coefficients up, as far as it describes them: what `find_events` uses where the caller has no better.
 NoisePowers fitted_powers();
 
 }  // namespace libchar

@@ -1,5 +1,5 @@
-// Records are independent, so their log-likelihoods add. Bins of one frequency and one expectation (records of one length) are one
-// bin: sums of gamma variables of one mean are sufficient,
+// Records are independent, so their log-likelihoods add. Bins of one frequency and one expectation (records of one
+// length) are one bin: sums of gamma variables of one mean are sufficient,
 //   energy = sum nu_r c_r / sum nu_r,   nu = sum nu_r,
 // and unlike ones stand side by side. The rest is the fit of one record.
 #include "libchar/fit/record/pooled_fit.hpp"
@@ -85,7 +85,8 @@ RunBins inside_band(std::span<const RunRecord> records, const Merged& all, const
   return out;
 }
 
-/// The bounds of one long record are not those of many short ones: what the information of all bins gives stands in relative_sd.
+/// The bounds of one long record are not those of many short ones: what the information of all bins gives stands in
+/// relative_sd.
 void without_bounds(NoiseFit& fit) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     Coefficient& term = fit.term[t];

@@ -1,6 +1,6 @@
 #pragma once
-// Several records of one sensor in one likelihood: one set of coefficients, one band, one shape; and whether the records have
-// them in common.
+// Several records of one sensor in one likelihood: one set of coefficients, one band, one shape; and whether the
+// records have them in common.
 
 #include <cstdint>
 #include <span>

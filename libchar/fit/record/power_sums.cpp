@@ -1,6 +1,7 @@
 // Squared DCT-II coefficients of a record of any length, in two levels:
 //   above f_split = 15.5/(2 block dt):  transforms of blocks of 2^15 samples, pooled, k >= 16, and of the tail
-//   below f_split:                      the transform of the series of means of block/64 = 512 samples over a whole segment
+//   below f_split:                      the transform of the series of means of block/64 = 512 samples over a whole
+//                                       segment
 // Both use their exact expectations (dct_means). Sixteen coefficients of every block are left to the second level, so
 // that neighbouring blocks stay uncorrelated under flicker and walk and the slow noise is seen with the full resolution
 // of the segment; white noise is exactly uncorrelated within each level.

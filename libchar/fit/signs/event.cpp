@@ -84,10 +84,11 @@ std::string event_sentence(const Event& event, std::string_view unit) {
   return text + ".";
 }
 
-// Means of m samples over what is present of them, from the first present sample to the last. A stretch without any is bridged by a
-// straight line between the means of as many values before and after it (of fewer where another stretch is near): single values would
-// put their own noise into the lowest frequencies. Bridged stretches are remembered: it is not known where in them something happened.
-// The number of means has no prime factor above 7, for the transforms' sake: at most one per cent of the record's end is not looked at.
+// Means of m samples over what is present of them, from the first present sample to the last. A stretch without any is
+// bridged by a straight line between the means of as many values before and after it (of fewer where another stretch is
+// near): single values would put their own noise into the lowest frequencies. Bridged stretches are remembered: it is
+// not known where in them something happened. The number of means has no prime factor above 7, for the transforms'
+// sake: at most one per cent of the record's end is not looked at.
 
 namespace {
 

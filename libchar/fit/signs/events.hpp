@@ -1,6 +1,7 @@
 #pragma once
-// Is it noise at all? What a noise spectrum cannot hold: steps, a warm-up, a straight drift. Found in time, against the fitted noise,
-// and taken out as means with a sign before the noise is fitted again. Theory and figures: docs/theory/events.md.
+// Is it noise at all? What a noise spectrum cannot hold: steps, a warm-up, a straight drift. Found in time, against the
+// fitted noise, and taken out as means with a sign before the noise is fitted again. Theory and figures:
+// docs/theory/events.md.
 
 #include <optional>
 #include <string_view>

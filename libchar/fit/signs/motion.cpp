@@ -1,13 +1,16 @@
-// The activity of a block is the mean |difference| of neighbouring values, that of means of four over four blocks, both but for the two
-// largest, and the median |difference| of means of sixteen over sixteen blocks. Differences see neither slow noise nor where the sensor
-// points, absolute values mind heavy tails little, and a step is one or two of them. In a sensor at rest the logarithms of the
-// activities agree but for sampling; the shortest interval that holds half of them (a quarter, an eighth) says where and how closely
-// (the shorth: P. Rousseeuw and A. Leroy, Statistica Neerlandica 42, 1988).
+// The activity of a block is the mean |difference| of neighbouring values, that of means of four over four blocks, both
+// but for the two largest, and the median |difference| of means of sixteen over sixteen blocks. Differences see neither
+// slow noise nor where the sensor
+// points, absolute values mind heavy tails little, and a step is one or two of them. In a sensor at rest the logarithms
+// of the activities agree but for sampling; the shortest interval that holds half of them (a quarter, an eighth) says
+// where and how closely (the shorth: P. Rousseeuw and A. Leroy, Statistica Neerlandica 42, 1988).
 //   in motion throughout   not even an eighth of the blocks agrees within kAgree, nor sixteen quiet ones in turn
-//                          where the agreeing ones are the loud ones, rest is what is quieter by more than any change of strength
-//   moving                 two and more blocks in turn above the agreeing ones by a factor of two and by six of their spreads
-//   a change of strength   a step, warm-up or ramp in the logarithms, by find_events against their own noise: noise whose strength
-//                          itself wanders has to change by more than that
+//                          where the agreeing ones are the loud ones, rest is what is quieter by more than any change
+//                          of strength
+//   moving                 two and more blocks in turn above the agreeing ones by a factor of two and by six of their
+//                          spreads
+//   a change of strength   a step, warm-up or ramp in the logarithms, by find_events against their own noise: noise
+//                          whose strength itself wanders has to change by more than that
 #include "libchar/fit/signs/motion.hpp"
 
 #include <fmt/format.h>
@@ -120,8 +123,8 @@ Agreeing shortest_half(const std::vector<double>& sorted, double share, double w
   return best;
 }
 
-/// Where less than half of a record is still: the quietest sixteen blocks in turn that agree and are no `filled` ones, if they are
-/// quieter than most by a factor.
+/// Where less than half of a record is still: the quietest sixteen blocks in turn that agree and are no `filled` ones,
+/// if they are quieter than most by a factor.
 std::optional<Agreeing> quiet_window(std::span<const double> values, const std::vector<char>& filled, double median,
                                      double factor) {
   constexpr std::ptrdiff_t kWindow = 16;
@@ -211,8 +214,8 @@ bool lasting(const Activity& activity, const Run& run, const std::vector<double>
   return true;
 }
 
-/// Moving blocks: a single quiet one between two is one, a single loud one is none, and what is louder throughout a long stretch
-/// is a change of strength.
+/// Moving blocks: a single quiet one between two is one, a single loud one is none, and what is louder throughout a
+/// long stretch is a change of strength.
 void tidy(const Activity& activity, const std::vector<double>& centre, std::vector<char>& moving) {
   for (const Run& run : runs_of(moving, 0))
     if (run.length() == 1 && run.from > 0 && run.to < moving.size()) moving[run.from] = 1;

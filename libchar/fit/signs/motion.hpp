@@ -1,6 +1,6 @@
 #pragma once
-// Was the sensor at rest, and its noise the same throughout? Stretches of handling, a recording in motion, changes of the
-// noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
+// Was the sensor at rest, and its noise the same throughout? Stretches of handling, a recording in motion, changes of
+// the noise's strength. Needs no fitted noise. Theory and figures: docs/theory/events.md.
 
 #include <optional>
 #include <vector>
@@ -35,7 +35,8 @@ struct Motion {
   std::vector<Finding> findings;
 };
 
-/// Searches a series as `event_series` makes it. A record of noise alone has motion or a change in less than one of a hundred cases.
+/// Searches a series as `event_series` makes it. A record of noise alone has motion or a change in less than one of a
+/// hundred cases.
 Motion find_motion(const EventSeries& series);
 
 namespace detail {

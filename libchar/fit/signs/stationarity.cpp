@@ -1,6 +1,7 @@
 // A record of 128 pieces, eight in each of sixteen stretches; v the Allan variance of a piece at an
 // octave that fits it sixteen times,
-//   F = 8 var(mean of ln v of a stretch) / mean of (var of ln v within a stretch),   F(15, 112) where nothing changes slowly:
+//   F = 8 var(mean of ln v of a stretch) / mean of (var of ln v within a stretch),
+//   F(15, 112) where nothing changes slowly:
 // analysis of variance, whose own scatter within a stretch serves heavy tails and whatever else
 // chance does quickly. Longer averaging times, of whole stretches: Bartlett's test of equal
 // variances (Proc. R. Soc. A 160, 1937) with the degrees of freedom f_i of each variance,

@@ -1,9 +1,11 @@
-// y = sum_j a_j (T_lag - mean)^j + noise, by generalised least squares in the cosine domain, where noise is uncorrelated (regression.cpp),
-// in the metric of the noise that is fitted beside it. For every order the best lag of a grid is taken, the noise is fitted again
-// without the temperature, and the order is offered
-//   G = min(2 ln L(with, noise refitted) - 2 ln L(without, noise refitted), what it explains in the metric of the refitted noise),
-// judged by Davies' bound for the largest over the lags (temperature_columns.cpp), each order at a third of 1 %. From the first order that
-// passes on, one more has to gain chi-square at 1 %. The interval of the first coefficient is the profile likelihood's over the lags.
+// y = sum_j a_j (T_lag - mean)^j + noise, by generalised least squares in the cosine domain, where noise is
+// uncorrelated (regression.cpp), in the metric of the noise that is fitted beside it. For every order the best lag of a
+// grid is taken, the noise is fitted again without the temperature, and the order is offered
+//   G = min(2 ln L(with, noise refitted) - 2 ln L(without, noise refitted), what it explains in the metric of the
+//   refitted noise),
+// judged by Davies' bound for the largest over the lags (temperature_columns.cpp), each order at a third of 1 %. From
+// the first order that passes on, one more has to gain chi-square at 1 %. The interval of the first coefficient is the
+// profile likelihood's over the lags.
 #include "libchar/fit/signs/temperature.hpp"
 
 #include <fmt/format.h>
@@ -168,7 +170,8 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns, std
   return fit;
 }
 
-/// P(the largest gain over lags >= the largest of `gains`) of a record that temperature does not move; `gains` along the lags.
+/// P(the largest gain over lags >= the largest of `gains`) of a record that temperature does not move; `gains` along
+/// the lags.
 double chance_of_gain(double gain, std::span<const double> gains, int order) {
   double variation = 0;
   for (std::size_t i = 1; i < gains.size(); ++i) variation += std::abs(std::sqrt(gains[i]) - std::sqrt(gains[i - 1]));
@@ -322,7 +325,8 @@ std::vector<double> leverage_at(const TemperatureSearch& search, double lag, con
   return leverage_of(columns, fit_temperature(columns, search.coefficients, weight).covariance, weight);
 }
 
-/// The noise beside an effect whose degrees of freedom are counted: what the columns took from a coefficient is missing in the rest.
+/// The noise beside an effect whose degrees of freedom are counted: what the columns took from a coefficient is missing
+/// in the rest.
 NoiseBeside noise_beside_counted(const TemperatureSearch& search, double lag, const Eigen::VectorXd& size,
                                  std::span<const double> weight) {
   constexpr double kMostTaken = 0.9;

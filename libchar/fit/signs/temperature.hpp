@@ -1,6 +1,6 @@
 #pragma once
-// What of a record is the temperature's doing: a polynomial of temperature behind a first-order lag, taken out before the noise is
-// fitted. Theory and figures: docs/theory/events.md.
+// What of a record is the temperature's doing: a polynomial of temperature behind a first-order lag, taken out before
+// the noise is fitted. Theory and figures: docs/theory/events.md.
 
 #include <array>
 #include <cstddef>
@@ -50,11 +50,12 @@ struct TemperatureEffect {
   std::vector<double> leverage;
 };
 
-/// Throws Error(numeric) where it is constant, has fewer than eight values, or is missing over more than a tenth of the record at once.
+/// Throws Error(numeric) where it is constant, has fewer than eight values, or is missing over more than a tenth of the
+/// record at once.
 void check_temperature(const TemperatureRecord& temperature, double rate_hz);
 
-/// Tested at 1 %: where temperature moves the record by no more than chance, `order` is 0. Throws as `check_temperature` does, of the
-/// stretch where the record has samples.
+/// Tested at 1 %: where temperature moves the record by no more than chance, `order` is 0. Throws as
+/// `check_temperature` does, of the stretch where the record has samples.
 TemperatureEffect find_temperature_effect(std::span<const double> record, double rate_hz,
                                           const TemperatureRecord& temperature);
 
@@ -68,7 +69,8 @@ TemperatureEffect temperature_effect_of_means(const EventSeries& series, const E
 /// Takes it out of a record at its full rate (sign -1), or puts it in (+1).
 void add_temperature_effect(const TemperatureEffect& effect, double sign, std::span<double> record);
 
-/// "It moves with temperature (temp) by 0.0123 [0.0119, 0.0127] deg/s/K at 31.2 °C, with a lag of 2 min (80 s to 3 min) and order 1…"
+/// "It moves with temperature (temp) by 0.0123 [0.0119, 0.0127] deg/s/K at 31.2 °C, with a lag of 2 min (80 s to 3 min)
+/// and order 1…"
 std::string temperature_sentence(const TemperatureEffect& effect, std::string_view unit);
 
 }  // namespace libchar

@@ -35,7 +35,7 @@ std::vector<Array> arrays_of(const std::vector<FleetJob>& jobs, const JobOptions
 std::string element_script(const JobOptions& options) {
   return fmt::format(
       R"(#!/bin/sh
-# One element of an array: the jobs of a list, by the element's number. A job that fails (a worker killed, a full disk, exit code 75)
+# One element of an array: the jobs of a list, by its number. A job that fails (a worker killed, a full disk, exit code 75)
 # is put into the queue again, {0} times at most.
 job=$(sed -n "${{SLURM_ARRAY_TASK_ID}}p" "$1")
 {1}code=$?

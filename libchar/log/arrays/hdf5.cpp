@@ -127,8 +127,8 @@ std::unique_ptr<ArrayCursor> Hdf5File::open(std::size_t array, const ArrayRows& 
 std::unique_ptr<ArrayContainer> open_hdf5_file(const std::string& path, const std::string& kind) {
   if (!hdf5_is_here())
     throw input_error("E0467", path)
-        .says("is a HDF5 file, and this program was built without HDF5")
-        .hint("install libhdf5-dev and build again, or save the arrays by numpy.savez");
+        .says("is a HDF5 file, and the HDF5 library is not installed, or was not when this program was built")
+        .hint("install libhdf5-103-1 (libhdf5-dev to build again), or save the arrays by numpy.savez");
   return std::make_unique<Hdf5File>(path, kind);
 }
 

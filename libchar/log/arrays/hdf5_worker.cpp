@@ -1,6 +1,7 @@
 #include "libchar/log/arrays/hdf5_worker.hpp"
 
 #include "libchar/core/numeric/whole.hpp"
+#include "libchar/core/process/late_library.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_HDF5
@@ -19,6 +20,30 @@
 
 namespace libchar {
 namespace {
+
+#ifdef LIBCHAR_LATE_HDF5
+detail::LateLibrary hdf5(LIBCHAR_LATE_HDF5);
+#define L(name) LIBCHAR_LATE(hdf5, name);
+// clang-format off
+L(H5Aclose) L(H5Aexists) L(H5Aget_space) L(H5Aget_type) L(H5Aiterate2) L(H5Aopen) L(H5Aread) L(H5Dclose)
+L(H5Dget_create_plist) L(H5Dget_space) L(H5Dget_type) L(H5Dopen2) L(H5Dread) L(H5Eset_auto2) L(H5Fclose) L(H5Fopen)
+L(H5Gclose) L(H5Gopen2) L(H5Literate) L(H5Oget_info_by_name2) L(H5PLset_loading_state) L(H5P_CLS_DATASET_ACCESS_ID_g)
+L(H5Pclose) L(H5Pcreate) L(H5Pget_chunk) L(H5Pget_external_count) L(H5Pget_filter2) L(H5Pget_layout)
+L(H5Pget_nfilters) L(H5Pset_chunk_cache) L(H5Sclose) L(H5Scopy) L(H5Screate_simple) L(H5Sget_simple_extent_dims)
+L(H5Sget_simple_extent_ndims) L(H5Sget_simple_extent_npoints) L(H5Sget_simple_extent_type) L(H5Sselect_hyperslab)
+L(H5T_NATIVE_DOUBLE_g) L(H5T_NATIVE_FLOAT_g) L(H5T_NATIVE_INT16_g) L(H5T_NATIVE_INT32_g) L(H5T_NATIVE_INT64_g)
+L(H5T_NATIVE_INT8_g) L(H5T_NATIVE_UINT16_g) L(H5T_NATIVE_UINT32_g) L(H5T_NATIVE_UINT64_g) L(H5T_NATIVE_UINT8_g)
+L(H5Tarray_create2) L(H5Tclose) L(H5Tcopy) L(H5Tcreate) L(H5Tget_array_dims2) L(H5Tget_class) L(H5Tget_member_index)
+L(H5Tget_member_name) L(H5Tget_member_type) L(H5Tget_nmembers) L(H5Tget_sign) L(H5Tget_size) L(H5Tget_super)
+L(H5Tinsert) L(H5Tis_variable_str) L(H5check_version) L(H5free_memory) L(H5open)
+// clang-format on
+#undef L
+                                                        bool is_here() {
+  return hdf5.is_here();
+}
+#else
+bool is_here() { return true; }
+#endif
 
 constexpr std::size_t kMaxDepth = 32, kMaxObjects = 100000, kMaxMemberBytes = 1U << 20U;
 constexpr std::uint64_t kMaxChunk = std::uint64_t{256} << 20U;
@@ -516,7 +541,7 @@ class AnsweringHdf5 final : public Answering {
 
 }  // namespace
 
-bool hdf5_is_here() { return true; }
+bool hdf5_is_here() { return is_here(); }
 
 std::unique_ptr<Answering> answering_hdf5(const std::string& path) { return std::make_unique<AnsweringHdf5>(path); }
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
+#include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/rows/number.hpp"
+#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 
@@ -84,12 +87,22 @@ std::string at(const std::string& file, std::uint64_t line, std::uint64_t column
   return fmt::format("{}:{}:{} (byte {})", file, line, column, byte);
 }
 
+bool is_ruler(std::string_view line) {
+  static constexpr std::array<std::string_view, 3> kDrawn = {"--", "==", "__"};
+  const std::size_t first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return false;
+  if (line.substr(first).starts_with("\xE2\x94") || line.substr(first).starts_with("\xE2\x95"))  // ┌───┬───┐
+    return std::all_of(line.begin(), line.end(), [](char c) { return (c & 0x80) != 0 || c == ' '; });
+  if (line.find_first_not_of("-+|=_:, \t", first) != std::string_view::npos) return false;
+  return std::any_of(kDrawn.begin(), kDrawn.end(), [&](std::string_view two) { return line.find(two) != line.npos; });
+}
+
 bool is_comment(std::string_view line, bool semicolons) {
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos || (line[first] >= '0' && line[first] <= '9')) return false;  // most lines
   line = trimmed(line);
-  static constexpr std::string_view kChrony[] = {"=====", "Date (UTC) Time     "};  // every 32 rows
-  if (line.starts_with(kChrony[0]) || line.starts_with(kChrony[1])) return true;
+  constexpr std::string_view kChrony = "Date (UTC) Time     ";  // every 32 rows
+  if (is_ruler(line) || line.starts_with(kChrony)) return true;
   return !line.empty() &&
          (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" || (semicolons && line[0] == ';'));
 }
@@ -178,6 +191,56 @@ std::optional<Field> lead_of_names(std::string_view line, std::size_t& after) {
   return Field{std::string(line.substr(0, to)), 0, false};
 }
 
+bool is_number(std::string_view text) { return read_cell(trimmed(text), '.').kind == Cell::value; }
+
+/// Where the cells begin: behind words in front of the first one, "[info] 0.1, 0.2" and "imu - INFO - 0.1 0.2". What
+/// one comma divides may be one number: "INFO 1,5".
+std::size_t behind_words(std::string_view line, std::size_t from) {
+  const std::string_view text = line.substr(from);
+  const std::size_t end = text.find_first_of(",;\t");
+  if (end == text.npos) {
+    const std::size_t dash = text.rfind(" - ");
+    return dash != text.npos && is_number(text.substr(dash + 3, text.find(' ', dash + 3) - dash - 3)) ? from + dash + 3
+                                                                                                      : from;
+  }
+  const std::size_t blank = trimmed(text.substr(0, end)).rfind(' ');
+  if (blank == text.npos || label_length(trimmed(text.substr(0, end))) > 0) return from;
+  const std::size_t begin = text.find(trimmed(text.substr(0, end))) + blank + 1;
+  const std::string_view first = text.substr(begin, end - begin), rest = text.substr(end + 1);
+  const bool one = text[end] == ',' && rest.find_first_not_of("0123456789") == rest.npos &&
+                   first.find_first_not_of("+-0123456789") == first.npos;
+  return !one && is_number(first) && is_number(rest.substr(0, rest.find_first_of(",;\t"))) ? from + begin : from;
+}
+
+/// A stamp among the words in front of the cells: "May 01 12:00:00 host imu[12]:", "12:00:00.123 00>",
+/// "1714564800.25"; empty where there is only the sign of a terminal, "00>".
+std::optional<Field> lead_of_words(std::string_view line, std::size_t& after) {
+  constexpr std::size_t kWords = 3, kLongest = 4;
+  constexpr double kEpoch = 1e9;
+  const std::size_t begin = line.find_first_not_of(" \t"), cells = behind_words(line, begin);
+  const std::string_view words = trimmed(line.substr(begin, cells - begin));
+  if (words.empty() || line.substr(0, cells).find('"') != line.npos ||
+      read_calendar(trimmed(line.substr(begin, line.find_first_of(",;\t") - begin))))
+    return std::nullopt;
+  after = cells;
+  std::size_t from = 0;
+  for (std::size_t word = 0; word < kWords && from < words.size(); ++word) {
+    std::size_t to = from;
+    std::optional<Field> found;
+    for (std::size_t n = 0; n < kLongest && to < words.size(); ++n) {
+      to = std::min(words.find(' ', to + 1), words.size());
+      if (read_calendar(words.substr(from, to - from)))
+        found = Field{std::string(words.substr(from, to - from)), begin + from, false};
+    }
+    if (found) return found;
+    from = words.find_first_not_of(' ', std::min(words.find(' ', from), words.size()));
+  }
+  const std::string_view first = words.substr(0, words.find(' '));
+  if (const Cell number = read_cell(first, '.'); number.kind == Cell::value && number.number >= kEpoch)
+    return Field{std::string(first), begin, false};
+  return words.back() == '>' ? std::optional(Field{"", begin, false}) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after) {
@@ -185,11 +248,13 @@ std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::
   std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return std::nullopt;
   if (lead == "=") return lead_of_names(line, after);
+  if (lead == " ") return lead_of_words(line, after);
   if (lead == ",") {  // the comma of the seconds
     constexpr std::size_t kComma = 19, kLength = 23;
     if (line.size() <= kLength || line[kComma] != ',' || line[kLength] != ' ' || begin > 0) return std::nullopt;
     after = std::min(line.find_first_not_of(" \t-", kLength), line.size());
     if (after < line.size() && after > 0 && line[after - 1] == '-') --after;  // a sign
+    after = behind_words(line, after);
     return Field{std::string(line.substr(0, kLength)), 0, false};
   }
   if (lead == ")") {
@@ -205,6 +270,7 @@ std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::
   const std::size_t end = line.substr(0, begin + kLongest).find(lead, begin);
   if (end == std::string_view::npos || begin >= end) return std::nullopt;
   after = std::min(line.find_first_not_of(" \t,;:", end + lead.size()), line.size());
+  after = behind_words(line, after);
   const std::string_view stamp = trimmed(line.substr(begin, end - begin));
   return Field{std::string(stamp), static_cast<std::size_t>(stamp.data() - line.data()), false};
 }

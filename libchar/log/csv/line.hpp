@@ -49,11 +49,14 @@ std::optional<Field> cell_at(std::string_view line, std::size_t column, char del
 
 /// The stamp in front of a line of a terminal or a logger, up to `lead`: "[2024-05-01 12:00:00.123] 1,2" and
 /// "[   12.345678] 1,2" ("]"), "12:00:00.123 -> 1,2" ("->"), "I (12345) tag: 1,2" (")"), "2024-05-01 12:00:00,123
-/// INFO:1,2" (","), "2024-05-01 12:00:00.123 INFO imu: x=1, y=2" ("=", up to the first name); nothing when the line
-/// has none. `after` is where the cells begin.
+/// INFO:1,2" (","), "2024-05-01 12:00:00.123 INFO imu: x=1, y=2" ("=", up to the first name), "May 01 12:00:00 host:
+/// 1,2" (" ", among words); nothing when the line has none. `after` is where the cells begin.
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after);
 
-/// Does this line start with a comment sign (#, %, //, where `semicolons` ;)?
+/// "---- --", "+-----+----+", "|---|:--|": a line that is drawn between names and rows.
+bool is_ruler(std::string_view line);
+
+/// Is this line such, or does it start with a comment sign (#, %, //, where `semicolons` ;)?
 bool is_comment(std::string_view line, bool semicolons = false);
 
 /// "FILE:LINE:COL (byte N)".

@@ -71,6 +71,7 @@ std::optional<std::int64_t> stamp_of(const Cells& row, const Dialect& dialect) {
 struct Steps {
   std::size_t all = 0, standing = 0;  // those that do not rise
   double scatter = 0;                 // of three quarters of the rest, in steps
+  double spread = 0;                  // of all of the rest
   bool steady() const { return 10 * standing < all && scatter < 0.3; }
 };
 
@@ -93,6 +94,9 @@ Steps steps_of(const std::vector<std::int64_t>& stamps) {
   const auto most = off.begin() + static_cast<std::ptrdiff_t>(3 * (off.size() - 1) / 4);
   std::nth_element(off.begin(), most, off.end());
   out.scatter = *most / usual;
+  double squares = 0;
+  for (const double one : off) squares += one * one;
+  out.spread = std::sqrt(squares / static_cast<double>(off.size())) / usual;
   return out;
 }
 
@@ -107,8 +111,10 @@ bool in_turn(const std::vector<Cells>& rows, std::size_t column) {
 }
 
 // Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
-// stand, and rise by kind.
+// stand, and rise by kind. In any case those that are uneven as a whole, and even by kind.
 bool told_apart(const std::vector<Cells>& rows, std::size_t column, bool named, const Dialect& dialect) {
+  constexpr double kUneven = 0.1, kEven = 0.2;
+  constexpr std::size_t kFewest = 6;  // steps
   std::vector<std::int64_t> all;
   std::map<std::string, std::vector<std::int64_t>> kinds;
   for (const Cells& row : rows)
@@ -117,10 +123,18 @@ bool told_apart(const std::vector<Cells>& rows, std::size_t column, bool named, 
       kinds[row[column].text].push_back(*stamp);
     }
   const Steps whole = steps_of(all);
+  std::size_t standing = 0;
+  double spread = 0;
+  bool judged = kinds.size() > 1;
+  for (const auto& [kind, stamps] : kinds) {
+    const Steps own = steps_of(stamps);
+    standing += own.standing;
+    spread = std::max(spread, own.spread);
+    judged = judged && own.all >= kFewest && own.standing == 0;
+  }
+  if (judged && whole.spread > kUneven && spread < kEven * whole.spread) return true;
   if (whole.steady()) return false;
   if (named) return true;
-  std::size_t standing = 0;
-  for (const auto& [kind, stamps] : kinds) standing += steps_of(stamps).standing;
   return 10 * whole.standing >= whole.all && 10 * standing < whole.standing && 3 * kinds.size() <= rows.size();
 }
 
@@ -238,7 +252,7 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
       refuse(name, values, info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                (told_apart(rows, c, words && names_kinds(column.name), dialect) ||
-                (numbers_kinds(column.name) && in_turn(rows, c)))) {
+                ((numbers_kinds(column.name) || (words && !dialect.has_header)) && in_turn(rows, c)))) {
       refuse(name, values, info);
     }
   }

@@ -52,7 +52,8 @@ class FromApostrophes final : public DecodedText {
   bool open_ = false, closing_ = false, begins_ = true;
 };
 
-constexpr std::size_t kWeekday = 5;  // bytes of "Sun, "
+constexpr std::string_view kBar = "\xE2\x94\x82";  // of "│ 0.1 │ 0.2 │"
+constexpr std::size_t kWeekday = 5;                // bytes of "Sun, "
 constexpr std::string_view kOpen = "[({", kClose = "])}";
 constexpr std::array<std::string_view, 3> kBlanks = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
@@ -130,6 +131,7 @@ class FromSigns final : public CleanedLines {
     return signs_.colours     ? "codes of a terminal's colours"
            : signs_.brackets  ? "lines in brackets"
            : signs_.checksums ? "lines with a checksum"
+           : signs_.boxes     ? "tables drawn in boxes"
            : signs_.exponents ? "exponents of Fortran"
            : signs_.weekdays  ? "days of the week in front of dates"
                               : "blanks of typesetting";
@@ -139,6 +141,8 @@ class FromSigns final : public CleanedLines {
   void begin(std::string_view front) override { signs_ = signs_of(front); }
 
   void clean(std::string& line) override {
+    for (std::size_t at = signs_.boxes ? line.find(kBar) : line.npos; at != line.npos; at = line.find(kBar, at))
+      line.replace(at, kBar.size(), "|");
     if (signs_.colours) line = without_colours(std::move(line));
     if (const auto [from, to] = inside(line); signs_.brackets && to > 0) {
       std::fill(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(from), ' ');
@@ -171,7 +175,7 @@ std::unique_ptr<Unpacker> open_apostrophes(std::function<std::size_t(char*, std:
 
 Signs signs_of(std::string_view front) {
   constexpr std::size_t kFewest = 3;
-  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0;
+  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0, boxes = 0;
   Signs out;
   for (std::size_t end = front.find('\n'); end != std::string_view::npos; end = front.find('\n')) {
     std::string_view line = front.substr(0, end);
@@ -180,6 +184,7 @@ Signs signs_of(std::string_view front) {
     ++lines;
     colours += line.find("\x1B[") != std::string_view::npos ? 1 : 0;
     brackets += inside(line).second > 0 ? 1 : 0;
+    boxes += line.starts_with(kBar) ? 1 : 0;
     weekdays += weekday_at(line) != std::string_view::npos ? 1 : 0;
     checksums += checksum_at(line) != std::string_view::npos && !line.starts_with("$G") ? 1 : 0;
     for (std::size_t at = 0; at < line.size(); ++at) {
@@ -191,6 +196,7 @@ Signs signs_of(std::string_view front) {
   out.brackets = most(brackets);
   out.checksums = most(checksums);
   out.weekdays = most(weekdays);
+  out.boxes = boxes >= kFewest;
   out.exponents = exponents >= kFewest;
   out.colours = colours >= kFewest;
   return out;

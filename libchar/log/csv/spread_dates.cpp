@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -86,6 +87,7 @@ std::string_view bare(std::string_view cell) {
 /// Columns side by side that are the parts of one stamp.
 struct SpreadStamp {
   char delimiter = 0;  ///< 0: none was found
+  bool named = true;
   std::size_t first = 0, count = 0;
   std::array<std::size_t, kDateParts> at = {};  ///< 1 + column; 0: there is none
 
@@ -199,7 +201,39 @@ std::optional<std::string> stamp_text(const SpreadStamp& where, const std::vecto
   return date && clock ? std::optional(*date + *clock) : std::nullopt;
 }
 
-/// A header with such names in front of rows that all have such numbers, but for one of units.
+/// Without names: year, month, day, hour (minute, second) in front, whose stamps step evenly in all rows.
+SpreadStamp spread_by_numbers(const std::vector<std::string_view>& lines) {
+  constexpr std::size_t kFewest = 8, kMost = 100;
+  constexpr DatePart kOrder[] = {DatePart::year, DatePart::month,  DatePart::day,
+                                 DatePart::hour, DatePart::minute, DatePart::second};
+  if (lines.size() < kFewest || !(lines[0].starts_with("19") || lines[0].starts_with("20"))) return {};
+  const char delimiter = lines[0].size() > 4 ? lines[0][4] : '\0';
+  if (delimiter == '\0' || std::string_view(",;\t ").find(delimiter) == std::string_view::npos) return {};
+  SpreadStamp best;
+  double least = 0.1;  // mean deviation of the steps; a value may look like seconds
+  for (std::size_t parts = std::size(kOrder); parts > 3; --parts) {
+    SpreadStamp found{delimiter, false, 0, parts};
+    for (std::size_t c = 0; c < parts; ++c) found.of(kOrder[c]) = c + 1;
+    std::vector<double> stamps;
+    for (std::size_t i = 0; i < std::min(lines.size(), kMost); ++i) {
+      const std::vector<std::string_view> cells = cells_of(lines[i], delimiter);
+      const auto text = cells.size() > parts ? stamp_text(found, cells) : std::nullopt;
+      const auto stamp = text ? read_calendar(*text) : std::nullopt;
+      if (!stamp) break;
+      stamps.push_back(static_cast<double>(stamp->ns) * 1e-9);
+    }
+    const double step = usual_step(stamps);
+    double off = 0;
+    for (std::size_t i = 1; i < stamps.size(); ++i) off += std::fabs(stamps[i] - stamps[i - 1] - step);
+    off /= step * static_cast<double>(stamps.size());
+    if (stamps.size() < std::min(lines.size(), kMost) || !(step > 0) || off >= least) continue;
+    least = off;
+    best = found;
+  }
+  return best;
+}
+
+/// A header with such names in front of rows that all have such numbers, but for one of units; or such numbers alone.
 SpreadStamp spread_of(std::string_view front) {
   constexpr std::size_t kFewest = 2, kMostHeader = 2;
   std::vector<std::string_view> lines;
@@ -208,6 +242,7 @@ SpreadStamp spread_of(std::string_view front) {
     if (lines.back().ends_with('\r')) lines.back().remove_suffix(1);
     front.remove_prefix(end + 1);
   }
+  if (const SpreadStamp found = spread_by_numbers(lines); found.delimiter != 0) return found;
   for (std::size_t head = 0; head < lines.size(); ++head) {
     if (lines[head].find_first_of("0123456789+-.") == 0) continue;  // a row of numbers: the most of them
     for (const char delimiter : {',', ';', '\t', '|', ' '}) {
@@ -228,7 +263,10 @@ class FromSpreadDates final : public CleanedLines {
   std::string_view what() const override { return "stamps in a column for each of their numbers"; }
 
  private:
-  void begin(std::string_view front) override { where_ = spread_of(front); }
+  void begin(std::string_view front) override {
+    where_ = spread_of(front);
+    headed_ = !where_.named;
+  }
   void clean(std::string& line) override {
     const std::vector<std::string_view> cells = cells_of(line, where_.delimiter);
     if (cells.size() < where_.first + where_.count) return;

@@ -255,7 +255,8 @@ std::int64_t second_fraction(DateScanner& at) {
   return ns;
 }
 
-// What stands behind whole seconds: ".123", ":123", ".123,456" of Zephyr, "-123" and "_123456" of file names.
+// What stands behind whole seconds: ".123", ":123", ".123,456" of Zephyr and ".123.456", "-123" and "_123456" of the
+// names of files.
 std::int64_t behind_seconds(DateScanner& at) {
   const char sign = at.peek();
   const bool digits = decimal_digit(at.peek(1));
@@ -264,7 +265,7 @@ std::int64_t behind_seconds(DateScanner& at) {
   const bool of_a_name = (sign == '-' || sign == '_') && (n == 3 || n == 6) && s.rest.size() == n;
   if (!digits || (sign != '.' && sign != ',' && sign != ':' && !of_a_name)) return 0;
   std::int64_t part = second_fraction(s);
-  if (DateScanner more = s; n == 3 && more.take(',') && more.digits_ahead() == 3) {
+  if (DateScanner more = s; n == 3 && (more.take(',') || more.take('.')) && more.digits_ahead() == 3) {
     part += more.fixed(3) * 1000;
     s = more;
   }

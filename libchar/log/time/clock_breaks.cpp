@@ -26,11 +26,11 @@ struct ClockRange {
 
 std::vector<ClockRange> ranges_of(const TimeBase& clock) {
   std::vector<ClockRange> out;
-  for (const int bits : {16, 32}) {
+  for (const int bits : {16, 24, 32}) {
     if (clock.unit_ns < kNsInSecond) out.push_back({std::ldexp(static_cast<double>(clock.unit_ns), bits), bits});
     for (const double unit : {1e3, 1e6})
       if (unit != static_cast<double>(clock.unit_ns))
-        out.push_back({std::ldexp(unit, bits), bits, "", bits == 16 ? 2.5 : 20});
+        out.push_back({std::ldexp(unit, bits), bits, "", bits < 32 ? 2.5 : 20});
   }
   for (const ClockRange& part :
        {ClockRange{60e9, 0, "seconds of a minute", 2.5}, ClockRange{3600e9, 0, "seconds of an hour", 2.5},

@@ -244,7 +244,7 @@ double TimeGrid::even_interval() {
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
   const double ends = std::max(2.0 * static_cast<double>(step_.longest),  // where the log begins and ends in a packet
-                               static_cast<double>(step_.model.packet) * step_.ns);
+                               1.5 * static_cast<double>(step_.model.packet) * step_.ns);
   if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, ends)) return usual;
   warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} Hz, which "
                                                "is used: the sampling is uneven, and times on the axes are off by that",
@@ -300,6 +300,7 @@ void TimeGrid::judge_rate_change() {
 }
 
 void TimeGrid::finish(LogInfo& info) {
+  last_.ended = true;
   process(true);
   begin();
   output_.flush();

@@ -147,7 +147,7 @@ class TimeGrid {
                    std::size_t at_once) const;
   std::vector<double> lags_ahead(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead,
                                  std::size_t at_once = 0) const;
-  std::size_t rows_at_once(const Pending& front, std::size_t row) const;
+  RowsAtOnce rows_at_once(const Pending& front, std::size_t row) const;
   std::int64_t place_behind(std::int64_t gap) const;
   Verdict hung(const Pending& front, std::size_t row, std::size_t at_once, std::int64_t gap, std::int64_t& stamp);
   std::int64_t packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const;
@@ -178,7 +178,7 @@ class TimeGrid {
     bool other_rate = false;  ///< what stands in front of it runs at another
   };
   struct Last {
-    bool any = false;
+    bool any = false, ended = false;      ///< ended: no rows come behind those that wait
     std::int64_t first = 0;               ///< stamp of the first row
     std::int64_t stamp = 0, as_read = 0;  ///< unwrapped, and as the file has it
     std::int64_t wrap = 0;                ///< what rollovers have added

@@ -51,7 +51,7 @@ struct FirstSteps {
   std::vector<double> line;  ///< where each stamp stands without pauses and steps back
 };
 
-FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
+FirstSteps steps_of(const std::vector<std::int64_t>& stamps, bool with_pauses = true) {
   FirstSteps steps;
   for (std::size_t i = 1; i < stamps.size(); ++i)
     if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0) steps.rising.push_back(step);
@@ -59,7 +59,7 @@ FirstSteps steps_of(const std::vector<std::int64_t>& stamps) {
   std::vector<double> sorted = steps.rising;
   std::sort(sorted.begin(), sorted.end());
   const double usual = sorted[(sorted.size() - 1) * 40 / 41];
-  steps.pause = kPause * usual;
+  if (with_pauses) steps.pause = kPause * usual;
   steps.back = -usual;
   std::erase_if(steps.rising, [&](double step) { return step > steps.pause; });
   double time = 0, count = 0;
@@ -283,6 +283,19 @@ double step_of_half_the_time(const FirstSteps& steps) {
   return 0;
 }
 
+/// The mean of the steps near that one, which coarse stamps round: 9 and 10 ms of 104 Hz.
+double regular_step(const FirstSteps& steps) {
+  constexpr double kShortest = 0.5, kLongest = 1.6;
+  const double usual = step_of_half_the_time(steps);
+  double time = 0, count = 0;
+  for (const double step : steps.rising) {
+    if (step <= kShortest * usual || step >= kLongest * usual) continue;
+    time += step;
+    count += 1;
+  }
+  return count > 0 ? time / count : usual;
+}
+
 /// First rows of packets.
 std::vector<std::size_t> packet_starts(const FirstSteps& steps) {
   const double least = kNewPacket * step_of_half_the_time(steps);
@@ -383,7 +396,7 @@ double interval_of_alike(const FirstSteps& steps, const std::vector<std::size_t>
     for (std::size_t i = 1; i < starts.size(); ++i) {
       const double apart = steps.line[starts[i]] - steps.line[starts[i - 1]];
       const double multiple = std::round(apart / (ns * static_cast<double>(rows)));
-      if (starts[i] - starts[i - 1] != rows || multiple < 1 || multiple > kMostMissing) continue;
+      if (starts[i] - starts[i - 1] != rows || multiple > kMostMissing) continue;
       time += apart;
       packets += multiple;
     }
@@ -411,6 +424,8 @@ StampModel in_packets(const FirstSteps& steps, StampModel model) {
   if (const double interval = packet_interval(steps, starts); interval > 0) model.ns = interval;
   model.packet = rows_of_packets(starts);
   if (model.packet > 0) {
+    // However late they are, the line through all is that of their rate; where some are missing it is a start.
+    if (keeps_to_a_line(steps)) model.ns = line_through(steps.line).slope;
     model.ns = interval_of_alike(steps, starts, model.packet, model.ns);
     model.longest_step = kNewPacket * static_cast<double>(model.packet) * model.ns;
     return model;
@@ -419,6 +434,25 @@ StampModel in_packets(const FirstSteps& steps, StampModel model) {
   std::sort(longer.begin(), longer.end());
   model.longest_step = std::max(1.5 * model.ns, 2 * longer[longer.size() * 98 / 100]);
   model.usual_lag = usual_lag(steps, starts, model.ns);
+  return model;
+}
+
+/// Packets of so many rows that the step between them is too rare to be a usual one: alike, several a second, and
+/// written much faster than they come. A sensor that sleeps between bursts has longer ones.
+std::optional<StampModel> long_packets(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
+  constexpr double kFaster = 10, kSlowest = 2.5e9;  // ns
+  const FirstSteps steps = steps_of(stamps, false);
+  if (steps.rising.empty() || step_of_half_the_time(steps) > kSlowest) return std::nullopt;
+  const double inside = middle_of(steps.rising);
+  const auto rows = static_cast<double>(rows_of_packets(packet_starts(steps)));
+  if (rows <= kLongestPacket || steps.mean < kFaster * inside || (rate_hz && same_rate(1e9 / *rate_hz, inside)))
+    return std::nullopt;
+  StampModel model;
+  model.pattern = StampPattern::packets;
+  model.ns = model.span_ns = steps.mean;
+  model.step_ns = inside;
+  model = in_packets(steps, model);
+  model.span_ns = model.ns;
   return model;
 }
 
@@ -481,6 +515,7 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
 StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
   const FirstSteps steps = steps_of(stamps);
   if (steps.rising.empty()) return {};
+  if (auto packets = long_packets(stamps, rate_hz)) return *packets;
   const auto change = find_rate_change(stamps);
   if (!change) return model_of_one_rate(stamps, steps, rate_hz);
   const auto at = stamps.begin() + static_cast<std::ptrdiff_t>(change->row);
@@ -500,11 +535,12 @@ bool RowsAtOnce::add(std::int64_t stamp) {
 }
 
 std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps) {
-  constexpr double kHung = 2.5;  // intervals
+  constexpr double kHung = 2.5;   // intervals
+  constexpr double kMost = 0.97;  // of the rows, as far as the usual step is known
   FirstSteps steps;
   for (std::size_t i = 1; i < stamps.size(); ++i)
     if (const double step = step_between(stamps[i - 1], stamps[i]); step > 0) steps.rising.push_back(step);
-  const double usual = step_of_half_the_time(steps);
+  const double usual = regular_step(steps);
   std::vector<std::int64_t> out = stamps;
   std::size_t moved = 0;
   for (std::size_t first = 1; first < stamps.size(); ++first) {
@@ -512,18 +548,22 @@ std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps) {
     RowsAtOnce ahead{usual, stamps[first]};
     std::size_t end = first + 1;
     while (end < stamps.size() && ahead.add(stamps[end])) ++end;
+    if (end == stamps.size() && ahead.count() > 0 && 2 * first > end) {  // cut in the middle of such rows
+      out.resize(first);
+      break;
+    }
     if (end == stamps.size() || ahead.count() == 0) continue;
     const std::size_t last = first + ahead.count();
     const auto rows = static_cast<double>(last - first + 1);
     const double passed = step_between(stamps[first - 1], stamps[last]);
-    if (passed < (rows - 1.5) * usual) continue;
+    if (passed < (kMost * rows - 1.5) * usual) continue;
     const double interval = std::min(usual, passed / rows);
     for (std::size_t row = first; row < last; ++row)
       out[row] = stamps[last] - clamped_whole<std::int64_t>(std::round(interval * static_cast<double>(last - row)));
     moved += last - first;
     first = last;
   }
-  return 2 * moved < stamps.size() ? out : stamps;
+  return 2 * moved < out.size() ? out : stamps;
 }
 
 std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps) {

@@ -60,7 +60,8 @@ struct RowsAtOnce {
   }
 };
 
-/// The same stamps, such rows (fewer than half of all) one interval apart in front of the last of them.
+/// The same stamps, such rows (fewer than half of all) one interval apart in front of the last of them; without those
+/// that the end cuts.
 std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps);
 
 /// One interval up to a row, another one from there on.

@@ -294,7 +294,13 @@ std::optional<std::size_t> column_that_rises(const TableFront& table, const Read
   if (table.text && c + 2 < table.columns.size() && !table.columns[c + 1].text &&
       counts_rows(table.first_values(c).values))
     if (const FirstValues next = table.first_values(c + 1); next.integers && steady_clock(next.values)) ++c;
-  if (c + 1 >= table.columns.size()) return std::nullopt;
+  const std::size_t columns = table.columns.size();
+  const auto epoch = [&](std::size_t at) {
+    return table.text && at < columns && !table.columns[at].text && counts_since_1970(table.first_values(at));
+  };
+  for (std::size_t later = c + 1; later < columns && !epoch(c); ++later)  // "temp 21.3 1714564800"
+    if (epoch(later)) c = later;
+  if (columns < 2 || (c + 1 >= columns && !epoch(c))) return std::nullopt;
   if (!table.text && (options.rate_hz || info.time.rate_hz > 0)) return std::nullopt;
   const FirstValues first = table.first_values(c);
   std::vector<double> values = first.values;

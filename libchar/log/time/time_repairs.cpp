@@ -144,11 +144,15 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     return Verdict::keep;
   }
   const bool packets = step_.model.packet > 0;
-  const std::size_t at_once = packets || step_.coarse ? 0 : rows_at_once(front, row);
+  const RowsAtOnce behind = packets || step_.coarse ? RowsAtOnce{} : rows_at_once(front, row);
+  const std::size_t at_once = behind.count();
   const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead, at_once);
   if (packets && gap == 0) return Verdict::keep;
   if (at_once > 0) {
-    const std::int64_t missing = std::max<std::int64_t>(gap, 0), place_here = place_behind(missing);
+    // At the end of the log no row says how late they are: most of the pause is theirs.
+    const bool last_ones = last_.ended && behind.regular < RowsAtOnce::kRegular &&
+                           2 * static_cast<double>(at_once) * step_.ns > static_cast<double>(step);
+    const std::int64_t missing = last_ones ? 0 : std::max<std::int64_t>(gap, 0), place_here = place_behind(missing);
     if (static_cast<double>(stamp - place_here) > 2 * step_.ns) return hung(front, row, at_once, missing, stamp);
   }
   if (gap == 0 || (!step_.coarse && ahead > 1 && next_lies_before(front, row, stamp))) {
@@ -288,14 +292,14 @@ bool TimeGrid::next_lies_before(const Pending& front, std::size_t row, std::int6
   return next_row(at, item, row) && !__builtin_add_overflow(at->block.time_ns[row], last_.wrap, &next) && next < stamp;
 }
 
-// Rows behind this one that a logger wrote at once: 0 where they are few, or none are regular.
-std::size_t TimeGrid::rows_at_once(const Pending& front, std::size_t row) const {
+// Rows behind this one that a logger may have written at once.
+RowsAtOnce TimeGrid::rows_at_once(const Pending& front, std::size_t row) const {
   const Pending* at = &front;
   std::size_t item = 0;
   RowsAtOnce ahead{step_.ns, front.block.time_ns[row]};
   while (next_row(at, item, row) && ahead.add(at->block.time_ns[row])) {
   }
-  return ahead.count();
+  return ahead;
 }
 
 // How much later than expected this row and those behind it (behind those written at once) are, in steps; its own
@@ -340,15 +344,16 @@ std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t s
 
 // Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
 std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
-  constexpr double kOff = 0.35;  // of a packet: further off it is no whole number of them
+  constexpr double kOff = 0.35, kLate = 0.5;  // of a packet: further off it is no whole number of them, or on time
+  constexpr std::size_t kPackets = 6;         // looked at
   if (!recent_.packets.any()) return 0;
   const auto rows = static_cast<double>(step_.model.packet);
   double late = recent_.packets.late(last_.index + 1, stamp, step_.ns);
   std::size_t item = 0, i = row;
   const Pending* at = &front;
   std::int64_t before = stamp;
-  const std::size_t looked = std::min(ahead, 2 * step_.model.packet + 2);
-  for (std::size_t j = 1; j < looked && late > 0; ++j) {
+  const std::size_t looked = std::min(ahead, kPackets * step_.model.packet + 2);
+  for (std::size_t j = 1; j < looked && late >= kLate * rows * step_.ns; ++j) {
     if (!next_row(at, item, i)) break;
     std::int64_t t = 0, step = 0;
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;
@@ -357,7 +362,7 @@ std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::in
       late = std::min(late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
   }
   const double packets = late / (rows * step_.ns), whole = std::round(packets);
-  if (packets < 0.5 || late > 9e18) return 0;
+  if (packets < kLate || late > 9e18) return 0;
   return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows : std::round(late / step_.ns));
 }
 

@@ -148,7 +148,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics, const ReadOpt
       throw usage_error("E0425", file)
           .says("these channels are of several topics, and each topic has its own clock")
           .got("{}", fmt::join(options.channels, ","))
-          .hint("read one topic at a time");
+          .hint("read one topic at a time, or all side by side: `topic` '*'");
   }
   if (common->size() == 1) return *common->begin();
   std::vector<std::string> names;
@@ -247,7 +247,8 @@ void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string
   };
   throw usage_error("E0427", file)
       .says("holds {} topics, each with a clock of its own: {}", names.size(), first_names(names))
-      .hint("`topic` {} chooses one", std::max_element(topics.begin(), topics.end(), better)->name);
+      .hint("`topic` {} chooses one, `topic` '*' reads all side by side",
+            std::max_element(topics.begin(), topics.end(), better)->name);
 }
 
 namespace {

@@ -9,7 +9,8 @@
 // spread² = total - error are independent and each has its interval, so that they join by the method of variance
 // estimates recovery (Zou & Donner, Stat. Med. 27 (2008) 1693), with P the square that Paule and Mandel's equation
 // gives:
-//   low² = P - hypot(P - low²(s known), P - P(s at its upper end)),   high² = P + hypot(high²(s known) - P, P(s at its lower end) - P)
+//   low² = P - hypot(P - low²(s known), P - P(s at its upper end)),
+//   high² = P + hypot(high²(s known) - P, P(s at its lower end) - P)
 
 #include <algorithm>
 #include <cmath>

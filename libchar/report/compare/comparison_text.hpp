@@ -76,7 +76,8 @@ struct BenchChanges {
   std::vector<BenchChange> figures;  ///< that are in both
   bool same_machine = false;         ///< processor and their number
   std::vector<std::string> missing;  ///< that are in the older one only
-  /// Worse and resolved, by more than `tolerance` of it: errors always, times on the same machine only and by three of it.
+  /// Worse and resolved, by more than `tolerance` of it: errors always, times on the same machine only and by three of
+  /// it.
   std::vector<BenchChange> worse(double tolerance) const;
 };
 

@@ -15,7 +15,8 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 
 constexpr std::size_t kNpyBlock = 64;
 constexpr std::size_t kPieceOfTexts = std::size_t{1} << 16U;
-/// Sizes and places have 32 bits; what they do not hold stands in an extension (ZIP64, APPNOTE 4.5.3), and this in its stead.
+/// Sizes and places have 32 bits; what they do not hold stands in an extension (ZIP64, APPNOTE 4.5.3), and this in its
+/// stead.
 constexpr std::uint64_t kInExtension = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kVersion = 20, kWideVersion = 45, kWideExtension = 1, kExtensionHead = 4;
 
@@ -23,7 +24,8 @@ void append(std::string& to, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) to += static_cast<char>((value >> (8 * i)) & 0xFFU);
 }
 
-/// What local and central headers have in common: version, UTF-8 name, stored, 1980-01-01, checksum, sizes, lengths of name and extension.
+/// What local and central headers have in common: version, UTF-8 name, stored, 1980-01-01, checksum, sizes, lengths of
+/// name and extension.
 void append_member(std::string& to, std::uint32_t crc, std::uint64_t bytes, std::size_t name, std::size_t extension,
                    bool large, bool far = false) {
   append(to, large || far ? kWideVersion : kVersion, 2);
@@ -162,7 +164,8 @@ void NpzWriter::finish() {
   finish_directory(at, written_ - at);
 }
 
-/// The place of the directory, and in front of it, where that is too far, a record that has room for it, and the place of that.
+/// The place of the directory, and in front of it, where that is too far, a record that has room for it, and the place
+/// of that.
 void NpzWriter::finish_directory(std::uint64_t at, std::uint64_t size) {
   const bool far = at >= wide_from_ || size >= wide_from_;
   if (far) {

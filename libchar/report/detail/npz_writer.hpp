@@ -1,6 +1,6 @@
 #pragma once
-// An .npz archive of named one-dimensional arrays (NumPy enhancement proposal 1 in an uncompressed zip archive, APPNOTE 6.3.3, ZIP64 above 4 GiB), which
-// numpy.load reads with allow_pickle=False.
+// An .npz archive of named one-dimensional arrays (NumPy enhancement proposal 1 in an uncompressed zip archive, APPNOTE
+// 6.3.3, ZIP64 above 4 GiB), which numpy.load reads with allow_pickle=False.
 
 #include <cstdint>
 #include <functional>
@@ -14,8 +14,8 @@ namespace libchar {
 
 class NpzWriter {
  public:
-  /// `take` gets the bytes of the archive, a piece after the other. Sizes and places from `wide_from` on stand in extensions (tests have
-  /// no four gigabytes).
+  /// `take` gets the bytes of the archive, a piece after the other. Sizes and places from `wide_from` on stand in
+  /// extensions (tests have no four gigabytes).
   explicit NpzWriter(std::function<void(std::string_view)> take,
                      std::uint64_t wide_from = std::numeric_limits<std::uint32_t>::max())
       : take_(std::move(take)), wide_from_(wide_from) {}
@@ -23,8 +23,8 @@ class NpzWriter {
   void add(const std::string& name, std::span<const double> values);
   void add(const std::string& name, std::span<const std::uint64_t> values);
   void add(const std::string& name, std::span<const std::uint8_t> values);
-  /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped. Asked for several times: the array is four bytes for each character
-  /// of the longest, and is never in memory as a whole.
+  /// Texts of fixed width ('<U12'), in UTF-8; what is not is escaped. Asked for several times: the array is four bytes
+  /// for each character of the longest, and is never in memory as a whole.
   void add(const std::string& name, std::size_t count, const std::function<const std::string&(std::size_t)>& text);
   /// The directory of the archive; nothing may follow.
   void finish();
@@ -35,8 +35,8 @@ class NpzWriter {
     std::uint32_t crc = 0;
     std::uint64_t bytes = 0, at = 0;
   };
-  /// Whoever has the data gives them to whoever asks, a piece after the other, twice: for the checksum, which stands in front, and to be
-  /// written.
+  /// Whoever has the data gives them to whoever asks, a piece after the other, twice: for the checksum, which stands in
+  /// front, and to be written.
   using GiveData = std::function<void(const std::function<void(std::string_view)>&)>;
   void add_array(const std::string& name, const std::string& type, std::size_t count, std::uint64_t bytes,
                  const GiveData& give);

@@ -156,7 +156,8 @@ std::string devices_part(const FleetLot& lot) {
          "next to this page.</p>\n</section>\n";
 }
 
-/// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand there once.
+/// Folders of reports: what stands before each device's name where that is all, so that a hundred thousand names stand
+/// there once.
 Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::size_t>& order) {
   std::optional<std::string> before;
   bool none = true, simple = true;
@@ -175,7 +176,8 @@ Json reports_json(std::span<const DeviceRecord> records, const std::vector<std::
   return out;
 }
 
-/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one. In the order of the lot.
+/// What tells the recordings of one device apart: the log's name and its temperature; "" where a device has one. In the
+/// order of the lot.
 std::vector<std::string> recording_names(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   std::map<std::pair<std::string_view, std::string_view>, std::size_t> count;

@@ -19,8 +19,8 @@
 #include "libchar/lot/fleet_lot.hpp"
 
 namespace libchar {
-// All coefficients of a fleet as a table: one row per recording and channel, one column per property, for spreadsheets (CSV) and for NumPy (.npz,
-// one array per column). A quantity that no device has, has no column.
+// All coefficients of a fleet as a table: one row per recording and channel, one column per property, for spreadsheets
+// (CSV) and for NumPy (.npz, one array per column). A quantity that no device has, has no column.
 
 /// Gets a file piece by piece.
 using TakeBytes = std::function<void(std::string_view)>;
@@ -55,7 +55,8 @@ std::string fleet_text(const FleetReport& report, std::size_t width = 0, std::si
 
 // Runs of one sensor, pooled: what is written, shown and printed of them.
 
-/// Runs with what was found of them; `folders` hold the report of each run, relative to the folder of the page ("": none).
+/// Runs with what was found of them; `folders` hold the report of each run, relative to the folder of the page ("":
+/// none).
 struct RunsReport {
   std::span<const Characterization> runs;
   const PooledRuns* pooled = nullptr;

@@ -11,8 +11,8 @@
 
 namespace libchar {
 
-/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve: one row per point; bounds and edf empty where there is no interval.
-/// A channel has an entry in both lists for each of its curves.
+/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve: one row per point; bounds and edf empty
+/// where there is no interval. A channel has an entry in both lists for each of its curves.
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
 
 /// Channel by channel, without models; where there are several types, `types` and the `type` of each entry.
@@ -31,17 +31,20 @@ Json spectra_json(const LogSpectra& spectra, const CharacterizeOptions& options)
 
 // Cornered hats and dynamic deviations as tables and documents (docs/json.md).
 
-/// channel,unit,tau_s,deviation,variance,variance_sd,status,terms: one row per device and averaging time; no deviation where the variance is negative.
+/// channel,unit,tau_s,deviation,variance,variance_sd,status,terms: one row per device and averaging time; no deviation
+/// where the variance is negative.
 std::string hat_csv(const LogHat& hat);
 Json hat_json(const LogHat& hat);
 
-/// channel,unit,time_s,from_s,to_s,tau_s,deviation,terms: a row a window and averaging time; `time_s` is the window's middle.
+/// channel,unit,time_s,from_s,to_s,tau_s,deviation,terms: a row a window and averaging time; `time_s` is the window's
+/// middle.
 std::string dynamic_csv(const LogDynamic& dynamic);
 Json dynamic_json(const LogDynamic& dynamic);
 
 // Cross spectra, coherences and spectrograms as tables and documents (docs/json.md).
 
-/// frequency_hz,real,imaginary,magnitude,phase_rad,phase_sd_rad,FIRST,SECOND,coherence,coherence_unbiased; units in the heads.
+/// frequency_hz,real,imaginary,magnitude,phase_rad,phase_sd_rad,FIRST,SECOND,coherence,coherence_unbiased; units in the
+/// heads.
 std::string cross_csv(const LogCrossSpectrum& cross);
 /// frequency_hz,coherence,coherence_unbiased,significant: the last whether independent channels stay below with 95 %.
 std::string coherence_csv(const LogCrossSpectrum& cross);
@@ -53,7 +56,8 @@ Json spectrograms_json(const LogSpectrograms& spectrograms);
 
 // The curves of a characterization as one table.
 
-/// Allan and spectrum curves of all channels in one table: curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95.
+/// Allan and spectrum curves of all channels in one table:
+/// curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95.
 std::string csv_curves(const CharacterizationView& view);
 std::string csv_curves(const Characterization& result);
 

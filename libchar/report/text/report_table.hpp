@@ -12,9 +12,10 @@
 
 namespace libchar {
 
-/// The coefficients of the channels that match one of the patterns (none: all), with 95 % intervals or upper limits. LaTeX is a tabular
-/// that needs no package; CSV has one column per number: channel,unit,term,value,low95,high95,upper95,term_unit,status. Throws Error(usage)
-/// where a pattern matches no channel.
+/// The coefficients of the channels that match one of the patterns (none: all), with 95 % intervals or upper limits.
+/// LaTeX is a tabular that needs no package; CSV has one column per number:
+/// channel,unit,term,value,low95,high95,upper95,term_unit,status. Throws Error(usage) where a pattern matches no
+/// channel.
 std::string coefficient_table(const ReportedCharacterization& report, const std::vector<std::string>& channels,
                               TableFormat format);
 

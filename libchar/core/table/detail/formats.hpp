@@ -5,9 +5,9 @@
 
 namespace libchar {
 
-/// Columns aligned by width in characters, the first (and the last, if it holds words) to the left
-/// and the others to the right. Where that is wider than `width` (0: any width), the words of the last column are wrapped; where that does
-/// not do, the table is cut into one below the other, each beginning with the first column.
+/// Columns aligned by width in characters, the first (and the last, if it holds words) to the left and the others to
+/// the right. Where that is wider than `width` (0: any width), the words of the last column are wrapped; where that
+/// does not do, the table is cut into one below the other, each beginning with the first column.
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ",
                        bool words_last = false, std::size_t width = 0);
 

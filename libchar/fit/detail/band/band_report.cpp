@@ -36,8 +36,8 @@ struct ShapePoint {
   double dof = 0;  ///< of the bin it comes from
 };
 
-/// Bins of the last, short block stand among those of all blocks together and scatter more: where a better known one is near they
-/// describe nothing. Sorted by frequency.
+/// Bins of the last, short block stand among those of all blocks together and scatter more: where a better known one is
+/// near they describe nothing. Sorted by frequency.
 std::vector<ShapePoint> best_known(std::vector<ShapePoint> points) {
   constexpr double kNear = 1.1, kWorse = 0.2;
   std::sort(points.begin(), points.end(),

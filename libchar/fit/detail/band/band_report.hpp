@@ -6,12 +6,13 @@
 
 namespace libchar {
 
-/// Fills residuals, band, shape and the corner of a low-pass. `best` is the maximum of `problem`, the bins inside the band.
+/// Fills residuals, band, shape and the corner of a low-pass. `best` is the maximum of `problem`, the bins inside the
+/// band.
 void describe_band(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
                    const ModelPoint& best, double rate_hz, NoiseFit& fit);
 
-/// Puts what was clipped as lines back into the shape: a simulation then has their power where the recording has it. `clipped` are
-/// the bins that were fitted, `full` the same with every coefficient.
+/// Puts what was clipped as lines back into the shape: a simulation then has their power where the recording has it.
+/// `clipped` are the bins that were fitted, `full` the same with every coefficient.
 void add_lines(const std::vector<PowerBin>& clipped, const std::vector<PowerBin>& full, NoiseFit& fit);
 
 /// The remedies that stand for the band's decisions.

@@ -188,11 +188,12 @@ ScoreMoments score_moments(const BinProblem& problem, const ModelPoint& at, cons
   return {sd, (8 * weight.cube() / problem.dof.square()).sum()};
 }
 
-// Non-negative Fisher scoring. The likelihood is that of gamma variables whose means are mu = (A theta) exp(S a), so that each
-// scoring step is a weighted linear least-squares problem,
+// Non-negative Fisher scoring. The likelihood is that of gamma variables whose means are mu = (A theta) exp(S a), so
+// that each scoring step is a weighted linear least-squares problem,
 //   theta, da <- argmin_{theta >= 0} sum nu/(2 mu^2) (x - exp(S a) A theta - mu S da)^2,
-// solved exactly: the shape is eliminated first, then every subset of the terms is tried. Start: weights 1/x^2 and no shape, or
-// the slow part of the bins and what the others lack. A step that does not lower -ln L is halved. Typically 5-15 steps.
+// solved exactly: the shape is eliminated first, then every subset of the terms is tried. Start: weights 1/x^2 and no
+// shape, or the slow part of the bins and what the others lack. A step that does not lower -ln L is halved. Typically
+// 5-15 steps.
 
 namespace {
 
@@ -231,8 +232,8 @@ ModelPoint between(const ModelPoint& a, const ModelPoint& b, double share) {
   return at;
 }
 
-// A step with a shape, in units of the model: rows are relative errors with weight nu/2, the shape's columns are taken out of the
-// terms' columns (they are orthonormal), and come back when the terms are known.
+// A step with a shape, in units of the model: rows are relative errors with weight nu/2, the shape's columns are taken
+// out of the terms' columns (they are orthonormal), and come back when the terms are known.
 ModelPoint shaped_step(const BinProblem& problem, const TermSet& free, const Mixture& fixed, const ModelPoint& now) {
   const Eigen::ArrayXd mixture = mixture_of(problem, now.theta);
   const Eigen::ArrayXd gain = shape_of(problem, now.shape);

@@ -1,5 +1,6 @@
 #pragma once
-// The likelihood of power bins: independent gamma variables whose means are linear in theta, times a shape of frequency.
+// The likelihood of power bins: independent gamma variables whose means are linear in theta, times a shape of
+// frequency.
 //   half deviance  D(theta, a) = sum_j nu_j/2 (u_j - 1 - ln u_j),
 //                  u_j = measured_j / mu_j,  mu = (A theta) exp(S a),  -ln L = D + const
 
@@ -67,8 +68,8 @@ namespace detail {
 double deviance_of_bin(double energy, double model);
 }  // namespace detail
 
-/// Expected information of theta at the point, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows); what the
-/// unknown shape takes of it is taken off.
+/// Expected information of theta at the point, 1/2 sum nu a a' / mu^2, for the terms of the set (others: zero rows);
+/// what the unknown shape takes of it is taken off.
 TermMatrix fisher_information(const BinProblem& problem, const ModelPoint& at, const TermSet& terms);
 
 /// Inverse of the block of `information` that belongs to `terms`, other entries zero; columns are scaled first.
@@ -93,7 +94,8 @@ inline std::size_t count_of(const TermSet& set) {
 }
 
 /// The maximum of the likelihood by non-negative Fisher scoring.
-/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`, and over the coefficients of the shape.
+/// Maximum likelihood over theta >= 0 of the free terms, the others held at `start`, and over the coefficients of the
+/// shape.
 struct ScoringResult {
   ModelPoint at;
   double half_deviance = 0;

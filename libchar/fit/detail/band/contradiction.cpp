@@ -1,8 +1,9 @@
-// A likelihood fit weighs all frequencies by their information; where the model is wrong at high frequencies it may buy a better fit
-// there with slow coefficients that the record does not show. Two checks that do not share that weakness:
+// A likelihood fit weighs all frequencies by their information; where the model is wrong at high frequencies it may buy
+// a better fit there with slow coefficients that the record does not show. Two checks that do not share that weakness:
 //  - the model's Allan deviation against the 99.7 % chi-square interval of the measured one, point by point;
 //  - the covariance-weighted fit of the Allan curve, when the first fit does not describe the record (p < 1e-3).
-// Both must differ by more than a fifth as well: at thousands of degrees of freedom a per cent is beyond chance and of no interest.
+// Both must differ by more than a fifth as well: at thousands of degrees of freedom a per cent is beyond chance and of
+// no interest.
 #include "libchar/fit/detail/band/contradiction.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // |H|^2 = (1-a)^2 / (1 - 2 a cos w + a^2),  w = 2 pi f / rate,  a = exp(-2 pi corner/rate)
-// (an exponential filter of the samples). The corner enters nonlinearly: one-dimensional search over the best likelihood
-// of the linear terms (golden section in ln corner after a coarse scan), then Ceres on ln theta and
-// ln corner together for the last digits and the joint covariance.
+// (an exponential filter of the samples). The corner enters nonlinearly: one-dimensional search over the best
+// likelihood of the linear terms (golden section in ln corner after a coarse scan), then Ceres on ln theta and ln
+// corner together for the last digits and the joint covariance.
 #include "libchar/fit/detail/band/low_pass.hpp"
 
 #include <ceres/ceres.h>

@@ -159,8 +159,8 @@ WithDropped with_dropped(const BinProblem& problem, const Decision& decision, co
   return all;
 }
 
-/// One step of Fisher scoring from the maximum over theta >= 0, which lets dropped terms below zero: an efficient estimate of each theta
-/// that no bound and no decision biases (van der Vaart, Asymptotic Statistics (1998), 5.7).
+/// One step of Fisher scoring from the maximum over theta >= 0, which lets dropped terms below zero: an efficient
+/// estimate of each theta that no bound and no decision biases (van der Vaart, Asymptotic Statistics (1998), 5.7).
 ///   theta = theta_max + I^-1 g,   g_i = sum nu/2 (u - 1) a_i / mu
 void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficients& terms) {
   const ModelPoint& at = all.best.at;
@@ -182,8 +182,8 @@ void report_in_all(const BinProblem& problem, const WithDropped& all, Coefficien
 }
 
 /// Rise of the lower limit of a term that is reported because its likelihood ratio passed the threshold, and called
-/// detected because its relative sd is below kUndeterminedAbove: the stricter of the two, the second on the scale of the
-/// root of the ratio, which grows about as the inverse of the relative sd.
+/// detected because its relative sd is below kUndeterminedAbove: the stricter of the two, the second on the scale of
+/// the root of the ratio, which grows about as the inverse of the relative sd.
 double lower_rise(double ratio, double relative_sd, double threshold) {
   const double bound = relative_sd / kUndeterminedAbove;
   return selected_rise(ratio, bound < 1 ? std::max(threshold, ratio * bound * bound) : threshold);

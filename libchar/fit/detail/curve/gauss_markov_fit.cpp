@@ -314,8 +314,8 @@ std::optional<Band> band_of_two(const std::vector<PowerBin>& bins, double rate_h
   return describing(judged(bins, rate_hz, terms, band));
 }
 
-/// A band that the terms with the process describe: found with the process at its most likely correlation time under any
-/// shape, or at that of the cut band.
+/// A band that the terms with the process describe: found with the process at its most likely correlation time under
+/// any shape, or at that of the cut band.
 std::optional<Band> other_band(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, double duration_s,
                                const TermSet& terms, double tau_in_band_s) {
   BandOptions options;

@@ -27,8 +27,8 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
 /// The most likely correlation time near that of the band, with the terms of `theta`.
 double likeliest_tau(const std::vector<PowerBin>& bins, const Band& band, double rate_hz, const Mixture& theta);
 
-/// Moves what was fitted in the ramp's column to `fit.gauss_markov`, with intervals of sigma and tau, and widens those of the terms for
-/// the correlation time that was fitted with them.
+/// Moves what was fitted in the ramp's column to `fit.gauss_markov`, with intervals of sigma and tau, and widens those
+/// of the terms for the correlation time that was fitted with them.
 void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovChoice& choice, NoiseFit& fit);
 
 /// Says of a process that is not needed how far it is from that, and what it would be where it is as good as the terms.

@@ -1,9 +1,9 @@
 // The gamma deviance as a genuine least-squares problem:
 //   r_j = sign(u_j - 1) sqrt(nu_j (u_j - 1 - ln u_j)),   sum r^2/2 = -ln L + const,
 //   dr/dln mu = nu (1 - u) / (2 r).
-// Parameters are ln theta of the terms that scoring left positive, and the shape's coefficients: no bounds, and the start is the
-// optimum to within 1e-10, so that one or two Levenberg-Marquardt steps give the last digits.
-// (theta = c^2, or ln theta from far away, stalls at a bound or misses the optimum.)
+// Parameters are ln theta of the terms that scoring left positive, and the shape's coefficients: no bounds, and the
+// start is the optimum to within 1e-10, so that one or two Levenberg-Marquardt steps give the last digits. (theta =
+// c^2, or ln theta from far away, stalls at a bound or misses the optimum.)
 
 #include "libchar/fit/detail/curve/polish.hpp"
 

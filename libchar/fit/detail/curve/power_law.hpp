@@ -19,8 +19,8 @@ struct PowerLawChoice {
 };
 
 /// The law where it beats all offered terms, which have one parameter more, by more than they do in 1 % of the records
-/// that they describe, and is neither of them: over the whole spectrum where it describes that and `band`, of the terms,
-/// is cut or has a shape; else in `band`.
+/// that they describe, and is neither of them: over the whole spectrum where it describes that and `band`, of the
+/// terms, is cut or has a shape; else in `band`.
 std::optional<PowerLawChoice> choose_power_law(const std::vector<PowerBin>& bins, const Band& band, double rate_hz,
                                                const TermSet& terms);
 

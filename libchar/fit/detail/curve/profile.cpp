@@ -21,13 +21,13 @@
 
 namespace libchar {
 
-// A term is reported when z = sqrt(likelihood ratio) > c = sqrt(threshold). With r(theta) the signed root of the rise of -2 ln L,
-// standard normal under theta, z = r + (z - r), so that given the selection
+// A term is reported when z = sqrt(likelihood ratio) > c = sqrt(threshold). With r(theta) the signed root of the rise
+// of -2 ln L, standard normal under theta, z = r + (z - r), so that given the selection
 //   P(more than what was found | theta) = P(N > r) / P(N > r + c - z),
-// and the lower limit is where that is 2.5 %: always at r > 1.96, at infinity for z -> c, at 1.96 for z >> c.
-// Source: Zhong and Prentice (2008), Bias-reduced estimators and confidence intervals for odds ratios in genome-wide association
-// studies, Biostatistics 9:621; Weinstein, Fithian and Benjamini (2013), Selection adjusted confidence intervals, JASA 108:165.
-// The upper limit stays that of the plain interval, which is the larger one.
+// and the lower limit is where that is 2.5 %: always at r > 1.96, at infinity for z -> c, at 1.96 for z >> c. Source:
+// Zhong and Prentice (2008), Bias-reduced estimators and confidence intervals for odds ratios in genome-wide
+// association studies, Biostatistics 9:621; Weinstein, Fithian and Benjamini (2013), Selection adjusted confidence
+// intervals, JASA 108:165. The upper limit stays that of the plain interval, which is the larger one.
 
 namespace {
 

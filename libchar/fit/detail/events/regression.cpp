@@ -14,8 +14,8 @@
 namespace libchar {
 
 // Orthonormal DCT-II of n points, with a = pi k / n and s = sqrt(2/n):
-//   step at t0       -s sin(a t0) / (2 sin(a/2)), the mean of w + 1 steps from t0 on -s sin(a (t0 + w/2)) sin(a (w+1)/2) /
-//                    ((w+1) 2 sin^2(a/2))
+//   step at t0       -s sin(a t0) / (2 sin(a/2)), the mean of w + 1 steps from t0 on -s sin(a (t0 + w/2))
+//                    sin(a (w+1)/2) / ((w+1) 2 sin^2(a/2))
 //   r^t              s (1 - (-1)^k r^n) (1 - r) cos(a/2) / ((1 - r)^2 + 4 r sin^2(a/2)),   r = exp(-1/tau)
 //   t                -s cos(a/2) / (2 sin^2(a/2)) for odd k, 0 for even k
 // geometric sums of cosines; the mean of m samples of an exponential is an exponential again.
@@ -24,7 +24,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// A step within a point is the mean of the steps beside it by its place; a line over w points is the mean of w + 1 steps.
+/// A step within a point is the mean of the steps beside it by its place; a line over w points is the mean of w + 1
+/// steps.
 void fill_step(const EventShape& shape, double n, std::vector<double>& column) {
   const double scale = -std::sqrt(2 / n) / 2, whole = std::floor(shape.at), within = shape.at - whole;
   const double steps = shape.bridged + 1, middle = whole + 0.5 * shape.bridged;

@@ -37,8 +37,8 @@ class Turning {
 
 // The cosine transforms of steps, warm-ups and ramps, in closed form.
 
-/// What a regressor is, in points of a series: of unit size (EventSeries: step 1, warm-up 1 at the first sample, ramp 1 from the
-/// first sample to the last).
+/// What a regressor is, in points of a series: of unit size (EventSeries: step 1, warm-up 1 at the first sample, ramp 1
+/// from the first sample to the last).
 struct EventShape {
   EventKind kind = EventKind::step;
   /// cycle: half periods in the series; step: the first point after it; 10.3 is a step within point 10, which has seven
@@ -75,8 +75,8 @@ double weighted_product(std::span<const double> weight, std::span<const double> 
 Regression regress(std::vector<EventShape> shapes, const SeriesGrid& grid, std::span<const double> coefficients,
                    std::span<const double> weight);
 
-/// The share of each coefficient that columns explain whatever it is, the diagonal of X (X'WX)^-1 X'W: so much of a degree
-/// of freedom is missing in the rest.
+/// The share of each coefficient that columns explain whatever it is, the diagonal of X (X'WX)^-1 X'W: so much of a
+/// degree of freedom is missing in the rest.
 std::vector<double> leverage_of(const std::vector<std::vector<double>>& columns, const Eigen::MatrixXd& covariance,
                                 std::span<const double> weight);
 

@@ -1,11 +1,11 @@
-// A step at t0 has the coefficients s_k = -sqrt(2/n) sin(pi k t0/n) / (2 sin(pi k/2n)). With weights W_k = 1 / E c_k^2 and
-// coefficients r_k of what is not yet explained, for all t0 at once:
+// A step at t0 has the coefficients s_k = -sqrt(2/n) sin(pi k t0/n) / (2 sin(pi k/2n)). With weights W_k = 1 / E c_k^2
+// and coefficients r_k of what is not yet explained, for all t0 at once:
 //   numerator    sum W s r = -sqrt(2/n) sum_k [W_k r_k / (2 sin)] sin(pi k t0/n)                one sum of sines
 //   information  sum W s^2 = 1/2 (sum h - sum_k h_k cos(2 pi k t0/n)),  h = W (2/n) / (2 sin)^2  one inverse FFT
 // less what the columns of the regression share with it (one sum of sines each). The numerators of neighbours differ by
-// sqrt(2/n) sum W r cos(pi k (t0 + 1/2)/n), whose variance is the mean of W but at the ends: so the threshold knows how many
-// independent scores there are. Interval of the place: the likelihood ratio of a change point has
-// P(2 ln L falls by > x) = 1 - (1 - exp(-x/2))^2, 7.35 at 95 % (B. Hansen, Econometrica 68, 2000).
+// sqrt(2/n) sum W r cos(pi k (t0 + 1/2)/n), whose variance is the mean of W but at the ends: so the threshold knows how
+// many independent scores there are. Interval of the place: the likelihood ratio of a change point has P(2 ln L falls
+// by > x) = 1 - (1 - exp(-x/2))^2, 7.35 at 95 % (B. Hansen, Econometrica 68, 2000).
 
 #include "libchar/fit/detail/events/scans.hpp"
 
@@ -23,8 +23,9 @@
 
 namespace libchar {
 
-// Steps that something outside makes differ in size; those of a trap in a transistor, or of a loose contact, are all alike, and up follows
-// down (M. J. Kirton and M. J. Uren, Advances in Physics 38, 1989). The size is the weighted mean of the steps' sizes.
+// Steps that something outside makes differ in size; those of a trap in a transistor, or of a loose contact, are all
+// alike, and up follows down (M. J. Kirton and M. J. Uren, Advances in Physics 38, 1989). The size is the weighted mean
+// of the steps' sizes.
 
 namespace {
 
@@ -65,9 +66,9 @@ std::optional<Telegraph> telegraph_of(std::span<const Event> events, int further
   return Telegraph{size, 1 / std::sqrt(weight), jumps, duration_s / (jumps + 1)};
 }
 
-// A warm-up a exp(-t/tau) begins with the record; of its time constant nothing is known, so that the largest score over a grid of
-// tau is judged (scans.hpp). Its coefficients fall as 1/k^2 beyond k = n/(pi tau): what comes after fifty times that is
-// left out of the scan.
+// A warm-up a exp(-t/tau) begins with the record; of its time constant nothing is known, so that the largest score over
+// a grid of tau is judged (scans.hpp). Its coefficients fall as 1/k^2 beyond k = n/(pi tau): what comes after fifty
+// times that is left out of the scan.
 
 namespace {
 
@@ -191,15 +192,18 @@ Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<con
   return score_of(beside, column, weight);
 }
 
-// The look-elsewhere effect. With d_i the standard deviation of the difference of neighbouring scores, Q the normal tail, phi its
-// density:
+// The look-elsewhere effect. With d_i the standard deviation of the difference of neighbouring scores, Q the normal
+// tail, phi its density:
 //   rough    P(max > u) <= Q(u) + sum_i u phi(u) (d_i^2 / 2) nu(u d_i),
 //            nu(x) = (2/x) (Phi(x/2) - 1/2) / ((x/2) Phi(x/2) + phi(x/2))
-//            (D. Siegmund, Sequential Analysis, 1985; D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007): scores
-//            whose correlation falls linearly with distance, looked at in steps; far apart (x large) it is Bonferroni's sum.
-//   smooth   P(max > u) <= Q(u) + sum_i min(Q(u), a_i phi(u) / sqrt(2 pi)), a_i = 2 asin(d_i / 2): the length of the curve that
-//            the scores' directions draw on the sphere (H. Hotelling, American Journal of Mathematics 61, 1939), and Bonferroni.
-// Twice that for both signs. No constant of these is fitted: the threshold follows from the number of scores and from the model.
+//            (D. Siegmund, Sequential Analysis, 1985; D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007):
+//            scores whose correlation falls linearly with distance, looked at in steps; far apart (x large) it is
+//            Bonferroni's sum.
+//   smooth   P(max > u) <= Q(u) + sum_i min(Q(u), a_i phi(u) / sqrt(2 pi)), a_i = 2 asin(d_i / 2): the length of the
+//            curve that the scores' directions draw on the sphere (H. Hotelling, American Journal of Mathematics 61,
+//            1939), and Bonferroni.
+// Twice that for both signs. No constant of these is fitted: the threshold follows from the number of scores and from
+// the model.
 
 namespace {
 

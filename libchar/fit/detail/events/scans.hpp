@@ -13,8 +13,8 @@ namespace libchar {
 
 // Are the steps of a record the jumps of a two-level process?
 
-/// From six steps on, of one size within their standard deviations and a quarter, up as well as down. `further`: places beside them
-/// where the scores ask for more.
+/// From six steps on, of one size within their standard deviations and a quarter, up as well as down. `further`: places
+/// beside them where the scores ask for more.
 std::optional<Telegraph> telegraph_of(std::span<const Event> events, int further, double duration_s);
 
 // The score of a warm-up at every time constant of a grid, and of a ramp.
@@ -49,9 +49,10 @@ Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<con
 double normal_tail(double u);
 double normal_density(double u);
 
-/// The u that the largest |score| of a chain of standard normal scores passes with probability `alpha`. `distance[i]` is the
-/// standard deviation of score i+1 less score i.
-///   rough:  the scores move like a random walk from one to the next (places of a step); every distance stands for `each`
+/// The u that the largest |score| of a chain of standard normal scores passes with probability `alpha`. `distance[i]`
+/// is the standard deviation of score i+1 less score i.
+///   rough:  the scores move like a random walk from one to the next (places of a step); every distance stands for
+///           `each`
 ///   smooth: they lie on a smooth curve (time constants of a drift)
 double rough_threshold(std::span<const double> distance, double alpha, double each = 1);
 double smooth_threshold(std::span<const double> distance, double alpha);
@@ -68,8 +69,8 @@ struct StepScan {
 /// Scores beside what a regression already holds; no step is looked for in the first and last `margin` points.
 StepScan scan_steps(const Regression& beside, std::span<const double> weight, std::size_t points, std::size_t margin);
 
-/// Where the step that is best within `margin` of `at` stands with 95 %: the places beside it whose score squared is at most 7.35
-/// below its own.
+/// Where the step that is best within `margin` of `at` stands with 95 %: the places beside it whose score squared is at
+/// most 7.35 below its own.
 Interval step_place(const StepScan& scan, double at, std::size_t margin);
 
 }  // namespace libchar

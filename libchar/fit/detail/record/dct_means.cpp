@@ -19,11 +19,12 @@
 
 namespace libchar {
 
-// The covariance phi^j summed against the cosines of the DCT-II, with a = pi k/n, e = 1 - phi, s = sin(a/2), w = 1 - phi exp(i a),
+// The covariance phi^j summed against the cosines of the DCT-II, with a = pi k/n, e = 1 - phi, s = sin(a/2), w = 1 -
+// phi exp(i a),
 // D = |w|² = e² + 4 phi s²:
 //   E[c_k²] = (1 - phi²)/D + (2/n) (1 - (-1)^k phi^n) [Re 1/w - Re 1/w² - phi/D]
-// The first part is the process's spectrum, the second what its two ends add. Means of m samples are such a process with phi^m, whose
-// neighbours have the covariance of neighbouring means, and white noise that makes up their variance.
+// The first part is the process's spectrum, the second what its two ends add. Means of m samples are such a process
+// with phi^m, whose neighbours have the covariance of neighbouring means, and white noise that makes up their variance.
 
 namespace {
 
@@ -78,12 +79,13 @@ double gauss_markov_unit(const PowerBin& bin, double tau_s, double rate_hz) {
               means.variance - like);
 }
 
-// Differences of flicker have the covariance gamma(j) = -(4/pi)/(4 j² - 1) dt^-2, the spectrum 2 sin(b) dt^-2 with b = pi k/(2n). Summed
-// against the cosines of the DCT-II, L = ln(cot(b/2))/2:
+// Differences of flicker have the covariance gamma(j) = -(4/pi)/(4 j² - 1) dt^-2, the spectrum 2 sin(b) dt^-2 with b =
+// pi k/(2n). Summed against the cosines of the DCT-II, L = ln(cot(b/2))/2:
 //   dt² E[c_k²] = 2 sin b + (2/(pi n)) (-1)^k (1 - z f(z))                           the spectrum, less lags beyond n
-//               + (8/(pi n)) [L cos b/2 - 1/4 + Ci(z)/4] + (4/(pi n)) L/cos b,       what the two ends add;     z = pi k
+//               + (8/(pi n)) [L cos b/2 - 1/4 + Ci(z)/4] + (4/(pi n)) L/cos b, what the two ends add; z = pi k
 //   1 - z f(z) = 1 - z (pi/2 - Si(z)) (-1)^k,   Ci(z) = -(-1)^k g(z), g(z) ~ 1/(z² + 4.3)
-// The ends count: L is 6 where n is 10⁶ and k = 1. Short series, and means of m samples, whose covariance is the second difference of
+// The ends count: L is 6 where n is 10⁶ and k = 1. Short series, and means of m samples, whose covariance is the second
+// difference of
 // -(2/pi) H_(jm), H_n = 1 + 1/3 + … + 1/(2n - 1), are summed exactly.
 
 namespace {

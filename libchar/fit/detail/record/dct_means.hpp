@@ -12,14 +12,15 @@ namespace libchar {
 
 // Expected squared DCT-II coefficients of a first-order Gauss-Markov process (model/sensor_model.hpp).
 
-/// E[c_k²] of a process of unit variance with phi = exp(-dt/tau), n samples; exact for integer k in 1..n-1, between them the mean of odd
-/// and even.
+/// E[c_k²] of a process of unit variance with phi = exp(-dt/tau), n samples; exact for integer k in 1..n-1, between
+/// them the mean of odd and even.
 double gauss_markov_dct_mean(double k, std::uint64_t n, double dt_over_tau);
 
 /// Mean over a bin's coefficients, per unit variance.
 double gauss_markov_unit(const PowerBin& bin, double tau_s, double rate_hz);
 
-// Expected squared DCT-II coefficients of flicker phase noise: y_t = F (x_t - x_{t-1})/dt with x unit flicker, S_y(f) = F² 2 sin(pi f dt)/dt.
+// Expected squared DCT-II coefficients of flicker phase noise: y_t = F (x_t - x_{t-1})/dt with x unit flicker, S_y(f) =
+// F² 2 sin(pi f dt)/dt.
 
 /// E[c_k²] per unit F², n samples: within 1e-3 for n >= 4096 (k whole, or between whole numbers for a mean over a bin).
 double flicker_phase_dct_mean(double k, std::uint64_t n, double dt_s);

@@ -67,16 +67,17 @@ void refuse_no_data(const Study& study) {
 
 // Terminals and loggers put the time in front of every line: "[12:00:00.123] 1,2", "I (12345) tag: 1,2".
 void find_lead(Study& study) {
-  for (const std::string lead : {"=", "]", "->", ")", ","}) {
+  for (const std::string lead : {"=", "]", "->", ")", ",", " "}) {
     std::size_t found = 0, after = 0;
     for (const Line& line : study.sample)
       if (const auto field = lead_of(line.text, lead, after); field && after < line.text.size())
-        found += read_calendar(field->text) ||
+        found += lead == " " || read_calendar(field->text) ||
                  ((lead == "=" || lead == "]" || lead == ")") && read_cell(field->text, '.').kind == Cell::value);
     if (found * 4 < study.sample.size() * 3) continue;
     study.dialect.lead = lead;
-    study.info.dialect.push_back(
-        fmt::format("stamps in front of the lines, up to {}", lead == "=" ? "the first name" : lead));
+    study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead == "="   ? "the first name"
+                                                                                       : lead == " " ? "the first cell"
+                                                                                                     : lead));
     return;
   }
 }
@@ -177,7 +178,7 @@ void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
     throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
-  if (option == "auto" && named_by_daemon(study)) return;
+  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study) || named_by_signal_express(study))) return;
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -229,7 +230,8 @@ LeftOut why_left_out(const Study& study, const std::set<std::string_view>& clock
   const bool unnamed =
       dialect.has_header && (column.text.empty() || column.text == "#" || column.text.starts_with("Unnamed: "));
   const bool counts = kind == ColumnKind::empty || (c == 0 && counts_rows(study, c));
-  return unnamed && counts ? LeftOut::counts : LeftOut::none;
+  const bool led = c == 0 && !dialect.lead.empty() && kind == ColumnKind::empty;
+  return led || (unnamed && counts) ? LeftOut::counts : LeftOut::none;
 }
 
 void leave_out(Study& study) {
@@ -258,7 +260,7 @@ void leave_out(Study& study) {
 
 // Of all rates that comments and preamble state, where they are one.
 std::optional<double> stated_rate(const Study& study) {
-  std::optional<double> rate;
+  std::optional<double> rate = study.rate_hz;
   for (const auto* lines : {&study.comments, &study.preamble})
     for (const Line& line : *lines)
       if (const auto stated = stated_rate_hz(line.text)) {
@@ -329,6 +331,15 @@ void find_kinds(Study& study) {
   }
 }
 
+// "1.30, 1.31, 1.29, …": the samples of one channel, as instruments send them.
+void refuse_one_row(const Study& study) {
+  constexpr std::size_t kMany = 100;
+  if (!study.whole || study.sample.size() != 1 || study.dialect.has_header || study.columns < kMany) return;
+  throw refusal(study, study.sample[0], 0, "E0326")
+      .says("one row of {} numbers, which are samples of one channel", study.columns)
+      .hint("write each into a line: tr '{}' '\\n' < FILE > log.csv", study.dialect.delimiter);
+}
+
 // Words in front of averaging times or frequencies: a table of curves, whose rows are no samples.
 void refuse_curve(const Study& study) {
   static constexpr std::array<std::string_view, 5> kAbscissas = {"tau", "tau_s", "averaging_time_s", "frequency_hz",
@@ -386,6 +397,7 @@ Dialect understand(std::string_view head, bool whole, const ReadOptions& options
   read_lines(study);
   const char separator = take_separator_line(study);
   refuse_no_data(study);
+  take_scope_settings(study);
   study.dialect.line_end = (study.comments.empty() ? study.sample : study.comments)[0].end;
   find_lead(study);
   choose_cells(study, separator);
@@ -396,6 +408,7 @@ Dialect understand(std::string_view head, bool whole, const ReadOptions& options
   gather_rows(study);
   find_kinds(study);
   refuse_curve(study);
+  refuse_one_row(study);
   choose_time(study);
   leave_out(study);
   return study.dialect;

@@ -87,9 +87,10 @@ double hertz_of(const Statement& said) {
 }
 
 double interval_of(const Statement& said) {
-  static constexpr std::array<std::string_view, 9> kKeys = {"sampleinterval", "samplinginterval", "sampleperiod",
-                                                            "samplingperiod", "deltax",           "timestep",
-                                                            "sampletime",     "samplingtime",     "xincrement"};
+  static constexpr std::array<std::string_view, 12> kKeys = {
+      "acquisitionperiod", "acquisitioninterval", "logginginterval", "sampleinterval",
+      "samplinginterval",  "sampleperiod",        "samplingperiod",  "deltax",
+      "timestep",          "sampletime",          "samplingtime",    "xincrement"};
   std::string_view key = said.key, unit = said.unit;
   for (const std::string_view known : {"ms", "us", "ns", "s"})  // "Sampling period (ms)": 4
     if (unit.empty() && key.ends_with(known) && ends_with_any(key.substr(0, key.size() - known.size()), kKeys)) {
@@ -100,7 +101,7 @@ double interval_of(const Statement& said) {
   if (unit == "ms") factor = 1e-3;
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
-  return ends_with_any(key, kKeys) || key == "dt" ? *said.number * factor : 0;
+  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" ? *said.number * factor : 0;
 }
 
 }  // namespace
@@ -111,6 +112,11 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
   if (before != std::string::npos)
     return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
+  // "sampled at 50 Hz", "Data File Created By ActiGraph … at 30 Hz": no cutoff of a filter.
+  if (const std::size_t at = lower.find(" at "); at != std::string::npos && at + 4 < lower.size())
+    if (const Statement rate = statement_in(std::string_view(lower).substr(at)); rate.number && rate.key == "at")
+      for (const std::string_view taken : {"sampl", "record", "created"})
+        if (rate.unit.starts_with("hz") && *rate.number > 0 && lower.find(taken) < at) return rate.number;
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -144,15 +150,16 @@ struct LineCensus {
   bool words() const { return fits && good == 0 && bad > 0; }
 };
 
-LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style) {
+LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style, bool labels) {
   LineCensus out;
   out.fits = line.size() == kinds.size();
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
     const CellKind kind = cell_kind(line[c], style);
     if (kind == CellKind::blank) continue;
-    const bool good =
-        kinds[c] == ColumnKind::number ? kind == CellKind::number : kind > CellKind::number && kind < CellKind::word;
+    const bool labelled = !labels && label_length(line[c].text) > 0;  // "Serial: 12345" above plain numbers
+    const bool good = !labelled && (kinds[c] == ColumnKind::number ? kind == CellKind::number
+                                                                   : kind > CellKind::number && kind < CellKind::word);
     ++(good ? out.good : out.bad);
   }
   return out;
@@ -165,6 +172,24 @@ bool unit_cell(std::string_view text) {
     return true;
   const std::string lower = ascii_lower(text);
   return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
+}
+
+/// Two cells alike, which are no names.
+bool has_doubles(const Cells& line) {
+  std::vector<std::string_view> texts;
+  for (const Field& field : line)
+    if (!field.text.empty()) texts.push_back(field.text);
+  std::sort(texts.begin(), texts.end());
+  return std::adjacent_find(texts.begin(), texts.end()) != texts.end();
+}
+
+/// "5s", "15s", "20d", "14n" below the names: widths and types of an RDB table (USGS).
+bool line_of_types(const Cells& line) {
+  return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
+           const std::size_t digits = field.text.find_first_not_of("0123456789");
+           return digits > 0 && digits + 1 == field.text.size() &&
+                  std::string_view("sdn").find(field.text.back()) != std::string_view::npos;
+         });
 }
 
 bool line_of_units(const Cells& line) {
@@ -224,10 +249,13 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   if (campbell(lines)) return {4, 1, 2};
   if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
   if (numbers_columns(lines, style)) return {1, 0, {}};
+  if (lines.size() > 2 && line_of_types(lines[1])) return {2, 0, {}};
   TableStart out;
   std::vector<LineCensus> census;
   census.reserve(lines.size());
-  for (const Cells& line : lines) census.push_back(census_of(line, kinds, style));
+  const bool labels = std::any_of(lines.back().begin(), lines.back().end(),
+                                  [](const Field& field) { return label_length(field.text) > 0; });
+  for (const Cells& line : lines) census.push_back(census_of(line, kinds, style, labels));
   const auto first_row =
       std::find_if(census.begin(), census.end(), [](const LineCensus& line) { return line.row() && line.good > 0; });
   if (first_row == census.end() && census[0].fits && census[0].bad > 0) {  // a header, then damage
@@ -246,7 +274,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
     out.names = last - 1;
     const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
     if (named_above && !line_of_units(lines[last - 2]) &&
-        (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]))) {
+        (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]) ||
+         (has_doubles(lines[last - 1]) && !has_doubles(lines[last - 2])))) {
       out.units = last - 1;
       out.names = last - 2;
     }

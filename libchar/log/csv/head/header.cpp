@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/head/candidates.hpp"
 #include "libchar/log/csv/head/first_lines.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
 namespace {
@@ -58,12 +60,17 @@ std::string header_text(Study& study, const Field& field, const Line& line, std:
 // EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
 // time,Ax,Ay": the last comment before the data, when it has as many cells.
 bool named_by_comment(Study& study) {
-  if (study.options.header != "auto" || study.columns < 2 || study.comments.empty()) return false;
+  if (study.options.header != "auto" || study.columns < 2) return false;
   constexpr std::string_view kPrefix = "headers,";
-  const Line& line = study.comments.back();
-  std::string_view text = line.text;
-  text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
-  if (ascii_lower(text.substr(0, kPrefix.size())) == kPrefix) text.remove_prefix(kPrefix.size());
+  const auto stripped = [&](std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
+    return ascii_lower(text.substr(0, kPrefix.size())) == kPrefix ? text.substr(kPrefix.size()) : text;
+  };
+  const auto last = std::find_if_not(study.comments.rbegin(), study.comments.rend(),
+                                     [&](const Line& one) { return is_ruler(stripped(one.text)); });
+  if (last == study.comments.rend()) return false;
+  const Line& line = *last;
+  const std::string_view text = stripped(line.text);
   if (text.empty()) return false;
   const Cells names = table_cells(study, text);
   const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {
@@ -214,7 +221,9 @@ void read_units(Study& study, const Line& line) {
     std::string_view unit = fields[c].text;
     if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') || (unit.front() == '[' && unit.back() == ']')))
       unit = trimmed(unit.substr(1, unit.size() - 2));
-    if (unit != "TS" && unit != "RN" && unit != "Sequence" && unit.size() <= 40)
+    static constexpr std::array<std::string_view, 8> kNone = {"TS",  "RN",  "Sequence", "f64",
+                                                              "f32", "i64", "i32",      "str"};
+    if (std::find(kNone.begin(), kNone.end(), unit) == kNone.end() && unit.size() <= 40)
       study.dialect.columns[c].unit_below = decoded(study, std::string(unit)).value_or("");
   }
   study.info.dialect.push_back(fmt::format("units in line {}", line.number));
@@ -302,7 +311,11 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       info.warnings.add("control_in_name",
                         "channel names with invisible or direction-changing characters: shown escaped",
                         place_name(column.line, column.position));
-    const auto [other, fresh] = seen.emplace(column.name, &column);
+    auto [other, fresh] = seen.emplace(column.name, &column);
+    if (!fresh && (unit_behind({column.text, column.unit_below}) != 0 || called_time(column.text))) {
+      column.name += fmt::format("_{}", stripped[column.name + " again"]++ + 2);  // "X[s],EMG,X[s],ACC" of Delsys
+      std::tie(other, fresh) = seen.emplace(column.name, &column);
+    }
     if (!fresh)
       throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
           .says("two columns have the same name (first at {}:{})", other->second->line, other->second->position)

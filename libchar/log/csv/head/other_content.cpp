@@ -100,6 +100,22 @@ bool is_line_protocol(std::string_view head) {
          stamp.find_first_not_of("0123456789\r") == std::string_view::npos;
 }
 
+/// Frames of a CAN bus: "(1714564800.123456) can0 123#DEADBEEF", "can0  123   [8]  DE AD" of candump, ".trc" of PEAK,
+/// ".asc" of Vector.
+bool is_can_log(std::string_view head) {
+  if (head.starts_with(";$FILEVERSION=")) return true;
+  std::string_view line = trimmed(head.substr(0, head.find('\n')));
+  if (line.starts_with("date ")) return head.substr(line.size(), 64).find("base hex") != std::string_view::npos;
+  if (line.starts_with('(')) line = trimmed(line.substr(std::min(line.find(')'), line.size() - 1) + 1));
+  const std::size_t name = line.find(' ');
+  if (name == std::string_view::npos || line.substr(0, name).find("can") == std::string_view::npos) return false;
+  line = trimmed(line.substr(name));
+  constexpr std::size_t kShort = 3, kLong = 8;
+  const std::size_t id = std::min(line.find_first_not_of("0123456789ABCDEFabcdef"), line.size());
+  const std::string_view rest = trimmed(line.substr(id));
+  return (id == kShort || id == kLong) && (rest.starts_with('#') || rest.starts_with('['));
+}
+
 bool is_utf16(std::string_view head) {
   return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF") ||
          (head.size() >= 4 && ((head[0] == 0) != (head[1] == 0)) && ((head[2] == 0) != (head[3] == 0)) &&
@@ -164,10 +180,19 @@ void refuse_other_content(std::string_view head, const std::string& file) {
   refuse_binary(head, file);
   const std::size_t front = head.find_first_not_of(" \t\r\n");
   if (front == std::string_view::npos) return;
+  if (is_can_log(head))
+    throw refusal(file, "frames of a CAN bus, not CSV")
+        .hint(
+            "its DBC says what their bytes are: db = cantools.database.load_file(DBC); pandas.DataFrame([{'time': "
+            "m.timestamp, **db.decode_message(m.arbitration_id, m.data)} for m in "
+            "can.LogReader(FILE)]).to_csv('log.csv', index=False)");
+  if (head.substr(front).starts_with("header {\n"))
+    throw refusal(file, "messages of Gazebo, not CSV")
+        .hint("its option json-output makes gz topic print JSON lines, which are read as log.jsonl");
   if (is_line_protocol(head))
     throw refusal(file, "the line protocol of InfluxDB, not CSV")
         .hint("influx -execute 'SELECT * FROM NAME' -database DATABASE -format csv exports it");
-  if (head[front] == '<')
+  if (head[front] == '<' && !is_digit(head.substr(front + 1, 1).empty() ? ' ' : head[front + 1]))  // "<14>1 " of syslog
     throw refusal(file, "HTML or XML, not CSV").hint("was a web page saved in place of the file?");
   if (head.substr(front).starts_with("{'"))
     throw refusal(file, "dictionaries of Python, not CSV")

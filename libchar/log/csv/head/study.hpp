@@ -20,6 +20,8 @@ struct Study {
   std::size_t columns = 1;
   std::vector<Cells> rows = {};  ///< the first ones
   std::vector<ColumnKind> kinds = {};
+  std::optional<double> rate_hz = {};  ///< that the first lines state, other than in words
+  std::string names = {};              ///< the line of names, where it is not as in the file
   bool marked_utf8 = false, encoding_guessed = false;
 
   NumberStyle style() const { return {dialect.decimal, dialect.thousands}; }

@@ -41,9 +41,10 @@ std::optional<std::int64_t> whole_number(const Cells& row, std::size_t column) {
 }
 
 /// ".secs" and ".nsecs", "tv_sec" and "tv_usec": ns in the smaller unit; 0 where they are no pair.
-std::int64_t unit_of_rest(const std::vector<Cells>& rows, const Dialect& dialect, std::size_t column) {
+std::int64_t unit_of_rest(const StampStudy& study, const Dialect& dialect, std::size_t column) {
   static constexpr std::array<std::pair<std::string_view, std::int64_t>, 6> kParts = {
       {{"nano", 1}, {"n", 1}, {"micro", 1000}, {"u", 1000}, {"milli", 1000000}, {"m", 1000000}}};
+  const std::vector<Cells>& rows = study.rows;
   const std::string first = ascii_lower(dialect.columns[column].text),
                     second = ascii_lower(dialect.columns[column + 1].text);
   for (const std::string_view seconds : {"seconds", "secs", "sec"}) {
@@ -57,10 +58,43 @@ std::int64_t unit_of_rest(const std::vector<Cells>& rows, const Dialect& dialect
         if (ns != 1 && (!whole || !more || *more * ns >= 1000000000)) return 0;
         rest = rest || *whole != 0;
       }
+      if (rest || !study.whole_head) return rest ? ns : 0;
+      const std::vector<Cells> whole = study.whole_head(column), more = study.whole_head(column + 1);
+      for (std::size_t i = 0; i < std::min(whole.size(), more.size()); ++i) {
+        const auto seconds_here = whole_number(whole[i], 0), rest_here = whole_number(more[i], 0);
+        if (!seconds_here || !rest_here || *rest_here * ns >= 1000000000) return 0;
+        rest = rest || *seconds_here != 0;
+      }
       return rest ? ns : 0;
     }
   }
   return 0;
+}
+
+/// "Time" and "ms" beside it, which is what is left of its whole seconds: the two rise together, the first stands at
+/// times. ns in the smaller unit; 0 where they are no pair.
+std::int64_t unit_of_fraction(const StampStudy& study, const Dialect& dialect, std::size_t column) {
+  constexpr std::int64_t kSecond = 1000000000;
+  const std::int64_t unit = unit_said({dialect.columns[column + 1].text, dialect.columns[column + 1].unit_below});
+  if (!is_calendar(study.kinds[column]) || study.kinds[column + 1] != ColumnKind::number ||
+      (unit != 1 && unit != 1000 && unit != 1000000))
+    return 0;
+  const StampPart first{static_cast<int>(column), true};
+  std::optional<std::int64_t> last, last_whole;
+  bool stands = false;
+  for (const Cells& row : study.rows) {
+    std::int64_t whole = 0;
+    std::size_t offset = 0;
+    const auto rest = whole_number(row, column + 1);
+    if (column >= row.size() || read_part(row[column].text, first, dialect, whole, offset) != StampDefect::none ||
+        !rest || *rest < 0 || *rest >= kSecond / unit || whole % kSecond != 0)
+      return 0;
+    if (last && whole + *rest * unit <= *last) return 0;
+    stands = stands || last_whole == whole;
+    last = whole + *rest * unit;
+    last_whole = whole;
+  }
+  return stands ? unit : 0;
 }
 
 // Without names: seconds since 1970, then what is left of them in nanoseconds (ros2 topic echo --csv).
@@ -128,7 +162,9 @@ std::optional<StampPair> find_pair(const StampStudy& study, const Dialect& diale
   if (dialect.has_header) {
     for (std::size_t c = 0; c + 1 < dialect.columns.size(); ++c) {
       const std::string &first = dialect.columns[c].text, &second = dialect.columns[c + 1].text;
-      if (const std::int64_t ns = unit_of_rest(study.rows, dialect, c); ns != 0)
+      if (const std::int64_t ns = unit_of_rest(study, dialect, c); ns != 0)
+        return StampPair{c, c + 1, false, false, ns};
+      if (const std::int64_t ns = unit_of_fraction(study, dialect, c); ns != 0)
         return StampPair{c, c + 1, false, false, ns};
       if (digits_in_two(study, dialect, c)) return StampPair{c, c + 1, true};
       if (days_and_seconds(first, second) && !study.rows.empty() && whole_number(study.rows.front(), c))
@@ -272,7 +308,7 @@ void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
         }
   constexpr std::int64_t kHour = std::int64_t{3600} * 1000000000;
   const bool clock_only =
-      !date_digits && dialect.more_time.column < 0 && (dialect.time.digits || study.kinds[main] == ColumnKind::clock);
+      !date_digits && !dialect.more_time.calendar && (dialect.time.digits || study.kinds[main] == ColumnKind::clock);
   if (clock_only && !of_hour && !seconds && !dialect.time.digits && study.whole_head)
     for (const Cells& row : study.whole_head(main)) {  // "12:05": hours and minutes, if none is above 24
       const auto stamp = read_calendar(row[0].text);
@@ -373,7 +409,8 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const ColumnLabel& column = table.columns[c];
     const auto name = time_name(name_and_unit(column.name).first);
-    if (c == index || column.text || column.calendar || !name || name->letter || name->date) continue;
+    const bool named = name ? !name->letter && !name->date : column.name == table.columns[index].name;
+    if (c == index || column.text || column.calendar || !named) continue;
     const std::vector<double> values = table.first_values(c).values;
     if (values.size() != stamps.size() || values.size() < 3) continue;
     const double scale = (values.back() - values.front()) / (stamps.back() - stamps.front());
@@ -415,6 +452,7 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
     return read_stamp(text.substr(label), dialect.decimal, part.unit_ns, out, offset, part.zero);
   }
   offset = 0;
+  if (!dialect.has_header) text.remove_prefix(label_length(text));
   const auto stamp = read_calendar(text, dialect.date_order);
   if (!stamp || (stamp->of_hour && !part.of_hour))
     return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
@@ -425,7 +463,7 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
 void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   choose_date_order(study, options, dialect, info);
   const auto pair = find_pair(study, dialect);
-  const bool led = !dialect.lead.empty() && options.time_column == "auto";
+  const bool led = !dialect.lead.empty() && options.time_column == "auto" && study.kinds[0] != ColumnKind::empty;
   if (dialect.lead == ")" && dialect.columns[0].text.empty()) dialect.columns[0].unit_below = "ms";  // ESP-IDF
   TableFront table = front_of(study, dialect, pair);
   const auto part_of = [&](std::size_t column) {

@@ -33,8 +33,8 @@ std::string html_prose(std::string_view text);
 /// For a value inside double quotes of a tag: as html_text, and nothing else may stand there unquoted.
 std::string html_attribute(std::string_view text);
 
-/// A folder or file relative to the page, for an address inside double quotes of a tag: what is no letter, digit or one of -._~ becomes %HH, so
-/// that no part of a name is a scheme, a host, a query or a fragment.
+/// A folder or file relative to the page, for an address inside double quotes of a tag: what is no letter, digit or one
+/// of -._~ becomes %HH, so that no part of a name is a scheme, a host, a query or a fragment.
 std::string html_address(std::string_view path);
 
 /// A document for the inside of <script type="application/json">: '<', '>' and '&' as \u003c…, so that neither

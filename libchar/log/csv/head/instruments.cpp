@@ -1,0 +1,93 @@
+// What instruments write into their first lines that is neither names nor rows: oscilloscopes of Rigol ("X,CH1,Start,
+// Increment," above "Sequence,Volt,-6e-4,1e-6"; "Time(s),CH1V,t0 =-6e-4, tInc = 2e-9,"), wristbands of Empatica (a row
+// of the time since 1970, and one of the rate), SignalExpress of NI ("channel names:", "dt:", "data:", and below each
+// what it says).
+#include <algorithm>
+
+#include "libchar/core/text/decimal.hpp"
+#include "libchar/core/text/text.hpp"
+#include "libchar/log/csv/head/header.hpp"
+#include "libchar/log/reading_fields.hpp"
+
+namespace libchar::csv {
+namespace {
+
+void take_interval(Study& study, std::string_view seconds) {
+  const auto interval = parse_double(trimmed(seconds));
+  if (interval && *interval > 0 && kRates.lowest * *interval <= 1 && kRates.highest * *interval >= 1)
+    study.rate_hz = 1 / *interval;
+}
+
+/// The same number in all cells; nothing where it is none.
+std::optional<double> one_number(const Study& study, const Line& line) {
+  const Cells cells = cells_in(study.dialect, line.text);
+  const Cell first = read_cell(cells[0].text, study.dialect.decimal);
+  const bool same = std::all_of(cells.begin(), cells.end(),
+                                [&](const Field& cell) { return cell.text == cells[0].text && !cell.text.empty(); });
+  return same && first.kind == Cell::value ? std::optional(first.number) : std::nullopt;
+}
+
+}  // namespace
+
+void take_scope_settings(Study& study) {
+  if (study.sample.size() < 3) return;
+  Line &names = study.sample[0], &below = study.sample[1];
+  const std::size_t start = names.text.find(",Start,Increment");
+  if (start != std::string_view::npos) {
+    Cells cells = split(below.text, ',');
+    const auto count = static_cast<std::size_t>(std::count(
+                           names.text.begin(), names.text.begin() + static_cast<std::ptrdiff_t>(start), ',')) +
+                       1;
+    if (cells.size() < count + 2) return;
+    take_interval(study, cells[count + 1].text);
+    if (!study.rate_hz) return;
+    names.text = names.text.substr(0, start);
+    below.text = below.text.substr(0, cells[count].offset - 1);
+    return;
+  }
+  const std::size_t zero = names.text.find(",t0 ="), step = names.text.find("tInc =");
+  if (zero == std::string_view::npos || step == std::string_view::npos || step < zero) return;
+  take_interval(study, names.text.substr(step + 6, names.text.find(',', step) - step - 6));
+  if (!study.rate_hz) return;
+  const std::string_view row = below.text;  // as many empty cells as the rows end with
+  study.names = std::string(names.text.substr(0, zero)) + std::string(row.size() - 1 - row.find_last_not_of(','), ',');
+  names.text = study.names;
+}
+
+bool named_by_signal_express(Study& study) {
+  const std::vector<Line> lines = study.sample;
+  const auto at = [&](std::string_view key) {
+    return static_cast<std::size_t>(
+        std::find_if(lines.begin(), lines.end(), [&](const Line& line) { return trimmed(line.text) == key; }) -
+        lines.begin());
+  };
+  const std::size_t step = at("dt:"), data = at("data:");
+  if (at("channel names:") != 0 || data + 1 >= lines.size() || step >= data) return false;
+  take_interval(study, split(lines[step + 1].text, study.dialect.delimiter)[0].text);
+  study.preamble.assign(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(data) + 1);
+  study.sample.erase(study.sample.begin(), study.sample.begin() + static_cast<std::ptrdiff_t>(data) + 1);
+  study.dialect.data_offset = lines[data].after;
+  study.dialect.first_data_line = lines[data].number + lines[data].lines;
+  read_names(study, lines[1], lines[1].text);
+  return true;
+}
+
+bool begins_with_rate(Study& study) {
+  constexpr double kFirst = 1e9, kLast = 2.2e9, kFastest = 4096;
+  if (study.sample.size() < 4 || !study.dialect.lead.empty()) return false;
+  const auto time = one_number(study, study.sample[0]), rate = one_number(study, study.sample[1]);
+  const Cell value = read_cell(cells_in(study.dialect, study.sample[2].text)[0].text, study.dialect.decimal);
+  if (!time || *time < kFirst || *time > kLast || !rate || *rate < kRates.lowest || *rate > kFastest ||
+      value.kind != Cell::value || value.number > kFirst)
+    return false;
+  study.rate_hz = *rate;
+  study.preamble.assign(study.sample.begin(), study.sample.begin() + 2);
+  study.sample.erase(study.sample.begin(), study.sample.begin() + 2);
+  study.info.dialect.emplace_back("the time and the rate in the first two rows");
+  study.dialect.data_offset = study.sample[0].offset;
+  study.dialect.first_data_line = study.sample[0].number;
+  do_without_names(study);
+  return true;
+}
+
+}  // namespace libchar::csv

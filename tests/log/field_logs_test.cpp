@@ -1,0 +1,296 @@
+// Lines as terminals, loggers, daemons, databases and instruments write them: each is read with its stamps, names and
+// values, or refused with the way to a table.
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <functional>
+
+#include "tests/log/log_text.hpp"
+
+using namespace libchar;
+using test::failure;
+using test::read_text;
+
+namespace {
+
+constexpr int kFieldRows = 400;
+
+std::string field_text(const std::function<std::string(int)>& line, int rows = kFieldRows) {
+  std::string out;
+  for (int k = 0; k < rows; ++k) out += line(k) + "\n";
+  return out;
+}
+
+std::string field_clock(int k, int step_ms = 20) {
+  const int ms = k * step_ms;
+  return fmt::format("12:{:02}:{:02}.{:03}", ms / 60000, ms / 1000 % 60, ms % 1000);
+}
+
+double field_value(int k, int channel) { return 0.1 * channel + 0.001 * ((k * 7919) % 97); }
+std::string field_cells(int k, char sign = ',') {
+  return fmt::format("{:.3f}{}{:.3f}", field_value(k, 1), sign, field_value(k, 2));
+}
+
+/// Two channels at this rate, with the values of field_value().
+void check_field_log(const std::string& text, double rate_hz, int rows = kFieldRows, const ReadOptions& options = {}) {
+  const Recording log = read_text(text, options);
+  REQUIRE(log.info.channels.size() == 2);
+  CHECK(log.info.time.rate_hz == Approx(rate_hz).epsilon(1e-4));
+  CHECK(log.info.time.missing_samples == 0);
+  REQUIRE(log.samples.size() == 2);
+  REQUIRE(log.samples[0].size() == static_cast<std::size_t>(rows));
+  for (const int k : {0, 1, rows / 2, rows - 1})
+    for (const int c : {0, 1}) CHECK(log.samples[c][static_cast<std::size_t>(k)] == Approx(field_value(k, c + 1)));
+}
+
+}  // namespace
+
+TEST_CASE("words in front of the cells, with or without a stamp among them") {
+  const std::vector<std::pair<std::string, std::function<std::string(int)>>> fronts = {
+      {"ts", [](int k) { return "May 01 " + field_clock(k) + " "; }},
+      {"ts %.s", [](int k) { return fmt::format("{:.6f} ", 1714564800 + 0.02 * k); }},
+      {"journalctl", [](int k) { return "May 01 " + field_clock(k) + "456 host imu[123]: "; }},
+      {"docker", [](int k) { return "2024-05-01T" + field_clock(k) + "456789Z "; }},
+      {"logcat", [](int k) { return "05-01 " + field_clock(k) + "  1234  1250 I IMU     : "; }},
+      {"spdlog", [](int k) { return "[2024-05-01 " + field_clock(k) + "] [info] "; }},
+      {"spdlog with a name", [](int k) { return "[2024-05-01 " + field_clock(k) + "] [imu] [info] "; }},
+      {"logging of Python",
+       [](int k) {
+         std::string clock = field_clock(k);
+         clock[8] = ',';
+         return "2024-05-01 " + clock + " - imu - INFO - ";
+       }},
+      {"RTT viewer", [](int k) { return field_clock(k) + " 00> "; }},
+      {"console of ROS 2", [](int k) { return fmt::format("[INFO] [{:.9f}] [imu_node]: ", 1714564800 + 0.02 * k); }}};
+  for (const auto& [name, front] : fronts) {
+    INFO(name);
+    check_field_log(field_text([&](int k) { return front(k) + field_cells(k); }), 50);
+  }
+  SECTION("loguru, blanks between the values") {
+    check_field_log(field_text([](int k) {
+                      return "2024-05-01 " + field_clock(k) + " | INFO     | __main__:read:12 - " + field_cells(k, ' ');
+                    }),
+                    50);
+  }
+  SECTION("a terminal's sign alone") {
+    const Recording log = read_text(field_text([](int k) { return fmt::format("00> {},{}", 20 * k, field_cells(k)); }));
+    CHECK(log.info.time.rate_hz == Approx(50));
+    CHECK(log.info.channels.size() == 2);
+  }
+  SECTION("dates with an offset, decimal commas and names with numbers are no words in front") {
+    check_field_log(field_text([](int k) { return "2024-05-01 " + field_clock(k) + " +0200," + field_cells(k); }), 50);
+    const Recording comma = read_text(field_text([](int k) { return field_clock(k) + fmt::format(" 1,{:03}", k); }));
+    CHECK(comma.info.channels.size() == 1);
+    CHECK(comma.samples[0][5] == Approx(1.005));
+    const Recording named = read_text(field_text([](int k) { return fmt::format("Sensor 1,{}", field_cells(k)); }));
+    CHECK(named.info.channels.size() == 2);
+  }
+}
+
+TEST_CASE("labels in front of stamps and with units") {
+  check_field_log(field_text([](int k) {
+                    return fmt::format("time=2024-05-01T{}Z level=info ax={} ay={}", field_clock(k), field_value(k, 1),
+                                       field_value(k, 2));
+                  }),
+                  50);
+  ReadOptions options;
+  options.rate_hz = 10;
+  const std::string text =
+      field_text([](int k) { return fmt::format("ax(g): {}, ay(g): {}", field_value(k, 1), field_value(k, 2)); });
+  check_field_log(text, 10, kFieldRows, options);
+  CHECK(read_text(text, options).info.channels[1].unit == "g");
+}
+
+TEST_CASE("lines drawn between names and rows are no rows") {
+  const auto rows = [](std::string_view form) {
+    return field_text(
+        [&](int k) { return fmt::format(fmt::runtime(form), 0.02 * k, field_value(k, 1), field_value(k, 2)); });
+  };
+  SECTION("influx") {
+    check_field_log("name: imu\ntime                ax     ay\n----                --     --\n" + field_text([](int k) {
+                      return fmt::format("{} {}", 1714564800000000000 + std::int64_t{20000000} * k,
+                                         field_cells(k, ' '));
+                    }),
+                    50);
+  }
+  SECTION("psql") {
+    check_field_log("  t   |  ax   |  ay\n------+-------+-------\n" + rows(" {:.2f} | {:.3f} | {:.3f}"), 50);
+  }
+  SECTION("mysql") {
+    check_field_log("+---+----+----+\n| t | ax | ay |\n+---+----+----+\n" + rows("| {:.2f} | {:.3f} | {:.3f} |") +
+                        "+---+----+----+\n",
+                    50);
+  }
+  SECTION("Markdown") {
+    check_field_log("| t | ax | ay |\n|---|:--|---|\n" + rows("| {:.2f} | {:.3f} | {:.3f} |"), 50);
+  }
+  SECTION("boxes") {
+    check_field_log("┌───┬────┬────┐\n│ t │ ax │ ay │\n├───┼────┼────┤\n" + rows("│ {:.2f} │ {:.3f} │ {:.3f} │") +
+                        "└───┴────┴────┘\n",
+                    50);
+  }
+  SECTION("underscores, as MATLAB has them") {
+    check_field_log("     t       ax       ay\n    ____    ____    ____\n\n" + rows("    {:.2f}    {:.3f}    {:.3f}"),
+                    50);
+  }
+  SECTION("types below the names, as polars has them") {
+    check_field_log("t,ax,ay\n---,---,---\nf64,f64,f64\n" + rows("{:.2f},{:.3f},{:.3f}"), 50);
+  }
+  SECTION("not after a comment that names the columns") {
+    const Recording log = read_text("# t ax ay\n# ------\n--------\n" + rows("{:.2f} {:.3f} {:.3f}"));
+    REQUIRE(log.info.channels.size() == 2);
+    CHECK(log.info.channels[0].name == "ax");
+  }
+}
+
+TEST_CASE("settings of oscilloscopes beside the names, and rates in front of the rows") {
+  const auto rows = [](const char* form) {
+    return field_text([&](int k) { return fmt::format(fmt::runtime(form), k, field_value(k, 1), field_value(k, 2)); });
+  };
+  const Recording old =
+      read_text("X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-6.0e-02,4.0e-04\n" + rows("{},{},{},"));
+  CHECK(old.info.time.rate_hz == Approx(2500));
+  CHECK(old.info.channels[old.info.channels.size() - 2].name == "CH1");
+  CHECK(old.info.channels.back().unit == "Volt");
+  check_field_log("CH1V,CH2V,t0 =-6.0e-02, tInc = 4.0e-04,\n" + rows("{1},{2},,"), 2500);
+  check_field_log("Time(s),CH1V,CH2V,t0 =-6.0e-02, tInc = 4.0e-04,\n" +
+                      field_text([](int k) { return fmt::format("{:.6e},{},,", -0.06 + 4e-4 * k, field_cells(k)); }),
+                  2500);
+  check_field_log("1714564800.000000, 1714564800.000000\n32.000000, 32.000000\n" + rows("{1},{2}"), 32);
+  check_field_log(
+      "-- Data File Created By ActiGraph GT3X+ date format M/d/yyyy at 30 Hz  Filter Normal --\nSerial: NEO1\n"
+      "Accelerometer X,Accelerometer Y\n" +
+          rows("{1},{2}"),
+      30);
+  check_field_log(
+      "channel names:\t\nai0\tai1\nstart times:\n5/1/2024 12:00:00.0\t5/1/2024 12:00:00.0\ndt:\n0.001\t0.001\ndata:\n" +
+          rows("{1}\t{2}"),
+      1000);
+  const Recording meter = read_text("\"Reading\",\"Sample\",\"Start Time\"\n" + field_text([](int k) {
+                                      return fmt::format("\"{}\",\"{} V DC\",\"5/1/2024 12:{:02}:{:02} PM\"", k + 1,
+                                                         field_value(k, 1), k / 60, k % 60);
+                                    }));
+  CHECK(meter.info.time.rate_hz == Approx(1));
+  CHECK(meter.info.channels.back().name == "Sample");
+  CHECK_THAT(failure("t_s,raw\n0,7\n0.1,0x1F\n0.2,9\n"), Catch::Contains("int(x, 16)"));
+  // Other frequencies are no rate.
+  CHECK(read_text("Lowpass at 5 Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == 0);
+  CHECK(read_text("# IMU sampled at 50Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == Approx(50));
+  CHECK(read_text("Acquisition period (ms): 20\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == Approx(50));
+  CHECK_THAT(failure(field_text([](int) { return "1.5,2.5,"; }, 1) + "\n"), !Catch::Contains("E0326"));
+  std::string one_row = "1.5";
+  for (int k = 0; k < 200; ++k) one_row += fmt::format(",{}", field_value(k, 1));
+  CHECK_THAT(failure(one_row + "\n"), Catch::Contains("E0326") && Catch::Contains("tr ','"));
+  const Recording phases = read_text("File: x.dat\nData: Phase\nTau: 1.0e-01\nPoints: 400\n" + rows("{1}"));
+  CHECK(phases.info.time.rate_hz == Approx(10));
+  CHECK(phases.info.rows == kFieldRows);
+  // Times and rates are measured, too.
+  CHECK(read_text("1714564800\n32\n" + field_text([](int k) { return fmt::format("{}", 1714564800 + k); })).info.rows ==
+        kFieldRows + 2);
+}
+
+TEST_CASE("stamps whose numbers stand in several columns, without names or beside a clock time") {
+  const auto date = [](int k) {
+    return fmt::format("2024,05,01,{:02},{:02},{:02}", 10 + k / 3600, k / 60 % 60, k % 60);
+  };
+  check_field_log(field_text([&](int k) { return date(k) + "," + field_cells(k); }), 1);
+  check_field_log(field_text([&](int k) {
+                    std::string cells = date(k * 60).substr(0, 16) + "," + field_cells(k);
+                    std::replace(cells.begin(), cells.end(), ',', ' ');
+                    return cells;
+                  }),
+                  1 / 60.0);
+  CHECK(read_text(field_text([](int k) { return fmt::format("2024,05,{},10,{},30,0.5", 1 + k % 3, k % 60); }),
+                  [] {
+                    ReadOptions options;
+                    options.rate_hz = 1;
+                    return options;
+                  }())
+            .info.channels.size() == 7);
+  std::string days =
+      field_text([&](int k) { return fmt::format("2024 05 {:02} {:02} {}", 1 + k / 24, k % 24, field_cells(k, ' ')); });
+  check_field_log(days, 1 / 3600.0);
+  check_field_log("Time,ms,ax,ay\n" + field_text([](int k) {
+                    return field_clock(k).substr(0, 8) + fmt::format(",{},{}", 20 * k % 1000, field_cells(k));
+                  }),
+                  50);
+  check_field_log("seconds,microseconds,ax,ay\n" + field_text([](int k) {
+                    return fmt::format("{},{},{}", k / 200, k % 200 * 5000, field_cells(k));
+                  }),
+                  200);
+  check_field_log("time,ax,ay\n" + field_text([](int k) { return field_clock(k) + ".500," + field_cells(k); }), 50);
+}
+
+TEST_CASE("without names a later column may count the time since 1970") {
+  check_field_log(field_text([](int k) { return field_cells(k) + fmt::format(",{}", 1714564800000 + 20 * k); }), 50);
+  const Recording graphite = read_text(
+      field_text([](int k) { return fmt::format("bench.temp {} {}", field_value(k, 1), 1714564800 + 10 * k); }));
+  CHECK(graphite.info.time.rate_hz == Approx(0.1));
+  CHECK(graphite.info.channels.size() == 1);
+}
+
+TEST_CASE("pairs of a time and a value, all times of one name") {
+  check_field_log("X[s],EMG[V],X[s],ACC[g]\n" + field_text([](int k) {
+                    return fmt::format("{:.3f},{:.3f},{:.3f},{:.3f}", 0.02 * k, field_value(k, 1), 0.02 * k,
+                                       field_value(k, 2));
+                  }),
+                  50);
+  CHECK(failure("t,x,x\n0,1,2\n1,2,3\n2,3,4\n").find("E0307") != std::string::npos);
+}
+
+TEST_CASE("a line with two cells alike holds units below names, known or not") {
+  const Recording log = read_text("Date,Time,CH1,CH2\n,,mm,mm\n" + field_text([](int k) {
+                                    return "2024/05/01," + field_clock(k) + "," + field_cells(k);
+                                  }));
+  REQUIRE(log.info.channels.size() == 2);
+  CHECK(log.info.channels[0].name == "CH1");
+  CHECK(log.info.channels[0].unit == "mm");
+  CHECK(read_text("\"time,s\",\"EMG,uV\"\n0,1\n0.1,2\n0.2,3\n").info.channels[0].unit == "uV");
+}
+
+TEST_CASE("a line of widths and types below the names") {
+  check_field_log("# USGS\nagency\tdatetime\tax\tay\n5s\t20d\t14n\t14n\n" + field_text([](int k) {
+                    return fmt::format("USGS\t2024-05-{:02} {:02}:{:02}\t{}", 1 + k / 96, k / 4 % 24, k % 4 * 15,
+                                       field_cells(k, '\t'));
+                  }),
+                  1 / 900.0);
+}
+
+TEST_CASE("rows of several sources that each keep a clock of their own") {
+  std::string text = "time,sensor,value\n", kinds;
+  for (int k = 0; k < kFieldRows; ++k) {
+    text += fmt::format("{:.6f},gx,{}\n", 0.005 * k, field_value(k, 1));
+    kinds += fmt::format("ACC,{},{}\n", 20 * k, field_cells(k));
+    if (k % 4 == 0) text += fmt::format("{:.6f},baro,{}\n", 0.005 * k + 0.0013, field_value(k, 2));
+    if (k % 5 == 0) kinds += fmt::format("MAG,{},{}\n", 20 * k + 3, field_cells(k));
+  }
+  CHECK(failure(text).find("E0327") != std::string::npos);
+  CHECK(failure(kinds).find("`where` c0=ACC") != std::string::npos);
+  ReadOptions one;
+  one.kinds.where = {"sensor=gx"};
+  CHECK(read_text(text, one).info.time.rate_hz == Approx(200));
+  CHECK(failure(field_text([](int k) {
+          return fmt::format("imu{},{},{}", 1 + k % 2, 10 * k, field_cells(k));
+        })).find("E0327") != std::string::npos);
+  // Words that change with the values, whatever the clock does.
+  const Recording log = read_text("time,state,ax,ay\n" + field_text([](int k) {
+                                    return fmt::format("{:.3f},{},{}", 0.02 * k + 0.001 * (k * 7919 % 5),
+                                                       k % 7 < 3 ? "idle" : "run", field_cells(k));
+                                  }));
+  CHECK(log.info.channels.size() == 2);
+}
+
+TEST_CASE("frames of a bus and messages of Gazebo are recognized, syslog is no web page") {
+  for (const char* line : {"(1714564800.123456) can0 123#DEADBEEF", "  can0  123   [8]  DE AD BE EF 00 00 00 01",
+                           " (1714564800.123456)  can0  12345678   [2]  DE AD", ";$FILEVERSION=1.1",
+                           "date Wed May 1 12:00:00.000 am 2024\nbase hex  timestamps absolute"})
+    CHECK_THAT(failure(std::string(line) + "\n" + line + "\n"),
+               Catch::Contains("E0301") && Catch::Contains("CAN bus") && Catch::Contains("cantools"));
+  CHECK_THAT(failure("header {\n  stamp {\n    sec: 1\n  }\n}\n"), Catch::Contains("json-output"));
+  CHECK(read_text("can,0\n1,2\n3,4\n").info.channels.size() == 2);
+  check_field_log(field_text([](int k) {
+                    return "<14>1 2024-05-01T" + field_clock(k) + "000Z host imu 123 - - " + field_cells(k, ' ');
+                  }),
+                  50);
+}
