@@ -207,6 +207,26 @@ TEST_CASE("of two Gauss-Markov processes the slower has its intervals and the fa
   }
 }
 
+TEST_CASE("the corner of a process is not left out as a resonance") {
+  constexpr std::size_t n = 220000, settled = 20000;
+  constexpr double rate = 100, white = 5e-3, sd = white * 10;
+  test::NoiseSource source(n, rate, 11);
+  test::Gaussian gauss(7);
+  std::vector<double> y;
+  for (int record = 0; record < 4; ++record) {
+    y = source.record(white, 0, 0);
+    for (const double tau_s : {0.5, 5.0}) {
+      const double a = std::exp(-1 / (rate * tau_s));
+      double state = sd * gauss();
+      for (double& value : y) value += state = a * state + sd * std::sqrt(1 - a * a) * gauss();
+    }
+  }
+  y.erase(y.begin(), y.begin() + settled);
+  const NoiseFit fit = fit_of(y, rate);
+  CHECK(in_model(fit));
+  CHECK(fit[Term::white].value.value_or(0) == Approx(white).epsilon(0.02));
+}
+
 TEST_CASE("slow noise of another exponent is a law over the whole spectrum, and no shape, band or process") {
   constexpr std::size_t n = 200000;
   constexpr double rate = 100, white = 5e-3;

@@ -336,7 +336,8 @@ std::optional<Band> other_band(const std::vector<PowerBin>& bins, const Band& ba
 std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>& bins, const Band& band,
                                                      double rate_hz, double duration_s, const TermSet& terms) {
   const bool cut = !band.passes || band.top_hz < 0.99 * rate_hz / 2;
-  const bool shaped = band.orders > 0 && band.named.family != NamedShape::Family::high_pass;
+  // The corner of a process looks like a peak to a spectrum without one: what is left out as a resonance may be that.
+  const bool shaped = unknowns_of(band) > 0 && band.named.family != NamedShape::Family::high_pass;
   if (terms[kLent] || duration_s * rate_hz * kLongest < 4 * kFewestSamples) return std::nullopt;
   if (!terms[0] || !terms[static_cast<std::size_t>(Term::walk)]) return std::nullopt;
   AtTau rival(bins, band, rate_hz, without_slow(terms));
