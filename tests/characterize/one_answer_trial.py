@@ -50,8 +50,8 @@ def run(*words):
 
 
 def fit_of(document, report=None):
-    """Coefficients and the rest of a fit, with all that is found of the channel: `fit` has that in one list, a report in
-    its summary. Where a line is, and how high, only the spectrum says, which `fit` does not compute."""
+    """Coefficients and the rest of a fit, with all that is found of the channel: `fit` has that in one list, a report
+    in its summary. Where a line is, and how high, only the spectrum says, which `fit` does not compute."""
     channel = document["channels"][0]
     if report:
         channel["findings"] = report["summary"]["channels"][0]["findings"]
