@@ -177,6 +177,9 @@ TEST_CASE("one comma in each line, and always as many digits behind it: decimals
   REQUIRE(one.samples.size() == 1);
   CHECK(one.samples[0][1] == 19.037);
   CHECK(read_text(forty([](int k) { return fmt::format("19,{}\n", 37 * k); })).samples.size() == 2);
+  const Recording minus = read_text("-0,7\n-0,712\n-0,68\n-0,71\n0,1\n");
+  REQUIRE(minus.samples.size() == 1);
+  CHECK(minus.samples[0][1] == -0.712);
 }
 
 TEST_CASE("a logger's stamp, words and values with names") {

@@ -88,6 +88,20 @@ TEST_CASE("words in front of the cells, with or without a stamp among them") {
   }
 }
 
+TEST_CASE("labels in front of stamps and with units") {
+  check_field_log(field_text([](int k) {
+                    return fmt::format("time=2024-05-01T{}Z level=info ax={} ay={}", field_clock(k), field_value(k, 1),
+                                       field_value(k, 2));
+                  }),
+                  50);
+  ReadOptions options;
+  options.rate_hz = 10;
+  const std::string text =
+      field_text([](int k) { return fmt::format("ax(g): {}, ay(g): {}", field_value(k, 1), field_value(k, 2)); });
+  check_field_log(text, 10, kFieldRows, options);
+  CHECK(read_text(text, options).info.channels[1].unit == "g");
+}
+
 TEST_CASE("lines drawn between names and rows are no rows") {
   const auto rows = [](std::string_view form) {
     return field_text(
@@ -116,6 +130,13 @@ TEST_CASE("lines drawn between names and rows are no rows") {
                         "└───┴────┴────┘\n",
                     50);
   }
+  SECTION("underscores, as MATLAB has them") {
+    check_field_log("     t       ax       ay\n    ____    ____    ____\n\n" + rows("    {:.2f}    {:.3f}    {:.3f}"),
+                    50);
+  }
+  SECTION("types below the names, as polars has them") {
+    check_field_log("t,ax,ay\n---,---,---\nf64,f64,f64\n" + rows("{:.2f},{:.3f},{:.3f}"), 50);
+  }
   SECTION("not after a comment that names the columns") {
     const Recording log = read_text("# t ax ay\n# ------\n--------\n" + rows("{:.2f} {:.3f} {:.3f}"));
     REQUIRE(log.info.channels.size() == 2);
@@ -142,6 +163,25 @@ TEST_CASE("settings of oscilloscopes beside the names, and rates in front of the
       "Accelerometer X,Accelerometer Y\n" +
           rows("{1},{2}"),
       30);
+  check_field_log(
+      "channel names:\t\nai0\tai1\nstart times:\n5/1/2024 12:00:00.0\t5/1/2024 12:00:00.0\ndt:\n0.001\t0.001\ndata:\n" +
+          rows("{1}\t{2}"),
+      1000);
+  const Recording meter = read_text("\"Reading\",\"Sample\",\"Start Time\"\n" + field_text([](int k) {
+                                      return fmt::format("\"{}\",\"{} V DC\",\"5/1/2024 12:{:02}:{:02} PM\"", k + 1,
+                                                         field_value(k, 1), k / 60, k % 60);
+                                    }));
+  CHECK(meter.info.time.rate_hz == Approx(1));
+  CHECK(meter.info.channels.back().name == "Sample");
+  CHECK_THAT(failure("t_s,raw\n0,7\n0.1,0x1F\n0.2,9\n"), Catch::Contains("int(x, 16)"));
+  // Other frequencies are no rate.
+  CHECK(read_text("Lowpass at 5 Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == 0);
+  CHECK(read_text("# IMU sampled at 50Hz\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == Approx(50));
+  CHECK(read_text("Acquisition period (ms): 20\nax,ay\n" + rows("{1},{2}")).info.time.rate_hz == Approx(50));
+  CHECK_THAT(failure(field_text([](int) { return "1.5,2.5,"; }, 1) + "\n"), !Catch::Contains("E0326"));
+  std::string one_row = "1.5";
+  for (int k = 0; k < 200; ++k) one_row += fmt::format(",{}", field_value(k, 1));
+  CHECK_THAT(failure(one_row + "\n"), Catch::Contains("E0326") && Catch::Contains("tr ','"));
   const Recording phases = read_text("File: x.dat\nData: Phase\nTau: 1.0e-01\nPoints: 400\n" + rows("{1}"));
   CHECK(phases.info.time.rate_hz == Approx(10));
   CHECK(phases.info.rows == kFieldRows);
@@ -168,6 +208,9 @@ TEST_CASE("stamps whose numbers stand in several columns, without names or besid
                     return options;
                   }())
             .info.channels.size() == 7);
+  std::string days =
+      field_text([&](int k) { return fmt::format("2024 05 {:02} {:02} {}", 1 + k / 24, k % 24, field_cells(k, ' ')); });
+  check_field_log(days, 1 / 3600.0);
   check_field_log("Time,ms,ax,ay\n" + field_text([](int k) {
                     return field_clock(k).substr(0, 8) + fmt::format(",{},{}", 20 * k % 1000, field_cells(k));
                   }),
@@ -196,6 +239,16 @@ TEST_CASE("pairs of a time and a value, all times of one name") {
   CHECK(failure("t,x,x\n0,1,2\n1,2,3\n2,3,4\n").find("E0307") != std::string::npos);
 }
 
+TEST_CASE("a line with two cells alike holds units below names, known or not") {
+  const Recording log = read_text("Date,Time,CH1,CH2\n,,mm,mm\n" + field_text([](int k) {
+                                    return "2024/05/01," + field_clock(k) + "," + field_cells(k);
+                                  }));
+  REQUIRE(log.info.channels.size() == 2);
+  CHECK(log.info.channels[0].name == "CH1");
+  CHECK(log.info.channels[0].unit == "mm");
+  CHECK(read_text("\"time,s\",\"EMG,uV\"\n0,1\n0.1,2\n0.2,3\n").info.channels[0].unit == "uV");
+}
+
 TEST_CASE("a line of widths and types below the names") {
   check_field_log("# USGS\nagency\tdatetime\tax\tay\n5s\t20d\t14n\t14n\n" + field_text([](int k) {
                     return fmt::format("USGS\t2024-05-{:02} {:02}:{:02}\t{}", 1 + k / 96, k / 4 % 24, k % 4 * 15,
@@ -217,6 +270,9 @@ TEST_CASE("rows of several sources that each keep a clock of their own") {
   ReadOptions one;
   one.kinds.where = {"sensor=gx"};
   CHECK(read_text(text, one).info.time.rate_hz == Approx(200));
+  CHECK(failure(field_text([](int k) {
+          return fmt::format("imu{},{},{}", 1 + k % 2, 10 * k, field_cells(k));
+        })).find("E0327") != std::string::npos);
   // Words that change with the values, whatever the clock does.
   const Recording log = read_text("time,state,ax,ay\n" + field_text([](int k) {
                                     return fmt::format("{:.3f},{},{}", 0.02 * k + 0.001 * (k * 7919 % 5),

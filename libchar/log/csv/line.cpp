@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "libchar/log/csv/head/columns.hpp"
@@ -87,12 +88,13 @@ std::string at(const std::string& file, std::uint64_t line, std::uint64_t column
 }
 
 bool is_ruler(std::string_view line) {
+  static constexpr std::array<std::string_view, 3> kDrawn = {"--", "==", "__"};
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos) return false;
   if (line.substr(first).starts_with("\xE2\x94") || line.substr(first).starts_with("\xE2\x95"))  // ┌───┬───┐
     return std::all_of(line.begin(), line.end(), [](char c) { return (c & 0x80) != 0 || c == ' '; });
-  return line.find_first_not_of("-+|=: \t", first) == std::string_view::npos &&
-         (line.find("--") != std::string_view::npos || line.find("==") != std::string_view::npos);
+  if (line.find_first_not_of("-+|=_:, \t", first) != std::string_view::npos) return false;
+  return std::any_of(kDrawn.begin(), kDrawn.end(), [&](std::string_view two) { return line.find(two) != line.npos; });
 }
 
 bool is_comment(std::string_view line, bool semicolons) {

@@ -252,7 +252,7 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
       refuse(name, values, info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                (told_apart(rows, c, words && names_kinds(column.name), dialect) ||
-                (numbers_kinds(column.name) && in_turn(rows, c)))) {
+                ((numbers_kinds(column.name) || (words && !dialect.has_header)) && in_turn(rows, c)))) {
       refuse(name, values, info);
     }
   }

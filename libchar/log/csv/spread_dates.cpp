@@ -201,7 +201,7 @@ std::optional<std::string> stamp_text(const SpreadStamp& where, const std::vecto
   return date && clock ? std::optional(*date + *clock) : std::nullopt;
 }
 
-/// Without names: year, month, day, hour, minute (and second) in front, whose stamps step evenly in all rows.
+/// Without names: year, month, day, hour (minute, second) in front, whose stamps step evenly in all rows.
 SpreadStamp spread_by_numbers(const std::vector<std::string_view>& lines) {
   constexpr std::size_t kFewest = 8, kMost = 100;
   constexpr DatePart kOrder[] = {DatePart::year, DatePart::month,  DatePart::day,
@@ -211,7 +211,7 @@ SpreadStamp spread_by_numbers(const std::vector<std::string_view>& lines) {
   if (delimiter == '\0' || std::string_view(",;\t ").find(delimiter) == std::string_view::npos) return {};
   SpreadStamp best;
   double least = 0.1;  // mean deviation of the steps; a value may look like seconds
-  for (const std::size_t parts : {std::size(kOrder), std::size(kOrder) - 1}) {
+  for (std::size_t parts = std::size(kOrder); parts > 3; --parts) {
     SpreadStamp found{delimiter, false, 0, parts};
     for (std::size_t c = 0; c < parts; ++c) found.of(kOrder[c]) = c + 1;
     std::vector<double> stamps;

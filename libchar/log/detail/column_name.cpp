@@ -77,11 +77,11 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     if (!name.empty() && !index && unit.size() <= 40 && unit.find('"') == std::string_view::npos)
       return {std::string(name), std::string(unit)};
   }
-  // "Pressure, hPa", "Time since start in ms", "Temperatur °C", but not "gyro x g", whose g may be an axis.
-  for (const std::string_view sign : {std::string_view(", "), std::string_view(" in "), std::string_view(" ")})
+  // "Pressure, hPa", "EMG,uV", "Time since start in ms", "Temperatur °C", but not "gyro x g", whose g may be an axis.
+  for (const std::string_view sign : {std::string_view(","), std::string_view(" in "), std::string_view(" ")})
     if (const std::size_t at = cell.rfind(sign); at != std::string_view::npos && at > 0)
       if (const std::string_view unit = trimmed(cell.substr(at + sign.size()));
-          find_unit(unit) && (sign.size() > 1 || unit.find_first_of("/%^\xC2") != std::string_view::npos))
+          find_unit(unit) && (sign != " " || unit.find_first_of("/%^\xC2") != std::string_view::npos))
         return {std::string(trimmed(cell.substr(0, at))), std::string(unit)};
   // "gyro_rad[0]": an index behind the unit. PX4 calls rates of turn rad.
   if (const std::size_t index = index_behind(cell); index > 0) {

@@ -145,23 +145,25 @@ bool counter_lines(const std::vector<Line>& lines, char group) {
   return grouped > 2 && 4 * grouped >= 3 * lines.size() && (unit || zeros);
 }
 
-// "19,4731", "19,0473": one comma a line, and behind it always as many digits, zeros in front of them among these.
+// "19,4731", "19,0473": one comma a line, and behind it always as many digits, zeros in front of them among these; or
+// "-0,7", whose -0 is no whole number.
 bool digits_behind_commas(const std::vector<Line>& lines) {
   constexpr std::size_t kFewest = 3, kClock = 2;
   std::size_t found = 0, digits = 0;
-  bool zeros = false;
+  bool zeros = false, alike = true, minus = false;
   for (const Line& line : lines) {
     const std::string_view text = trimmed(line.text);
     const std::size_t comma = text.find(',');
     if (comma == std::string_view::npos) continue;
     const std::string_view behind = text.substr(comma + 1);
-    if (behind.find_first_not_of("0123456789") != std::string_view::npos || (found > 0 && behind.size() != digits))
-      return false;
+    if (behind.find_first_not_of("0123456789") != std::string_view::npos) return false;
+    alike = alike && (found == 0 || behind.size() == digits);
     digits = behind.size();
     zeros = zeros || behind.starts_with('0');
+    minus = minus || text.starts_with("-0,");
     ++found;
   }
-  return found >= kFewest && zeros && digits > kClock;
+  return found >= kFewest && (minus || (alike && zeros && digits > kClock));
 }
 
 bool occurs(const std::vector<Line>& lines, char delimiter) {

@@ -95,6 +95,7 @@ std::size_t label_length(std::string_view text) {
   while (i < text.size() &&
          (letter(text[i]) || is_digit(text[i]) || text[i] == '.' || text[i] == '-' || text[i] == '[' || text[i] == ']'))
     ++i;
+  if (i < text.size() && text[i] == '(') i = std::min(text.find(')', i), text.size() - 1) + 1;  // "ax(g): 0.02"
   while (i < text.size() && text[i] == ' ') ++i;
   if (i + 1 >= text.size() || (text[i] != '=' && text[i] != ':')) return 0;
   ++i;
@@ -115,7 +116,9 @@ std::optional<MeasuredCell> number_and_unit(std::string_view text) {
   if (end != std::string_view::npos && text.size() - end > kLongestUnit) return std::nullopt;
   if (end == 0 || end == std::string_view::npos || text.find_first_of("0123456789") >= end) return std::nullopt;
   const MeasuredCell cell{trimmed(text.substr(0, end)), text.substr(end)};
-  const auto unit = find_unit(utf8_of(cell.unit));
+  std::string_view symbol = cell.unit;  // "1.2957 V DC" of multimeters
+  if (symbol.ends_with(" DC") || symbol.ends_with(" AC")) symbol.remove_suffix(3);
+  const auto unit = find_unit(utf8_of(symbol));
   return unit && !dimensionless(unit->symbol) ? std::optional(cell) : std::nullopt;
 }
 
@@ -139,6 +142,10 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
   if (cell.kind != Cell::bad) return CellKind::number;
   if (const auto stamp = read_calendar(text))
     return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
+  if (const std::size_t label = label_length(text); label > 0 && !field.quoted && is_digit(text[label])) {
+    const CellKind behind = cell_kind({std::string(text.substr(label)), 0, false}, style);  // "time=2024-05-01T…"
+    if (behind == CellKind::stamp || behind == CellKind::date || behind == CellKind::clock) return behind;
+  }
   const bool word = field.quoted || (like_words(text) && !number_and_unit(text));
   return word ? CellKind::word : CellKind::odd;
 }

@@ -178,7 +178,7 @@ void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
     throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
-  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study))) return;
+  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study) || named_by_signal_express(study))) return;
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -331,6 +331,15 @@ void find_kinds(Study& study) {
   }
 }
 
+// "1.30, 1.31, 1.29, …": the samples of one channel, as instruments send them.
+void refuse_one_row(const Study& study) {
+  constexpr std::size_t kMany = 100;
+  if (!study.whole || study.sample.size() != 1 || study.dialect.has_header || study.columns < kMany) return;
+  throw refusal(study, study.sample[0], 0, "E0326")
+      .says("one row of {} numbers, which are samples of one channel", study.columns)
+      .hint("write each into a line: tr '{}' '\\n' < FILE > log.csv", study.dialect.delimiter);
+}
+
 // Words in front of averaging times or frequencies: a table of curves, whose rows are no samples.
 void refuse_curve(const Study& study) {
   static constexpr std::array<std::string_view, 5> kAbscissas = {"tau", "tau_s", "averaging_time_s", "frequency_hz",
@@ -399,6 +408,7 @@ Dialect understand(std::string_view head, bool whole, const ReadOptions& options
   gather_rows(study);
   find_kinds(study);
   refuse_curve(study);
+  refuse_one_row(study);
   choose_time(study);
   leave_out(study);
   return study.dialect;

@@ -87,9 +87,10 @@ double hertz_of(const Statement& said) {
 }
 
 double interval_of(const Statement& said) {
-  static constexpr std::array<std::string_view, 9> kKeys = {"sampleinterval", "samplinginterval", "sampleperiod",
-                                                            "samplingperiod", "deltax",           "timestep",
-                                                            "sampletime",     "samplingtime",     "xincrement"};
+  static constexpr std::array<std::string_view, 12> kKeys = {
+      "acquisitionperiod", "acquisitioninterval", "logginginterval", "sampleinterval",
+      "samplinginterval",  "sampleperiod",        "samplingperiod",  "deltax",
+      "timestep",          "sampletime",          "samplingtime",    "xincrement"};
   std::string_view key = said.key, unit = said.unit;
   for (const std::string_view known : {"ms", "us", "ns", "s"})  // "Sampling period (ms)": 4
     if (unit.empty() && key.ends_with(known) && ends_with_any(key.substr(0, key.size() - known.size()), kKeys)) {
@@ -111,9 +112,11 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
   if (before != std::string::npos)
     return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
-  const std::size_t at = lower.find(" at "), hertz = lower.find(" hz", at);  // ActiGraph: "at 30 Hz"
-  if (hertz != std::string::npos && at + 4 < hertz)
-    if (const auto rate = parse_double(std::string_view(lower).substr(at + 4, hertz - at - 4))) return rate;
+  // "sampled at 50 Hz", "Data File Created By ActiGraph … at 30 Hz": no cutoff of a filter.
+  if (const std::size_t at = lower.find(" at "); at != std::string::npos && at + 4 < lower.size())
+    if (const Statement rate = statement_in(std::string_view(lower).substr(at)); rate.number && rate.key == "at")
+      for (const std::string_view taken : {"sampl", "record", "created"})
+        if (rate.unit.starts_with("hz") && *rate.number > 0 && lower.find(taken) < at) return rate.number;
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -169,6 +172,15 @@ bool unit_cell(std::string_view text) {
     return true;
   const std::string lower = ascii_lower(text);
   return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
+}
+
+/// Two cells alike, which are no names.
+bool has_doubles(const Cells& line) {
+  std::vector<std::string_view> texts;
+  for (const Field& field : line)
+    if (!field.text.empty()) texts.push_back(field.text);
+  std::sort(texts.begin(), texts.end());
+  return std::adjacent_find(texts.begin(), texts.end()) != texts.end();
 }
 
 /// "5s", "15s", "20d", "14n" below the names: widths and types of an RDB table (USGS).
@@ -262,7 +274,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
     out.names = last - 1;
     const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
     if (named_above && !line_of_units(lines[last - 2]) &&
-        (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]))) {
+        (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]) ||
+         (has_doubles(lines[last - 1]) && !has_doubles(lines[last - 2])))) {
       out.units = last - 1;
       out.names = last - 2;
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <tuple>
@@ -220,7 +221,9 @@ void read_units(Study& study, const Line& line) {
     std::string_view unit = fields[c].text;
     if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') || (unit.front() == '[' && unit.back() == ']')))
       unit = trimmed(unit.substr(1, unit.size() - 2));
-    if (unit != "TS" && unit != "RN" && unit != "Sequence" && unit.size() <= 40)
+    static constexpr std::array<std::string_view, 8> kNone = {"TS",  "RN",  "Sequence", "f64",
+                                                              "f32", "i64", "i32",      "str"};
+    if (std::find(kNone.begin(), kNone.end(), unit) == kNone.end() && unit.size() <= 40)
       study.dialect.columns[c].unit_below = decoded(study, std::string(unit)).value_or("");
   }
   study.info.dialect.push_back(fmt::format("units in line {}", line.number));

@@ -28,6 +28,9 @@ void take_scope_settings(Study& study);
 /// The begin of a log whose first row is the time, and whose second is the rate.
 bool begins_with_rate(Study& study);
 
+/// Names and rate between lines that say what stands below them, as SignalExpress writes them.
+bool named_by_signal_express(Study& study);
+
 /// Units behind the numbers of the rows ("0.005 sec"), and of counts whose scale the preamble states.
 void find_other_units(Study& study);
 

@@ -1,6 +1,7 @@
 // What instruments write into their first lines that is neither names nor rows: oscilloscopes of Rigol ("X,CH1,Start,
 // Increment," above "Sequence,Volt,-6e-4,1e-6"; "Time(s),CH1V,t0 =-6e-4, tInc = 2e-9,"), wristbands of Empatica (a row
-// of the time since 1970, and one of the rate).
+// of the time since 1970, and one of the rate), SignalExpress of NI ("channel names:", "dt:", "data:", and below each
+// what it says).
 #include <algorithm>
 
 #include "libchar/core/text/decimal.hpp"
@@ -51,6 +52,24 @@ void take_scope_settings(Study& study) {
   const std::string_view row = below.text;  // as many empty cells as the rows end with
   study.names = std::string(names.text.substr(0, zero)) + std::string(row.size() - 1 - row.find_last_not_of(','), ',');
   names.text = study.names;
+}
+
+bool named_by_signal_express(Study& study) {
+  const std::vector<Line> lines = study.sample;
+  const auto at = [&](std::string_view key) {
+    return static_cast<std::size_t>(
+        std::find_if(lines.begin(), lines.end(), [&](const Line& line) { return trimmed(line.text) == key; }) -
+        lines.begin());
+  };
+  const std::size_t step = at("dt:"), data = at("data:");
+  if (at("channel names:") != 0 || data + 1 >= lines.size() || step >= data) return false;
+  take_interval(study, split(lines[step + 1].text, study.dialect.delimiter)[0].text);
+  study.preamble.assign(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(data) + 1);
+  study.sample.erase(study.sample.begin(), study.sample.begin() + static_cast<std::ptrdiff_t>(data) + 1);
+  study.dialect.data_offset = lines[data].after;
+  study.dialect.first_data_line = lines[data].number + lines[data].lines;
+  read_names(study, lines[1], lines[1].text);
+  return true;
 }
 
 bool begins_with_rate(Study& study) {

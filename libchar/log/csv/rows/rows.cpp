@@ -639,6 +639,7 @@ class CarefulLines {
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
+    if (text.starts_with("0x") || text.starts_with("0X")) return "int(x, 16) of Python makes decimal numbers of them";
     const bool word = !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
     const auto column = std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
     return fmt::format("`drop_bad_rows` leaves such rows out, `channels` '!{}' the column{}",

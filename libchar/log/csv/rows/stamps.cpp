@@ -452,6 +452,7 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
     return read_stamp(text.substr(label), dialect.decimal, part.unit_ns, out, offset, part.zero);
   }
   offset = 0;
+  if (!dialect.has_header) text.remove_prefix(label_length(text));
   const auto stamp = read_calendar(text, dialect.date_order);
   if (!stamp || (stamp->of_hour && !part.of_hour))
     return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
