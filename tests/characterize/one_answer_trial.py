@@ -51,10 +51,12 @@ def run(*words):
 
 def fit_of(document, report=None):
     """Coefficients and the rest of a fit, with all that is found of the channel: `fit` has that in one list, a report
-    in its summary. Where a line is, and how high, only the spectrum says, which `fit` does not compute."""
+    in its summary. The spectrum, which `fit` does not compute, says where a line is and how high, or that it cannot be
+    computed."""
     channel = document["channels"][0]
     if report:
         channel["findings"] = report["summary"]["channels"][0]["findings"]
+    channel["findings"] = [one for one in channel["findings"] if one["code"] != "not_computed"]
     for finding in channel["findings"]:
         if finding["code"] == "lines_left_out":
             finding.pop("where", None)
