@@ -315,6 +315,7 @@ class WrapWatch {
       }
       if (d * last < 0) ++(d < 0 ? peaks_ : dips_);
       last = d;
+      follow(d);
       ++count_;
       sum_ += d;
       size_ += std::fabs(d);
@@ -325,6 +326,12 @@ class WrapWatch {
     count_ += later.count_;
     peaks_ += later.peaks_;
     dips_ += later.dips_;
+    follows_ += later.follows_;
+    if (later.first_ != 0) {
+      if (latest_ * later.first_ > 0) ++follows_;
+      if (first_ == 0) first_ = later.first_;
+      latest_ = later.latest_;
+    }
     sum_ += later.sum_;
     size_ += later.size_;
     least_ = std::min(least_, later.least_);
@@ -343,18 +350,24 @@ class WrapWatch {
     // A step of noise across the end is larger than others by up to their deviation.
     const double rest = std::max(0.0, all.s2 - size_ * size_ / count) / all.n;
     const double found = with_digits(period, (1 + 3 / std::sqrt(count)) * std::sqrt(rest) + 1e-9 * period);
-    // A signal of two levels jumps as often, but not by a turn.
+    // A signal of two levels jumps as often, but not by a turn, and never twice in a row to the same side: a phase
+    // travels the whole range between.
     const bool turn = found == 360 || found == 2 * std::numbers::pi;
-    if (!turn && !(all.n > 10 * count)) return;
+    if (!turn && (!(all.n > 10 * count) || 20 * follows_ < count_)) return;
     signs.wraps = count_;
     signs.period = found;
   }
   static void layout(auto& at, auto& w) {
-    at(w.count_, w.peaks_, w.dips_);
-    at.group("jumps", w.sum_, w.size_, w.least_);
+    at(w.count_, w.peaks_, w.dips_, w.follows_);
+    at.group("jumps", w.sum_, w.size_, w.least_, w.first_, w.latest_);
   }
 
  private:
+  void follow(double jump) {
+    if (latest_ * jump > 0) ++follows_;
+    latest_ = jump > 0 ? 1 : -1;
+    if (first_ == 0) first_ = latest_;
+  }
   /// All of them to one side and back at once: a heading about north is as often alone on either side.
   bool are_spikes() const {
     const std::uint64_t more = std::max(peaks_, dips_), fewer = std::min(peaks_, dips_);
@@ -372,6 +385,8 @@ class WrapWatch {
   }
 
   std::uint64_t count_ = 0, peaks_ = 0, dips_ = 0;  ///< peaks_, dips_: single samples on the other side
+  std::uint64_t follows_ = 0;                       ///< to the side of the one before
+  double first_ = 0, latest_ = 0;                   ///< sides of jumps: 1, -1
   double sum_ = 0, size_ = 0, least_ = __builtin_inf();
 };
 

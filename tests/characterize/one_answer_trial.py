@@ -49,8 +49,18 @@ def run(*words):
     return ran.stdout
 
 
-def fit_of(document):
+def fit_of(document, report=None):
+    """Coefficients and the rest of a fit, with all that is found of the channel: `fit` has that in one list, a report
+    in its summary. The spectrum, which `fit` does not compute, says where a line is and how high, or that it cannot be
+    computed."""
     channel = document["channels"][0]
+    if report:
+        channel["findings"] = report["summary"]["channels"][0]["findings"]
+    channel["findings"] = [one for one in channel["findings"] if one["code"] != "not_computed"]
+    for finding in channel["findings"]:
+        if finding["code"] == "lines_left_out":
+            finding.pop("where", None)
+            finding["sentence"] = finding["sentence"].split(" The strongest")[0]
     for key in ("name", "bins", "residuals", "derived"):
         channel.pop(key, None)
     return json.dumps(channel, sort_keys=True)
@@ -64,14 +74,15 @@ def doors(log, extra):
     for name, more in (("", []), (" --memory 1KiB --segment 4096", ["--memory", "1KiB", "--segment", "4096"])):
         run("characterize", log, *reading, *more, "-o", "report", "--force")
         report = json.loads((options.folder / "report/report.json").read_text())
-        yield f"characterize{name}", fit_of(report["fit"])
+        yield f"characterize{name}", fit_of(report["fit"], report)
     for stretch in ("8MiB", "64MiB"):
         plan = f"plan-{stretch}"
         shutil.rmtree(options.folder / plan, ignore_errors=True)
         run("fleet", "plan", log, *reading, "--split-above", "1MiB", "--stretch", stretch, "-o", plan)
         run("fleet", "run", plan)
         reports = sorted((options.folder / plan).rglob("report.json"))
-        yield f"fleet, stretches of {stretch}", fit_of(json.loads(reports[0].read_text())["fit"])
+        report = json.loads(reports[0].read_text())
+        yield f"fleet, stretches of {stretch}", fit_of(report["fit"], report)
 
 
 options.folder.mkdir(parents=True, exist_ok=True)

@@ -127,7 +127,9 @@ TEST_CASE("a cell is one finite number, missing, infinite or wrong") {
   CHECK(read_cell("--1", '.').offset == 0);
   CHECK(kind("+") == Cell::bad);
   CHECK(kind("-") == Cell::missing);
-  CHECK(kind("--") == Cell::missing);
+  for (const char* none : {"--", "---", "-----", "****", "?", "#N/A", "#DIV/0!", "#VALUE!", "<NA>", "n.a."})
+    CHECK(kind(none) == Cell::missing);
+  for (const char* not_none : {"-*", "--1", "**2", "#N/B", "-?"}) CHECK(kind(not_none) != Cell::missing);
 }
 
 TEST_CASE("a cell that is no number is told with reason and place") {

@@ -198,6 +198,17 @@ TEST_CASE("a heading about north wraps with many samples, two levels do not") {
   CHECK(meter(levels).signs.wraps == 0);
 }
 
+TEST_CASE("a switch jumps by its whole range and wraps nothing, with noise and without") {
+  const std::vector<double> noise = gaussian(20000, 8);
+  for (const double sd : {0.0, 0.01}) {
+    std::vector<double> x(noise.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = (i / 97 % 2 == 0 ? 0 : 1) + sd * noise[i];
+    const ChannelQuality q = meter(x);
+    CHECK(q.signs.wraps == 0);
+    CHECK_FALSE(has(q.findings, "phase_wraps"));
+  }
+}
+
 TEST_CASE("the period of a phase that wraps is a turn or a power of two where it can be") {
   for (const double period : {2 * std::numbers::pi, 4096.0}) {
     std::vector<double> phase = gaussian(20000, 0.002 * period);

@@ -1,7 +1,10 @@
 #include "libchar/core/file/output_files.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "libchar/core/detail/output_journal.hpp"
 #include "libchar/core/file/file_owner.hpp"
@@ -47,27 +50,41 @@ std::vector<std::string> detail::named_files(const std::string& document_file) {
 
 namespace {
 
-/// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
-std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs) {
+/// Regular files of the folder that this set does not write. Names with a dot in front are of runs: locks and files
+/// that are not finished.
+std::set<std::string> others_there(const std::vector<OutputFile>& outputs, const std::vector<WholeFile*>& streamed) {
   namespace fs = std::filesystem;
+  std::set<std::string> others;
+  const fs::path folder = fs::path(outputs.front().path).parent_path();
+  std::error_code none;
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, none), end; !none && at != end; at.increment(none))
+    if (std::error_code ignored; at->symlink_status(ignored).type() == fs::file_type::regular)
+      if (std::string name = at->path().filename().string(); !name.starts_with('.')) others.insert(std::move(name));
+  for (const OutputFile& output : outputs) others.erase(fs::path(output.path).filename().string());
+  for (const WholeFile* file : streamed) others.erase(fs::path(file->path()).filename().string());
+  return others;
+}
+
+/// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
+std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs, const std::vector<WholeFile*>& streamed) {
+  const auto replaces = [](const OutputFile& output) {
+    std::error_code ignored;
+    return is_document(output.path) && std::filesystem::is_regular_file(output.path, ignored);
+  };
+  if (std::none_of(outputs.begin(), outputs.end(), replaces)) return {};
+  const std::set<std::string> others = others_there(outputs, streamed);
+  if (others.empty()) return {};  // and no document of megabytes is parsed
   std::set<std::string> before, now;
-  for (const OutputFile& output : outputs) {
-    now.insert(fs::path(output.path).filename().string());
-    if (!is_document(output.path)) continue;
-    if (std::error_code ignored; fs::is_regular_file(output.path, ignored))
+  for (const OutputFile& output : outputs)
+    if (replaces(output))
       for (std::string& name : detail::named_files(output.path)) before.insert(std::move(name));
-  }
+  std::erase_if(before, [&](const std::string& name) { return !others.contains(name); });
   if (before.empty()) return {};
   for (const OutputFile& output : outputs)
     if (is_document(output.path))
       for (std::string& name : files_named_in(output.text)) now.insert(std::move(name));
   std::vector<std::string> stale;
-  for (const std::string& name : before) {
-    std::error_code ignored;
-    const fs::path path = fs::path(outputs.front().path).replace_filename(name);
-    if (!now.contains(name) && fs::symlink_status(path, ignored).type() == fs::file_type::regular)
-      stale.push_back(name);
-  }
+  std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(stale));
   return stale;
 }
 
@@ -193,7 +210,7 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, c
   for (WholeFile* file : streamed) file->flush_to_disk();
   const detail::FolderLock lock(folder);
   tidy(folder, lock);
-  const auto stale = force ? stale_files(outputs) : std::vector<std::string>{};
+  const auto stale = force ? stale_files(outputs, streamed) : std::vector<std::string>{};
   for (const std::string& name : stale)
     for (const std::string& input : inputs) refuse_same_file(input, (folder / name).string());
   std::vector<WholeFile*> all;

@@ -28,7 +28,7 @@ void note_bad_samples(const ChannelQuality& quality, const std::string& sensor, 
   for (const Finding& one : quality.findings)
     if (one.severity == Severity::bad && one.code != "no_value" && (one.code != "stuck" || !hides) &&
         (one.code != "dead_band" || !truth))
-      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + with_help(one)).help = one.help;
+      to.add(one.code, find_finding_kind(one.code)->meaning, sensor + ": " + one.sentence).help = one.help;
 }
 
 // The first reading, for length and rate, sees which channels have samples, and keeps them where they are few.

@@ -19,10 +19,19 @@ bool is_word(std::string_view text, std::string_view word) {
   return true;
 }
 
+/// Displays fill a field with one sign where they have no value: ---, ****, ??.
+bool is_filling(std::string_view text) {
+  const char sign = text[0];
+  return (sign == '-' || sign == '*' || sign == '?') && text.find_first_not_of(sign) == std::string_view::npos;
+}
+
+// The last line are errors of spreadsheets.
 bool means_missing(std::string_view text) {
-  if (text.empty() || text == "-" || text == "--") return true;
+  if (text.empty() || is_filling(text)) return true;
   if (is_digit(text.back())) return false;
-  for (const char* word : {"nan", "na", "n/a", "null", "none", "-nan", "+nan", "-nan(ind)", "nan(ind)", "#n/a", "nil"})
+  for (const char* word :
+       {"nan",       "na",       "n/a",  "n.a.", "<na>",  "null",    "none",    "nil",   "-nan",   "+nan",
+        "-nan(ind)", "nan(ind)", "#n/a", "#na",  "#num!", "#value!", "#div/0!", "#ref!", "#null!", "#name?"})
     if (is_word(text, word)) return true;
   return false;
 }
