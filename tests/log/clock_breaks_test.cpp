@@ -32,7 +32,13 @@ TEST_CASE("a step back is a rollover only at the end of a counter's range") {
   CHECK(wrap(longer - 5 * kUs, 5 * kUs, clock_in(kS), dt) == longer);          // in seconds
   CHECK(wrap(range / 2, 5 * kUs, us, dt) == 0);
   CHECK(wrap(range - 5 * kUs, -5 * kUs, us, dt) == 0);
-  CHECK(wrap(range - 5 * kUs, 5 * kUs, us, 1.0) == 0);  // more than 1000 steps
+  CHECK(wrap(range - 5 * kUs, 5 * kUs, us, 0.2 * kUs) == 0);  // more than 20 steps
+  CHECK(wrap(longer - 5 * kUs, 5 * kUs, us, 1.0) == 0);       // more than 1000
+  // 24 bits; a log that ends after 16 s and begins again is no such clock, nor is one of 60 s in ms.
+  const std::int64_t bytes = std::int64_t{16777216} * kUs;
+  CHECK(wrap(bytes - 5 * kUs, 5 * kUs, us, dt) == bytes);
+  CHECK(wrap(16 * kS, 0, us, 0.01 * kS) == 0);
+  CHECK(wrap(60 * kS, 0, clock_in(1000 * kUs), 0.01 * kS) == 0);
 }
 
 TEST_CASE("seconds of a day, of a week and hours of local time begin again") {

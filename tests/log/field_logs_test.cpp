@@ -134,11 +134,15 @@ TEST_CASE("lines drawn between names and rows are no rows") {
     check_field_log("     t       ax       ay\n    ____    ____    ____\n\n" + rows("    {:.2f}    {:.3f}    {:.3f}"),
                     50);
   }
-  SECTION("types below the names, as polars has them") {
-    check_field_log("t,ax,ay\n---,---,---\nf64,f64,f64\n" + rows("{:.2f},{:.3f},{:.3f}"), 50);
+  SECTION("rows of missing values are rows") {
+    ReadOptions options;
+    options.rate_hz = 50;
+    const Recording log = read_text("ax,ay\n1.5,2\n--,--\n1.25,2\n1.5,2.5\n", options);
+    CHECK(log.info.samples == 4);
+    CHECK(read_text("ax\n1.5\n------\n1.25\n1.5\n", options).info.samples == 4);
   }
   SECTION("not after a comment that names the columns") {
-    const Recording log = read_text("# t ax ay\n# ------\n--------\n" + rows("{:.2f} {:.3f} {:.3f}"));
+    const Recording log = read_text("# t ax ay\n# ----------\n------------\n" + rows("{:.2f} {:.3f} {:.3f}"));
     REQUIRE(log.info.channels.size() == 2);
     CHECK(log.info.channels[0].name == "ax");
   }

@@ -88,13 +88,17 @@ std::string at(const std::string& file, std::uint64_t line, std::uint64_t column
 }
 
 bool is_ruler(std::string_view line) {
-  static constexpr std::array<std::string_view, 3> kDrawn = {"--", "==", "__"};
+  static constexpr std::array<std::string_view, 3> kDrawn = {"----", "====", "____"};  // "-- --" are missing values
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos) return false;
   if (line.substr(first).starts_with("\xE2\x94") || line.substr(first).starts_with("\xE2\x95"))  // ┌───┬───┐
     return std::all_of(line.begin(), line.end(), [](char c) { return (c & 0x80) != 0 || c == ' '; });
-  if (line.find_first_not_of("-+|=_:, \t", first) != std::string_view::npos) return false;
-  return std::any_of(kDrawn.begin(), kDrawn.end(), [&](std::string_view two) { return line.find(two) != line.npos; });
+  if (line.find_first_not_of("-+|=_: \t", first) != std::string_view::npos) return false;
+  if (line.find("--") != line.npos && (line[first] == '|' || line.find('+') != line.npos)) return true;
+  constexpr std::size_t kLong = 10;  // a shorter one alone is the missing value of a display
+  const std::string_view text = trimmed(line);
+  return (text.size() >= kLong || text.find(' ') != text.npos) &&
+         std::any_of(kDrawn.begin(), kDrawn.end(), [&](std::string_view four) { return text.find(four) != text.npos; });
 }
 
 bool is_comment(std::string_view line, bool semicolons) {

@@ -26,8 +26,10 @@ struct ClockRange {
 
 std::vector<ClockRange> ranges_of(const TimeBase& clock) {
   std::vector<ClockRange> out;
+  constexpr double kShort = 20, kLong = 1000;  // logs end, and begin again, after 16.8 and 65.5 s as well
   for (const int bits : {16, 24, 32}) {
-    if (clock.unit_ns < kNsInSecond) out.push_back({std::ldexp(static_cast<double>(clock.unit_ns), bits), bits});
+    if (clock.unit_ns < kNsInSecond)
+      out.push_back({std::ldexp(static_cast<double>(clock.unit_ns), bits), bits, "", bits < 32 ? kShort : kLong});
     for (const double unit : {1e3, 1e6})
       if (unit != static_cast<double>(clock.unit_ns))
         out.push_back({std::ldexp(unit, bits), bits, "", bits < 32 ? 2.5 : 20});

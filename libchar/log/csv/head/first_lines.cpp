@@ -187,7 +187,7 @@ bool has_doubles(const Cells& line) {
 bool line_of_types(const Cells& line) {
   return line.size() > 1 && std::all_of(line.begin(), line.end(), [](const Field& field) {
            const std::size_t digits = field.text.find_first_not_of("0123456789");
-           return digits > 0 && digits + 1 == field.text.size() &&
+           return !field.text.empty() && digits > 0 && digits + 1 == field.text.size() &&
                   std::string_view("sdn").find(field.text.back()) != std::string_view::npos;
          });
 }
