@@ -69,7 +69,7 @@ TEST_CASE("outliers too few for the alarm: the interval of N reaches to where it
     }
     return y;
   };
-  CHECK(held(with_outliers, 0.1) >= 83);  // 55 without that
+  CHECK(held(with_outliers, 0.1) >= 83);
 }
 
 TEST_CASE("small outliers are taken out where larger ones were left out, even if chance hides them") {

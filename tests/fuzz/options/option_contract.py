@@ -10,7 +10,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 NO_NUMBER = re.compile(r"(?<![\w./-])[-+]?(?:nan|inf)(?![\w-])", re.IGNORECASE)
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
-SCRIPT = re.compile(r"<script>.*?</script>", re.DOTALL)  # a page on stdout brings its program
+# A page on stdout brings its program; gnuplot's word for no number in a row of data is NaN.
+SCRIPT = re.compile(r"<script>.*?</script>|^\$series\d+ << EOD$.*?^EOD$", re.DOTALL | re.MULTILINE)
 SLOWEST_S = 10
 STRESS_S = 30  # bench --stress: its work is fixed, 14 s on the slowest machine so far
 
