@@ -62,7 +62,8 @@ std::string say_unknown(const CLI::App& app) {
 std::string hint_for_extra(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true), known = option_names(chosen(app));
   struct stat status {};
-  if (!rest.empty() && ::stat(rest.front().c_str(), &status) == 0 && std::ranges::count(known, "--topic") > 0)
+  if (!rest.empty() && ::stat(rest.front().c_str(), &status) == 0 &&
+      std::count(known.begin(), known.end(), "--topic") > 0)
     return "logs of one array go into a folder of their own, which then is the recording (--topic '*')";
   return full_name(app) + " --help";
 }
