@@ -258,7 +258,6 @@ void check_columns(const RecordingView& recording) {
 LogInfo push_recording(const RecordingView& recording, BlockSink& sink, Progress& progress) {
   LogInfo log = recording.info;
   log.samples = recording.samples.empty() ? 0 : recording.samples[0].size();
-  log.read_ahead = false;
   sink.begin(log);
   SampleBlock block;
   for (; block.first < log.samples; block.first += block.rows) {

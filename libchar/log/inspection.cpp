@@ -22,7 +22,7 @@ class Meters final : public BlockSink {
   void begin(const LogInfo& so_far) override {
     meters_.resize(so_far.channels.size());
     traces_.resize(traced_ ? meters_.size() : 0);
-    arena_.limit_to(threads_beside_reading(so_far, threads_));
+    arena_.limit_to(threads_);
   }
   void block(const SampleBlock& samples) override {
     arena_.run([&] {

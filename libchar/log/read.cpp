@@ -566,10 +566,4 @@ bool read_once(const std::string& path) {
   return path == "-" || std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
 }
 
-int threads_beside_reading(const LogInfo& log, int threads) {
-  const int cores = processors_given();
-  const int all = threads > 0 ? std::min(threads, cores) : cores;
-  return std::max(1, log.read_ahead ? all - 1 : all);
-}
-
 }  // namespace libchar

@@ -126,10 +126,6 @@ LogInfo log_listing(const std::string& path, const ReadOptions& options);
 /// unless the format is given.
 bool read_once(const std::string& path);
 
-/// Threads for what a sink does with its blocks: `threads`, or (0) all cores, less the one that reading ahead keeps
-/// busy. More would take turns with it, and its hash is one long chain that all others wait for in the end.
-int threads_beside_reading(const LogInfo& log, int threads);
-
 /// The same, whole, in memory.
 Recording read_recording(const std::string& path, const ReadOptions& options = {}, Progress& progress = no_progress());
 

@@ -68,7 +68,6 @@ struct LogInfo {
       0;  ///< with a warning that says why (duplicate_timestamp, backward_timestamp, wild_stamp, own_rows)
   std::uint64_t rows_outside = 0;  ///< before `from_s` or from `to_s` on
   std::uint64_t samples = 0;       ///< grid points delivered (rows used + missing)
-  bool read_ahead = false;         ///< other threads read and parse while the caller works
   std::uint64_t first_line = 0;    ///< CSV: physical line of the first data row; 0 for other formats
   std::vector<Channel> channels;
   std::vector<LogTopic> topics;  ///< of a log that holds several streams; empty for one table

@@ -63,7 +63,7 @@ void ChannelStages::begin(const LogInfo& so_far) {
     stages_.emplace_back(temperature ? temperature_options_ : options_, workspace_, !needs_all_samples_.empty());
     stages_.back().reserve(detail::in_memory(so_far.bytes / std::max<std::size_t>(channels, 1)));
   }
-  arena_.limit_to(threads_beside_reading(so_far, options_.reading.threads));
+  arena_.limit_to(options_.reading.threads);
 }
 
 void ChannelStages::block(const SampleBlock& samples) {

@@ -65,7 +65,7 @@ void in_order(std::size_t most, const Stages& stages);
 class Threads {
  public:
   explicit Threads(int threads = 0);
-  /// Before the first `run`.
+  /// Before the first `run`; 0: all.
   void limit_to(int threads);
   void run(Call<void()> work);
 

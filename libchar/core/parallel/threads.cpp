@@ -59,12 +59,10 @@ struct Threads::State {
   std::optional<tbb::task_arena> arena;
 };
 
-Threads::Threads(int threads) : state_(detail::hidden<State>()) {
-  if (threads > 0) limit_to(threads);
-}
+Threads::Threads(int threads) : state_(detail::hidden<State>()) { limit_to(threads); }
 
 void Threads::limit_to(int threads) {
-  if (threads < processors_given()) state_->arena.emplace(threads);
+  if (threads > 0 && threads < processors_given()) state_->arena.emplace(threads);
 }
 
 void Threads::run(Call<void()> work) { state_->arena ? state_->arena->execute(work) : isolated(work); }

@@ -235,7 +235,6 @@ class CsvSource final : public RowSource {
     const int threads = std::clamp(options.threads > 0 ? options.threads : processors_given(), 1, 32);
     const bool small = chunks_.whole() && chunks_.size() < (std::size_t{1} << 18U) && options.threads <= 0;
     if (threads > 1 && !small) read_ahead(threads);
-    info_.read_ahead = pipeline_ != nullptr;
   }
 
   // The channels of each group: "Gyroscope_x", or the group alone where there is one.
