@@ -16,7 +16,6 @@
 #include <string>
 
 #include "libchar/core/file/log_files.hpp"
-#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
