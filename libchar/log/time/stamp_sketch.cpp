@@ -182,7 +182,8 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
   // Most stamps lie on one tick: those beside it count.
   std::sort(r.begin(), r.end());
   constexpr double kTenthToNinth = 2.5631;  // of a normal distribution, in standard deviations
-  result.robust = (r[r.size() - 1 - r.size() / 10] - r[r.size() / 10]) / kTenthToNinth;
+  const std::size_t tenth = std::max<std::size_t>(1, r.size() / 10);
+  result.robust = (r[r.size() - 1 - tenth] - r[tenth]) / kTenthToNinth;
   return result;
 }
 
