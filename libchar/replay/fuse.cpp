@@ -462,7 +462,7 @@ void Fusing::begin_check() {
     if (row_[i] >= 0) check_.rows.push_back(row_[i]);
   const fusion::Array array = array_of(learnt_);
   const Eigen::MatrixXd h = array.h();
-  if (array.one_common_input() && array.channels >= 3) {
+  if (array.one_common_input() && array.channels >= 2) {
     check_.readings.emplace(array.channels, instants_->info().count);
     check_.doubt.emplace(learnt_readings());
   }

@@ -217,7 +217,7 @@ class Replay {
     instants_.pass(plan_.learn_from, plan_.learn_to, kLearningBlock, passing, [&](const InstantBlock& b) {
       for (AlgorithmRun& run : runs_)
         if (run.planned().learns_before()) run.learn(b.samples, b.truth);
-      if (watched_from() < plan_.run_from) watch_readings(b.samples);
+      if (watched_from() < plan_.run_from) watch_readings(b.samples, b.truth);
     });
   }
 
@@ -262,15 +262,25 @@ class Replay {
   void watch_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
     if (watch_.tilt) watch_.tilt->push(samples, truth);
     if (watch_.steps) with_live(samples, [this](const auto& live) { watch_.steps->push(live); });
-    watch_readings(samples);
+    watch_readings(samples, truth);
   }
 
-  void watch_readings(const Eigen::MatrixXd& samples) { push_reading(samples, watched_from(), watch_.readings); }
+  // Of two sensors a reference tells which of them it is that reads otherwise.
+  void watch_readings(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
+    push_reading(samples, watched_from(), watch_.readings);
+    if (!watch_.readings || watch_.readings->sensors() != 2 || truth.rows() != 1) return;
+    with_live(samples, [&](const auto& rows) {
+      Eigen::MatrixXd all(3, rows.cols());
+      all << rows, truth;
+      if (!watch_.with_truth) watch_.with_truth.emplace(3, plan_.run_to - watched_from());
+      watch_.with_truth->push(all);
+    });
+  }
 
   void push_reading(const Eigen::MatrixXd& samples, std::int64_t from,
                     std::optional<detail::ReadingMeter>& meter) const {
     const fusion::Array live = subset(plan_.array, plan_.live);
-    if (!meter && !scene_.tilt && live.one_common_input() && live.channels >= 3)
+    if (!meter && !scene_.tilt && live.one_common_input() && live.channels >= 2)
       meter.emplace(live.channels, plan_.run_to - from);
     if (meter) with_live(samples, [&](const auto& rows) { meter->push(rows); });
   }
@@ -432,7 +442,7 @@ class Replay {
   LearntFusion learnt_;
   struct {
     std::optional<StepNoiseMeter> steps;
-    std::optional<detail::ReadingMeter> readings;
+    std::optional<detail::ReadingMeter> readings, with_truth;  // of two sensors, beside the reference
     std::optional<detail::TiltCheck> tilt;
   } watch_;
   std::optional<DetectionSweep> detection_;
@@ -634,12 +644,20 @@ void add_doubts_of_chosen(ReplayResult& out) {
 void Replay::tell_readings(ReplayResult& out) const {
   if (!out.faults.empty()) return;
   std::vector<std::string> names, units;
-  for (std::size_t k = 0; k < taken_out().size(); ++k) {
+  std::vector<detail::TakenOut> taken = taken_out();
+  for (std::size_t k = 0; k < taken.size(); ++k) {
     names.push_back(out.sensors[live(k)].name);
     units.push_back(out.sensors[live(k)].unit);
   }
+  if (watch_.with_truth) {
+    names.push_back(out.inputs[0].name);
+    units.push_back(out.inputs[0].unit);
+    taken.emplace_back();
+  }
+  const detail::ReadingMeter& meter = watch_.with_truth ? *watch_.with_truth : *watch_.readings;
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
-  detail::warn_of_readings(*watch_.readings, names, units, {start_s, out.rate_hz}, taken_out(), out.warnings);
+  detail::warn_of_readings(meter, names, units, {start_s, out.rate_hz}, taken, watch_.with_truth.has_value(),
+                           out.warnings);
 }
 
 ReplayResult Replay::collect() {

@@ -46,12 +46,12 @@ std::string honest_log(std::uint64_t seed, double (*spoil)(double y, int k) = nu
 }
 
 struct HonestBench {
-  explicit HonestBench(const std::string& more = "", bool three = false, double (*spoil)(double y, int k) = nullptr) {
+  explicit HonestBench(const std::string& more = "", int sensors = 4, double (*spoil)(double y, int k) = nullptr) {
     bench.put("log.csv", honest_log(1, spoil));
-    const Scene scene = bench.read(
-        "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n"
-        "  - {name: a, noise: 0.05}\n  - {name: b, noise: 0.1}\n  - {name: c, noise: 0.08}\n" +
-        std::string(three ? "" : "  - {name: d, noise: 0.2}\n") + "reference: x\nlearning: [0, 50]\n" + more);
+    std::string text = "format: scene\nversion: 1\nrecording: log.csv\nsensors:\n";
+    const char* const each[] = {"a, noise: 0.05", "b, noise: 0.1", "c, noise: 0.08", "d, noise: 0.2"};
+    for (int i = 0; i < sensors; ++i) text += fmt::format("  - {{name: {}}}\n", each[i]);
+    const Scene scene = bench.read(text + "reference: x\nlearning: [0, 50]\n" + more);
     learnt = parse_fusion_file(fusion_yaml(replay(scene, {}).learnt), "fusion.yaml");
   }
   FuseResult fuse_log(const std::string& log, const std::string& algorithm, KeptColumns& kept) {
@@ -213,7 +213,7 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
 
 TEST_CASE(
     "fuse: a sensor of three that reads otherwise is in the standard deviation of methods that withstand it too") {
-  HonestBench bench("", true);
+  HonestBench bench("", 3);
   using Spoil = double (*)(double, int);
   const std::pair<const char*, Spoil> kinds[] = {{"offset", [](double y, int) { return y + 0.6; }},
                                                  {"sign", [](double y, int) { return -y; }},
@@ -225,6 +225,30 @@ TEST_CASE(
       bench.fuse_log(honest_log(7, spoil), algorithm, kept);
       CHECK(coverage(kept) >= 0.91);
     }
+}
+
+TEST_CASE("fuse: that one of two sensors reads otherwise is told, and either may be wrong in the standard deviation") {
+  using Spoil = double (*)(double, int);
+  const std::pair<const char*, Spoil> kinds[] = {
+      {"offset", [](double y, int) { return y + 0.6; }},
+      {"sign", [](double y, int) { return -y; }},
+      {"noise", [](double y, int k) { return y + (k % 2 == 0 ? 1 : -1); }},
+      {"from the middle", [](double y, int k) { return k < 6000 ? y : y + 2; }}};
+  for (const char* algorithm : {"mean", "least-squares"}) {
+    HonestBench bench("", 2);
+    KeptColumns kept;
+    CHECK(bench.fuse_log(honest_log(7), algorithm, kept).warnings.find("sensor_changed") == nullptr);
+    for (const auto& [kind, spoil] : kinds) {
+      INFO(kind << ", " << algorithm);
+      KeptColumns spoilt;
+      const FuseResult result = bench.fuse_log(honest_log(7, spoil), algorithm, spoilt);
+      const Finding* found = result.warnings.find("sensor_changed");
+      REQUIRE(found != nullptr);
+      CHECK_THAT(found->where.rows.at(0),
+                 StartsWith("a or b: up to ") && Contains(" apart, ") && Contains("to the end"));
+      CHECK(coverage(spoilt) >= 0.9);
+    }
+  }
 }
 
 TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does not show, as weights remember it") {
@@ -249,7 +273,7 @@ TEST_CASE(
   for (const bool three : {false, true})
     for (const char* algorithm : {"minque", "least-squares"}) {
       INFO(three << " " << algorithm);
-      HonestBench bench("", three, late);
+      HonestBench bench("", three ? 3 : 4, late);
       KeptColumns kept;
       const FuseResult result = bench.fuse_log(honest_log(7, always), algorithm, kept);
       const Finding *before = result.warnings.find("sensor_failing"), *now = result.warnings.find("sensor_changed");

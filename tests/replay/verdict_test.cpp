@@ -274,6 +274,45 @@ TEST_CASE("verdict: what one sensor does throughout is named, or said to be unto
       }
 }
 
+TEST_CASE("verdict: that one of two sensors fails is said, and which where there is a reference") {
+  const Sensor kinds[] = {{.noise = 0.1, .jump = 2}, {.noise = 0.1, .louder = 10}, {.noise = 0.1, .gain_end = -0.5}};
+  for (const Sensor& fault : kinds)
+    for (const bool reference : {false, true}) {
+      INFO(&fault - kinds << (reference ? ", reference" : ""));
+      const test::SceneBench bench;
+      bench.put("array.csv", array_log({{0.1}, fault}, 20000, 5));
+      const std::string scene =
+          scene_of(2, reference ? "algorithms: [mean]\nreference: truth\n" : "algorithms: [mean]\n");
+      const ReplayResult result = replay(bench.read(scene));
+      const Finding* failing = result.warnings.find("sensor_failing");
+      if (!reference && fault.gain_end != 0) continue;  // of two, a motion that both follow unlike
+      REQUIRE(failing != nullptr);
+      CHECK(failing->count == 1);
+      CHECK_THAT(failing->where.rows.at(0), StartsWith(reference ? "s2: " : "s1 or s2: up to "));
+    }
+  // A sensor of another gain or sign throughout: only the reference tells.
+  for (const double gain : {-1., 1.4, 57.3}) {
+    INFO(gain);
+    const test::SceneBench bench;
+    bench.put("array.csv", array_log({{0.1}, {0.1, 0, gain}}, 20000, 5));
+    const ReplayResult result = replay(bench.read(scene_of(2, "algorithms: [mean]\nreference: truth\n")));
+    const Finding* apart = result.warnings.find("sensor_apart");
+    REQUIRE(apart != nullptr);
+    CHECK(apart->count == 1);
+    CHECK_THAT(apart->where.rows.at(0), StartsWith("s2: gain "));
+  }
+  // Sound ones, of noise, offsets and gains of their own, or one of them better: nothing is said of them.
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    for (const char* reference : {"", "reference: truth\n"}) {
+      INFO(seed << " " << reference);
+      const test::SceneBench bench;
+      bench.put("array.csv", array_log({{0.1, 0.2, 1.01}, {seed % 2 == 0 ? 0.02 : 0.1, -0.1, 0.99}}, 20000, seed));
+      const ReplayResult result = replay(bench.read(scene_of(2, std::string("algorithms: [mean]\n") + reference)));
+      CHECK(result.warnings.find("sensor_failing") == nullptr);
+      CHECK(result.warnings.find("sensor_apart") == nullptr);
+    }
+}
+
 TEST_CASE("verdict: five of twelve sensors that break are all named") {
   std::vector<Sensor> sensors(12, Sensor{0.1});
   for (const std::size_t i : {1U, 4U, 5U, 8U, 10U}) sensors[i].jump = 2 + static_cast<double>(i);

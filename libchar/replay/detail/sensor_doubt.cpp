@@ -29,10 +29,11 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
   sorted_.clear();
   for (const double y : samples.col(at))
     if (fusion::usable(y)) sorted_.push_back(y);
-  if (sorted_.size() < 3) return {};
+  const bool pair = learnt_.size() == 2;
+  if (sorted_.size() < (pair ? 2 : 3)) return {};
   const double u = median_in_place(sorted_);
   bool any = false;
-  double sum = 0, weights = 0, trusted = 0;
+  double sum = 0, weights = 0, trusted = 0, furthest = 0;
   for (std::size_t i = 0; i < learnt_.size(); ++i) {
     const double y = samples(static_cast<Eigen::Index>(i), at);
     if (!learnt_[i] || !fusion::usable(y)) continue;
@@ -43,6 +44,7 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
     if (std::abs(mean_[i]) > std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
         std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms)
       held_[i] = kHeld;
+    if (usual.gain > -1) furthest = std::max(furthest, std::abs(estimate - (y - usual.offset) / (1 + usual.gain)));
     const bool doubted = held_[i] > 0;
     held_[i] -= doubted ? 1 : 0;
     any = any || doubted;
@@ -52,7 +54,7 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
     weights += weight;
     trusted += 1;
   }
-  const double away = estimate - (trusted >= 2 ? sum / weights : u);
+  const double away = pair ? furthest : estimate - (trusted >= 2 ? sum / weights : u);
   if (std::isfinite(away)) away_ += kMemoryOfDistance * (away * away - away_);
   return any ? Variance{trusted >= 2 ? 1 / weights : 0, away_} : Variance{};
 }

@@ -4,6 +4,7 @@
 // running mean of e_i or of e_i^2 over 32 instants is beyond what is usual, and for 4096 more. While one is, that of
 // (estimate - m)^2 over 8 instants is added to the variance, m the mean of what the sensors that are not in doubt say
 // of u, by their usual scatter, and the variance is that of m at least; where fewer than two are left m is the median.
+// Of two sensors m is what that says of u which is further from the estimate: either may be wrong.
 
 #include <Eigen/Core>
 #include <algorithm>

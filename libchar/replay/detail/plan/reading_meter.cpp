@@ -15,14 +15,15 @@ namespace {
 
 constexpr std::int64_t kLongBlock = 256, kShortBlock = 64, kManyInstants = 5120;
 constexpr std::size_t kMostBlocks = 2048, kLeastBlocks = 8;
-constexpr double kLeastInBlock = 16;  // samples
-constexpr double kUsual = 0.9;        // of the blocks are within what counts as usual
-constexpr double kOfHalf = 2.44;      // the same over the median, of means that are normal
-constexpr double kOfHalfRms = 1.1;    // of rms
-constexpr double kBeyondUsual = 4;    // times the usual mean of a block
-constexpr double kBeyondNoise = 0.5;  // of the noise: a smaller change of the mean is not worth a word
-constexpr double kLouder = 2.5;       // times the usual rms of a block
-constexpr double kQuietest = 0.5;     // of the usual rms of the middle sensor: less is no scatter of its own
+constexpr double kLeastInBlock = 16;      // samples
+constexpr std::size_t kLeastSensors = 3;  // of more than two: the median of fewer is another one
+constexpr double kUsual = 0.9;            // of the blocks are within what counts as usual
+constexpr double kOfHalf = 2.44;          // the same over the median, of means that are normal
+constexpr double kOfHalfRms = 1.1;        // of rms
+constexpr double kBeyondUsual = 4;        // times the usual mean of a block
+constexpr double kBeyondNoise = 0.5;      // of the noise: a smaller change of the mean is not worth a word
+constexpr double kLouder = 2.5;           // times the usual rms of a block
+constexpr double kQuietest = 0.5;         // of the usual rms of the middle sensor: less is no scatter of its own
 
 constexpr double kShifted = 0.5;      // of the mean square of a block
 constexpr double kOutlier = 5;        // times the rms of the steps of its block, and of the usual rms
@@ -85,8 +86,9 @@ void ReadingMeter::push(const Eigen::MatrixXd& samples) {
     sorted_.clear();
     for (const double y : samples.col(k))
       if (fusion::usable(y)) sorted_.push_back(y);
-    const double u = sorted_.size() >= 3 ? median_in_place(sorted_) : 0;
-    for (std::size_t i = 0; sorted_.size() >= 3 && i < n_; ++i) {
+    const bool enough = sorted_.size() >= std::min(kLeastSensors, n_);
+    const double u = enough ? median_in_place(sorted_) : 0;
+    for (std::size_t i = 0; enough && i < n_; ++i) {
       const double y = samples(static_cast<Eigen::Index>(i), k);
       if (!fusion::usable(y)) continue;
       Sums& s = now_[i];
@@ -206,7 +208,10 @@ ReadingMeter::Readings ReadingMeter::steady() const { return readings(0.5, kOfHa
 ReadingMeter::Readings ReadingMeter::learnt() const {
   Readings out = result();
   const Readings usual = steady();
-  for (const Change& change : changes(usual, true)) out[change.sensor] = usual[change.sensor];
+  for (const Change& change : changes(usual, true)) {
+    if (n_ == 2) return usual;
+    out[change.sensor] = usual[change.sensor];
+  }
   return out;
 }
 
@@ -254,6 +259,7 @@ double level_deviation(const std::vector<Place>& near, const std::vector<Place>&
 }  // namespace
 
 std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOut>& taken_out) const {
+  if (n_ < kLeastSensors) return std::nullopt;
   std::vector<double> inputs;
   for (const auto& block : blocks_)
     if (block[0].n >= kLeastInBlock) inputs.push_back(block[0].u0 + block[0].u / block[0].n);
@@ -406,8 +412,9 @@ bool ReadingMeter::beyond(const Sums& s, const LearntSensor::Reading& usual, con
 }
 
 // A sensor in the middle is the median itself, and its scatter nothing, for as long as the signal holds it there:
-// what scatters less than the middle sensor is taken to scatter as much.
+// what scatters less than the middle sensor is taken to scatter as much. Two are off their mean alike.
 ReadingMeter::Limits ReadingMeter::limits(const Readings& learnt, bool quieter) {
+  if (learnt.size() == 2) return {0, quieter};
   std::vector<double> rms;
   for (const auto& one : learnt)
     if (one) rms.push_back(one->usual_rms);
@@ -415,7 +422,7 @@ ReadingMeter::Limits ReadingMeter::limits(const Readings& learnt, bool quieter) 
 }
 
 // Delays and other axes scatter with the motion m, the mean square step of the median: rms^2 = v + c m, v the median of
-// the calmer half of the blocks, c that of the other half.
+// the calmer half of the blocks, c that of the other half. The mean of two has as much noise as its distance from each.
 std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const {
   struct Block {
     double motion = 0, square = 0;
@@ -427,7 +434,7 @@ std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const Learn
     const Sums& s = blocks_[k][sensor];
     if (s.n < kLeastInBlock || s.steps < kLeastInBlock) continue;
     const double rms = fit(s, usual.offset, usual.gain).rms;
-    all.push_back({s.suu / s.steps, rms * rms, k});
+    all.push_back({std::max(0.0, s.suu - (n_ == 2 ? s.srr : 0)) / s.steps, rms * rms, k});
   }
   if (all.size() < kLeastBlocks) return out;
   std::sort(all.begin(), all.end(), [](const Block& a, const Block& b) { return a.motion < b.motion; });
@@ -519,6 +526,10 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, 
     one.to = std::min((last + 1) * block_ * stride_, seen_);
     one.to_end = last + 1 == static_cast<std::int64_t>(blocks_.size());
     out.push_back(one);
+  }
+  if (n_ == 2) {
+    out.resize(std::min<std::size_t>(out.size(), 1));
+    return out;
   }
   out = own_changes(std::move(out), learnt);
   // Where most change it is what they see that does: motion, and how the sensors differ in it.

@@ -6,7 +6,8 @@
 //
 // b the weighted median of the slopes of blocks, a the median of what is left of their means. In each block
 // q_i = mean(e_i) and rms(e_i). Medians leave faults of up to half of the log out; the median of the
-// sensors leaves fewer than half of them out.
+// sensors leaves fewer than half of them out. Of two sensors u is their mean, and both are as far from it: that one of
+// them reads otherwise is seen, not which.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -27,8 +28,9 @@ struct TakenOut {
 /// Accumulates over consecutive instants, in blocks; memory does not grow with their number.
 class ReadingMeter {
  public:
-  /// Of `sensors` that see one input alike, at least three.
+  /// Of `sensors` that see one input alike, at least two.
   ReadingMeter(Eigen::Index sensors, std::int64_t instants);
+  std::size_t sensors() const { return n_; }
   /// A column an instant, a row a sensor; missing samples are left out.
   void push(const Eigen::MatrixXd& samples);
   using Readings = std::vector<std::optional<LearntSensor::Reading>>;
@@ -39,7 +41,8 @@ class ReadingMeter {
   Readings steady() const;
 
   /// Of each sensor its middle distance from the median of all, and `taken_out` of what was taken out of it before
-  /// (at the middle input), less the level: the mean of these distances without those that stand apart.
+  /// (at the middle input), less the level: the mean of these distances without those that stand apart. Of three or
+  /// more.
   struct Level {
     std::vector<double> offsets;  ///< 0: not worth taking out
     bool matters = false;         ///< one of them is not
@@ -50,7 +53,7 @@ class ReadingMeter {
   /// Where a sensor reads otherwise than it was learnt, in at least two blocks one after the other, and in more than
   /// outliers of all sensors explain.
   struct Change {
-    std::size_t sensor = 0;
+    std::size_t sensor = 0;         ///< of two: the first stands for both
     double offset = 0;              ///< largest mean beyond what was learnt
     double scatter = 1;             ///< rms over the learnt one, the furthest from 1
     std::int64_t from = 0, to = 0;  ///< instants

@@ -85,8 +85,9 @@ struct Throughout {
   ReadingMeter::Readings steady;
   Values slow;
   std::vector<double> repeated, outliers;
-  bool level = false;  // offsets were taken out
-  double noise = 0;    // of the middle sensor
+  bool level = false;      // offsets were taken out
+  bool reference = false;  // is the last of them: it has no noise and no steps, and only says what is right
+  double noise = 0;        // of the middle sensor
 
   Values each(double (*value)(const LearntSensor::Reading& reading)) const {
     Values out;
@@ -109,10 +110,11 @@ struct Throughout {
                slowly = apart(slower, kLeastSlower, kUsualSlow, by_chance);
     const double repeats = middle_of(repeated), outlying = middle_of(outliers);
     std::vector<std::vector<std::string>> out(steady.size());
-    for (std::size_t i = 0; i < steady.size(); ++i) {
+    for (std::size_t i = 0; i + (reference ? 1 : 0) < steady.size(); ++i) {
       if (std::abs(gains[i]) > 1) out[i].push_back("gain " + brief_text(1 + steady[i]->gain, 3));
       if (std::abs(offsets[i]) > 1) out[i].push_back("offset " + of.amount(steady[i]->offset, i));
-      if (levels[i] > 1) out[i].push_back("noise " + of.amount(steady[i]->usual_rms, i));
+      if (levels[i] > 1 && !(sure && reference)) out[i].push_back("noise " + of.amount(steady[i]->usual_rms, i));
+      if (reference) continue;
       if (!sure && slowly[i] > 1)  // sound sensors drift, and are late, unlike each other
         out[i].push_back(fmt::format("scatter {} times that from sample to sample", brief_text(*slow[i], 2)));
       if (outliers[i] > std::max(outlying + kLeastOutliers, kOutliersOver * outlying))
@@ -156,13 +158,14 @@ void warn_of_apart(const Throughout& all, const Sensors& of, Findings& warnings)
 
 /// "up to 5 deg/s off, 12 times its scatter, from 4 min to the end"; "its scatter 20 times smaller"
 std::string change_text(const ReadingMeter::Change& change, const Sensors& of, const Clock& clock) {
+  const bool pair = of.names.size() == 2;  // each is half as far from their mean
   const auto at = [&](std::int64_t instant) {
     return duration_text(clock.start_s + static_cast<double>(instant) / clock.rate_hz);
   };
   const std::string scatter = change.scatter < 1 ? "its scatter " + brief_text(1 / change.scatter, 2) + " times smaller"
                                                  : brief_text(change.scatter, 2) + " times its scatter";
-  return fmt::format("up to {} off, {}, from {} to {}", of.amount(change.offset, change.sensor), scatter,
-                     change.from == 0 ? std::string("the start") : at(change.from),
+  return fmt::format("up to {} {}, {}, from {} to {}", of.amount((pair ? 2 : 1) * change.offset, change.sensor),
+                     pair ? "apart" : "off", scatter, change.from == 0 ? std::string("the start") : at(change.from),
                      change.to_end ? std::string("the end") : at(change.to));
 }
 
@@ -170,7 +173,8 @@ std::vector<Said> changes_said(const std::vector<ReadingMeter::Change>& changes,
                                const Clock& clock) {
   std::vector<Said> out;
   for (const ReadingMeter::Change& change : changes)
-    out.push_back({of.name(change.sensor), change_text(change, of, clock)});
+    out.push_back({of.names.size() == 2 ? of.name(0) + " or " + of.name(1) : of.name(change.sensor),
+                   change_text(change, of, clock)});
   return out;
 }
 
@@ -178,10 +182,11 @@ std::vector<Said> changes_said(const std::vector<ReadingMeter::Change>& changes,
 
 void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
-                      Findings& warnings) {
+                      bool reference, Findings& warnings) {
   const Sensors of{names, units};
   ReadingMeter::Readings steady = meter.steady();
   Throughout all{{}, meter.slow_scatter(steady), meter.repeated(), meter.with_outliers(steady)};
+  all.reference = reference;
   std::vector<Said> failing = changes_said(meter.changes(steady, true), of, clock);
   for (const ReadingMeter::GainDrift& drift : meter.gain_drifts(kFalseAlarm)) {
     const auto said = [&](const Said& one) { return one.name == of.name(drift.sensor); };

@@ -15,10 +15,10 @@ struct Clock {
 };
 
 /// Sensors that read otherwise than they do for most of the log they are judged by, or than all
-/// others throughout. `taken_out`: what the meter did not see.
+/// others throughout. `taken_out`: what the meter did not see. `reference`: the last of them is no sensor.
 void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
-                      Findings& warnings);
+                      bool reference, Findings& warnings);
 
 /// A finding that says of sensors that they fail, stand apart, or have no samples.
 bool doubts_sensors(const Finding& finding);
