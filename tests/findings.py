@@ -14,19 +14,18 @@ codes = [row[0] for row in rows]
 faults = []
 if codes != sorted(set(codes)):
     faults.append("findings.tsv: its rows are not in the order of their codes")
-named = set()
-for path in sorted([*(root / "libchar").rglob("*.[ch]pp"), *(root / "tools").rglob("*.cpp")]):
-    text = re.sub(r"//[^\n]*", "", path.read_text())
-    named |= set(NAMED.findall(text))
-    for match in re.finditer(r'\bfinding\(\s*([^,]*?),', text):
-        for code in NAMED.findall(match[1]):
-            if code not in codes:
-                faults.append(f"{path.relative_to(root)}: `{code}` has no row in libchar/core/findings.tsv")
-    for match in re.finditer(r'(?:(?:warnings_?|remarks|info_?\.warnings)\.add\(|\badd\(\s*warnings,)\s*([^,]*?),',
-                             text):
-        for code in NAMED.findall(match[1]):
-            if code not in codes:
-                faults.append(f"{path.relative_to(root)}: `{code}` has no row in libchar/core/findings.tsv")
+MADE = re.compile(r'(?:\bfinding\(|(?:warnings_?|remarks|info_?\.warnings)\.add\(|\badd\(\s*warnings,)\s*([^,]*?),')
+
+
+def text_of(path):
+    return re.sub(r"//[^\n]*", "", path.read_text())
+
+
+sources = sorted([*(root / "libchar").rglob("*.[ch]pp"), *(root / "tools").rglob("*.cpp")])
+named = {code for path in sources for code in NAMED.findall(text_of(path))}
+for path in [*sources, *sorted((root / "tests").rglob("*.cpp"))]:
+    faults += [f"{path.relative_to(root)}: `{code}` has no row in libchar/core/findings.tsv"
+               for made in MADE.finditer(text_of(path)) for code in NAMED.findall(made[1]) if code not in codes]
 sys.path.insert(0, str(root / "tests/cli"))
 import finding_inputs  # noqa: E402
 faults += finding_inputs.unmatched(codes)

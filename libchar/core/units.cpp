@@ -1,8 +1,10 @@
 #include "libchar/core/units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 #include "libchar/core/text/decimal.hpp"
 
@@ -103,14 +105,19 @@ bool mistakes_prefix(std::string_view text, std::string_view symbol) {
   return !word && ((text.front() == 'M' && symbol.front() == 'm') || (text.front() == 'm' && symbol.front() == 'M'));
 }
 
-bool listed(std::string_view spellings, std::string_view wanted) {
-  while (!spellings.empty()) {
-    const std::size_t bar = spellings.find('|');
-    if (spellings.substr(0, bar) == wanted) return true;
-    if (bar == std::string_view::npos) return false;
-    spellings.remove_prefix(bar + 1);
-  }
-  return false;
+const UnitRow* row_of_spelling(const std::string& wanted) {
+  static const std::unordered_map<std::string_view, const UnitRow*> rows = [] {
+    std::unordered_map<std::string_view, const UnitRow*> out;
+    for (const UnitRow& row : kUnits)
+      for (std::string_view rest = row.spellings; !rest.empty();) {
+        const std::size_t bar = std::min(rest.find('|'), rest.size());
+        out.emplace(rest.substr(0, bar), &row);
+        rest.remove_prefix(std::min(bar + 1, rest.size()));
+      }
+    return out;
+  }();
+  const auto found = rows.find(wanted);
+  return found == rows.end() ? nullptr : found->second;
 }
 
 // "1/16.4 deg/s", "0.05 deg/s": a factor, a blank, a unit.
@@ -133,9 +140,9 @@ std::optional<Unit> find_unit(std::string_view text) {
   // "T" (tesla) against "t", "G" (gauss) against "g", "mT"/"MT": only the spellings in the table are accepted, and a
   // lone capital G is refused because half the field means gauss by it and the other half gravity.
   if (text == "G" || text == "M" || text == "t") return std::nullopt;
-  for (const UnitRow& row : kUnits)
-    if (listed(row.spellings, wanted) && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row.symbol))
-      return Unit{row.symbol, row.quantity, row.to_si};
+  const UnitRow* row = row_of_spelling(wanted);
+  if (row != nullptr && !mistakes_prefix(text.substr(text.find_first_not_of(' ')), row->symbol))
+    return Unit{row->symbol, row->quantity, row->to_si};
   return with_factor(text);
 }
 

@@ -180,7 +180,7 @@ ReplayResult synthetic_replay(std::size_t sensors, std::size_t inputs) {
     r.algorithms.push_back(std::move(a));
   }
   judge(r);
-  r.warnings.add("short_rest", "the rest is shorter than a second", "", 1);
+  r.warnings.add("clock_change", "the rest is shorter than a second", "", 1);
   r.work = {3, 10000, 2400000, 0};
   r.seconds = 4.2;
   if (inputs == 1) r.best_sensor = 0;
@@ -258,9 +258,9 @@ ReplayResult hostile_replay() {
     r.sensors[i].name = r.sensors[i].unit = r.sensors[i].noise_source = name;
     r.plan.push_back(name);
     r.command.push_back(name);
-    r.warnings.add(name, name, name);
-    r.logs[0].warnings.add(name, name, name);
-    if (i < r.algorithms.size()) r.algorithms[i].remarks.add(name, name, name);
+    r.warnings.add("clock_change", name, name);
+    r.logs[0].warnings.add("clock_change", name, name);
+    if (i < r.algorithms.size()) r.algorithms[i].remarks.add("clock_change", name, name);
   }
   r.scene.name = hostile_names()[1] + hostile_names()[0];
   r.scene.file = r.logs[0].file = hostile_names()[0];

@@ -82,19 +82,19 @@ std::string owner_of_lock(const std::string& path) {
 }
 
 /// Who may write into the folder may lock it: the file has the folder's rights of writing.
-void share_rights(int file, const std::string& path) {
-  struct stat folder {};
-  if (::stat(fs::path(path).parent_path().c_str(), &folder) == 0) [[maybe_unused]]
-    const int shared = ::fchmod(file, 0444U | (folder.st_mode & 0222U));
+void share_rights(int file, const std::string& folder) {
+  struct stat rights {};
+  if (::stat(folder.c_str(), &rights) == 0) [[maybe_unused]]
+    const int shared = ::fchmod(file, 0444U | (rights.st_mode & 0222U));
 }
 
-/// The opened lock file, made where there is none; -1 and errno.
-int opened_lock(const std::string& path, bool& for_writing) {
+/// The opened lock file, made where there is none; -1 and errno. Needs no memory: the file is the caller's to remove.
+int opened_lock(const std::string& path, const std::string& folder, bool& for_writing) {
   constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
   for_writing = true;
   int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | kFlags, 0666);
   if (file >= 0) {
-    share_rights(file, path);
+    share_rights(file, folder);
     return file;
   }
   if (errno != EEXIST) return -1;
@@ -122,17 +122,18 @@ bool is_still(int& file, const std::string& path) {
 /// False where another has it, or where it has just been given up: to be tried again.
 bool FolderLock::take() {
   bool for_writing = true;
-  descriptor_ = opened_lock(path_, for_writing);
+  const std::string folder = fs::path(path_).parent_path().string();
+  descriptor_ = opened_lock(path_, folder, for_writing);
   if (descriptor_ < 0) {
     if (errno == ENOENT) {  // given up between two looks, unless the folder is none
-      if (std::error_code ignored; fs::is_directory(fs::path(path_).parent_path(), ignored)) return false;
+      if (std::error_code ignored; fs::is_directory(folder, ignored)) return false;
       errno = ENOENT;
     }
     throw output_error("E0501", path_).says("cannot create a file in this folder: {}", std::strerror(errno));
   }
   const Lock lock = for_writing ? lock_whole_file(descriptor_) : share_whole_file(descriptor_);
   if (lock == Lock::impossible) {
-    remember_unlocked(fs::path(path_).parent_path().string());
+    remember_unlocked(folder);
     return true;
   }
   held_ = lock == Lock::taken && is_still(descriptor_, path_);
