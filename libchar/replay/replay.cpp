@@ -658,6 +658,7 @@ void Replay::tell_readings(ReplayResult& out) const {
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
   detail::warn_of_readings(meter, names, units, {start_s, out.rate_hz}, taken, watch_.with_truth.has_value(),
                            out.warnings);
+  if (!aligned_) detail::warn_of_delays(watch_.readings->delays(), names, out.warnings);
 }
 
 ReplayResult Replay::collect() {

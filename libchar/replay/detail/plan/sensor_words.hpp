@@ -20,6 +20,10 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
                       bool reference, Findings& warnings);
 
+/// Where no alignment has looked for delays.
+void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::vector<std::string>& names,
+                    Findings& warnings);
+
 /// A finding that says of sensors that they fail, stand apart, or have no samples.
 bool doubts_sensors(const Finding& finding);
 
