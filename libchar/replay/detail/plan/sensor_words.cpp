@@ -225,9 +225,9 @@ void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::v
 }
 
 bool doubts_sensors(const Finding& finding) {
-  constexpr std::string_view kCodes[] = {"sensor_failing",         "sensors_out_of_time", "sensor_apart",
-                                         "sensor_unlike",          "frozen_sensor",       "constant_sensor",
-                                         "sensor_without_samples", "tilt_contradicts"};
+  constexpr std::string_view kCodes[] = {
+      "sensor_failing",  "sensors_out_of_time",    "sensor_apart",  "sensor_unlike", "frozen_sensor",
+      "constant_sensor", "sensor_without_samples", "copied_sensor", "missing_mark",  "tilt_contradicts"};
   return std::find(std::begin(kCodes), std::end(kCodes), finding.code) != std::end(kCodes);
 }
 

@@ -24,7 +24,7 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
 void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::vector<std::string>& names,
                     Findings& warnings);
 
-/// A finding that says of sensors that they fail, stand apart, or have no samples.
+/// A finding that says of sensors that they fail, stand apart, repeat each other, or have no samples.
 bool doubts_sensors(const Finding& finding);
 
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
