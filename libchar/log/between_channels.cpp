@@ -115,7 +115,7 @@ void judge_gravity(std::span<const Channel> channels, const std::function<Channe
 using Fingerprint = std::tuple<std::uint64_t, std::uint64_t, double, double, double, double>;
 Fingerprint fingerprint(const ChannelQuality& q) {
   const double sign = q.mean < 0 ? -1 : 1;
-  const auto [low, high] = std::minmax(sign * q.minimum, sign * q.maximum);
+  const auto [low, high] = std::minmax({sign * q.minimum, sign * q.maximum});
   return {q.samples, q.missing, sign * q.mean, q.standard_deviation, low, high};
 }
 

@@ -101,7 +101,7 @@ std::string summary_line(const LogInfo& info) {
 }
 
 Json inspection_json(const std::vector<Inspection>& inspections) {
-  Json document;
+  Json document = Json::object();
   document["format"] = "inspect";
   document["version"] = 1;
   document["recordings"] = Json::array();

@@ -173,6 +173,18 @@ TEST_CASE("replay: --explain says what would be done and writes nothing") {
   CHECK_THAT(mean.out, Contains("runs mean\n"));
 }
 
+TEST_CASE("replay: of units of time that exclude each other none is in the command to type next") {
+  const ReplayBench bench;
+  std::string log = "time,a,b,c\n";
+  for (int i = 0; i < 400; ++i)  // each 30 s, or 30 ms: nothing says which
+    log += fmt::format("{},{},{},{}\n", 30 * i, i % 7 + 0.1 * (i % 3), i % 7 + 0.1 * (i % 5), i % 7 + 0.1 * (i % 11));
+  const auto ran = test::run({"replay", bench.file("log.csv", log), "--sensors", "a,b,c", "-o", bench.path("out")});
+  CAPTURE(ran.out, ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.err, Contains("--time-unit ms") && Contains("--time-unit s"));
+  CHECK_THAT(ran.out, !Contains("next: sensorchar replay"));
+}
+
 TEST_CASE("replay: algorithms and their options from the command line") {
   const ReplayBench bench;
   const auto typo = bench.replay({"-o", bench.path("out"), "--algorithms", "mean,minqe"});

@@ -60,6 +60,15 @@ TEST_CASE("the scatter of the stamps is said in per cent of the interval") {
   CHECK_THAT(r.info.warnings.find("jitter")->sentence, Catch::Contains("scatter by 44 %"));
 }
 
+TEST_CASE("stamps most of which lie on one tick scatter as the others do") {
+  std::vector<std::int64_t> t;
+  for (int i = 0; i < 3000; ++i) t.push_back(10000 * i + (i % 5 == 2 ? 3000 : i % 5 == 4 ? -3000 : 0));
+  const Recording r = read_text(log_of(t));
+  const double deviation = 3000e-6 * std::sqrt(0.4);
+  CHECK(r.info.time.jitter_s > 0.9 * deviation);
+  CHECK(r.info.time.jitter_s < 1.4 * deviation);
+}
+
 TEST_CASE("the rate is exact in spite of jitter, drifts of the first rows and outliers") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 300);

@@ -246,7 +246,7 @@ Characterization hostile() {
     c.quality.findings = c.findings = {finding("spiky", name)};
     c.allan.notes = c.spectrum.notes = {name};
     result.channels.push_back(std::move(c));
-    result.log.warnings.add(name, name, name);
+    result.log.warnings.add("wild_stamp", name, name);
     result.log.guesses.push_back(name);
     result.log.dialect.push_back(name);
     result.command.push_back(name);

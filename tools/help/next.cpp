@@ -24,10 +24,24 @@ using namespace libchar;
 
 using Settings = std::map<std::string, std::set<std::string>>;  ///< values of each option
 
+/// Ways out of one finding that exclude each other: which of them is right is for the user to say.
+bool are_alternatives(const std::vector<Finding::Help>& ways) {
+  return std::any_of(ways.begin(), ways.end(), [&](const Finding::Help& way) {
+    return std::any_of(way.options.begin(), way.options.end(), [&](const Finding::Setting& one) {
+      const auto differs = [&](const Finding::Setting& other) {
+        return other.option == one.option && other.value != one.value;
+      };
+      return std::any_of(ways.begin(), ways.end(), [&](const Finding::Help& other) {
+        return &other != &way && std::any_of(other.options.begin(), other.options.end(), differs);
+      });
+    });
+  });
+}
+
 Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
   Settings out;
   for (const Finding& one : findings)
-    if (one.severity == severity)
+    if (one.severity == severity && !are_alternatives(one.help))
       for (const Finding::Help& help : one.help)
         for (const Finding::Setting& setting : help.options) out[setting.option].insert(setting.value);
   return out;

@@ -18,39 +18,115 @@
 
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/parallel/thread_limit.hpp"
+#include "libchar/core/process/sanitizer.hpp"
+#if LIBCHAR_SANITIZED_THREADS
+#include <sanitizer/tsan_interface.h>
+#endif
 
 namespace libchar {
 namespace parallel {
+namespace {
+
+// What is done before work is given out is seen by who does it, and what he does by who waits for it. oneTBB sees to
+// that, and the thread sanitizer, with which oneTBB is not compiled, is told.
+#if LIBCHAR_SANITIZED_THREADS
+void give(void* at) { __tsan_release(at); }
+void take(void* at) { __tsan_acquire(at); }
+#else
+void give(void*) {}
+void take(void*) {}
+#endif
+
+/// Lives while work is out.
+class Handover {
+ public:
+  Handover() { give(&begun_); }
+  Handover(const Handover&) = delete;
+  Handover& operator=(const Handover&) = delete;
+  ~Handover() { take(&ended_); }
+
+  void piece(Call<void()> work) {
+    struct Ended {
+      char& at;
+      ~Ended() { give(&at); }
+    } const ended{ended_};
+    take(&begun_);
+    work();
+  }
+
+ private:
+  char begun_ = 0, ended_ = 0;
+};
+
+/// Lives while a stage has an item, which the stage before it gave; what the last call of the stage did is seen too.
+class InStage {
+ public:
+  InStage(char* stage, void* item) : stage_(stage), item_(item) {
+    take(stage_);
+    take(item_);
+  }
+  InStage(const InStage&) = delete;
+  InStage& operator=(const InStage&) = delete;
+  ~InStage() {
+    give(item_);
+    give(stage_);
+  }
+
+ private:
+  char* stage_;
+  void* item_;
+};
+
+}  // namespace
 
 bool has_threads() { return true; }
 
 void over_ranges(std::size_t first, std::size_t last, std::size_t grain, Call<void(std::size_t, std::size_t)> work) {
   if (first >= last) return;
+  Handover out;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain),
-                    [&](const auto& range) { work(range.begin(), range.end()); });
+                    [&](const auto& range) { out.piece([&] { work(range.begin(), range.end()); }); });
 }
 
-void both(Call<void()> one, Call<void()> other) { tbb::parallel_invoke(one, other); }
+void both(Call<void()> one, Call<void()> other) {
+  Handover out;
+  tbb::parallel_invoke([&] { out.piece(one); }, [&] { out.piece(other); });
+}
 
 void isolated(Call<void()> work) { tbb::this_task_arena::isolate(work); }
 
 void in_order(std::size_t most, const Stages& stages) {
   using tbb::filter_mode;
-  const auto pass = [](Call<void(void*)> stage) {
-    return [stage](void* item) {
-      stage(item);
+  Handover out;
+  char reads = 0, firsts = 0, lasts = 0;
+  const auto pass = [&out](Call<void(void*)> stage, char* at) {
+    return [&out, stage, at](void* item) {
+      out.piece([&] {
+        const InStage in(at == nullptr ? static_cast<char*>(item) : at, item);
+        stage(item);
+      });
       return item;
     };
   };
-  tbb::parallel_pipeline(most, tbb::make_filter<void, void*>(filter_mode::serial_in_order,
-                                                             [&](tbb::flow_control& flow) {
-                                                               void* const item = stages.read();
-                                                               if (item == nullptr) flow.stop();
-                                                               return item;
-                                                             }) &
-                                   tbb::make_filter<void*, void*>(filter_mode::serial_in_order, pass(stages.first)) &
-                                   tbb::make_filter<void*, void*>(filter_mode::parallel, pass(stages.work)) &
-                                   tbb::make_filter<void*, void>(filter_mode::serial_in_order, stages.last));
+  const auto last = pass(stages.last, &lasts);
+  tbb::parallel_pipeline(
+      most, tbb::make_filter<void, void*>(filter_mode::serial_in_order,
+                                          [&](tbb::flow_control& flow) {
+                                            void* item = nullptr;
+                                            out.piece([&] {
+                                              take(&reads);
+                                              item = stages.read();
+                                              give(&reads);
+                                            });
+                                            if (item == nullptr)
+                                              flow.stop();
+                                            else
+                                              give(item);
+                                            return item;
+                                          }) &
+                tbb::make_filter<void*, void*>(filter_mode::serial_in_order, pass(stages.first, &firsts)) &
+                tbb::make_filter<void*, void*>(filter_mode::parallel, pass(stages.work, nullptr)) &
+                tbb::make_filter<void*, void>(filter_mode::serial_in_order, [&](void* item) { last(item); }));
 }
 
 // An arena only for fewer threads than there are. TBB keeps one whose workers are busy elsewhere and looks at all that
@@ -65,7 +141,11 @@ void Threads::limit_to(int threads) {
   if (threads > 0 && threads < processors_given()) state_->arena.emplace(threads);
 }
 
-void Threads::run(Call<void()> work) { state_->arena ? state_->arena->execute(work) : isolated(work); }
+void Threads::run(Call<void()> work) {
+  if (!state_->arena) return isolated(work);
+  Handover out;
+  state_->arena->execute([&] { out.piece(work); });
+}
 
 struct OneThread::State {
   tbb::global_control control{tbb::global_control::max_allowed_parallelism, 1};

@@ -111,7 +111,7 @@ std::vector<std::string> head_lines(const SensorGroup& group, const ExportOption
 }
 
 Json head_json(const SensorGroup& group, const ExportOptions& options, std::string_view formula) {
-  Json head;
+  Json head = Json::object();
   head["version"] = std::string(version());
   head["recordings"] = Json::array();
   for (const Source& source : sources(group))

@@ -51,9 +51,9 @@ Export write_airsim(const SensorGroup& group, const ExportOptions& options) {
                         "AngularRandomWalk = white_noise 60 180/pi; VelocityRandomWalk = white_noise 1000/9.80665; "
                         "BiasStability = random_walk sqrt(tau), in deg/h and ug (not bias_instability)");
   if (!writer.comments.empty()) head["comments"] = writer.comments;
-  Json document;
+  Json document = Json::object();
   document["SettingsVersion"] = 1.2;
-  document["DefaultSensors"]["Imu"] = writer.imu;
+  document["DefaultSensors"] = {{"Imu", writer.imu}};
   document["sensorchar"] = head;
   out.text = dump_json(document);
   return out;

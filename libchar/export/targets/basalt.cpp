@@ -51,7 +51,7 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
   Export out;
   Json comments = Json::object();
   BasaltWriter writer{options, out, comments};
-  Json value;
+  Json value = Json::object();
   value["imu_update_rate"] = rate_of(*group.gyroscope, out.notes);
   for (const Term term : {Term::white, Term::walk})
     for (const SensorTriad* triad : {&*group.accelerometer, &*group.gyroscope}) {
@@ -62,7 +62,7 @@ Export write_basalt(const SensorGroup& group, const ExportOptions& options) {
                         "noise_std = white_noise, bias_std = random_walk (roots of two-sided, continuous densities, SI "
                         "units; the code makes them discrete itself)");
   if (!comments.empty()) head["comments"] = comments;
-  Json document;
+  Json document = Json::object();
   document["value0"] = value;
   document["sensorchar"] = head;
   out.text = dump_json(document);

@@ -14,7 +14,7 @@
 namespace libchar {
 
 namespace detail {
-inline constexpr std::size_t kMostChannels = 50000;  ///< of a log, each of which takes 4 kB and more
+inline constexpr std::size_t kMostChannels = 32768;  ///< of a log, each of which takes 4 kB and more
 }
 
 /// A block of consecutive rows as the file has them.

@@ -175,8 +175,15 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
   Deviation result;
   for (const Cell& cell : cells_)
     result.largest = std::max({result.largest, std::fabs(off(cell.low) - centre), std::fabs(off(cell.high) - centre)});
-  for (double& value : r) value = std::fabs(value - centre);
-  result.robust = kMadToSd * median(r);
+  std::vector<double> size;
+  for (const double value : r) size.push_back(std::fabs(value - centre));
+  result.robust = kMadToSd * median(size);
+  if (result.robust > 0) return result;
+  // Most stamps lie on one tick: those beside it count.
+  std::sort(r.begin(), r.end());
+  constexpr double kTenthToNinth = 2.5631;  // of a normal distribution, in standard deviations
+  const std::size_t tenth = std::max<std::size_t>(1, r.size() / 10);
+  result.robust = (r[r.size() - 1 - tenth] - r[tenth]) / kTenthToNinth;
   return result;
 }
 

@@ -90,7 +90,7 @@ std::string lines_csv(const LogSpectra& spectra) {
 }
 
 Json spectra_json(const LogSpectra& spectra, const CharacterizeOptions& options) {
-  Json document;
+  Json document = Json::object();
   document["sides"] = name_of(options.spectrum.sides);
   document["scaling"] = name_of(options.spectrum.scaling);
   document["window"] = name_of(options.spectrum.window);
@@ -216,7 +216,7 @@ std::string coherence_csv(const LogCrossSpectrum& cross) {
 
 Json cross_json(const LogCrossSpectrum& cross) {
   const CrossSpectrum& c = cross.cross;
-  Json out;
+  Json out = Json::object();
   out["first"] = channel_head(cross.first);
   out["second"] = channel_head(cross.second);
   out["sides"] = name_of(c.sides);
@@ -255,7 +255,7 @@ std::string spectrograms_csv(const LogSpectrograms& spectrograms) {
 }
 
 Json spectrograms_json(const LogSpectrograms& spectrograms) {
-  Json out;
+  Json out = Json::object();
   out["channels"] = Json::array();
   for (std::size_t c = 0; c < spectrograms.channels.size(); ++c) {
     const Spectrogram& s = spectrograms.spectrograms[c];
