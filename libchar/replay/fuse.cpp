@@ -21,6 +21,7 @@
 #include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/pass_progress.hpp"
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/plan/sensor_knowledge.hpp"
 #include "libchar/replay/detail/plan/sensor_words.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/sensor_doubt.hpp"
@@ -132,6 +133,7 @@ class Fusing {
     std::optional<StepNoiseMeter> steps;
     std::optional<detail::ReadingMeter> readings;
     std::optional<detail::SensorDoubt> doubt;
+    CopiedSensors copies;
   } check_;
 };
 
@@ -442,6 +444,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   if (check_.steps && check_.rows.size() < sensor_of_.size())
     check_.steps->push(all(check_.rows, Eigen::indexing::all));
   if (check_.readings) check_.readings->push(all);
+  check_.copies.push(all);
   faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
   sink.block(columns);
@@ -516,6 +519,11 @@ void Fusing::tell() {
   tell_learnt();
   check_noise();
   check_readings();
+  for (std::size_t k = 0; k < sensor_of_.size(); ++k)
+    if (const auto original = check_.copies.original_of(k))
+      result_.warnings.add(
+          "copied_sensor", kCopiedSensors,
+          learnt_.sensors[sensor_of_[k]].name + " repeats " + learnt_.sensors[sensor_of_[*original]].name);
   runner_->remarks(result_.warnings);
   const fusion::FaultLog* const log = runner_->faults();
   if (log == nullptr) return;

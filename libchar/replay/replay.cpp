@@ -515,8 +515,7 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
     if (sensor.constant) out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
   for (const SensorResult& sensor : out.sensors)
     if (!sensor.copy_of.empty())
-      out.warnings.add("copied_sensor", "sensors that repeat another one, sample by sample: one sensor counted twice",
-                       sensor.name + " repeats " + sensor.copy_of);
+      out.warnings.add("copied_sensor", kCopiedSensors, sensor.name + " repeats " + sensor.copy_of);
   for (const SceneSensor& sensor : scene_.sensors)
     for (const Finding& one : sensor.model ? sensor.model->findings : std::vector<Finding>{})
       if (one.severity != Severity::note)
@@ -658,6 +657,7 @@ void Replay::tell_readings(ReplayResult& out) const {
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
   detail::warn_of_readings(meter, names, units, {start_s, out.rate_hz}, taken, watch_.with_truth.has_value(),
                            out.warnings);
+  if (!aligned_) detail::warn_of_delays(watch_.readings->delays(), names, out.warnings);
 }
 
 ReplayResult Replay::collect() {

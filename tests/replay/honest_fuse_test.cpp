@@ -251,6 +251,26 @@ TEST_CASE("fuse: that one of two sensors reads otherwise is told, and either may
   }
 }
 
+TEST_CASE("fuse: a channel that repeats another one is told") {
+  HonestBench bench;
+  KeptColumns kept;
+  std::string twice;
+  const std::string sound = honest_log(3);
+  for (std::string_view rest = sound, line; !rest.empty();) {  // b holds what a does
+    line = rest.substr(0, rest.find('\n') + 1);
+    rest.remove_prefix(line.size());
+    const std::size_t a = line.find(',') + 1, b = line.find(',', a) + 1, c = line.find(',', b);
+    const bool head = line.starts_with('t');
+    twice += std::string(line.substr(0, b)) + std::string(head ? line.substr(b, c - b) : line.substr(a, b - 1 - a)) +
+             std::string(line.substr(c));
+  }
+  CHECK(bench.fuse_log(honest_log(3), "minque", kept).warnings.find("copied_sensor") == nullptr);
+  KeptColumns again;
+  const FuseResult told = bench.fuse_log(twice, "minque", again);
+  REQUIRE(told.warnings.find("copied_sensor") != nullptr);
+  CHECK(told.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"b repeats a"});
+}
+
 TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does not show, as weights remember it") {
   const double usual = 0.05;
   const LearntSensor::Reading reading{0, 0, 0.1 * usual, usual};

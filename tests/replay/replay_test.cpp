@@ -448,6 +448,7 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
                         "d]\nreference: x\nalgorithms: [mean, optimal-weights]\n"));
   REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
   CHECK(twice.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"again repeats a"});
+  CHECK_THAT(test::verdict_of(twice, false), Catch::Contains("(again repeats a)"));
   CHECK(twice.sensors[2].copy_of == "a");
   CHECK(twice.sensors[3].copy_of.empty());
   const std::vector<double> w = named(twice, "optimal-weights").weights.at(0);

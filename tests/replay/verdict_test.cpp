@@ -313,6 +313,41 @@ TEST_CASE("verdict: that one of two sensors fails is said, and which where there
     }
 }
 
+TEST_CASE("verdict: sensors that are late or early beside the others are named where no alignment looked for delays") {
+  const auto log = [](std::vector<double> late, double noise) {
+    test::Gaussian gauss(3);
+    std::string out = "t[s]";
+    for (std::size_t i = 0; i < late.size(); ++i) out += fmt::format(",s{}", i + 1);
+    for (int k = 0; k < 8000; ++k) {
+      out += fmt::format("\n{}", k * 0.01);
+      for (const double by : late)
+        out += fmt::format(",{}", std::sin(0.2 * (k - by)) + std::sin(0.031 * (k - by)) + noise * gauss());
+    }
+    return out + "\n";
+  };
+  const test::SceneBench bench;
+  for (const double noise : {0.02, 0.1}) {
+    INFO(noise);
+    bench.put("array.csv", log({0, 0, 1.5, -1.5}, noise));
+    const std::string methods = "algorithms: [mean, median]\n";
+    const ReplayResult result = replay(bench.read(scene_of(4, methods)));
+    const Finding* found = result.warnings.find("sensors_out_of_time");
+    REQUIRE(found != nullptr);
+    CHECK(found->count >= 2);
+    CHECK_THAT(test::verdict_of(result, false),
+               Contains("s3: ") && Contains(" samples late") && Contains("s4: ") && Contains(" samples early"));
+    CHECK(found->help.at(0).options.at(0).option == "align");
+    const ReplayResult aligned = replay(bench.read(scene_of(4, methods + "align: {terms: [delay], learn: run}\n")));
+    CHECK(aligned.warnings.find("sensors_out_of_time") == nullptr);
+    CHECK(named(aligned, "mean").rmse < 0.8 * named(result, "mean").rmse);
+  }
+  for (const double late : {0., 1.}) {  // none, and all of them alike, which nobody sees
+    bench.put("array.csv", log({late, late, late}, 0.1));
+    const ReplayResult result = replay(bench.read(scene_of(3, "algorithms: [mean]\n")));
+    CHECK(result.warnings.find("sensors_out_of_time") == nullptr);
+  }
+}
+
 TEST_CASE("verdict: five of twelve sensors that break are all named") {
   std::vector<Sensor> sensors(12, Sensor{0.1});
   for (const std::size_t i : {1U, 4U, 5U, 8U, 10U}) sensors[i].jump = 2 + static_cast<double>(i);

@@ -16,6 +16,7 @@ struct FlagName {
 // In the order of the alphabet. A function of the library stands for the command that calls it.
 constexpr FlagName kFlags[] = {{"algorithm", "--algorithm"},
                                {"algorithms", "sensorchar replay --list"},
+                               {"align", "--align"},
                                {"allow_outside", "--allow-outside"},
                                {"anyway", "--anyway"},
                                {"average", "--average"},

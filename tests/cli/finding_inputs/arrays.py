@@ -214,6 +214,8 @@ INPUTS = {
     "sensor_apart": asked(replay(set_to("b", lambda made: [-v for v in made["b"]]), reference="")),
     "sensor_unlike": asked(replay(set_to("b", lambda made: [v + 8 * w for v, w in zip(truth(), noise(N_ROWS, seed=5))]),
                                   reference="")),
+    "sensors_out_of_time": asked(replay(lambda made: {k: v[5:] + v[:5] if k == "b" else v for k, v in made.items()},
+                                        reference="", levels=(0.05,) * 6)),
     "noise_changed": asked(fuse(louder("b", 3))),
     "noise_changed_of_all": asked(fuse(louder("abc", 3))),
     "another_rate": asked(fuse(again=at_half_rate)),

@@ -34,7 +34,8 @@ constexpr double kLeastDrift = 0.05;   // of a gain
 constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
 constexpr double kOtherSign = -1.25;   // beyond one, of a gain: noise alone gives none below -1
 constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
-constexpr double kResolved = 5;        // standard errors of an offset
+constexpr double kResolved = 5;        // standard errors of an offset, or of a delay
+constexpr double kLeastOfDelay = 0.2;  // of the mean square of a block
 
 double quantile(std::vector<double> values, double share) {
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
@@ -104,6 +105,16 @@ void ReadingMeter::push(const Eigen::MatrixXd& samples) {
         s.sur += step_u * step_r;
         s.srr += step_r * step_r;
         s.largest = std::max(s.largest, step_r * step_r);
+        if (s.motion.at >= 0 && s.motion.at + 2 == seen_) {
+          const double m = 0.5 * (du - s.motion.u);
+          s.motion.n += 1;
+          s.motion.m += m;
+          s.motion.mm += m * m;
+          s.motion.mu += m * s.last_u;
+          s.motion.mr += m * s.last_r;
+        }
+        s.motion.u = s.last_u;
+        s.motion.at = s.last;
         neighbours_[i].all += 1;
         neighbours_[i].same += y == neighbours_[i].last ? 1 : 0;
       }
@@ -324,6 +335,38 @@ std::vector<std::optional<double>> ReadingMeter::slow_scatter(const Readings& re
     if (rms.size() < kLeastBlocks) continue;
     const double step = median_in_place(steps), all = median_in_place(rms);
     if (step > 0 && all > 0) out[i] = all / step;
+  }
+  return out;
+}
+
+// In each block c = cov(m, e) and v = var(m): d = -sum(c) / sum(v), its error by what c + d v scatters.
+std::vector<ReadingMeter::Delay> ReadingMeter::delays() const {
+  const Readings usual = steady();
+  std::vector<Delay> out;
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (!usual[i]) continue;
+    const double b = usual[i]->gain;
+    std::vector<std::pair<double, double>> blocks;
+    std::vector<double> shares;
+    double v = 0, c = 0, scatter = 0;
+    for (const auto& block : blocks_) {
+      const Sums& s = block[i];
+      if (s.motion.n < kLeastInBlock) continue;
+      const double mean = s.motion.m / s.motion.n, motion = s.motion.mm - mean * s.motion.m;
+      const double with = s.motion.mr - mean * s.r - b * (s.motion.mu - mean * s.u);
+      const double square =
+          s.rr - s.r * s.r / s.n - 2 * b * (s.ur - s.u * s.r / s.n) + b * b * (s.uu - s.u * s.u / s.n);
+      blocks.emplace_back(motion, with);
+      if (motion > 0 && square > 0) shares.push_back(with * with / motion / square);
+      v += motion;
+      c += with;
+    }
+    if (shares.size() < kLeastBlocks || !(v > 0)) continue;
+    const double delay = -c / v;
+    for (const auto& [motion, with] : blocks) scatter += (with + delay * motion) * (with + delay * motion);
+    std::nth_element(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2), shares.end());
+    const double share = shares[shares.size() / 2];
+    if (share > kLeastOfDelay && std::abs(delay) * v > kResolved * std::sqrt(scatter)) out.push_back({i, delay, share});
   }
   return out;
 }

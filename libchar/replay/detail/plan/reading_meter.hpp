@@ -84,12 +84,27 @@ class ReadingMeter {
   };
   std::vector<GainDrift> gain_drifts(double false_alarm) const;
 
+  /// A sensor that is late beside the median u: with m = (u[k+1] - u[k-1]) / 2, what is left of it is e = -d m.
+  struct Delay {
+    std::size_t sensor = 0;
+    double samples = 0;  ///< d; early: below 0
+    double share = 0;    ///< of the mean square of e, in the middle block of those that move
+  };
+  /// Those that are resolved and much of what the sensor scatters.
+  std::vector<Delay> delays() const;
+
  private:
+  struct Motion {
+    double n = 0, m = 0, mm = 0, mu = 0, mr = 0;  // of half the difference of u two apart
+    double u = 0;                                 // before the last
+    std::int64_t at = -1;                         // instant of it
+  };
   struct Sums {
     double n = 0, u = 0, r = 0, uu = 0, ur = 0, rr = 0;  // of u and r less their first values
     double u0 = 0, r0 = 0;
     double steps = 0, suu = 0, sur = 0, srr = 0;  // of the differences between neighbours
     double last_u = 0, last_r = 0;
+    Motion motion;
     double largest = 0;      // square of a step of r
     std::int64_t last = -1;  // instant of these
   };

@@ -51,6 +51,8 @@ double model_factor(const Scene& scene, const Instants& instants, std::size_t se
 /// Measures the rest when the scene has one, and asks scene and models for noise levels.
 SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress);
 
+inline constexpr const char* kCopiedSensors =
+    "sensors that repeat another one, sample by sample: one sensor counted twice";
 /// Sensors that repeat another one, sample by sample, as far as a float tells: a channel recorded twice is one sensor.
 class CopiedSensors {
  public:

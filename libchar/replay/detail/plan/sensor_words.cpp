@@ -211,10 +211,23 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
   warn_of_apart(all, of, warnings);
 }
 
+void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::vector<std::string>& names,
+                    Findings& warnings) {
+  std::vector<Said> said;
+  for (const ReadingMeter::Delay& one : delays)
+    said.push_back({printable(names[one.sensor], 40),
+                    fmt::format("{} of what it scatters, about {} samples {}", percent_text(one.share, 2),
+                                brief_text(std::abs(one.samples), 2), one.samples > 0 ? "late" : "early")});
+  const std::string sentence = "sensors are not in time with the others: they differ from them as the input moves";
+  add(warnings, "sensors_out_of_time", sentence, said);
+  if (!said.empty())
+    warnings.add("sensors_out_of_time", sentence, {}, 0).help.push_back({"Take the delays out.", {{"align", "delay"}}});
+}
+
 bool doubts_sensors(const Finding& finding) {
-  constexpr std::string_view kCodes[] = {"sensor_failing",  "sensor_apart",    "sensor_unlike",
-                                         "frozen_sensor",   "constant_sensor", "sensor_without_samples",
-                                         "tilt_contradicts"};
+  constexpr std::string_view kCodes[] = {
+      "sensor_failing",  "sensors_out_of_time",    "sensor_apart",  "sensor_unlike", "frozen_sensor",
+      "constant_sensor", "sensor_without_samples", "copied_sensor", "missing_mark",  "tilt_contradicts"};
   return std::find(std::begin(kCodes), std::end(kCodes), finding.code) != std::end(kCodes);
 }
 

@@ -20,7 +20,11 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
                       bool reference, Findings& warnings);
 
-/// A finding that says of sensors that they fail, stand apart, or have no samples.
+/// Where no alignment has looked for delays.
+void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::vector<std::string>& names,
+                    Findings& warnings);
+
+/// A finding that says of sensors that they fail, stand apart, repeat each other, or have no samples.
 bool doubts_sensors(const Finding& finding);
 
 void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
