@@ -703,7 +703,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
 
 void QualityMeter::State::make_room(std::size_t n) {
   if (starts.size() >= used + n) return;
-  const std::size_t room = std::min(kBlock, std::max(used + n, starts.size() + starts.size() / 4));
+  const std::size_t wanted = used + n, room = std::min(kBlock, wanted + wanted / 4);
   starts.resize(room);
   held.resize(1 + room);
 }
