@@ -75,6 +75,7 @@ const std::array kUnits = {
 std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::string_view text) {
   static constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
       {"·", ""}, {"⋅", ""}, {"⁻", "-"}, {"−", "-"}, {"¹", "1"}, {"²", "2"}, {"³", "3"}, {"º", "°"}};
+  if (static_cast<unsigned char>(text.front()) < 0x80) return std::nullopt;
   for (const auto& sign : kSigns)
     if (text.starts_with(sign.first)) return sign;
   return std::nullopt;

@@ -281,7 +281,7 @@ class Verb:
             return self.after_kill(folder, ran) if kind == "kill" else self.after_fault(folder, ran, kind, fault)
         finally:
             if kind == "space":
-                subprocess.run(["umount", folder], check=True)
+                subprocess.run(["umount", "-l", folder], check=True)
             shutil.rmtree(folder, ignore_errors=True)
 
     def sets_are_whole(self, now):
