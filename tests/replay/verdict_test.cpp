@@ -81,7 +81,8 @@ TEST_CASE("verdict: whether fusion pays is said against the best single sensor, 
 
   bench.put("array.csv", array_log({{1}, {1}, {0.1}, {1}, {1}}, 8000, 2));
   result = replay(bench.read(scene_of(5, "reference: truth\nalgorithms: [mean]\n")));
-  CHECK_THAT(test::verdict_of(result, false), StartsWith("Fusion does not pay") && Contains("use that sensor alone"));
+  CHECK_THAT(test::verdict_of(result, false),
+             StartsWith("Fusion does not pay") && Contains(" times that of s3") && Contains("use that sensor alone"));
 }
 
 TEST_CASE("verdict: without a reference the method is chosen that is best with one, whatever the worst sensors do") {

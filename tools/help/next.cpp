@@ -24,7 +24,7 @@ using namespace libchar;
 
 using Settings = std::map<std::string, std::set<std::string>>;  ///< values of each option
 
-/// Ways out of one finding that exclude each other: which of them is right is for the user to say.
+/// Remedies of one finding that exclude each other: only the user knows which is right.
 bool are_alternatives(const std::vector<Finding::Help>& ways) {
   return std::any_of(ways.begin(), ways.end(), [&](const Finding::Help& way) {
     return std::any_of(way.options.begin(), way.options.end(), [&](const Finding::Setting& one) {

@@ -27,8 +27,8 @@ namespace libchar {
 namespace parallel {
 namespace {
 
-// What is done before work is given out is seen by who does it, and what he does by who waits for it. oneTBB sees to
-// that, and the thread sanitizer, with which oneTBB is not compiled, is told.
+// A task sees all that happened before it was given out, and the thread that waits for it sees all that the task did.
+// oneTBB guarantees both, but is not compiled with the thread sanitizer: these calls tell it.
 #if LIBCHAR_SANITIZED_THREADS
 void give(void* at) { __tsan_release(at); }
 void take(void* at) { __tsan_acquire(at); }
@@ -37,7 +37,7 @@ void give(void*) {}
 void take(void*) {}
 #endif
 
-/// Lives while work is out.
+/// Exists from giving tasks out until all of them have ended.
 class Handover {
  public:
   Handover() { give(&begun_); }
@@ -58,7 +58,7 @@ class Handover {
   char begun_ = 0, ended_ = 0;
 };
 
-/// Lives while a stage has an item, which the stage before it gave; what the last call of the stage did is seen too.
+/// Exists while a stage has an item: it sees what the stage before did to the item, and its own previous call.
 class InStage {
  public:
   InStage(char* stage, void* item) : stage_(stage), item_(item) {

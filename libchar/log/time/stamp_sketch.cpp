@@ -179,7 +179,7 @@ StampSketch::Deviation StampSketch::deviation(double interval) const {
   for (const double value : r) size.push_back(std::fabs(value - centre));
   result.robust = kMadToSd * median(size);
   if (result.robust > 0) return result;
-  // Most stamps lie on one tick: those beside it count.
+  // More than half of the stamps lie on one tick: the scatter is that of the others.
   std::sort(r.begin(), r.end());
   constexpr double kTenthToNinth = 2.5631;  // of a normal distribution, in standard deviations
   const std::size_t tenth = std::max<std::size_t>(1, r.size() / 10);

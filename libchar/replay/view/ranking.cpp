@@ -242,10 +242,9 @@ SensorSentence sensor_sentence(const ReplayResult& r) {
   const std::string alone =
       fmt::format("{}, the best single sensor ({})", sensor.name, error_text(sensor.error.rmse, r.inputs[0].unit));
   if (ratio > 1 + kPracticalTolerance && interval.low > 1)
-    return {
-        fmt::format("Fusion does not pay here: the error of {} is {} larger than that of {}: use that sensor alone.",
-                    name, percent_text(ratio - 1), alone),
-        true};
+    return {fmt::format("Fusion does not pay here: the error of {} is {} that of {}: use that sensor alone.", name,
+                        ratio < 2 ? percent_text(ratio - 1) + " larger than" : brief_text(ratio) + " times", alone),
+            true};
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
     return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.", whose, percent_text(1 - ratio),
                         percent_text(1 - interval.high), percent_text(1 - interval.low), alone)};
