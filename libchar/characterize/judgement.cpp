@@ -208,6 +208,12 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
       return one.code == "motion" || one.code == "moves_throughout" || one.code == "spiky" ||
              one.code == "strength_change";
     });
+  // So are the ends of a range that the samples wrap at: they are no spikes, steps or levels.
+  if (has(found.out, "phase_wraps"))
+    std::erase_if(found.out, [](const Finding& one) {
+      return one.code == "spiky" || one.code == "spikes_left_out" || one.code == "spikes_kept" || one.code == "event" ||
+             one.code == "events_left_in" || one.code == "strength_change" || one.code == "not_stationary";
+    });
   return worst_first(std::move(found.out));
 }
 

@@ -81,7 +81,7 @@ SensorModel sensor_model_from_curve(const Channel& channel, const NoiseFit& fit,
   model.noise_shape = fit.shape;
   model.bandwidth_hz = fit.bandwidth_hz;
   model.obtained = obtained;
-  model.method = fit.method;
+  model.method = fit.search.method;
   model.recording.file = source.file;
   model.recording.sha256 = source.sha256;
   if (source.topic.starts_with('/')) model.recording.topic = source.topic;

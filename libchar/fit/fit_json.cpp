@@ -178,6 +178,13 @@ const Fields<Event>& event_fields() {
   return rows;
 }
 
+const Fields<Event>& cycle_fields() {
+  static const Fields<Event> rows =
+      always(Fields<Event>{field<&Event::period_s>("period_s"), field<&Event::size>("amplitude"),
+                           field<&Event::phase>("phase_rad", {.meaning = "amplitude cos(2 pi t/period - phase)"})});
+  return rows;
+}
+
 template <std::size_t I>
 Row<TemperatureEffect> without_row() {
   using T = TemperatureEffect;
@@ -296,12 +303,14 @@ const Fields<NoiseFit>& noise_fit_fields() {
        goodness,
        list_of<&T::remedies>("remedies", remedy_fields()),
        list_of<&T::events>("events", event_fields()),
+       list_of<&T::cycles>("cycles", cycle_fields(),
+                           {.meaning = "slow ones of the surroundings, no part of the model"}),
        field<&T::moving_s>("moving_s"),
        maybe_part<&T::temperature>("temperature", temperature_fields()),
        part<&T::stationarity>("stationarity", stationarity_fields(),
                               {.known = when<[](const T& fit) { return fit.stationarity.tested; }>}),
        list_of<&T::findings>("findings", finding_fields()),
-       field<&T::method>("method"),
+       field<&T::search, &T::Search::method>("method"),
        field<&T::search, &T::Search::converged>("converged"),
        field<&T::search, &T::Search::iterations>("iterations"),
        field<&T::rate_hz>("rate_hz", {.range = kPositive, .required = true}),

@@ -81,14 +81,15 @@ struct NoiseFit {
   std::optional<SecondOpinion> second_opinion;
   std::vector<Remedy> remedies;
   std::vector<Event> events;       ///< steps, a warm-up, a ramp: means, taken out before the noise was fitted
+  std::vector<Event> cycles;       ///< of the surroundings, taken out as well: no part of the model
   std::vector<Interval> moving_s;  ///< stretches of motion or handling, where somebody has looked (motion.hpp)
   std::optional<TemperatureEffect> temperature;  ///< where a temperature was given
   Stationarity stationarity;                     ///< of a record that is kept; not tested of one that streams
   std::vector<FitResidual> residuals;
   std::vector<PowerBin> bins;     ///< what was fitted, for one likelihood of many records (pooled_fit.hpp)
   std::vector<Finding> findings;  ///< of the fit, apart from the coefficients
-  std::string method;             ///< "DCT-II Whittle likelihood, 128 bins" …
   struct Search {
+    std::string method;  ///< "DCT-II Whittle likelihood, 128 bins" …
     bool converged = true;
     int iterations = 0;
   };

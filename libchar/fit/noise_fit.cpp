@@ -85,7 +85,7 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   fit.rate_hz = rate_hz;
   fit.samples = samples;
   fit.duration_s = static_cast<double>(samples) / rate_hz;
-  fit.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
+  fit.search.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
   out.best = report ? report_coefficients(problem, decision, out.options, fit) : polish(problem, decision.at).at;
   fit.theta = out.best.theta;
   out.half_deviance = half_deviance(problem, out.best);
@@ -406,6 +406,7 @@ NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::ui
   chosen.second_opinion = options.second_opinion && lines.cycles.empty();
   NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, chosen, workspace);
   if (!lines.cycles.empty()) fit.findings.push_back(detail::cycle_finding(lines.cycles));
+  fit.cycles = std::move(lines.cycles);
   if (lines.clipped == 0) return fit;
   add_lines(lines.bins, lines.all, fit);
   // An Allan curve cannot leave a line out: it is no opinion on the noise then.

@@ -95,20 +95,18 @@ Finding detail::lines_finding(const ClippedBins& lines, bool in_allan) {
   return found;
 }
 
-Finding detail::cycle_finding(std::span<const ClippedBins::Cycle> cycles) {
-  const ClippedBins::Cycle& strongest = *std::max_element(
-      cycles.begin(), cycles.end(),
-      [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) { return a.amplitude < b.amplitude; });
+Finding detail::cycle_finding(std::span<const Event> cycles) {
+  const Event& strongest =
+      *std::max_element(cycles.begin(), cycles.end(), [](const Event& a, const Event& b) { return a.size < b.size; });
   const std::size_t further = cycles.size() - 1;
   Finding found =
       finding("cycle",
               fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the noise was "
                           "fitted, and stays in the Allan curve.",
-                          duration_text(1 / strongest.frequency_hz), brief_text(strongest.amplitude, 3),
+                          duration_text(strongest.period_s), brief_text(strongest.size, 3),
                           further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),
               "a cycle was taken out");
-  for (const ClippedBins::Cycle& cycle : cycles)
-    found.where.frequency_hz.push_back({cycle.frequency_hz, cycle.frequency_hz});
+  for (const Event& cycle : cycles) found.where.frequency_hz.push_back({1 / cycle.period_s, 1 / cycle.period_s});
   return found;
 }
 

@@ -50,7 +50,7 @@ Finding lines_finding(const ClippedBins& lines, bool in_allan);
 /// Share of the power that lines hold, of the samples or of their differences: the larger.
 double share_of_lines(const ClippedBins& lines);
 /// What is said of slow cycles that were taken out; by frequency, at least one.
-Finding cycle_finding(std::span<const ClippedBins::Cycle> cycles);
+Finding cycle_finding(std::span<const Event> cycles);
 }  // namespace detail
 
 /// What a fit did of a kind; null: nothing.

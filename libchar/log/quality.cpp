@@ -920,7 +920,7 @@ bool judge_zeros(const ChannelQuality& q, std::vector<Finding>& out) {
 /// steps it does), a run that hung is left by a jump.
 struct FrozenRuns {
   explicit FrozenRuns(const ChannelQuality& q) {
-    constexpr double kHeld = 0.5, kAtEnds = 4;
+    constexpr double kHeld = 0.5, kAtEnds = 4, kTimesHeld = 4;
     const auto samples = static_cast<double>(q.samples), frozen = static_cast<double>(q.signs.frozen);
     const double repeats = (static_cast<double>(q.repeats) - frozen) / std::max(1.0, samples - frozen);
     const bool held = q.signs.held_times > 1 || frozen - static_cast<double>(q.longest_stuck) > kHeld * samples;
@@ -932,7 +932,8 @@ struct FrozenRuns {
     const bool alone = 2 * q.signs.longest.second < detail::RunExits::kLong;
     by_length = rare || q.signs.held_times > 1 || (is_restless(q) && (known || alone));
     longest = by_length ? q.longest_stuck : q.signs.longest.jump;
-    found = q.distinct_values > 16 && longest >= (rare ? kFrozenRun : detail::RunExits::kLong);
+    found = q.distinct_values > 16 && longest >= (rare ? kFrozenRun : detail::RunExits::kLong) &&
+            (q.signs.held_times == 1 || static_cast<double>(longest) > kTimesHeld * q.signs.held_times);
     if (!found || !known) return;
     fewest = by_length ? run : std::max(run, q.signs.longest.rest + 1);
     if (fewest > longest) fewest = 0;

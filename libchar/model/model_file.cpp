@@ -11,6 +11,7 @@
 
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/model/model_fields.hpp"
 
 namespace libchar {
@@ -96,7 +97,9 @@ Json models_json(const std::vector<const SensorModel*>& models) {
   return out;
 }
 
-std::vector<SensorModel> read_model_list(const std::string& path) {
+namespace {
+
+std::vector<SensorModel> listed_models(const std::string& path) {
   const Document document = parse_document(read_document_text(path), path);
   if (std::vector<SensorModel> foreign = detail::foreign_models(document, path); !foreign.empty()) return foreign;
   const DocumentEntry* format = document.kind == Document::Kind::map ? document.find("format") : nullptr;
@@ -112,6 +115,25 @@ std::vector<SensorModel> read_model_list(const std::string& path) {
     models.push_back(sensor_model_of(node, path, "models[" + std::to_string(index++) + "]"));
   if (models.empty()) top.refuse("models", "an empty list");
   return models;
+}
+
+bool is_called_document(const std::string& path) {
+  const std::string ending = ascii_lower(std::filesystem::path(path).extension().string());
+  return ending == ".yaml" || ending == ".yml" || ending == ".json";
+}
+
+}  // namespace
+
+std::vector<SensorModel> read_model_list(const std::string& path) {
+  try {
+    return listed_models(path);
+  } catch (const Error& error) {
+    const Problem& problem = error.problem();
+    if (is_called_document(path) || (problem.code != "E0522" && problem.code != "E0546")) throw;
+    throw input_error("E0546", path)
+        .says("is not a sensor-model")
+        .hint("of a log, make the models first: sensorchar characterize " + shell_word(path) + " -o FOLDER");
+  }
 }
 
 namespace {

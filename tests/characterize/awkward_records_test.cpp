@@ -136,6 +136,23 @@ TEST_CASE("a step that was taken out is in the verdict") {
   CHECK(verdict_of(step).find("Use it with caution: a step was taken out") != std::string::npos);
 }
 
+TEST_CASE("a heading that wraps is said to wrap, and its two ends are no steps, levels or spikes") {
+  std::vector<double> y = white(40000, 6);
+  for (std::size_t t = 0; t < y.size(); ++t) {
+    const double heading = 180 + 100 * y[t] + 30 * std::sin(6.28318530717958648 * static_cast<double>(t) / 2500);
+    y[t] = heading > 180 ? heading - 360 : heading;
+  }
+  const std::vector<Finding> found = findings_of(of(y).channels[0]);
+  const auto has = [&](const char* code) {
+    return std::any_of(found.begin(), found.end(), [&](const Finding& one) { return one.code == code; });
+  };
+  CHECK(has("phase_wraps"));
+  for (const char* code : {"event", "events_left_in", "spiky", "spikes_kept", "strength_change"}) {
+    INFO(code);
+    CHECK_FALSE(has(code));
+  }
+}
+
 TEST_CASE("more channels than fit into memory in the end are refused before they are analysed") {
   Recording recording;
   recording.info.channels.resize(5001);

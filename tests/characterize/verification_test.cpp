@@ -1,5 +1,6 @@
 #include "libchar/characterize/compare/verification.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -23,14 +24,14 @@ Coefficient given(double value) {
   return c;
 }
 
-// A recording of white noise, flicker and walk; `line` is the amplitude of a 5 Hz sine in it.
-std::string recording(const test::TemporaryFolder& folder, std::uint64_t seed, double line) {
+// A recording of white noise, flicker and walk; `line` is the amplitude of a sine in it.
+std::string recording(const test::TemporaryFolder& folder, std::uint64_t seed, double line, double line_hz = 5) {
   ArraySimulation s;
   s.rate_hz = 100;
   s.samples = 100000;
   s.seed = seed;
   s.truth[0].kind = "sine";
-  s.truth[0].frequency_hz = 5;
+  s.truth[0].frequency_hz = line_hz;
   s.truth[0].amplitude = line;
   SensorModel m;
   m.unit = "deg/s";
@@ -67,6 +68,19 @@ TEST_CASE("verification: a model of simulated noise agrees, whatever the seeds")
     CHECK(v.agrees == (v.sentences.size() == 1));
   }
   CHECK(agreeing >= 11);  // each point and term has its share of false alarms, about 1 % together
+}
+
+TEST_CASE("verification: a slow cycle that the fit took out is in the simulated record too") {
+  const test::TemporaryFolder folder;
+  std::size_t agreeing = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Characterization result = characterize(recording(folder, seed, 0.5, 0.0123), {});
+    double largest = 0;
+    for (const Event& cycle : result.channels[0].fit->cycles) largest = std::max(largest, cycle.size);
+    CHECK(largest == Approx(0.5).epsilon(0.1));
+    agreeing += verify(result, {});
+  }
+  CHECK(agreeing >= 5);
 }
 
 TEST_CASE("verification: what the model lacks is found at its averaging times") {

@@ -305,7 +305,7 @@ TEST_CASE("a curve of very many points is fitted in groups of neighbours, as wel
   }
   const auto check = [&](const NoiseFit& fit) {
     CHECK(fit.residuals.size() <= 512);
-    CHECK(fit.method.find("among 20000 points") != std::string::npos);
+    CHECK(fit.search.method.find("among 20000 points") != std::string::npos);
     for (const Term term : {Term::white, Term::flicker, Term::walk}) {
       const Coefficient& c = fit[term];
       REQUIRE(c.value);

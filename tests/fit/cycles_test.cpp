@@ -7,6 +7,7 @@
 #include <random>
 
 #include "libchar/core/finding.hpp"
+#include "libchar/core/numeric/moments.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/spectrum/fft.hpp"
 #include "tests/support/noise.hpp"
@@ -36,6 +37,12 @@ NoiseFit fit_of(const std::vector<double>& y) {
   return fit_record(y, kCycleRate, nullptr, options);
 }
 
+double sd_of(const std::vector<double>& y) {
+  Moments moments;
+  moments.push(y);
+  return moments.standard_deviation();
+}
+
 bool says_cycle(const NoiseFit& fit) {
   return std::any_of(fit.findings.begin(), fit.findings.end(), [](const Finding& one) { return one.code == "cycle"; });
 }
@@ -56,6 +63,7 @@ TEST_CASE("cycles: a sine between two coefficients is taken out to the last digi
   REQUIRE_FALSE(cycles.empty());
   CHECK(cycles[0].place == Approx(23.37).margin(1e-4));
   CHECK(cycles[0].amplitude == Approx(3).epsilon(1e-4));
+  CHECK(cycles[0].phase == Approx(-0.4).margin(1e-3));
   for (std::size_t k = 1; k < rest.size(); ++k) CHECK(std::abs(rest[k]) < 0.1);
 }
 
@@ -73,6 +81,10 @@ TEST_CASE("cycles: a heating cycle is named, and B and K are not its") {
       const auto one =
           std::find_if(fit.findings.begin(), fit.findings.end(), [](const Finding& f) { return f.code == "cycle"; });
       CHECK(1 / one->where.frequency_hz[0].low == Approx(period).epsilon(0.01));
+      std::vector<double> left = wall;
+      const double before = sd_of(left);
+      subtract_events(fit.cycles, kCycleRate, left);
+      CHECK(sd_of(left) < (height > 0.1 ? 0.02 : 0.2) * before);
       CHECK(within(fit[Term::white]));
       CHECK(fit[Term::flicker].status == Status::not_detected);
       CHECK(fit[Term::walk].status == Status::not_detected);

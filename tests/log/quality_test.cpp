@@ -624,3 +624,12 @@ TEST_CASE("spikes of one size are no wraps, and one frozen stretch is no held va
   CHECK_FALSE(has(meter(frozen).findings, "held_values"));
   CHECK(has(meter(frozen).findings, "stuck"));
 }
+
+TEST_CASE("a slow sensor in a fast log has hung after several of its values, not after one") {
+  std::vector<double> slow = gaussian(60000, 1);
+  for (std::size_t i = 0; i < slow.size(); ++i) slow[i] = slow[i - i % 200];
+  CHECK(has(meter(slow).findings, "held_values"));
+  CHECK_FALSE(has(meter(slow).findings, "stuck"));
+  std::fill(slow.begin() + 30000, slow.begin() + 33000, slow[30000]);
+  CHECK(has(meter(slow).findings, "stuck"));
+}

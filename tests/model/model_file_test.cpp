@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -153,6 +154,17 @@ TEST_CASE("model files: Kalibr's and imu_utils' are read, each by its own conven
   const auto fork = read_model_list(write("c.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + axes));
   CHECK(*fork[0][Term::white].value == 4.0e-3);
   CHECK(*fork[0][Term::walk].value == 2.0e-5);
+}
+
+TEST_CASE("model file: a log in its place is told where models come from, however long it is") {
+  const std::string path = (std::filesystem::temp_directory_path() / "libchar_model_log.csv").string();
+  for (const int rows : {3, 100000}) {
+    std::string text = "t,gx\n";
+    for (int i = 0; i < rows; ++i) text += "0.01,0.123456\n";
+    std::ofstream(path) << text;
+    CHECK_THROWS_WITH(read_model_list(path), Catch::Contains("E0546") && Catch::Contains("characterize " + path));
+  }
+  std::filesystem::remove(path);
 }
 
 TEST_CASE("model file: what was no noise in the recording is data, and reads back") {

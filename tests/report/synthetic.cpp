@@ -91,7 +91,7 @@ NoiseFit synthetic_fit(const Truth& t, std::mt19937_64& random) {
   fit.rate_hz = t.rate_hz;
   fit.samples = t.samples;
   fit.duration_s = static_cast<double>(t.samples) / t.rate_hz;
-  fit.method = "DCT-II Whittle likelihood, 128 bins";
+  fit.search.method = "DCT-II Whittle likelihood, 128 bins";
   fit.search.iterations = 4;
   fit.term[0] = synthetic_coefficient(t.q, 0.0016, 1e-4, random);
   fit.term[1] = synthetic_coefficient(t.b, 0.064, 4e-4, random);
@@ -240,7 +240,7 @@ Characterization hostile() {
     ChannelResult c = model;
     c.channel.name = name;
     c.channel.unit = c.trace_unit = name;
-    c.fit->method = c.fit->second_opinion->sentence = name;
+    c.fit->search.method = c.fit->second_opinion->sentence = name;
     c.fit->findings = {finding("heavy_tails", name)};
     c.fit->remedies = {{name, name, name, 1}};
     c.quality.findings = c.findings = {finding("spiky", name)};

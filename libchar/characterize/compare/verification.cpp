@@ -31,14 +31,16 @@ SensorModel noise_of(const ChannelResult& channel, const LogInfo& log) {
   return model;
 }
 
-// The recording's steps, warm-up, ramp and temperature on top of simulated noise: the measured curve has them.
+// The recording's steps, warm-up, ramp, slow cycles and temperature on top of simulated noise: the measured curve has
+// them.
 class MeansAdded {
  public:
   MeansAdded(const NoiseFit& fit, const ArraySimulation& simulation) {
     const bool moved = fit.temperature && fit.temperature->order > 0;
-    if (fit.events.empty() && !moved) return;
+    if (fit.events.empty() && fit.cycles.empty() && !moved) return;
     less_.assign(detail::in_memory(simulation.samples), 0.0);
-    subtract_events(fit.events, simulation.rate_hz, less_);
+    for (const std::vector<Event>* means : {&fit.events, &fit.cycles})
+      subtract_events(*means, simulation.rate_hz, less_);
     if (moved) add_temperature_effect(*fit.temperature, -1, less_);
   }
   std::span<const double> added(std::span<const double> noise) {

@@ -354,7 +354,7 @@ NoiseFit fit_points(const DigitisedCurve& curve, const TermSet& offered, const F
   fit.rate_hz = curve.rate_hz.value_or(0);
   fit.duration_s = curve.duration_s.value_or(0);
   fit.samples = curve.x.size();
-  fit.method = fmt::format(
+  fit.search.method = fmt::format(
       "non-negative least squares on the logarithm of {} {}, {}", curve.x.size(),
       curve.group.empty() ? "points" : fmt::format("groups of neighbours among {:.0f} points", points_of(curve)),
       curve.rate_hz ? "exact discrete curves" : "continuous asymptotes (the rate is not known)");

@@ -111,7 +111,7 @@ PooledFit fit_pooled(std::span<const RunRecord> records, double rate_hz, const F
   one.second_opinion = false;
   PooledFit out;
   out.fit = fit_power_bins(all.bins, rate_hz, samples, nullptr, one);
-  out.fit.method += fmt::format(" of {} runs", records.size());
+  out.fit.search.method += fmt::format(" of {} runs", records.size());
   without_bounds(out.fit);
   out.terms = options.terms;
   for (std::size_t t = 0; t < kTerms; ++t) out.terms[t] = out.terms[t] || out.fit.theta[t] > 0;

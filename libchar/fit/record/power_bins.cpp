@@ -194,6 +194,21 @@ void clip_cycles(const PooledPower& power, LineClip& clip) {
   }
 }
 
+/// By frequency.
+std::vector<Event> cycles_of(const PooledPower& power, double rate_hz) {
+  const double points_s = static_cast<double>(power.spacing) / rate_hz;
+  std::vector<Event> out;
+  for (const PooledPower::Cycle& cycle : power.cycles) {
+    Event& one = out.emplace_back();
+    one.kind = EventKind::cycle;
+    one.size = cycle.amplitude / std::sqrt(static_cast<double>(power.spacing));
+    one.period_s = 2 * static_cast<double>(power.length) * points_s / cycle.place;
+    one.phase = cycle.phase;
+  }
+  std::sort(out.begin(), out.end(), [](const Event& a, const Event& b) { return a.period_s > b.period_s; });
+  return out;
+}
+
 void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins& out) {
   PooledPower rest = power;
   rest.mean = power.without_cycles;
@@ -201,12 +216,6 @@ void append_without_cycles(const PooledPower& power, double rate_hz, ClippedBins
   out.clipped += clip.count;
   clip_cycles(power, clip);
   append_power_bins(rest, rate_hz, clip.clipped, out.bins);
-  const double points_s = static_cast<double>(power.spacing) / rate_hz;
-  for (const PooledPower::Cycle& cycle : power.cycles)
-    out.cycles.push_back({cycle.place / (2 * static_cast<double>(power.length) * points_s),
-                          cycle.amplitude / std::sqrt(static_cast<double>(power.spacing))});
-  std::sort(out.cycles.begin(), out.cycles.end(),
-            [](const ClippedBins::Cycle& a, const ClippedBins::Cycle& b) { return a.frequency_hz < b.frequency_hz; });
 }
 
 }  // namespace
@@ -247,9 +256,12 @@ std::vector<PowerBin> power_bins(std::span<const double> record, double rate_hz)
 
 ClippedBins clipped_power_bins(std::span<const PooledPower> powers, double rate_hz) {
   ClippedBins out;
+  std::uint64_t longest = 0;
   for (const PooledPower& power : powers) {
     if (!power.cycles.empty()) {
       append_without_cycles(power, rate_hz, out);
+      if (power.length * power.spacing > longest) out.cycles = cycles_of(power, rate_hz);
+      longest = std::max(longest, power.length * power.spacing);
       continue;
     }
     const LineClip clip = clip_lines(power.mean, detail::in_memory(power.first), power.pooled);

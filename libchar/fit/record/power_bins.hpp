@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
 
@@ -38,6 +39,7 @@ struct PooledPower {
   struct Cycle {
     double place = 0;      ///< half periods in the record
     double amplitude = 0;  ///< of its points, times the root of their spacing
+    double phase = 0;      ///< amplitude cos(pi place (t + 1/2) / length - phase) at point t
   };
   std::uint64_t length = 0;   ///< points of the transform
   std::uint64_t spacing = 1;  ///< samples averaged in a point
@@ -56,13 +58,10 @@ struct PooledPower {
 
 /// Bins without slow cycles and the coefficients of spectral lines.
 struct ClippedBins {
-  struct Cycle {
-    double frequency_hz = 0, amplitude = 0;
-  };
   std::vector<PowerBin> bins;
   std::vector<PowerBin> all;  ///< with every coefficient; empty when none was left out
   std::uint64_t clipped = 0;  ///< coefficients left out
-  std::vector<Cycle> cycles;  ///< taken out of the record, by frequency
+  std::vector<Event> cycles;  ///< taken out of the longest transform, by frequency
 };
 
 /// Of a record one exact transform, k >= 1. Missing samples: short ones are closed up

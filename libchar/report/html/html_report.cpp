@@ -101,7 +101,7 @@ std::string trust(const ChannelView& view, std::size_t index) {
         c.channel.name);
   }
   out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
-  out += "<p class=\"note\">Method: " + html_text(fit.method) + "; " + std::to_string(fit.search.iterations) +
+  out += "<p class=\"note\">Method: " + html_text(fit.search.method) + "; " + std::to_string(fit.search.iterations) +
          (fit.search.converged ? " iterations, converged.</p>\n" : " iterations, <b>not converged</b>.</p>\n");
   if (!fit.remedies.empty()) {
     Table remedies("remedy|because|what was done|count");

@@ -62,7 +62,7 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
   }
   // A curve without uncertainties is scaled to its own scatter: its chi-square says nothing.
   const bool judged = fit.goodness.p < 1 || fit.goodness.chi2 != fit.goodness.dof;
-  text += "  " + fit.method;
+  text += "  " + fit.search.method;
   if (judged)
     text +=
         fmt::format("; goodness of fit: chi-square {} for {} degrees of freedom, p = {}",

@@ -239,7 +239,8 @@ std::vector<PooledPower::Cycle> take_out_cycles(std::span<double> coefficients, 
     }
   if (!found.empty()) take_out_harmonics(found, head);
   std::vector<PooledPower::Cycle> cycles;
-  for (const Sine& sine : found) cycles.push_back({sine.place, sine.size.norm()});
+  for (const Sine& sine : found)
+    cycles.push_back({sine.place, sine.size.norm(), std::atan2(sine.size(1), sine.size(0))});
   return cycles;
 }
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -122,8 +124,15 @@ void report_events(const RecordMeans& means, NoiseFit& fit) {
   doubt_walk("slow cycle", search.cycle_gain, fit);
   if (!means.events_taken) return;
   // A cycle is the surroundings', and no part of the model.
-  for (const Event& event : search.events)
-    if (event.kind != EventKind::cycle) fit.events.push_back(event);
+  for (const Event& event : search.events) {
+    if (event.kind != EventKind::cycle) {
+      fit.events.push_back(event);
+      continue;
+    }
+    Event& cycle = fit.cycles.emplace_back(event);
+    constexpr double kTurn = 2 * std::numbers::pi;
+    cycle.phase = std::remainder(cycle.phase + kTurn * std::exchange(cycle.from_s, 0) / cycle.period_s, kTurn);
+  }
   for (const EventKind kind : {EventKind::step, EventKind::warm_up, EventKind::ramp}) add_event_remedy(kind, fit);
 }
 
