@@ -89,8 +89,9 @@ Recorded made(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Eigen:
 }
 
 /// Squared error of the estimates over that of generalized least squares with the true variances, input by input.
-Eigen::VectorXd regret(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Runner& runner, Eigen::Index from) {
-  const Recorded m = made(h, variances, 60000, 11);
+Eigen::VectorXd regret(const Eigen::MatrixXd& h, const Eigen::VectorXd& variances, Runner& runner, Eigen::Index from,
+                       Eigen::Index instants = 60000) {
+  const Recorded m = made(h, variances, instants, 11);
   const test::Run out = test::run(runner, m.y, h.cols());
   const Eigen::MatrixXd weighted = variances.cwiseInverse().asDiagonal() * h;
   const Eigen::MatrixXd best = test::solution(h.transpose() * weighted, weighted.transpose() * m.y);
@@ -131,6 +132,17 @@ TEST_CASE("minque: near the optimum, one input") {
     const libchar::Finding* const unknown = warnings.find("variances_not_identifiable");
     CHECK((unknown != nullptr) == (scene.name == "two good of five"));
     if (unknown != nullptr) CHECK_THAT(unknown->sentence, Catch::EndsWith(": gyro_a, gyro_b"));
+  }
+}
+
+// The ridge, and a start that was too large, kept weight on the noisy channels.
+TEST_CASE("minque: one channel that is far better than all others is soon followed") {
+  for (const Eigen::Index n : {3, 4, 6}) {
+    INFO(n);
+    Eigen::VectorXd variances = Eigen::VectorXd::Constant(n, 900);
+    variances[1] = 1;
+    const auto minque = test::make("minque", test::array(n));
+    CHECK(regret(Eigen::MatrixXd::Ones(n, 1), variances, *minque, 500, 12000)[0] < 1.2);
   }
 }
 

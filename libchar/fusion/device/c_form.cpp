@@ -198,6 +198,7 @@ CForm Maker::minque() {
                                        {"DAMPING", number(s["damping"])},
                                        {"NOISE_OF_ROUNDING", number(1e4)},
                                        {"LEAST_RATIO", number(1e-26)},
+                                       {"LEAST_RIDGE", number(0.1)},
                                        {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
                                        {"FLOOR", number(s["floor"])},
                                        {"TINY", number(choice_.single ? 1e-36 : 1e-280)},

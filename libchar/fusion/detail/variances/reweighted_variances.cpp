@@ -11,8 +11,12 @@
 namespace libchar::fusion {
 namespace {
 
-/// Instants that the start is made from.
-constexpr int kFirstInstants = 16;
+/// Instants that the start is made from, and how often they are gone through.
+constexpr int kFirstInstants = 16, kPasses = 10;
+/// The gain of the start falls as kFall / k: what is wrong at first is forgotten as 1 / k^kFall.
+constexpr double kFall = 2;
+/// Part of the ridge that stays where one channel carries nearly all the weight.
+constexpr double kLeastRidge = 0.1;
 
 }  // namespace
 
@@ -28,6 +32,7 @@ ReweightedVariances::ReweightedVariances(std::size_t n, const ReweightingOptions
       e_(n),
       index_(n, -1),
       sorted_(options.start_variance > 0 ? 0 : n),
+      usable_(sorted_.size()),
       first_(options.start_variance > 0 ? 0 : n * kFirstInstants),
       last_gain_(1 - options.gamma),
       started_(options.start_variance > 0) {}
@@ -150,13 +155,34 @@ void ReweightedVariances::start_from_pairs() {
   instants_ = kFirstInstants;
   started_ = true;
   weigh();
+  refine_start();
+}
+
+/// Scoring steps on the first instants together: at a gain that falls as 1/k a start that is r times
+/// too large would need r times as many instants as it was made from.
+void ReweightedVariances::refine_start() {
+  constexpr double kShare = 1.0 / kFirstInstants;
+  const double* const now = y_;
+  const std::size_t n = v_.size();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (int k = 0; k < kFirstInstants; ++k) {
+      const double* const row = &first_[static_cast<std::size_t>(k) * n];
+      int m = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        if (std::abs(row[i]) >= 0) usable_[static_cast<std::size_t>(m++)] = static_cast<int>(i);
+      fuse(row, usable_.data(), m);
+      gather(kShare);
+    }
+    renew(kShare);
+  }
+  y_ = now;  // the last of them: weights and residuals are its own
 }
 
 double ReweightedVariances::gain() {
   const double lasting = 1 - options_.gamma;
-  if (options_.start_variance > 0 || instants_ * lasting > 1) return lasting;
+  if (options_.start_variance > 0 || instants_ * lasting > kFall) return lasting;
   instants_ += 1;
-  return std::max(lasting, 1 / (instants_ + kStart));
+  return std::max(lasting, kFall / (instants_ + kStart));
 }
 
 void ReweightedVariances::gather(double a) {
@@ -173,13 +199,10 @@ void ReweightedVariances::gather(double a) {
 
 void ReweightedVariances::renew(double a) {
   const double lambda = options_.damping * a;
-  if (all()) {
-    solve<true>(lambda);
-    apply<true>();
-  } else {
-    solve<false>(lambda);
-    apply<false>();
-  }
+  if (all())
+    apply<true>(solve<true>(lambda));
+  else
+    apply<false>(solve<false>(lambda));
   std::fill(gathered_.begin(), gathered_.end(), 0);
   gathered_gain_ = 0;
   gathered_instants_ = 0;
@@ -187,7 +210,7 @@ void ReweightedVariances::renew(double a) {
 }
 
 template <bool kAll>
-void ReweightedVariances::solve(double lambda) {
+int ReweightedVariances::solve(double lambda) {
   const int m = m_;
   const int* const index = index_.data();
   const auto at = [index](int k) { return kAll ? k : index[k]; };
@@ -207,7 +230,6 @@ void ReweightedVariances::solve(double lambda) {
   }
   int heaviest = at(0);
   for (int k = 1; k < m; ++k) heaviest = p[at(k)] > p[heaviest] ? at(k) : heaviest;
-  heaviest_ = heaviest;
   double s1 = 0, s2 = 0;
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
@@ -216,17 +238,20 @@ void ReweightedVariances::solve(double lambda) {
     s2 += pe * p[i];
   }
   const double pm = p[heaviest], scale = (1 + s2) / pm;
-  const double um = (b[heaviest] * scale - s1) / (pm + (1 - 2 * pm + lambda) * scale);
+  // Where one channel is far better than all others, its information is (1 - pm)^2, and so is the harm of its spread.
+  const double ridge = lambda * std::clamp(4 * (1 - pm) * (1 - pm), kLeastRidge, 1.0);
+  const double um = (b[heaviest] * scale - s1) / (pm + (1 - 2 * pm + ridge) * scale);
   const double t = (pm * um + s1) / (1 + s2);
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
     e[i] = 1 + (b[i] - p[i] * t) * e[i];
   }
   e[heaviest] = 1 + um;
+  return heaviest;
 }
 
 template <bool kAll>
-void ReweightedVariances::apply() {
+void ReweightedVariances::apply(int heaviest) {
   const int m = m_;
   const int* const index = index_.data();
   const auto at = [index](int k) { return kAll ? k : index[k]; };
@@ -238,7 +263,7 @@ void ReweightedVariances::apply() {
   for (int k = 0; k < m; ++k) {
     const int i = at(k);
     // Summed without the heaviest, not as a difference: beside it the others may be below rounding.
-    others += i == heaviest_ ? 0 : inverse[i];
+    others += i == heaviest ? 0 : inverse[i];
     largest = v[i] > largest ? v[i] : largest;
   }
   const double lowest = std::max(

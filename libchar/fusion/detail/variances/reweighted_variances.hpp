@@ -17,7 +17,9 @@
 //
 // lambda: where two channels carry all the weight, only the sum of their variances shows in the data and the matrix is
 // nearly singular. The ridge leaves the fixed point where it is (E u = 0 at the true v) and makes the poorly seen
-// directions slow instead of noisy: their relative standard deviation stays below sqrt(a / lambda).
+// directions slow instead of noisy: their relative standard deviation stays below sqrt(a / lambda). A channel that is
+// far better than all others has a tenth of it: its weight p nears one, its information is (1 - p)^2, and a full ridge
+// would keep the weights of the others at sqrt(lambda).
 
 #include <limits>
 #include <vector>
@@ -31,7 +33,7 @@ struct ReweightingOptions {
   double damping = 10;       ///< lambda = damping x a
   double floor = 1e-4;       ///< of a variance, relative to the fused variance of the other channels
   double floor_largest = 0;  ///< of a variance, relative to the largest one
-  /// 0: from the first instant, with a gain that falls as 1/k to 1 - gamma
+  /// 0: from the first instants, with a gain that falls as 2/k to 1 - gamma
   double start_variance = 0;
 };
 
@@ -95,6 +97,7 @@ class ReweightedVariances {
   double median(const double* y);
   void start(const double* y);
   void start_from_pairs();
+  void refine_start();
   bool all() const { return m_ == static_cast<int>(v_.size()); }
   /// Another set of channels: what was gathered belongs to the old one.
   void use(const int* index, int m);
@@ -104,10 +107,11 @@ class ReweightedVariances {
   void renew(double a);
   template <bool kAll>
   double fuse_in_use(const double* y);
+  /// The factors of the variances; returns the channel of the largest p.
   template <bool kAll>
-  void solve(double lambda);
+  int solve(double lambda);
   template <bool kAll>
-  void apply();
+  void apply(int heaviest);
 
   ReweightingOptions options_;
   // All by channel.
@@ -118,6 +122,7 @@ class ReweightedVariances {
   std::vector<double> b_, e_;     // right side, 1 / (1 - 2p + lambda)
   std::vector<int> index_;        // channels in use, rising: the first m_
   std::vector<double> sorted_;    // scratch of the start
+  std::vector<int> usable_;       // as well
   std::vector<double> first_;     // samples of the first instants, NaN where a channel was not in use
   int m_ = 0;
   double fused_ = 1;  // 1 / sum of the inverse variances in use
@@ -127,7 +132,6 @@ class ReweightedVariances {
   int gathered_instants_ = 0;
   int first_instants_ = 0;
   const double* y_ = nullptr;  // of the last `fuse`
-  int heaviest_ = 0;           // channel of the largest p
   bool started_ = false;
 };
 
