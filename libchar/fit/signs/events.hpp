@@ -9,6 +9,7 @@
 
 #include "libchar/core/finding.hpp"
 #include "libchar/fit/record/noise_powers.hpp"
+#include "libchar/fit/signs/bursts.hpp"
 #include "libchar/fit/signs/event.hpp"
 
 namespace libchar {
@@ -27,8 +28,9 @@ struct Telegraph {
 };
 
 struct EventSearch {
-  std::vector<Event> events;  ///< in the order in which they were found
-  std::vector<double> power;  ///< the noise they were found against: E c_k^2 of the series without them
+  std::optional<detail::Bursts> bursts;  ///< in what the events leave
+  std::vector<Event> events;             ///< in the order in which they were found
+  std::vector<double> power;             ///< the noise they were found against: E c_k^2 of the series without them
   std::optional<Telegraph> telegraph;
   std::vector<double> leverage;   ///< what the events took of the degree of freedom of each c_k, k = 1.. at [k-1]
   bool more = false;              ///< stopped at `most` with more to find

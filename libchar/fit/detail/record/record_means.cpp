@@ -35,7 +35,9 @@ EventSearch search_events(const FitOptions& options, const Series& series) {
     EventOptions how;
     how.steps = !options.clock;
     how.cycle = options.slow_cycles;
-    return find_events(searched, fitted_powers(), how, options.unit);
+    EventSearch found = find_events(searched, fitted_powers(), how, options.unit);
+    if (!options.clock && !found.more && !found.telegraph) found.bursts = detail::find_bursts(searched, found.events);
+    return found;
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric) throw;
     return {};
@@ -113,8 +115,28 @@ void doubt_walk(const char* rival, double gain, NoiseFit& fit) {
                                    rival, brief_text(gain, 2))));
 }
 
+/// Their share of the record is not known: N may be that of the undisturbed part.
+void report_bursts(const detail::Bursts& bursts, NoiseFit& fit) {
+  constexpr double kSaid = 0.98;
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  if (!white.value) return;
+  white.ci95.low *= bursts.core;
+  const bool known = std::any_of(fit.findings.begin(), fit.findings.end(),
+                                 [](const Finding& one) { return one.code == "heavy_tails"; });
+  if (known || bursts.core > kSaid) return;
+  fit.findings.push_back(finding(
+      "heavy_tails",
+      fmt::format(
+          "At an averaging time of {} the record has heavier tails than Gaussian noise (kurtosis of differences "
+          "{} instead of 3), as bursts make them: N of the undisturbed part may be {} times as large.",
+          duration_text(bursts.tau_s), brief_text(bursts.kurtosis, 3), brief_text(bursts.core, 2)),
+      "the noise comes in bursts"));
+  fit.findings.back().severity = Severity::caution;
+}
+
 void report_events(const RecordMeans& means, NoiseFit& fit) {
   const EventSearch& search = means.search;
+  if (search.bursts) report_bursts(*search.bursts, fit);
   fit.findings.insert(fit.findings.end(), search.findings.begin(), search.findings.end());
   // What stayed in is not noise, and the coefficients hold it.
   if (search.more || search.telegraph)
