@@ -54,6 +54,9 @@ TEST_CASE("calendar stamps are exact to the nanosecond, whatever their form") {
                            "2024년 5월 1일 12시 00분 00초",
                            "2024-05-01 오후 12:00:00",
                            "01/05/2024 12h00",
+                           "1. Mai 2024 12:00:00",
+                           "01-mai-2024 12:00:00",
+                           "1 mayo 2024 12:00:00",
                            "2024-05-01T12:00:00Z[UTC]"}) {
     INFO(text);
     CHECK(ns(text) == noon);

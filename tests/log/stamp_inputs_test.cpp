@@ -294,3 +294,75 @@ TEST_CASE("packets of more rows than tell a usual step from a pause, of which so
         CHECK(read_text(text_of(rows, kClocks[2]), inside).info.time.rate_hz == Approx(10000).epsilon(1e-3));
       }
 }
+
+namespace {
+
+/// Rows of [from, to) come at once at its end.
+TimedRows hung(TimedRows rows, double from, double to) {
+  std::size_t late = 0;
+  for (double& t : rows.instants)
+    if (t >= from && t < to) t = to + 2e-4 * static_cast<double>(late++);
+  for (std::size_t i = 1; i < rows.instants.size(); ++i)
+    rows.instants[i] = std::max(rows.instants[i], rows.instants[i - 1] + 1e-6);
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("rows that come at once when a log begins are left out") {
+  for (const double rate_hz : {50.0, 200.0})
+    for (const double held_s : {0.5, 1.0, 4.0}) {
+      Rules rules;
+      rules.rate_hz = rate_hz;
+      const TimedRows rows = hung(even_rows(rules), 0, 1000 + held_s);
+      INFO(rate_hz << " Hz, " << held_s << " s");
+      const Recording r = read_text(text_of(rows, kClocks[2]));
+      CHECK(r.info.time.rate_hz == Approx(rate_hz).epsilon(1e-3));
+      CHECK(r.info.time.missing_samples <= 1);
+      CHECK(count(r, "rate_change") == 1);
+    }
+  // Of more than the first rows that are looked at nobody knows the rate: both stretches are offered.
+  Rules rules;
+  rules.rows = 8000;
+  try {
+    read_text(text_of(hung(even_rows(rules), 0, 1020), kClocks[2]));
+    FAIL_CHECK("was read");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::Contains("E0334") && Catch::Contains("`from_s`"));
+  }
+}
+
+TEST_CASE("a logger hangs for thousands of rows, which come at once behind the pause") {
+  for (const double jitter : {0.0, 0.1})
+    for (const double held_s : {8.0, 15.0, 30.0}) {
+      Rules rules;
+      rules.rows = 12000;
+      rules.jitter = jitter;
+      INFO(held_s << " s, jitter " << jitter);
+      const Recording r = read_text(text_of(hung(even_rows(rules), 1050, 1050 + held_s), kClocks[2]));
+      CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+      CHECK(r.info.time.missing_samples == 0);
+      CHECK(count(r, "late_stamp") == 1);
+    }
+}
+
+TEST_CASE("packets that are late by a good part of one keep the rate of the rows, and none of them is lost") {
+  for (const double late : {0.1, 0.27, 0.4})  // of a packet, in the mean
+    for (const unsigned seed : {3U, 5U, 8U, 13U}) {
+      std::mt19937_64 random(seed);
+      std::exponential_distribution<double> delay(1 / late);
+      constexpr std::size_t kPacket = 20;
+      TimedRows rows = even_rows({});
+      double of_packet = 0, arrived = 0;
+      for (std::size_t i = 0; i < rows.instants.size(); ++i) {
+        if (i % kPacket == 0) of_packet = delay(random);
+        const double end = 1000 + (static_cast<double>(i / kPacket + 1) + of_packet) * kPacket / rows.rate_hz;
+        arrived = std::max(arrived, end + 1e-4 * static_cast<double>(i % kPacket));
+        rows.instants[i] = arrived;
+      }
+      INFO(late << ", seed " << seed);
+      const Recording r = read_text(text_of(rows, kClocks[2]));
+      CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+      CHECK(r.info.time.missing_samples == 0);
+    }
+}

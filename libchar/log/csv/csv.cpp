@@ -143,10 +143,13 @@ class CsvSource final : public RowSource {
     warnings.merge(std::exchange(pending_, {}));
     if (problem_) throw Error(*problem_);
     while (take(current_)) {
+      if (odd_.footer && (current_.rows.rows > 0 || current_.filtered > 0 || current_.problem))
+        throw Error(*odd_.footer);
       account(warnings);
       std::swap(block, current_.rows);
       if (pivot_.active()) pivot_.widen(block, current_.groups);
-      if (current_.problem) prepare_problem();
+      if (current_.problem) problem_ = located(*current_.problem);
+      if (current_.footer) hold_footer();
       if (block.rows > 0) return true;
       if (problem_) throw Error(*problem_);
     }
@@ -164,6 +167,7 @@ class CsvSource final : public RowSource {
     add(warnings, "bad_row", "rows that cannot be read: left out, or missing where there are no stamps", odd_.bad);
     add(warnings, "blank_line", "blank lines skipped", odd_.blank);
     add(warnings, "comment_line", "comment lines between the rows skipped", odd_.comment);
+    add(warnings, "footer_line", "lines of words behind the last row left out", odd_.footers);
     add(warnings, "repeated_header", "repeated header lines skipped", odd_.repeated);
     add(warnings, "mixed_line_ends", "line ends of another kind than the first, accepted", odd_.mixed_end);
     add(warnings, "infinite_value", kInfiniteValues, odd_.infinite);
@@ -341,6 +345,7 @@ class CsvSource final : public RowSource {
     collect(odd_.blank, chunk.blank);
     collect(odd_.comment, chunk.comment);
     collect(odd_.repeated, chunk.repeated);
+    collect(odd_.footers, chunk.footers);
     collect(odd_.mixed_end, chunk.mixed_end);
     collect(odd_.infinite, chunk.infinite);
     collect(odd_.overflow, chunk.overflow);
@@ -380,12 +385,19 @@ class CsvSource final : public RowSource {
     }
   }
 
-  void prepare_problem() {
-    problem_ = current_.problem->problem;
-    const std::uint64_t line = chunk_line_ + current_.problem->spot.line;
-    problem_->where =
-        chunks_.made() ? fmt::format("{} ({} {})", info_.file, chunks_.row_name(), line)
-                       : at(info_.file, line, current_.problem->spot.column, current_offset_ + current_.problem->byte);
+  Problem located(const RowProblem& found) const {
+    Problem out = found.problem;
+    const std::uint64_t line = chunk_line_ + found.spot.line;
+    out.where = chunks_.made() ? fmt::format("{} ({} {})", info_.file, chunks_.row_name(), line)
+                               : at(info_.file, line, found.spot.column, current_offset_ + found.byte);
+    return out;
+  }
+
+  // A few lines of words behind the last row end a file, if there was a table and no row follows.
+  void hold_footer() {
+    constexpr std::uint64_t kFewestRows = 10, kMostLines = 40;
+    if (!odd_.footer) odd_.footer = located(*current_.footer);
+    if (rows_ < kFewestRows || odd_.footers.count > kMostLines) problem_ = odd_.footer;
   }
 
   bool take(ParsedChunk& chunk) { return pipeline_ ? pipeline_->next(chunk, current_offset_) : take_inline(chunk); }
@@ -411,7 +423,8 @@ class CsvSource final : public RowSource {
   ParsedChunk current_;
   std::optional<Problem> problem_;
   struct {
-    Tally bad, blank, comment, repeated, mixed_end, infinite, overflow, too_small, missing;
+    Tally bad, blank, comment, repeated, mixed_end, infinite, overflow, too_small, missing, footers;
+    std::optional<Problem> footer;  ///< why the first of these is no row
   } odd_;
   std::int64_t days_ns_ = 0, last_clock_ns_ = 0;
   std::vector<std::uint64_t> missing_per_channel_;

@@ -197,6 +197,16 @@ std::optional<Field> lead_of_names(std::string_view line, std::size_t& after) {
 
 bool is_number(std::string_view text) { return read_cell(trimmed(text), '.').kind == Cell::value; }
 
+/// "12:00:00.5": who writes so writes no decimal commas.
+bool clock_with_point(std::string_view text) {
+  for (std::size_t at = text.find(':'); at != text.npos; at = text.find(':', at + 1)) {
+    const std::size_t mark = text.find_first_not_of("0123456789", at + 1);
+    if (mark != text.npos && mark == at + 3 && text[mark] == '.' && mark + 1 < text.size() && is_digit(text[mark + 1]))
+      return true;
+  }
+  return false;
+}
+
 /// Where the cells begin: behind words in front of the first one, "[info] 0.1, 0.2" and "imu - INFO - 0.1 0.2". What
 /// one comma divides may be one number: "INFO 1,5".
 std::size_t behind_words(std::string_view line, std::size_t from) {
@@ -212,7 +222,7 @@ std::size_t behind_words(std::string_view line, std::size_t from) {
   const std::size_t begin = text.find(trimmed(text.substr(0, end))) + blank + 1;
   const std::string_view first = text.substr(begin, end - begin), rest = text.substr(end + 1);
   const bool one = text[end] == ',' && rest.find_first_not_of("0123456789") == rest.npos &&
-                   first.find_first_not_of("+-0123456789") == first.npos;
+                   first.find_first_not_of("+-0123456789") == first.npos && !clock_with_point(line.substr(0, begin));
   return !one && is_number(first) && is_number(rest.substr(0, rest.find_first_of(",;\t"))) ? from + begin : from;
 }
 

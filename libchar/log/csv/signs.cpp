@@ -117,6 +117,17 @@ std::size_t weekday_at(std::string_view line) {
   return std::string_view::npos;
 }
 
+// SLIST of seismology ("TIMESERIES …, 20 sps, …, SLIST, …"), AT2 of PEER ("NPTS= 4096, DT= .005 SEC"), K-NET
+// ("Sampling Freq(Hz) 100Hz", "Scale Factor …"): the samples of one channel stand beside and below each other.
+bool lists_samples(std::string_view front) {
+  constexpr std::size_t kHeader = 1024;
+  const std::string_view head = front.substr(0, kHeader), first = head.substr(0, head.find('\n'));
+  const auto says = [&](std::string_view text) { return head.find(text) != head.npos; };
+  return (first.starts_with("TIMESERIES ") && first.find(" SLIST,") != first.npos) ||
+         (says("TIME SERIES IN UNITS OF") && says("NPTS") && says("DT")) ||
+         (first.starts_with("Origin") && says("\nSampling Freq(Hz)") && says("\nScale Factor"));
+}
+
 std::string without_colours(std::string line) {
   for (std::size_t at = line.find("\x1B["); at != std::string::npos; at = line.find("\x1B[", at))
     line.erase(at, line.find_first_not_of("0123456789;", at + 2) - at + 1);
@@ -134,6 +145,7 @@ class FromSigns final : public CleanedLines {
            : signs_.boxes     ? "tables drawn in boxes"
            : signs_.exponents ? "exponents of Fortran"
            : signs_.weekdays  ? "days of the week in front of dates"
+           : signs_.listed    ? "samples that follow each other in a line"
                               : "blanks of typesetting";
   }
 
@@ -141,6 +153,7 @@ class FromSigns final : public CleanedLines {
   void begin(std::string_view front) override { signs_ = signs_of(front); }
 
   void clean(std::string& line) override {
+    if (signs_.listed) return one_below_the_other(line);
     for (std::size_t at = signs_.boxes ? line.find(kBar) : line.npos; at != line.npos; at = line.find(kBar, at))
       line.replace(at, kBar.size(), "|");
     if (signs_.colours) line = without_colours(std::move(line));
@@ -156,6 +169,17 @@ class FromSigns final : public CleanedLines {
       if (const std::size_t bytes = signs_.typeset ? thin_blank_at(line, at) : 0; bytes > 0)
         line.replace(at, bytes, " ");
     }
+  }
+
+  static void one_below_the_other(std::string& line) {
+    if (line.find_first_not_of("0123456789+-.eE \t") != line.npos) return;
+    std::string out;
+    for (std::size_t at = line.find_first_not_of(" \t"); at < line.size(); at = line.find_first_not_of(" \t", at)) {
+      const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+      out.append(out.empty() ? "" : "\n").append(line, at, end - at);
+      at = end;
+    }
+    line = std::move(out);
   }
 
   Signs signs_;
@@ -177,6 +201,7 @@ Signs signs_of(std::string_view front) {
   constexpr std::size_t kFewest = 3;
   std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0, boxes = 0;
   Signs out;
+  out.listed = lists_samples(front);
   for (std::size_t end = front.find('\n'); end != std::string_view::npos; end = front.find('\n')) {
     std::string_view line = front.substr(0, end);
     front.remove_prefix(end + 1);

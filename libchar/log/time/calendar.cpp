@@ -7,8 +7,10 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/text.hpp"
 
 namespace libchar {
@@ -102,7 +104,9 @@ std::optional<std::string> with_signs(std::string_view text) {
       text.remove_prefix(is_half->first.size());
     } else if (word != nullptr && (!word->latin || word->text == "h" || hour)) {
       end_with(" ");
-      out += word->sign;
+      const bool fraction =
+          word->sign == ' ' && word->text.size() < text.size() && decimal_digit(text[word->text.size()]);
+      out += fraction ? '.' : word->sign;  // "23h40m05s250"
       hour = hour || word->sign == ':';
       text.remove_prefix(word->text.size());
     } else {
@@ -117,14 +121,67 @@ std::optional<std::string> with_signs(std::string_view text) {
   return out.append(half);
 }
 
-// 1…12 for a month as a word, in English; 0 for none.
+// 1…12 for a month as a word, in English, German, French or Spanish; 0 for none.
 int month_word(DateScanner& at) {
+  static constexpr std::pair<std::string_view, int> kOthers[] = {{"januar", 1},
+                                                                 {"j\u00E4n", 1},
+                                                                 {"janv", 1},
+                                                                 {"janvier", 1},
+                                                                 {"ene", 1},
+                                                                 {"enero", 1},
+                                                                 {"februar", 2},
+                                                                 {"f\u00E9vr", 2},
+                                                                 {"fevr", 2},
+                                                                 {"feb", 2},
+                                                                 {"febrero", 2},
+                                                                 {"f\u00E9vrier", 2},
+                                                                 {"m\u00E4rz", 3},
+                                                                 {"m\u00E4r", 3},
+                                                                 {"maerz", 3},
+                                                                 {"mrz", 3},
+                                                                 {"mars", 3},
+                                                                 {"marzo", 3},
+                                                                 {"avr", 4},
+                                                                 {"avril", 4},
+                                                                 {"abr", 4},
+                                                                 {"abril", 4},
+                                                                 {"mai", 5},
+                                                                 {"mayo", 5},
+                                                                 {"juni", 6},
+                                                                 {"juin", 6},
+                                                                 {"junio", 6},
+                                                                 {"juli", 7},
+                                                                 {"juil", 7},
+                                                                 {"juillet", 7},
+                                                                 {"julio", 7},
+                                                                 {"ao\u00FBt", 8},
+                                                                 {"aout", 8},
+                                                                 {"ago", 8},
+                                                                 {"agosto", 8},
+                                                                 {"sept", 9},
+                                                                 {"septembre", 9},
+                                                                 {"septiembre", 9},
+                                                                 {"okt", 10},
+                                                                 {"oktober", 10},
+                                                                 {"octobre", 10},
+                                                                 {"octubre", 10},
+                                                                 {"novembre", 11},
+                                                                 {"noviembre", 11},
+                                                                 {"dez", 12},
+                                                                 {"dezember", 12},
+                                                                 {"d\u00E9c", 12},
+                                                                 {"dec", 12},
+                                                                 {"d\u00E9cembre", 12},
+                                                                 {"dic", 12},
+                                                                 {"diciembre", 12}};
   static constexpr std::array<std::string_view, 12> kMonths = {"january",   "february", "march",    "april",
                                                                "may",       "june",     "july",     "august",
                                                                "september", "october",  "november", "december"};
   if (!std::isalpha(static_cast<unsigned char>(at.peek()))) return 0;
   for (std::size_t m = 0; m < kMonths.size(); ++m)
     if (at.word(kMonths[m]) || at.word(kMonths[m].substr(0, 3))) return static_cast<int>(m + 1);
+  for (const auto& [name, month] : kOthers)
+    if (at.word(name)) return month;
   return 0;
 }
 
@@ -168,12 +225,13 @@ std::optional<int> year_at_the_end(DateScanner& at) {
   return number;
 }
 
-// "01-May-2024", "1 May 2024", "May 1, 2024", "May 1 12:00:00 2024"
+// "01-May-2024", "1 May 2024", "1. Mai 2024", "May 1, 2024", "May 1 12:00:00 2024"
 bool worded_date(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
   int month = month_word(s), day = 0;
   const auto gap = [&] {
-    while (s.peek() == ' ' || s.peek() == '-' || s.peek() == ',' || s.peek() == '/') s.rest.remove_prefix(1);
+    while (s.peek() != '\0' && std::string_view(" -,/.").find(s.peek()) != std::string_view::npos)
+      s.rest.remove_prefix(1);
   };
   if (month > 0) {
     gap();
@@ -326,6 +384,7 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
 // "Z", "UTC", "+02:00", "-0730", "GMT+2", "+02:00[Europe/Berlin]"
 bool take_zone(DateScanner& at, CalendarStamp& out) {
   if (const std::size_t name = at.rest.find('['); at.rest.ends_with(']')) at.rest = at.rest.substr(0, name);
+  const bool apart = at.peek() == ' ';  // "12:00:00 -10" has a number behind it
   at.blanks();
   if (at.rest.empty()) return true;
   const bool named = at.word("z") || at.word("utc") || at.word("gmt");
@@ -334,7 +393,7 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
     const bool west = at.peek() == '-';
     at.rest.remove_prefix(1);
     const std::size_t n = at.digits_ahead();
-    if (n == 0 || n > 4 || n == 3 || (n == 1 && !named)) return false;
+    if (n == 0 || n > 4 || n == 3 || (!named && (n == 1 || (apart && n == 2 && at.peek(n) != ':')))) return false;
     const int hours = at.fixed(n > 2 ? 2 : n);
     int minutes = 0;
     if (n == 4)
@@ -392,9 +451,62 @@ std::optional<CalendarStamp> duration(std::string_view text) {
   return at.rest.empty() && out.clock ? std::optional(out) : std::nullopt;
 }
 
+// "12-00-05-250" and "12_00_05.250": a clock time between the signs of a file's name, with its fraction.
+std::optional<CalendarStamp> dashed_clock(std::string_view text) {
+  constexpr std::size_t kShortest = 12, kMinute = 2, kSecond = 5, kMark = 8;
+  if (text.size() < kShortest || (text[kMinute] != '-' && text[kMinute] != '_') || text[kSecond] != text[kMinute] ||
+      (text[kMark] != text[kMinute] && text[kMark] != '.' && text[kMark] != ','))
+    return std::nullopt;
+  std::string clock(text);
+  clock[kMinute] = clock[kSecond] = ':';
+  clock[kMark] = '.';
+  CalendarStamp out;
+  DateScanner at{clock};
+  return clock_time(at, out) && at.rest.empty() ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
+std::optional<Elapsed> read_elapsed(std::string_view text) {
+  static constexpr std::pair<std::string_view, double> kParts[] = {
+      {"h", 3600e9}, {"m", 60e9}, {"s", 1e9}, {"ms", 1e6}, {"\u00B5s", 1e3}, {"us", 1e3}, {"ns", 1}};
+  Elapsed out;
+  if (!text.ends_with('s')) return std::nullopt;
+  const bool minus = text.starts_with('-');
+  DateScanner at{text.substr(minus ? 1 : 0)};
+  double ns = 0;
+  const auto* part = std::begin(kParts);
+  while (!at.rest.empty()) {
+    constexpr std::size_t kMost = 15;
+    const std::size_t digits = at.digits_ahead();
+    if (digits == 0 || digits > kMost) return std::nullopt;
+    double whole = 0;
+    for (const char c : at.rest.substr(0, digits)) whole = 10 * whole + (c - '0');
+    at.rest.remove_prefix(digits);
+    const bool mark = at.take('.');
+    if (mark && at.digits_ahead() == 0) return std::nullopt;
+    const double behind = mark ? static_cast<double>(second_fraction(at)) * 1e-9 : 0;
+    const std::string_view unit = at.rest.substr(0, std::min(at.rest.find_first_of("0123456789"), at.rest.size()));
+    part = std::find_if(part, std::end(kParts), [&](const auto& one) { return one.first == unit; });
+    if (part == std::end(kParts)) return std::nullopt;
+    ns += whole * part->second + behind * part->second;
+    at.rest.remove_prefix(unit.size());
+    ++part;
+    ++out.parts;
+  }
+  if (out.parts == 0 || ns > 9e18) return std::nullopt;
+  out.ns = clamped_whole<std::int64_t>(std::round(minus ? -ns : ns));
+  return out;
+}
+
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order) {
+  if (const auto clock = dashed_clock(text)) return clock;
+  if (const auto elapsed = read_elapsed(text); elapsed && elapsed->parts > 1 && elapsed->ns >= 0) {
+    CalendarStamp out;
+    out.ns = elapsed->ns;
+    out.clock = out.seconds = true;
+    return out;
+  }
   if (const auto plain = with_signs(text)) return read_calendar(*plain, order);
   DateScanner at{text};
   at.blanks();

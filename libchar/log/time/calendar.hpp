@@ -24,14 +24,22 @@ struct CalendarStamp {
   bool short_year = false;    ///< and whose year has two digits
 };
 
-/// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24
-/// 3:04 PM", "01-May-2024 12:00", "Wed May 1 12:00:00 2024", "2024-122T12:00:00", "20240501T120000Z", "23h40m05s",
-/// with the words of Chinese, Japanese and Korean for year, month, day, hour, minute and second, a date or a clock time
-/// alone, or one with days in front ("1 day, 2:03:04", "1.02:03:04", "49:03:04", "P2DT1H3M4.5S"). Fractions are
-/// rounded to the nanosecond. Nothing when it is none of these, or no day of the calendar.
+/// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24 3:04 PM",
+/// "01-May-2024 12:00", "Wed May 1 12:00:00 2024", "2024-122T12:00:00", "20240501T120000Z", "23h40m05s",
+/// "12-00-05-250", with the words of Chinese, Japanese and Korean for year, month, day, hour, minute and second, a
+/// date or a clock time alone, or one with days in front ("1 day, 2:03:04", "1.02:03:04", "49:03:04",
+/// "P2DT1H3M4.5S"). Fractions are rounded to the nanosecond. Nothing when it is none of these, or no day of the
+/// calendar.
 std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder order);
 /// The same in the first order in which it is a date.
 std::optional<CalendarStamp> read_calendar(std::string_view text);
+
+/// "1m2.5s", "250ms", "1h0m0s": a time as Go prints it, from the largest part to the smallest.
+struct Elapsed {
+  std::int64_t ns = 0;
+  int parts = 0;
+};
+std::optional<Elapsed> read_elapsed(std::string_view text);
 
 /// Digits alone: "20240501120000.25", "202405011200", "2024050112", "20240501", and "240501120000".
 std::optional<CalendarStamp> read_date_digits(std::string_view text);

@@ -100,6 +100,15 @@ void TimeGrid::refuse_without_axis(const std::vector<std::int64_t>& stamps) {
 
 // Rows at another rate than those of the longer rest stand in front of the window.
 void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
+  if (const std::size_t rows = at_once_in_front(stamps); rows > 0) {
+    const std::int64_t from = stamps[rows] - stamps.front();
+    if (from <= window_.from_ns) return;
+    window_.from_ns = from;
+    window_.other_rate = true;
+    warnings_.add("rate_change",
+                  fmt::format("the first {} rows come at once, as from a full buffer: they are left out", rows));
+    return;
+  }
   const auto change = find_rate_change(stamps);
   if (!change || 2 * change->row > static_cast<double>(stamps.size())) return;
   const auto row = clamped_whole<std::size_t>(std::ceil(change->row));

@@ -388,18 +388,24 @@ double packet_interval(const FirstSteps& steps, const std::vector<std::size_t>& 
   return middle_of(std::move(slopes));
 }
 
-/// The same of packets of so many rows: from each to the next, the packets between them that are missing counted.
-double interval_of_alike(const FirstSteps& steps, const std::vector<std::size_t>& starts, std::size_t rows, double ns) {
-  constexpr double kMostMissing = 20;
+/// The same of packets of so many rows: from each to the next, the packets between them that are missing counted. Of
+/// packets that are late by a good part of one nobody can: then the slope through all rows says more.
+double interval_of_alike(const FirstSteps& steps, const std::vector<std::size_t>& starts, std::size_t rows,
+                         double slope) {
+  constexpr double kMostMissing = 20, kCounted = 0.15;  // packets; the rms deviation from whole ones
+  double ns = slope;
   for (int round = 0; round < 3; ++round) {
-    double time = 0, packets = 0;
+    double time = 0, packets = 0, off = 0, count = 0;
     for (std::size_t i = 1; i < starts.size(); ++i) {
       const double apart = steps.line[starts[i]] - steps.line[starts[i - 1]];
       const double multiple = std::round(apart / (ns * static_cast<double>(rows)));
       if (starts[i] - starts[i - 1] != rows || multiple > kMostMissing) continue;
       time += apart;
       packets += multiple;
+      off += std::pow(apart / (ns * static_cast<double>(rows)) - multiple, 2);
+      count += 1;
     }
+    if (off > kCounted * kCounted * count) return slope;
     if (packets > 0) ns = time / (packets * static_cast<double>(rows));
   }
   return ns;
@@ -564,6 +570,21 @@ std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps) {
     first = last;
   }
   return 2 * moved < out.size() ? out : stamps;
+}
+
+std::size_t at_once_in_front(const std::vector<std::int64_t>& stamps) {
+  constexpr std::size_t kFewest = 8;
+  constexpr double kFaster = 10;
+  const FirstSteps steps = steps_of(stamps, false);
+  if (steps.rising.empty() || stamps.size() < 2 * kFewest) return 0;
+  const double usual = regular_step(steps);
+  RowsAtOnce front{usual, stamps.front()};
+  std::size_t end = 1;
+  while (end < stamps.size() && front.add(stamps[end])) ++end;
+  const std::size_t rows = front.regular < RowsAtOnce::kRegular ? 0 : front.count();
+  if (rows < kFewest || kFaster * step_between(stamps.front(), stamps[rows]) > usual * static_cast<double>(rows))
+    return 0;
+  return rows;
 }
 
 std::optional<RateChange> find_rate_change(const std::vector<std::int64_t>& stamps) {

@@ -45,7 +45,7 @@ struct RowsAtOnce {
   std::int64_t before = 0;  ///< the last stamp
   std::size_t rows = 0, shorter = 0, regular = 0;
 
-  static constexpr std::size_t kMost = 1024, kRegular = 8, kFewest = 3;
+  static constexpr std::size_t kMost = 4096, kRegular = 8, kFewest = 3;
   /// Rows that are kept for this: fewer of very many channels.
   static constexpr std::size_t most(std::size_t channels) {
     constexpr std::size_t kValues = std::size_t{1} << 20U, kFew = 64;
@@ -63,6 +63,9 @@ struct RowsAtOnce {
 /// The same stamps, such rows (fewer than half of all) one interval apart in front of the last of them; without those
 /// that the end cuts.
 std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps);
+
+/// How many of the first rows come at once, as from a buffer that was full when the log began.
+std::size_t at_once_in_front(const std::vector<std::int64_t>& stamps);
 
 /// One interval up to a row, another one from there on.
 struct RateChange {

@@ -197,7 +197,7 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
         name.find("temp") != std::string::npos || name.find("year") != std::string::npos || name == "t" ||
         (has_unit(column) && !unit_of_time(column)))
       continue;
-    named = speaks_of_time(column);
+    named = speaks_of_time(column) && name.find("tick") == std::string::npos;  // whose unit is nobody's
     const FirstValues first = table.first_values(c);
     if ((named || !found) && (counts_since_1970(first) || steady_clock(first.values)) &&
         !like_a_temperature(column, first))

@@ -44,7 +44,9 @@ GridStretch gap_in_window(std::int64_t gap, double before_ns, double dt_ns, std:
 }
 
 bool OddRun::whole() const {
-  return intervals > 1.5 && std::fabs(intervals - std::round(intervals)) < 0.03 * intervals;
+  constexpr double kMost = 10.5, kOff = 0.12;  // further rows apart, nobody left out the rows between
+  return intervals > 1.5 && intervals < kMost &&
+         std::fabs(intervals - std::round(intervals)) < std::min(0.03 * intervals, kOff);
 }
 
 bool RateWatch::add(std::uint64_t row, double intervals, std::int64_t after_first_ns) {
@@ -345,24 +347,28 @@ std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t s
 // Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
 std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   constexpr double kOff = 0.35, kLate = 0.5;  // of a packet: further off it is no whole number of them, or on time
+  constexpr double kLost = 0.9;               // what the last ones of a log are late by where one is missing
   constexpr std::size_t kPackets = 6;         // looked at
+  constexpr std::size_t kFewest = 3;          // at the end of a log fewer are late as one may be
   if (!recent_.packets.any()) return 0;
   const auto rows = static_cast<double>(step_.model.packet);
   double late = recent_.packets.late(last_.index + 1, stamp, step_.ns);
   std::size_t item = 0, i = row;
   const Pending* at = &front;
   std::int64_t before = stamp;
+  std::size_t seen = 1;
   const std::size_t looked = std::min(ahead, kPackets * step_.model.packet + 2);
   for (std::size_t j = 1; j < looked && late >= kLate * rows * step_.ns; ++j) {
     if (!next_row(at, item, i)) break;
     std::int64_t t = 0, step = 0;
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;
     before = t;
-    if (step > step_.longest)
-      late = std::min(late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
+    if (step <= step_.longest) continue;
+    ++seen;
+    late = std::min(late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
   }
   const double packets = late / (rows * step_.ns), whole = std::round(packets);
-  if (packets < kLate || late > 9e18) return 0;
+  if (packets < (last_.ended && seen < kFewest ? kLost : kLate) || late > 9e18) return 0;
   return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows : std::round(late / step_.ns));
 }
 

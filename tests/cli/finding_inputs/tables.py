@@ -67,6 +67,7 @@ INPUTS = {
     "bad_row": Input(text("bad_row.csv", with_line(500, "5.0,noise")), ("--bad-rows", "drop")),
     "blank_line": Input(text("blank.csv", with_line(500, ""))),
     "comment_line": Input(text("comment.csv", with_line(500, "# a pause"))),
+    "footer_line": Input(text("footer.csv", with_line(len(gyro_lines()), "*** end of data ***"))),
     "repeated_header": Input(text("repeated.csv", with_line(500, "t[s],w[deg/s]")), ("--repeated-header", "skip")),
     "mixed_line_ends": Input(text("ends.csv", lambda: plain().replace("\n", "\r\n", 700))),
     "infinite_value": Input(text("infinite.csv", with_cell(500, "inf"))),

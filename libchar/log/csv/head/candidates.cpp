@@ -121,28 +121,29 @@ void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal
   if (delimiter == ';' && decimal == 0) std::swap(out.back(), out[out.size() - 2]);
 }
 
-// "10,000,000.000,012,3 Hz", "10 000 000.000 012": counters write groups of three digits, on both sides of the point.
-// Columns of whole numbers are not meant: those have no unit behind the last and no zeros in front.
+// "10,000,000.000,012,3 Hz", "10 000 000.000 012", "10,000,000.5": counters write groups of three digits, some on both
+// sides of the point. Columns of whole numbers are not meant: those have no unit behind the last and no zeros in front.
 bool counter_lines(const std::vector<Line>& lines, char group) {
   const bool blanks = group == ' ';
   const std::string allowed = std::string("+-0123456789.") + group, zero = std::string(1, group) + '0';
-  std::size_t grouped = 0;
-  bool unit = false, zeros = false;
+  std::size_t grouped = 0, padded = 0;
+  bool unit = false, behind = false;
   for (const Line& line : lines) {
     const std::string_view text = trimmed(line.text);
     const std::size_t end = std::min(text.find_first_not_of(allowed), text.size());
     const std::string_view number = trimmed(text.substr(0, end));
     const std::string plain = without_thousands(number, {'.', group});
     const std::size_t point = number.find('.');
-    if (point == std::string_view::npos || plain == number || read_cell(plain, '.').kind != Cell::value ||
-        (!blanks && number.find(group, point) == std::string_view::npos))
-      continue;
+    if (point == std::string_view::npos || plain == number || read_cell(plain, '.').kind != Cell::value) continue;
     ++grouped;
+    behind = behind || blanks || number.find(group, point) != std::string_view::npos;
     unit = unit || (!blanks && number_and_unit(text));
+    bool zeros = false;
     for (std::size_t at = number.find(zero); at != std::string_view::npos; at = number.find(zero, at + 1))
       zeros = zeros || (at + 2 < number.size() && is_digit(number[at + 2]));
+    padded += zeros ? 1 : 0;
   }
-  return grouped > 2 && 4 * grouped >= 3 * lines.size() && (unit || zeros);
+  return grouped > 2 && 4 * grouped >= 3 * lines.size() && (behind ? unit || padded > 0 : padded > 2);
 }
 
 // "19,4731", "19,0473": one comma a line, and behind it always as many digits, zeros in front of them among these; or

@@ -11,6 +11,10 @@
 
 namespace libchar::csv {
 
+/// Of numbers like 0x1F2A, which do not say whether they have a sign.
+inline constexpr const char* kHexadecimal =
+    "perl -pe 's/0x([0-9a-f]+)/hex($1)/gie' FILE > log.csv writes decimal numbers";
+
 using Cells = std::vector<Field>;
 
 /// How numbers are written.

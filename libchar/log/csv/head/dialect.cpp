@@ -23,6 +23,7 @@
 #include "libchar/log/csv/head/study.hpp"
 #include "libchar/log/csv/long_table.hpp"
 #include "libchar/log/csv/rows/stamps.hpp"
+#include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
 namespace {
@@ -178,7 +179,9 @@ void choose_header(Study& study) {
   const std::string& option = study.options.header;
   if (option != "auto" && option != "yes" && option != "no")
     throw usage_error("E0202", "`header`").says("unknown header option").got(option).hint("use auto, yes or no");
-  if (option == "auto" && (named_by_daemon(study) || begins_with_rate(study) || named_by_signal_express(study))) return;
+  if (option == "auto" &&
+      (named_by_daemon(study) || begins_with_rate(study) || named_by_signal_express(study) || named_by_yokogawa(study)))
+    return;
   TableStart start = table_start(study);
   const std::vector<Line> lines = study.sample;
   if (!start.names) start.data = std::min(start.data, lines.size() - 1);
@@ -303,6 +306,23 @@ void gather_rows(Study& study) {
         .hint("values are compared letter by letter");
 }
 
+// All columns hold words; or all but that of the stamps, and they are numbers in another notation.
+void refuse_words(const Study& study) {
+  const auto hexadecimal = [](const auto& field) {
+    return field.text.starts_with("0x") || field.text.starts_with("0X");
+  };
+  const bool any = !study.rows.empty() && std::any_of(study.rows[0].begin(), study.rows[0].end(), hexadecimal);
+  const bool but_time = any && study.options.channels.empty();
+  bool words = !study.kinds.empty();
+  for (std::size_t c = 0; c < study.kinds.size(); ++c)
+    words = words && (study.kinds[c] == ColumnKind::text || (but_time && called_time(study.dialect.columns[c].text)));
+  if (!words) return;
+  throw refusal(study, study.sample[0], 0, "E0326")
+      .says("no column holds numbers")
+      .got(std::string(study.sample[0].text))
+      .hint(any ? kHexadecimal : "`delimiter` says what separates the cells, `skip_rows` where the table begins");
+}
+
 // Columns that are empty in the first rows may have words, or numbers, further on.
 void find_kinds(Study& study) {
   constexpr std::size_t kEnough = 8;
@@ -317,18 +337,7 @@ void find_kinds(Study& study) {
   }
   for (std::size_t c = 0; c < study.kinds.size(); ++c)
     if (study.dialect.columns[c].words) study.kinds[c] = ColumnKind::text;
-  if (!study.kinds.empty() &&
-      std::all_of(study.kinds.begin(), study.kinds.end(), [](ColumnKind kind) { return kind == ColumnKind::text; })) {
-    const auto hexadecimal = [](const auto& field) {
-      return field.text.starts_with("0x") || field.text.starts_with("0X");
-    };
-    const bool any = !study.rows.empty() && std::any_of(study.rows[0].begin(), study.rows[0].end(), hexadecimal);
-    throw refusal(study, study.sample[0], 0, "E0326")
-        .says("no column holds numbers")
-        .got(std::string(study.sample[0].text))
-        .hint(any ? "hexadecimal numbers are not read: write them as decimal ones"
-                  : "`delimiter` says what separates the cells, `skip_rows` where the table begins");
-  }
+  refuse_words(study);
 }
 
 // "1.30, 1.31, 1.29, …": the samples of one channel, as instruments send them.

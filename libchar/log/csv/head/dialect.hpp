@@ -27,6 +27,7 @@ struct Column {
   std::string unit_below;  ///< in a second header line
   std::string own_clock;   ///< column with the stamps of its values, where they are not those of the log
   std::string cell_unit;   ///< behind every number, as in the file: "sec" of "0.005 sec"
+  bool elapsed = false;    ///< times whose units change, as Go prints them: "980ms", "1s", "1m0.5s"
   bool unnamed = false;    ///< the header has an empty cell
   bool words = false;      ///< known to hold words, whatever they look like
   bool clock = false;      ///< the stamps once more, from another zero or in another unit
@@ -46,6 +47,7 @@ struct StampPart {
   /// 12 s and 5 ns); 0 = a fraction
   std::int64_t fraction_ns = 0;
   bool of_hour = false;  ///< "12:05" is 12 minutes and 5 seconds
+  bool elapsed = false;  ///< "1m2.5s"
   bool digits = false;   ///< 125959.5 is 12:59:59.5, 20240501125959 has its date too
 };
 

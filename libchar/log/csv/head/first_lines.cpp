@@ -51,7 +51,7 @@ Statement statement_in(std::string_view lower) {
   }
   out.number = parse_double(text);
   const std::size_t unit = lower.find_first_not_of(kBetween, end);
-  if (unit != std::string_view::npos) {
+  if (unit != std::string_view::npos && (lower[unit] < '0' || lower[unit] > '9')) {  // else of the next column
     const std::size_t stop = std::min(lower.find_first_of(kBetween, unit), lower.size());
     out.unit = lower.substr(unit, stop - unit);
   }
@@ -75,11 +75,11 @@ double hertz_of(const Statement& said) {
                said.unit.starts_with("sps") || said.unit.starts_with("samples/s");
   const bool rate = key.find("rate") != std::string_view::npos || key.find("frequency") != std::string_view::npos;
   if (rate && hertz && key.find("baud") == std::string_view::npos) return *said.number * factor;
-  if (!hertz && key.ends_with("hz")) {  // "Sample Rate (Hz)": 100
+  if (key.ends_with("hz")) {  // "Sample Rate (Hz)": 100, "Sampling Freq(Hz) 100Hz"
     hertz = true;
     key.remove_suffix(2);
     if (key.ends_with("k")) {
-      factor = 1e3;
+      factor = said.unit.empty() ? 1e3 : factor;
       key.remove_suffix(1);
     }
   }
@@ -87,10 +87,10 @@ double hertz_of(const Statement& said) {
 }
 
 double interval_of(const Statement& said) {
-  static constexpr std::array<std::string_view, 12> kKeys = {
-      "acquisitionperiod", "acquisitioninterval", "logginginterval", "sampleinterval",
-      "samplinginterval",  "sampleperiod",        "samplingperiod",  "deltax",
-      "timestep",          "sampletime",          "samplingtime",    "xincrement"};
+  static constexpr std::array<std::string_view, 13> kKeys = {
+      "intervalseconds",  "acquisitionperiod", "acquisitioninterval", "logginginterval", "sampleinterval",
+      "samplinginterval", "sampleperiod",      "samplingperiod",      "deltax",          "timestep",
+      "sampletime",       "samplingtime",      "xincrement"};
   std::string_view key = said.key, unit = said.unit;
   for (const std::string_view known : {"ms", "us", "ns", "s"})  // "Sampling period (ms)": 4
     if (unit.empty() && key.ends_with(known) && ends_with_any(key.substr(0, key.size() - known.size()), kKeys)) {
@@ -101,7 +101,8 @@ double interval_of(const Statement& said) {
   if (unit == "ms") factor = 1e-3;
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
-  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" ? *said.number * factor : 0;
+  const bool clock = key == "clock" && (factor < 1 || unit == "s");  // "#CLOCK=400.000uS" of Hantek
+  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" || clock ? *said.number * factor : 0;
 }
 
 }  // namespace
@@ -112,6 +113,16 @@ std::optional<double> stated_rate_hz(std::string_view line) {
   const std::size_t before = sps == std::string::npos ? sps : lower.rfind(',', sps);
   if (before != std::string::npos)
     return parse_double(trimmed(std::string_view(lower).substr(before + 1, sps - before - 1)));
+  // "NPTS= 4096, DT= .005 SEC", "4096  .0050  NPTS, DT" of PEER
+  if (lower.find("npts") != std::string::npos) {
+    const std::size_t step = lower.find("dt="), end = step == std::string::npos ? lower.find("npts") : lower.size();
+    std::size_t from =
+        step == std::string::npos ? lower.find_first_of(" \t", lower.find_first_of("0123456789")) : step + 3;
+    from = std::min(lower.find_first_of(".0123456789", from), end);
+    const std::size_t to = std::min(lower.find_first_not_of(".0123456789e-", from), lower.size());
+    const auto interval = parse_double(std::string_view(lower).substr(from, to - from));
+    return interval && *interval > 0 ? std::optional(1 / *interval) : std::nullopt;
+  }
   // "sampled at 50 Hz", "Data File Created By ActiGraph … at 30 Hz": no cutoff of a filter.
   if (const std::size_t at = lower.find(" at "); at != std::string::npos && at + 4 < lower.size())
     if (const Statement rate = statement_in(std::string_view(lower).substr(at)); rate.number && rate.key == "at")
@@ -243,11 +254,23 @@ bool numbers_columns(const std::vector<Cells>& lines, NumberStyle style) {
   });
 }
 
+// SLIST of seismology, AT2 of PEER, K-NET: behind the line that ends what they say of the record.
+std::optional<std::size_t> behind_record(const std::vector<Cells>& lines) {
+  constexpr std::size_t kLooked = 24;
+  const std::string& front = lines[0][0].text;
+  if (front.starts_with("TIMESERIES ")) return 1;
+  const bool knet = front.starts_with("Origin");
+  for (std::size_t i = 0; i < std::min(lines.size() - 1, kLooked); ++i)
+    for (const Field& field : lines[i])
+      if (knet ? field.text.starts_with("Memo.") : field.text.find("NPTS") != std::string::npos) return i + 1;
+  return std::nullopt;
+}
+
 }  // namespace
 
 TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<ColumnKind>& kinds, NumberStyle style) {
   if (campbell(lines)) return {4, 1, 2};
-  if (lines[0][0].text.starts_with("TIMESERIES ")) return {1, {}, {}};  // SLIST of seismology
+  if (const auto data = behind_record(lines)) return {*data, {}, {}};
   if (numbers_columns(lines, style)) return {1, 0, {}};
   if (lines.size() > 2 && line_of_types(lines[1])) return {2, 0, {}};
   TableStart out;
@@ -280,6 +303,12 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
       out.names = last - 2;
     }
     if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words()) --*out.names;
+    const auto empty = [](const Field& field) { return field.text.empty() && !field.quoted; };
+    if (!out.units && last < rows_at && lines[last].size() > 1 &&
+        std::all_of(lines[last].begin(), lines[last].end(), empty)) {  // units of columns that have none
+      out.units = last;
+      ++out.data;
+    }
     return out;
   }
   // No line of words: names with numbers among them (c, 1, 2), or a row that is damaged.

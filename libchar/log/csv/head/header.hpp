@@ -31,6 +31,9 @@ bool begins_with_rate(Study& study);
 /// Names and rate between lines that say what stands below them, as SignalExpress writes them.
 bool named_by_signal_express(Study& study);
 
+/// Keys in front of the lines, nothing in front of the rows: recorders of Yokogawa.
+bool named_by_yokogawa(Study& study);
+
 /// Units behind the numbers of the rows ("0.005 sec"), and of counts whose scale the preamble states.
 void find_other_units(Study& study);
 

@@ -1,7 +1,7 @@
 // What instruments write into their first lines that is neither names nor rows: oscilloscopes of Rigol ("X,CH1,Start,
 // Increment," above "Sequence,Volt,-6e-4,1e-6"; "Time(s),CH1V,t0 =-6e-4, tInc = 2e-9,"), wristbands of Empatica (a row
 // of the time since 1970, and one of the rate), SignalExpress of NI ("channel names:", "dt:", "data:", and below each
-// what it says).
+// what it says), recorders of Yokogawa (a key in front of each line, nothing in front of the rows).
 #include <algorithm>
 
 #include "libchar/core/text/decimal.hpp"
@@ -69,6 +69,28 @@ bool named_by_signal_express(Study& study) {
   study.dialect.data_offset = lines[data].after;
   study.dialect.first_data_line = lines[data].number + lines[data].lines;
   read_names(study, lines[1], lines[1].text);
+  return true;
+}
+
+bool named_by_yokogawa(Study& study) {
+  const std::vector<Line> lines = study.sample;
+  const auto at = [&](std::string_view key) {
+    return static_cast<std::size_t>(
+        std::find_if(lines.begin(), lines.end(),
+                     [&](const Line& line) { return split(line.text, ',')[0].text == key; }) -
+        lines.begin());
+  };
+  const std::size_t names = at("TraceName"), units = at("VUnit"), data = at("");
+  if (at("Header Size") != 0 || names >= data || data >= lines.size()) return false;
+  study.preamble.assign(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(data));
+  study.sample.erase(study.sample.begin(), study.sample.begin() + static_cast<std::ptrdiff_t>(data));
+  study.dialect.data_offset = lines[data].offset;
+  study.dialect.first_data_line = lines[data].number;
+  const std::string_view text = lines[names].text;
+  read_names(study, lines[names], text.substr(text.find(',')));
+  if (units >= data) return true;
+  read_units(study, lines[units]);
+  study.dialect.columns[0].unit_below.clear();  // "VUnit"
   return true;
 }
 

@@ -23,6 +23,9 @@ struct Magic {
 
 constexpr const char* kPandas = "pandas reads it: df = pandas.read_parquet(FILE); df.to_csv('log.csv', index=False)";
 
+constexpr const char* kPackets =
+    "tshark exports them: tshark -r FILE -T fields -E separator=, -e frame.time_epoch -e …";
+
 constexpr std::array kMagics = {
     Magic{0, "\x93NUMPY"sv, "a NumPy array (NPY)", "read it with `format` npy"},
     Magic{0, "\x1F\x8B"sv, "compressed (gzip)", "unpack it first: gunzip"},
@@ -52,6 +55,12 @@ constexpr std::array kMagics = {
     Magic{0, "CDF\x01"sv, "a NetCDF table",
           "xarray reads it: xarray.open_dataset(FILE).to_dataframe().to_csv('log.csv')"},
     Magic{0, "fLaC"sv, "packed sound (FLAC)", "unpack it to WAV: flac -d FILE"},
+    Magic{0, "LOGG"sv, "frames of a CAN bus (BLF)", "asammdf or python-can export them: can.LogReader(FILE)"},
+    Magic{0, "Obj\x01"sv, "records of Avro",
+          "fastavro reads them: pandas.DataFrame(fastavro.reader(open(FILE, 'rb')))"},
+    Magic{0, "\xD4\xC3\xB2\xA1"sv, "packets of a network (pcap)", kPackets},
+    Magic{0, "\x0A\x0D\x0D\x0A"sv, "packets of a network (pcap)", kPackets},
+    Magic{0, "\x02P"sv, "motion capture (C3D)", "ezc3d reads it: ezc3d.c3d(FILE)['data']['analogs']"},
     Magic{0, "C 1 CLIENT"sv, "seismic traces (SEG-Y)", "ObsPy reads them: obspy.read(FILE)"},
 };
 

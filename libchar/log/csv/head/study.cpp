@@ -26,6 +26,13 @@ void add_missing_names(const Study& study, Cells& fields) {
     const auto name = time_name(name_and_unit(field.text).first);
     return name && !name->date;
   };
+  constexpr double kFirstWeek = 1000, kLastWeek = 4000, kWeek = 604800;
+  const Cell week = read_cell(last[0].text, '.'), second = read_cell(last[columns > 1 ? 1 : 0].text, '.');
+  if (fields.size() + 1 == columns && says_time(fields[0]) && week.integer && week.number > kFirstWeek &&
+      week.number < kLastWeek && second.kind == Cell::value && second.number >= 0 && second.number < kWeek &&
+      read_cell(before[0].text, '.').number == week.number)
+    fields.insert(fields.begin(), Field{"week", fields[0].offset, false});  // "GPST" of RTKLIB stands above both
+  if (fields.size() == columns) return;
   const bool quoted = std::all_of(fields.begin(), fields.end(), [](const Field& f) { return f.quoted; });
   const bool time = fields.size() > 1 && std::any_of(fields.begin(), fields.end(), says_time);
   const Cell a = read_cell(before[0].text, '.'), b = read_cell(last[0].text, '.');
@@ -37,23 +44,32 @@ void add_missing_names(const Study& study, Cells& fields) {
   while (fields.size() < columns) fields.push_back(Field{"", fields.back().offset, false});
 }
 
-// LabVIEW names a column of comments that its rows do not have; names with commas in them are known by the blanks
-// behind those.
+// LabVIEW names a column of comments that its rows do not have; names with commas in them are known by the brackets
+// around those, or by the blanks behind them.
 void fit_names(const Study& study, std::string_view text, Cells& fields) {
   const std::size_t columns = study.columns;
   if (fields.size() == columns + 1 && fields.back().text == "Comment") fields.pop_back();
   if (fields.size() < columns) add_missing_names(study, fields);
-  const auto joined = [&](const Field& field) {
+  const auto behind_blank = [&](const Field& field) {
     return &field != fields.data() && field.offset > 0 && text[field.offset - 1] == ' ';
   };
-  const auto count = std::count_if(fields.begin(), fields.end(), joined);
-  if (study.dialect.delimiter != ',' || fields.size() < columns ||
-      columns + static_cast<std::size_t>(count) != fields.size())
-    return;
+  const auto in_brackets = [&](const Field& field) {
+    const std::string_view front = text.substr(0, field.offset);
+    const auto signs = [&](char a, char b) {
+      return std::count_if(front.begin(), front.end(), [&](char c) { return c == a || c == b; });
+    };
+    return signs('(', '[') > signs(')', ']');
+  };
+  const std::size_t more = study.dialect.delimiter == ',' && fields.size() > columns ? fields.size() - columns : 0;
+  const auto explains = [&](const auto& joined) {
+    return more > 0 && std::count_if(fields.begin(), fields.end(), joined) == static_cast<std::ptrdiff_t>(more);
+  };
+  const bool brackets = explains(in_brackets);
+  if (!brackets && !explains(behind_blank)) return;
   Cells out;
   for (Field& field : fields)
-    if (joined(field))
-      out.back().text += ", " + field.text;
+    if (brackets ? in_brackets(field) : behind_blank(field))
+      out.back().text += (behind_blank(field) ? ", " : ",") + field.text;
     else
       out.push_back(std::move(field));
   fields = std::move(out);

@@ -25,13 +25,14 @@ bool is_filling(std::string_view text) {
   return (sign == '-' || sign == '*' || sign == '?') && text.find_first_not_of(sign) == std::string_view::npos;
 }
 
-// The last line are errors of spreadsheets.
+// Behind them the errors of spreadsheets, and what multimeters show beyond their range.
 bool means_missing(std::string_view text) {
   if (text.empty() || is_filling(text)) return true;
   if (is_digit(text.back())) return false;
   for (const char* word :
-       {"nan",       "na",       "n/a",  "n.a.", "<na>",  "null",    "none",    "nil",   "-nan",   "+nan",
-        "-nan(ind)", "nan(ind)", "#n/a", "#na",  "#num!", "#value!", "#div/0!", "#ref!", "#null!", "#name?"})
+       {"nan",       "na",       "n/a",  "n.a.", "<na>",  "null",    "none",    "nil",   "-nan",    "+nan",
+        "-nan(ind)", "nan(ind)", "#n/a", "#na",  "#num!", "#value!", "#div/0!", "#ref!", "#null!",  "#name?",
+        "ol",        "-ol",      "+ol",  "o.l",  "-o.l",  "o.l.",    "ovld",    "-ovld", "overload"})
     if (is_word(text, word)) return true;
   return false;
 }

@@ -15,6 +15,7 @@ namespace libchar::csv {
 namespace {
 
 bool blank(char c) { return c == ' ' || c == '\t'; }
+bool ascii_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 /// The rows of a chunk as they are filled.
 struct Filling {
@@ -241,6 +242,18 @@ class CarefulLines {
   CarefulLines(Filling& to, std::string_view text) : to_(to), begin_(text.data()), end_(text.data() + text.size()) {}
 
   const char* take(const char* start) {
+    const bool behind = to_.out.footer.has_value();
+    const std::size_t rows = to_.rows;
+    const char* const after = take_line(start);
+    if (behind && (to_.out.problem || to_.rows > rows)) {  // rows go on: that line was none of what ends a file
+      to_.out.problem = std::exchange(to_.out.footer, {});
+      to_.rows = rows;
+    }
+    return after;
+  }
+
+ private:
+  const char* take_line(const char* start) {
     const char* stop = start;
     while (stop < end_ && *stop != '\n' && *stop != '\r') ++stop;
     std::uint64_t more_lines = 0;
@@ -296,7 +309,6 @@ class CarefulLines {
     return after;
   }
 
- private:
   // Behind quoted cells that hold line ends.
   const char* end_of_row(const char* start, const char* stop, std::uint64_t& more_lines) {
     const std::string_view rest(start, static_cast<std::size_t>(end_ - start));
@@ -382,8 +394,34 @@ class CarefulLines {
 
   void leave_out(std::uint64_t bytes) {
     if (to_.out.problem) return;
+    if (to_.out.footer) return fail("E0327", "rows of another kind", "", "", 0);
     ++to_.out.filtered;
     to_.out.account.filtered_bytes += bytes;
+    to_.list_lines();
+  }
+
+  // What programs write below a table: "Average,1.2", "(2500 rows)", "*** END OF DATA ***".
+  bool like_footer(std::string_view line) const {
+    const std::string_view text = trimmed(line);
+    std::size_t letters = 0, most = 0;
+    for (const char c : text) most = std::max(most, letters = ascii_letter(c) ? letters + 1 : 0);
+    constexpr std::size_t kWord = 3;
+    if (most < kWord) return false;
+    const bool digit = is_digit(text[0]) || (text.size() > 1 && is_digit(text[1]) && !ascii_letter(text[0]));
+    return !digit || (to_.dialect.delimiter != ' ' && line.find(to_.dialect.delimiter) == std::string_view::npos);
+  }
+
+  // Such a line, of which no cell was read, is a problem only if a row follows.
+  void may_end(std::string_view line, const Account& before, std::uint64_t bytes) {
+    Account& account = to_.out.account;
+    if (!like_footer(line) || account.values != before.values || account.missing != before.missing ||
+        account.rejected != before.rejected || account.stamps != before.stamps)
+      return;
+    account = before;
+    account.comment_bytes += bytes;
+    if (!to_.out.footer) to_.out.footer = std::move(to_.out.problem);
+    to_.out.problem.reset();
+    to_.out.footers.add(to_.line, 1);
     to_.list_lines();
   }
 
@@ -391,9 +429,11 @@ class CarefulLines {
   // as one of missing samples.
   bool row_or_drop(std::string_view line, std::uint64_t bytes) {
     if (!to_.plan.drop_bad_rows) {
+      const Account known = to_.out.account;
       if (careful_row(line)) return true;
       if (std::string& hint = to_.out.problem->problem.hint; hint.empty())
         hint = "`drop_bad_rows` leaves out and counts rows that cannot be read";
+      may_end(line, known, bytes);
       return false;
     }
     RowNotes before = to_.out;
@@ -639,7 +679,7 @@ class CarefulLines {
       return "`decimal` comma, if ',' is the decimal mark";
     if (to_.dialect.decimal == ',' && read_cell(text, '.').kind == Cell::value)
       return "`decimal` point, if '.' is the decimal mark";
-    if (text.starts_with("0x") || text.starts_with("0X")) return "int(x, 16) of Python makes decimal numbers of them";
+    if (text.starts_with("0x") || text.starts_with("0X")) return kHexadecimal;
     const bool word = !text.empty() && std::none_of(text.begin(), text.end(), [](char c) { return is_digit(c); });
     const auto column = std::find(to_.plan.target.begin(), to_.plan.target.end(), static_cast<int>(channel));
     return fmt::format("`drop_bad_rows` leaves such rows out, `channels` '!{}' the column{}",
@@ -691,7 +731,7 @@ void parse_rows(std::string_view text, const Plan& plan, ParsedChunk& out) {
   const char* const end = p + text.size();
   while (p < end && !out.problem) {
     const char* const start = p;
-    p = quick.take(p);
+    if (!out.footer) p = quick.take(p);
     out.account.row_bytes += static_cast<std::uint64_t>(p - start);
     if (p == end) break;
     p = careful.take(p);

@@ -78,8 +78,9 @@ struct ParsedChunk : RowNotes {
   std::uint64_t filtered = 0;         ///< rows that were not asked for
   std::uint64_t lines = 0;            ///< line ends in the chunk (a last line without one counts)
   std::optional<RowProblem> problem;
-  std::optional<Spot> unended;  ///< end of a last row that has no line end and may have been cut in its last cell
-  Tally blank, comment, repeated, mixed_end, bad;
+  std::optional<RowProblem> footer;  ///< why the first line of words behind the last row is none: no problem at the end
+  std::optional<Spot> unended;       ///< end of a last row that has no line end and may have been cut in its last cell
+  Tally blank, comment, repeated, mixed_end, bad, footers;
 };
 
 /// Parses the lines in `text` (whole lines; the last may lack its line end at the end of the file). `text` must be

@@ -293,8 +293,31 @@ void choose_date_order(const StampStudy& study, const ReadOptions& options, Dial
                                                                                : "year"));
 }
 
+/// "980ms", "1s", "1m0.5s": times that rise, each with its unit. Lengths of time that come and go are no stamps.
+bool rises_with_units(const StampStudy& study, std::size_t column) {
+  constexpr std::size_t kFewest = 3;
+  std::optional<std::int64_t> first, last;
+  std::size_t rows = 0;
+  for (const Cells& row : study.rows) {
+    if (column >= row.size() || row[column].text.empty()) continue;
+    const auto elapsed = read_elapsed(row[column].text);
+    if (!elapsed || (last && elapsed->ns < *last)) return false;
+    last = elapsed->ns;
+    first = first ? first : last;
+    ++rows;
+  }
+  return rows >= kFewest && *last > *first;
+}
+
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   const auto main = static_cast<std::size_t>(dialect.time.column);
+  if (dialect.time.elapsed) {
+    info.dialect.emplace_back("stamps have their units behind them");
+    dialect.columns[main].cell_unit.clear();
+    info.time.unit = "ns";
+    info.time.unit_ns = 1;
+    return;
+  }
   bool zone = false, of_hour = false, seconds = false, date_digits = false;
   for (const Cells& row : study.rows)
     for (const StampPart* part : {&dialect.time, &dialect.more_time})
@@ -381,6 +404,7 @@ TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::
     label.text = second || (c < study.kinds.size() &&
                             (study.kinds[c] == ColumnKind::text || study.kinds[c] == ColumnKind::empty));
     if (column.left_out) label.text = true;
+    label.calendar = label.calendar || (!pair && column.elapsed);
     label.calendar = label.calendar || (!pair && !label.text && is_clock_digits(study, c, column.text));
     table.columns.push_back(label);
   }
@@ -426,6 +450,13 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
 
 StampDefect read_part(std::string_view text, const StampPart& part, const Dialect& dialect, std::int64_t& out,
                       std::size_t& offset) {
+  if (part.elapsed) {
+    offset = 0;
+    const auto elapsed = read_elapsed(text);
+    out = elapsed ? elapsed->ns : 0;
+    if (elapsed) return StampDefect::none;
+    return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
+  }
   if (part.digits) {
     if (const auto date = read_date_digits(text)) {
       out = date->ns;
@@ -465,13 +496,17 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
   const auto pair = find_pair(study, dialect);
   const bool led = !dialect.lead.empty() && options.time_column == "auto" && study.kinds[0] != ColumnKind::empty;
   if (dialect.lead == ")" && dialect.columns[0].text.empty()) dialect.columns[0].unit_below = "ms";  // ESP-IDF
+  for (std::size_t c = 0; c < dialect.columns.size(); ++c)
+    dialect.columns[c].elapsed = !dialect.columns[c].cell_unit.empty() && rises_with_units(study, c);
   TableFront table = front_of(study, dialect, pair);
   const auto part_of = [&](std::size_t column) {
     const bool calendar = column < study.kinds.size() && is_calendar(study.kinds[column]);
     StampPart part{static_cast<int>(column), calendar};
-    part.digits = table.columns[column].calendar && !calendar && (!pair || pair->calendar || column != pair->first);
+    part.elapsed = !pair && !calendar && dialect.columns[column].elapsed;
+    part.digits = table.columns[column].calendar && !calendar && !part.elapsed &&
+                  (!pair || pair->calendar || column != pair->first);
     if (pair && pair->calendar && column == pair->second) part.digits = !calendar;
-    part.calendar = part.calendar || part.digits;
+    part.calendar = part.calendar || part.digits || part.elapsed;
     if (!pair || pair->calendar) return part;
     constexpr std::int64_t kSecond = 1000000000;
     if (column == pair->first) part.unit_ns = pair->days ? 86400 * kSecond : kSecond;
