@@ -8,8 +8,12 @@
 //   g_m = d ln theta/da = -J^+ phi_m,  w_m ~ prior of m times the marginal likelihood of z_m,
 // J the weighted log slopes of the terms (and of a corner), phi_m those of the shape (J. A. Hoeting et al., "Bayesian
 // Model Averaging", Stat. Sci. 14 (1999) 382, with the score in the place of a second maximum: R. D. Cook and S.
-// Weisberg, Biometrika 70 (1983) 1). Heavy tails of the prior leave a shape that is seen as it is; a larger scale
-// covers N better where the tests are blind and costs more where there is nothing: tests/bench/valley_bench shows both.
+// Weisberg, Biometrika 70 (1983) 1). Shrinking is right on the average of the prior, not at every strength: where
+// |z_m| is beyond 1 an interval reaches to where a_hat itself has the term. It does so (neighbours.cpp) for an exponent
+// of the slow noise near one or two, whose phi is its share of the density times ln f, and which moves N alone: B and
+// K have no meaning apart from their exponents. Heavy tails of the prior leave a shape that is seen as it is; a larger
+// scale covers N better where the tests are blind and costs more where there is nothing: tests/bench/valley_bench shows
+// both.
 #include "libchar/fit/detail/band/small_shape.hpp"
 
 #include <algorithm>
@@ -32,7 +36,9 @@ struct Order {
 /// Most sensors roll off from the first order on; the steeper, the later. Noise that rises does so
 /// as quantization noise does.
 constexpr std::array<Order, 3> kOrders = {{{1, 0.75, 0.9}, {2, 0.15, 0.07}, {4, 0.1, 0.03}}};
-constexpr double kTaken = 1;  ///< standard deviations from which on the shape is a part of the model
+constexpr double kLeastWeight = 0.05;  ///< of a shape that intervals reach to
+constexpr double kReachFrom = 1;       ///< standard deviations of a shape from which on intervals reach to it
+constexpr double kTaken = 1;           ///< standard deviations from which on the shape is a part of the model
 
 double mean_sine_power(const PowerBin& bin, double rate_hz, int power) {
   constexpr int kNodes = 5;
@@ -81,6 +87,7 @@ struct Slopes {
   Eigen::ArrayXd root;  ///< sqrt(nu/2)
   Eigen::MatrixXd columns;
   std::vector<std::size_t> terms;
+  std::vector<bool> shown;   ///< of `terms`: above zero
   Eigen::VectorXd residual;  ///< sqrt(nu/2) (u - 1)
   Eigen::VectorXd taken;     ///< sqrt(nu/2) times the log gain that is in the model
 };
@@ -89,7 +96,10 @@ Slopes slopes_of(const std::vector<PowerBin>& inside, const Band& band, const Bi
                  const TermSet& terms, double rate_hz) {
   Slopes out;
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (terms[i] || theta[i] > 0) out.terms.push_back(i);
+    if (terms[i] || theta[i] > 0) {
+      out.terms.push_back(i);
+      out.shown.push_back(theta[i] > 0);
+    }
   out.root = (problem.dof / 2).sqrt();
   const Eigen::ArrayXd model = mixture_of(problem, theta);
   const auto count = static_cast<Eigen::Index>(out.terms.size());
@@ -114,6 +124,7 @@ Slopes slopes_of(const std::vector<PowerBin>& inside, const Band& band, const Bi
 /// What one family says: its posterior, and what it moves.
 struct Answer {
   double sd = 0;          ///< of the amplitude; 0: nothing can be said
+  double z = 0;           ///< amplitude over sd
   double weight = 0;      ///< not yet of sum one
   Posterior posterior;    ///< in units of sd
   Eigen::VectorXd slope;  ///< d ln theta / d amplitude, of Slopes::terms
@@ -126,14 +137,45 @@ Answer answer_of(const Slopes& slopes, const Eigen::VectorXd& shape, const Order
   const Eigen::VectorXd apart = shape - slopes.columns * inside;
   if (!(apart.norm() > kApart * shape.norm())) return out;
   out.sd = 1 / apart.norm();
-  const double z = apart.dot(slopes.residual + slopes.taken) * out.sd;
-  out.posterior = posterior_of(z);
-  out.weight = (z < 0 ? family.falling : family.rising) * out.posterior.marginal;
+  out.z = apart.dot(slopes.residual + slopes.taken) * out.sd;
+  out.posterior = posterior_of(out.z);
+  out.weight = (out.z < 0 ? family.falling : family.rising) * out.posterior.marginal;
   out.slope = -inside.head(static_cast<Eigen::Index>(slopes.terms.size()));
   return out;
 }
 
+/// How far the intervals of ln theta reach.
+struct Reach {
+  Eigen::VectorXd low, high;
+};
+
+/// From where the average has the terms to where the answer itself has them.
+void reach_to(const Answer& answer, const Eigen::VectorXd& mean, Reach& reach) {
+  if (!(std::abs(answer.z) > kReachFrom)) return;
+  const Eigen::VectorXd apart = answer.z * answer.sd * answer.slope - mean;
+  reach.low = reach.low.cwiseMin(apart);
+  reach.high = reach.high.cwiseMax(apart);
+}
+
 using Answers = std::array<Answer, kOrders.size()>;
+
+bool is_slow(std::size_t term) {
+  return term == static_cast<std::size_t>(Term::flicker) || term == static_cast<std::size_t>(Term::walk);
+}
+
+/// Of another exponent of the slow noise; it moves white noise alone.
+Answer tilt_answer(const Slopes& slopes, const std::vector<PowerBin>& inside) {
+  Eigen::VectorXd shape = Eigen::VectorXd::Zero(slopes.root.size());
+  for (std::size_t i = 0; i < slopes.terms.size(); ++i)
+    if (is_slow(slopes.terms[i]) && slopes.shown[i]) shape += slopes.columns.col(static_cast<Eigen::Index>(i));
+  if (shape.isZero()) return {};
+  for (Eigen::Index j = 0; j < shape.size(); ++j)
+    shape[j] *= std::log(inside[static_cast<std::size_t>(j)].frequency_hz);
+  Answer out = answer_of(slopes, shape, {0, 1, 1});
+  for (std::size_t i = 0; i < slopes.terms.size(); ++i)
+    if (is_slow(slopes.terms[i])) out.slope[static_cast<Eigen::Index>(i)] = 0;
+  return out;
+}
 
 Answers answers_of(const Slopes& slopes, const std::vector<PowerBin>& inside, const Band& band, double rate_hz) {
   Answers out;
@@ -220,19 +262,27 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& ba
   Eigen::VectorXd shift = pivoted_least_squares(slopes.columns, slopes.taken).x.head(n);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd more = Eigen::MatrixXd::Zero(n, n);
-  for (const Answer& answer : answers_of(slopes, inside, band, fit.rate_hz)) {
+  const Answers answers = answers_of(slopes, inside, band, fit.rate_hz);
+  for (const Answer& answer : answers) {
     if (!(answer.weight > 0)) continue;
     mean += answer.weight * answer.posterior.mean * answer.sd * answer.slope;
     more += answer.weight * answer.posterior.square * answer.sd * answer.sd * answer.slope * answer.slope.transpose();
   }
   more -= mean * mean.transpose();
+  Reach reach{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  for (const Answer& answer : answers)
+    if (answer.weight > kLeastWeight) reach_to(answer, mean, reach);
+  reach_to(tilt_answer(slopes, inside), mean, reach);
   shift += mean;
   for (Eigen::Index a = 0; a < n; ++a) {
     const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
     if (!(fit.theta[i] > 0)) continue;  // lent to a law
     for (Eigen::Index b = 0; b < n; ++b) fit.covariance[i][slopes.terms[static_cast<std::size_t>(b)]] += more(a, b);
     fit.theta[i] *= grown(shift[a]);
-    if (fit.term[i].value) move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);
+    if (!fit.term[i].value) continue;
+    move_term(shift[a], std::max(0.0, more(a, a)), fit.term[i]);
+    if (!is_slow(i)) fit.term[i].ci95.low /= std::sqrt(grown(-reach.low[a]));
+    if (!is_slow(i)) fit.term[i].ci95.high *= std::sqrt(grown(reach.high[a]));
   }
 }
 
