@@ -678,6 +678,11 @@ ReplayResult Replay::collect() {
   for (const SensorMeter& meter : sensors_)
     healthy_rms.push_back(std::sqrt(meter.healthy_squares / meter.healthy_samples));
   judge_optimum(out, optimum_, healthy_rms, plan_.array);
+  if (watch_.tilt) watch_.tilt->tell(out.warnings);
+  if (watch_.readings) {
+    note_readings(watch_.readings->learnt(), learnt_);
+    tell_readings(out);
+  }
   judge_best(out, meters, costs(), scoring);
   Meters single;
   for (const SensorMeter& meter : sensors_) single.push_back(&meter.error);
@@ -685,11 +690,6 @@ ReplayResult Replay::collect() {
   add_tracks(out);
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
-  if (watch_.tilt) watch_.tilt->tell(out.warnings);
-  if (watch_.readings) {
-    note_readings(watch_.readings->learnt(), learnt_);
-    tell_readings(out);
-  }
   for (const AlgorithmRun& run : runs_)
     for (LearntAlgorithm& algorithm : learnt_.algorithms) {
       if (!run.planned().asked || algorithm.label != run.planned().label) continue;

@@ -146,6 +146,19 @@ TEST_CASE("minque: one channel that is far better than all others is soon follow
   }
 }
 
+TEST_CASE("minque: a sample far from all others moves no estimate") {
+  const Eigen::VectorXd variances = Eigen::VectorXd::Constant(3, 1);
+  for (const Eigen::Index lasting : {1, 3000}) {
+    INFO(lasting);
+    Recorded m = made(Eigen::MatrixXd::Ones(3, 1), variances, 6000, 7);
+    for (Eigen::Index k = 3000; k < 3000 + lasting; ++k) m.y(1, k) += 50;
+    const auto minque = test::make("minque", test::array(3));
+    const test::Run out = test::run(*minque, m.y);
+    CHECK((out.x - m.x).rightCols(3000).cwiseAbs().maxCoeff() < 4);
+    CHECK((*minque->variances())[0] < 2);
+  }
+}
+
 TEST_CASE("minque: near the optimum, two inputs, faults there too") {
   const Eigen::MatrixXd h = (Eigen::MatrixXd(6, 2) << 1, -.02, 1, -.06, 1, -.11, 1, -.17, 1, -.24, 1, -.3).finished();
   const Eigen::VectorXd variances = (Eigen::VectorXd(6) << 1, 4, 1.5, 8, 3, 12).finished() * 1e-4;

@@ -52,7 +52,8 @@ TEST_CASE("samples of SLIST follow each other in a line, and are one channel") {
   }
 }
 
-TEST_CASE("a point in the clock in front says that commas behind it are no decimal ones") {
+TEST_CASE(
+    "behind a clock one comma divides whole numbers where the digits behind it do not change with those in front") {
   const Recording log = read_text(unit_rows("", [](int k) {
     return fmt::format("12:00:{:02}.{:03} {},{}", k / 50, k % 50 * 20, (k * 31) % 50 - 20, 1290 + k % 20);
   }));
@@ -60,6 +61,16 @@ TEST_CASE("a point in the clock in front says that commas behind it are no decim
   CHECK(log.samples[0].front() == -20);
   CHECK(log.samples[1].front() == 1290);
   CHECK(log.info.time.rate_hz == Approx(50));
+  for (const char* clock : {"12:00:{:02}.{:03} ", "12:00:{:02}.{:03}  ", "12:00:{:02},{:03} "}) {
+    const Recording decimal = read_text(unit_rows("", [&](int k) {
+      const int n = 15000 + (k * 7919) % 9973;
+      return fmt::format(fmt::runtime(clock), k / 50, k % 50 * 20) + fmt::format("{},{:03}", n / 1000, n % 1000);
+    }));
+    INFO(clock);
+    REQUIRE(decimal.samples.size() == 1);
+    CHECK(decimal.samples[0].front() == Approx(15));
+    CHECK(decimal.samples[0][1] == Approx(22.919));
+  }
   const Recording commas = read_text(
       unit_rows("", [](int k) { return fmt::format("12:00:{:02},{:03} 1,{:03}", k / 50, k % 50 * 20, 300 + k % 20); }));
   CHECK(commas.info.time.rate_hz == Approx(50));
@@ -109,6 +120,9 @@ TEST_CASE("lines of words behind the last row end a table") {
   const auto barred = [](int k) { return fmt::format("{:.2f} | {:.3f}", 0.01 * k, unit_value(k)); };
   for (const auto& [text, lines] :
        {std::pair(unit_rows("t,x\n", row) + "Average,0.55\nMaximum,0.6\n", 2),
+        std::pair(unit_rows("t x\n", [](int k) { return fmt::format("{:.2f} {:.3f}", 0.01 * k, unit_value(k)); }) +
+                      "(400 rows)\n",
+                  1),
         std::pair(unit_rows("t,x\n", row) + "\n(400 rows affected)\n", 1),
         std::pair(unit_rows("t,x\n", row) + "*** END OF DATA ***", 1),
         std::pair(unit_rows("t | x\n", barred) + "400 rows in set (0.00 sec)\n\n", 1),

@@ -400,6 +400,19 @@ TEST_CASE("verdict: of three sensors the method that withstands a failing one is
   }
 }
 
+TEST_CASE("verdict: of four sensors as well, as their scores are those of three with the failing one among them") {
+  const test::SceneBench bench;
+  const std::string scene = scene_of(4, "algorithms: [median, random-weighting, minque]\n");
+  bench.put("array.csv", array_log({{1}, {1, 0, 1, 25}, {1}, {1}}, 12000, 2));
+  const ReplayResult fails = replay(bench.read(scene));
+  REQUIRE(fails.best);
+  CHECK(fails.chosen_as_robust);
+  CHECK(fails.algorithms[*fails.best].label == "minque");
+  CHECK_THAT(test::verdict_of(fails, false), Contains("scores arrays of three sensors, and one of the four fails"));
+  bench.put("array.csv", array_log({{1}, {1}, {1}, {1}}, 12000, 2));
+  CHECK_FALSE(replay(bench.read(scene)).chosen_as_robust);
+}
+
 TEST_CASE("verdict: sound sensors with offsets, gains and noise of their own are none that fail or stand apart") {
   std::size_t said = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

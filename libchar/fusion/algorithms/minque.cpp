@@ -1,5 +1,6 @@
 #include "libchar/fusion/algorithms/minque.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -23,6 +24,12 @@ constexpr double kRounding = 1e4;
 
 /// Relative standard deviation of a variance above which a reader must know.
 constexpr double kPoorlyKnownVariance = 0.5;
+
+/// Square of a residual over its variance that makes a sample an outlier, and of all others together, per degree of
+/// freedom, which then agree.
+constexpr double kOutlier = 64, kAgreeing = 9;
+/// Outliers are rare: where they are not, variances or the model are wrong, and learn from them.
+constexpr double kMostOutliers = 0.05, kOutlierMemory = 1.0 / 128;
 
 /// A second moment can only be judged by variances that are known clearly better than itself.
 bool shorter(double fault_gamma, double gamma) { return 1 - fault_gamma >= 5 * (1 - gamma); }
@@ -65,6 +72,8 @@ Estimate Minque::step_with(Variances& variances, const Sample& y) {
   }
   Estimate estimate = Estimate::none(inputs_);
   if (good(x)) {
+    const bool outlier = left_out_outlier(variances);
+    if (outlier) x = fuse();
     const bool judged = detector_ && detector_->set_changed();
     const bool found = judged || (detection_ && found_fault(variances));
     if (found && !judged) {
@@ -73,8 +82,13 @@ Estimate Minque::step_with(Variances& variances, const Sample& y) {
     }
     if (good(x)) estimate = variances.estimate();
     if (good(x) && detection_ && watch_.count_out() > 0) check_recovery(variances, y);
-    // What a failing channel has done to the residuals of this instant is not to be learnt.
-    if (good(x) && !found) variances.update();
+    // What a failing channel has done to the residuals of this instant is not to be learnt, unless it goes on.
+    const bool learns = !outlier || outliers_ > kMostOutliers;
+    if (good(x) && outlier && learns) {
+      use_present(y);
+      fuse();
+    }
+    if (good(x) && !found && learns) variances.update();
   }
   ++now_;
   return estimate;
@@ -97,6 +111,34 @@ void Minque::use_present(const Sample& y) {
   m_ = 0;
   for (int i = 0; i < static_cast<int>(y.size()); ++i)
     if (usable(y[i]) && !out(static_cast<std::size_t>(i))) present_[static_cast<std::size_t>(m_++)] = i;
+}
+
+/// Of one instant: the sample that is far from all others where these agree. The sums of the detector need more.
+template <class Variances>
+bool Minque::left_out_outlier(const Variances& variances) {
+  if (!detector_ || !variances.started() || m_ < inputs_ + 2) return false;
+  const double* const r = variances.residuals();
+  const double* const expected = variances.residual_variances();
+  const double least = kRounding * variances.rounding();
+  const auto far = [&](int i) { return r[i] * r[i] > kOutlier * std::max(expected[i], least); };
+  bool outlier = std::any_of(present_.begin(), present_.begin() + m_, far);
+  int worst = 0;
+  double all = 0, largest = 0;
+  for (int k = 0; outlier && k < m_; ++k) {
+    const int i = in_use(k);
+    const double ratio = r[i] * r[i] / std::max(expected[i], least);
+    all += r[i] * r[i] / variances.variance(static_cast<std::size_t>(i));
+    if (ratio <= largest) continue;
+    largest = ratio;
+    worst = k;
+  }
+  // Without the sample the sum of squares is smaller by its own ratio.
+  outlier = outlier && all - largest < kAgreeing * static_cast<double>(m_ - 1 - inputs_);
+  outliers_ += kOutlierMemory * ((outlier ? 1 : 0) - outliers_);
+  if (!outlier) return false;
+  std::copy(present_.begin() + worst + 1, present_.begin() + m_, present_.begin() + worst);
+  --m_;
+  return true;
 }
 
 /// Takes out the worst channel, if one is beyond its threshold.

@@ -66,6 +66,8 @@ struct Minque {
   template <class Variances>
   Estimate step_with(Variances& variances, const Sample& y);
   template <class Variances>
+  bool left_out_outlier(const Variances& variances);
+  template <class Variances>
   bool found_fault(const Variances& variances);
   template <class Variances>
   void check_recovery(const Variances& variances, const Sample& y);
@@ -86,6 +88,7 @@ struct Minque {
   Eigen::Index inputs_;
   std::vector<int> present_;  // channels of this instant, rising: the first m_
   int m_ = 0;
+  double outliers_ = 0;  // share of the last instants that had one
   std::vector<std::string> names_;
 };
 

@@ -197,19 +197,9 @@ std::optional<Field> lead_of_names(std::string_view line, std::size_t& after) {
 
 bool is_number(std::string_view text) { return read_cell(trimmed(text), '.').kind == Cell::value; }
 
-/// "12:00:00.5": who writes so writes no decimal commas.
-bool clock_with_point(std::string_view text) {
-  for (std::size_t at = text.find(':'); at != text.npos; at = text.find(':', at + 1)) {
-    const std::size_t mark = text.find_first_not_of("0123456789", at + 1);
-    if (mark != text.npos && mark == at + 3 && text[mark] == '.' && mark + 1 < text.size() && is_digit(text[mark + 1]))
-      return true;
-  }
-  return false;
-}
-
 /// Where the cells begin: behind words in front of the first one, "[info] 0.1, 0.2" and "imu - INFO - 0.1 0.2". What
 /// one comma divides may be one number: "INFO 1,5".
-std::size_t behind_words(std::string_view line, std::size_t from) {
+std::size_t behind_words(std::string_view line, std::size_t from, bool divides = false) {
   const std::string_view text = line.substr(from);
   const std::size_t end = text.find_first_of(",;\t");
   if (end == text.npos) {
@@ -222,16 +212,16 @@ std::size_t behind_words(std::string_view line, std::size_t from) {
   const std::size_t begin = text.find(trimmed(text.substr(0, end))) + blank + 1;
   const std::string_view first = text.substr(begin, end - begin), rest = text.substr(end + 1);
   const bool one = text[end] == ',' && rest.find_first_not_of("0123456789") == rest.npos &&
-                   first.find_first_not_of("+-0123456789") == first.npos && !clock_with_point(line.substr(0, begin));
+                   first.find_first_not_of("+-0123456789") == first.npos && !divides;
   return !one && is_number(first) && is_number(rest.substr(0, rest.find_first_of(",;\t"))) ? from + begin : from;
 }
 
 /// A stamp among the words in front of the cells: "May 01 12:00:00 host imu[12]:", "12:00:00.123 00>",
 /// "1714564800.25"; empty where there is only the sign of a terminal, "00>".
-std::optional<Field> lead_of_words(std::string_view line, std::size_t& after) {
+std::optional<Field> lead_of_words(std::string_view line, std::size_t& after, bool divides) {
   constexpr std::size_t kWords = 3, kLongest = 4;
   constexpr double kEpoch = 1e9;
-  const std::size_t begin = line.find_first_not_of(" \t"), cells = behind_words(line, begin);
+  const std::size_t begin = line.find_first_not_of(" \t"), cells = behind_words(line, begin, divides);
   const std::string_view words = trimmed(line.substr(begin, cells - begin));
   if (words.empty() || line.substr(0, cells).find('"') != line.npos ||
       read_calendar(trimmed(line.substr(begin, line.find_first_of(",;\t") - begin))))
@@ -262,7 +252,7 @@ std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::
   std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string_view::npos) return std::nullopt;
   if (lead == "=") return lead_of_names(line, after);
-  if (lead == " ") return lead_of_words(line, after);
+  if (lead == " " || lead == kDivided) return lead_of_words(line, after, lead == kDivided);
   if (lead == ",") {  // the comma of the seconds
     constexpr std::size_t kComma = 19, kLength = 23;
     if (line.size() <= kLength || line[kComma] != ',' || line[kLength] != ' ' || begin > 0) return std::nullopt;

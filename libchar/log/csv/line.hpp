@@ -47,10 +47,13 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
 /// Cell `column` of a line, without splitting the others where it can be; nothing when the line has fewer.
 std::optional<Field> cell_at(std::string_view line, std::size_t column, char delimiter);
 
+inline constexpr std::string_view kDivided = " ,";
+
 /// The stamp in front of a line of a terminal or a logger, up to `lead`: "[2024-05-01 12:00:00.123] 1,2" and
 /// "[   12.345678] 1,2" ("]"), "12:00:00.123 -> 1,2" ("->"), "I (12345) tag: 1,2" (")"), "2024-05-01 12:00:00,123
 /// INFO:1,2" (","), "2024-05-01 12:00:00.123 INFO imu: x=1, y=2" ("=", up to the first name), "May 01 12:00:00 host:
-/// 1,2" (" ", among words); nothing when the line has none. `after` is where the cells begin.
+/// 1,2" (" ", among words; kDivided where one comma divides two whole numbers and makes no decimal one of them);
+/// nothing when the line has none. `after` is where the cells begin.
 std::optional<Field> lead_of(std::string_view line, std::string_view lead, std::size_t& after);
 
 /// "---- --", "+-----+----+", "|---|:--|": a line that is drawn between names and rows.

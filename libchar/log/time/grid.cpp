@@ -282,8 +282,10 @@ void TimeGrid::judge_rate_change() {
   if (const auto change = lasting_change(asks); change && (asks || odd.rows == 0)) {  // which says the place better
     asks = true;
     at_ns = change->row;
-    before = 1e9 / change->before_ns;
-    after = 1e9 / change->after_ns;
+    if (odd.rows == 0) {  // else rows of the other rate have taken more than a place each
+      before = 1e9 / change->before_ns;
+      after = 1e9 / change->after_ns;
+    }
   }
   if (asks) {
     const std::string at = shortest(std::round(at_ns * 1e-6) / 1e3);

@@ -305,7 +305,7 @@ std::vector<std::size_t> packet_starts(const FirstSteps& steps) {
   return out;
 }
 
-/// Rows of a packet, where nearly all have as many; else 0.
+/// Rows of a packet, where nearly all have as many, or as many as several that came together; else 0.
 std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
   constexpr double kAlike = 0.85;
   constexpr std::size_t kFewest = 8;
@@ -314,7 +314,8 @@ std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
   for (std::size_t i = 1; i < starts.size(); ++i) sizes.push_back(static_cast<double>(starts[i] - starts[i - 1]));
   const auto count = static_cast<double>(sizes.size());
   const double usual = middle_of(sizes);
-  const auto alike = static_cast<double>(std::count(sizes.begin(), sizes.end(), usual));
+  const auto alike = static_cast<double>(
+      std::count_if(sizes.begin(), sizes.end(), [&](double size) { return std::fmod(size, usual) == 0; }));
   return usual > 1 && alike >= kAlike * count ? static_cast<std::size_t>(usual) : 0;
 }
 

@@ -348,7 +348,8 @@ std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t s
 std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   constexpr double kOff = 0.35, kLate = 0.5;  // of a packet: further off it is no whole number of them, or on time
   constexpr double kLost = 0.9;               // what the last ones of a log are late by where one is missing
-  constexpr std::size_t kPackets = 6;         // looked at
+  constexpr std::size_t kPackets = 6;         // looked at, however many come with them
+  constexpr std::size_t kTogether = 4;        // of these, in the mean
   constexpr std::size_t kFewest = 3;          // at the end of a log fewer are late as one may be
   if (!recent_.packets.any()) return 0;
   const auto rows = static_cast<double>(step_.model.packet);
@@ -357,8 +358,8 @@ std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::in
   const Pending* at = &front;
   std::int64_t before = stamp;
   std::size_t seen = 1;
-  const std::size_t looked = std::min(ahead, kPackets * step_.model.packet + 2);
-  for (std::size_t j = 1; j < looked && late >= kLate * rows * step_.ns; ++j) {
+  const std::size_t looked = std::min(ahead, kTogether * kPackets * step_.model.packet + 2);
+  for (std::size_t j = 1; j < looked && seen <= kPackets && late >= kLate * rows * step_.ns; ++j) {
     if (!next_row(at, item, i)) break;
     std::int64_t t = 0, step = 0;
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;

@@ -275,10 +275,11 @@ std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   std::vector<std::string> unscored;
   for (const AlgorithmResult& a : r.algorithms)
     if (a.ran && !a.bound && !std::isfinite(a.rmse)) unscored.push_back(a.label);
-  out.push_back(
-      fmt::format("Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing sensor would "
-                  "decide between the others.",
-                  list_of(unscored)));
+  out.push_back(unscored.empty()
+                    ? "Scores do not decide: leave-one-out scores arrays of three sensors, and one of the four fails."
+                    : fmt::format("Scores do not decide: leave-one-out leaves too few sensors for {}, and one failing "
+                                  "sensor would decide between the others.",
+                                  list_of(unscored)));
   return out;
 }
 

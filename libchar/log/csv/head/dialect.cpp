@@ -66,19 +66,41 @@ void refuse_no_data(const Study& study) {
       .says("no data: the file holds only blank lines and comments");
 }
 
+// "12:00:00.50 34,1305", "12:00:00.52 28,1302": of decimal numbers the digits behind the comma would change with those
+// in front of it.
+bool commas_divide(const std::vector<Line>& lines) {
+  constexpr std::size_t kFewest = 10, kUnlike = 4;
+  std::set<std::string_view> fronts, first_digits;
+  std::size_t found = 0;
+  for (const Line& line : lines) {
+    const std::string_view text = trimmed(line.text);
+    const std::size_t blank = text.rfind(' '), comma = text.find(',', std::min(blank, text.size()));
+    if (comma == std::string_view::npos) continue;
+    const std::string_view front = text.substr(blank + 1, comma - blank - 1), rest = text.substr(comma + 1);
+    if (rest.size() < 2 || rest.find_first_not_of("0123456789") != rest.npos ||
+        front.find_first_not_of("+-0123456789") != front.npos)
+      return false;
+    fronts.insert(front);
+    first_digits.insert(rest.substr(0, 1));
+    ++found;
+  }
+  return found >= kFewest && fronts.size() >= kUnlike && first_digits.size() == 1 && !first_digits.contains("0");
+}
+
 // Terminals and loggers put the time in front of every line: "[12:00:00.123] 1,2", "I (12345) tag: 1,2".
 void find_lead(Study& study) {
-  for (const std::string lead : {"=", "]", "->", ")", ",", " "}) {
+  for (const std::string_view one : {"=", "]", "->", ")", ",", " "}) {
+    const std::string lead(one == " " && commas_divide(study.sample) ? kDivided : one);
     std::size_t found = 0, after = 0;
     for (const Line& line : study.sample)
       if (const auto field = lead_of(line.text, lead, after); field && after < line.text.size())
-        found += lead == " " || read_calendar(field->text) ||
+        found += one == " " || read_calendar(field->text) ||
                  ((lead == "=" || lead == "]" || lead == ")") && read_cell(field->text, '.').kind == Cell::value);
     if (found * 4 < study.sample.size() * 3) continue;
     study.dialect.lead = lead;
-    study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead == "="   ? "the first name"
-                                                                                       : lead == " " ? "the first cell"
-                                                                                                     : lead));
+    study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead == "="  ? "the first name"
+                                                                                       : one == " " ? "the first cell"
+                                                                                                    : lead));
     return;
   }
 }

@@ -407,7 +407,8 @@ class CarefulLines {
     for (const char c : text) most = std::max(most, letters = ascii_letter(c) ? letters + 1 : 0);
     constexpr std::size_t kWord = 3;
     if (most < kWord) return false;
-    const bool digit = is_digit(text[0]) || (text.size() > 1 && is_digit(text[1]) && !ascii_letter(text[0]));
+    const bool sign = text[0] == '-' || text[0] == '+' || text[0] == '.' || text[0] == '"';
+    const bool digit = is_digit(text[sign && text.size() > 1 ? 1 : 0]);
     return !digit || (to_.dialect.delimiter != ' ' && line.find(to_.dialect.delimiter) == std::string_view::npos);
   }
 

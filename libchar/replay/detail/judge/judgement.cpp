@@ -163,14 +163,17 @@ namespace {
 constexpr double kMostOffsets = 0.9;
 
 /// Where leave-one-out does not decide: one failing sensor is in all scores, and what would withstand
-/// it has none (of three sensors two are left); or the scores are those of the offsets.
+/// it has none (of three sensors two are left), or, of four, is scored by arrays of three, one of which
+/// fails; or the scores are those of the offsets.
 std::optional<std::size_t> robust_instead(const ReplayResult& result, const AlgorithmResult& best) {
   if (result.has_reference || result.inputs.size() != 1 || !best.blind) return std::nullopt;
   const std::vector<double>& left = best.blind->leave_one_out;
   const auto scored = std::count_if(left.begin(), left.end(), [](double rms) { return std::isfinite(rms); });
   const std::optional<std::size_t> robust = choose_robust(result);
   if (scored < 3 || !robust) return std::nullopt;
-  if (result.offsets_decide || !std::isfinite(result.algorithms[*robust].rmse)) return robust;
+  const bool fails =
+      result.warnings.find("sensor_failing") != nullptr || result.warnings.find("sensor_apart") != nullptr;
+  if (result.offsets_decide || !std::isfinite(result.algorithms[*robust].rmse) || (scored == 4 && fails)) return robust;
   return std::nullopt;
 }
 
