@@ -91,6 +91,11 @@ struct Extreme {
     constexpr double kApart = 3;
     return count >= kFewest && others > 0 && value - next > kApart * others;
   }
+  /// Values of the last two steps lie on the way to it, again and again.
+  bool is_reached(double step) const {
+    constexpr std::uint64_t kAgain = 10;
+    return at_next >= kAgain && value - next <= 2 * step;
+  }
   /// Nothing lies on the way to it: a range that ends is reached through what is below.
   bool is_apart(double others) const { return saturated() > 0 && value - next > 0.5 * others; }
   /// Two marks side by side; `others`: the range of what is neither.
@@ -932,7 +937,9 @@ struct FrozenRuns {
     const bool alone = 2 * q.signs.longest.second < detail::RunExits::kLong;
     by_length = rare || q.signs.held_times > 1 || (is_restless(q) && (known || alone));
     longest = by_length ? q.longest_stuck : q.signs.longest.jump;
-    found = q.distinct_values > 16 && longest >= (rare ? kFrozenRun : detail::RunExits::kLong) &&
+    // What goes to zero by itself and stays there, such as a concentration or a speed, has not hung.
+    const bool at_zero = q.signs.zero_is_end && q.signs.frozen <= q.signs.zeros;
+    found = !at_zero && q.distinct_values > 16 && longest >= (rare ? kFrozenRun : detail::RunExits::kLong) &&
             (q.signs.held_times == 1 || static_cast<double>(longest) > kTimesHeld * q.signs.held_times);
     if (!found || !known) return;
     fewest = by_length ? run : std::max(run, q.signs.longest.rest + 1);
@@ -1287,6 +1294,8 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.signs.resting_value = state.odd.resting.value;
   q.signs.at_rest = state.odd.resting.count;
   q.signs.zeros = state.odd.zero.count;
+  q.signs.zero_is_end = (q.minimum == 0 && state.bottom.is_reached(value_step(q))) ||
+                        (q.maximum == 0 && state.top.is_reached(value_step(q)));
   q.repeats = state.odd.same.set();
   q.signs.other_repeats = q.repeats - std::min(q.repeats, state.odd.zero.repeats);
   q.signs.nearest_to_zero = state.odd.zero.nearest;

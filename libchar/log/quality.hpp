@@ -48,6 +48,7 @@ struct ChannelQuality {
     std::uint64_t marked = 0;         ///< samples at `marks`
     std::uint64_t other_repeats = 0;  ///< samples that equal the one before and are not 0
     std::uint64_t zeros = 0;          ///< samples that are exactly 0
+    bool zero_is_end = false;         ///< of the range, with values on the way to it
     double nearest_to_zero = 0;       ///< least magnitude of the others
   };
   std::uint64_t samples = 0;  ///< not missing

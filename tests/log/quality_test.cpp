@@ -625,6 +625,18 @@ TEST_CASE("spikes of one size are no wraps, and one frozen stretch is no held va
   CHECK(has(meter(frozen).findings, "stuck"));
 }
 
+TEST_CASE("a concentration that goes to zero and stays there has not hung, one that drops there has") {
+  std::vector<double> ozone = gaussian(40000, 0.5);
+  for (std::size_t i = 0; i < ozone.size(); ++i) {
+    const double level = 20 * std::sin(static_cast<double>(i) / 600) + 15;
+    ozone[i] = std::max(0.0, std::round(10 * (level + 0.1 * ozone[i])) / 10);
+  }
+  CHECK_FALSE(has(meter(ozone).findings, "stuck"));
+  for (double& v : ozone) v += 5;
+  std::fill(ozone.begin() + 20000, ozone.begin() + 22000, 0.0);
+  CHECK(has(meter(ozone).findings, "stuck"));
+}
+
 TEST_CASE("a slow sensor in a fast log has hung after several of its values, not after one") {
   std::vector<double> slow = gaussian(60000, 1);
   for (std::size_t i = 0; i < slow.size(); ++i) slow[i] = slow[i - i % 200];
