@@ -170,7 +170,8 @@ class Feed : public std::streambuf {
     if (gptr() - eback() - place.pos > kMostAhead)
       throw input_error("E0522", fmt::format("{}:{}:{}", file_, place.line + 1, place.column + 1))
           .says("a value of more than {} bytes follows: a long text, or lists within lists in brackets", kMostAhead)
-          .hint("a document in JSON is read as such from a file called .json");
+          .hint(place.pos == 0 ? "a recording is read by inspect and characterize"
+                               : "a document in JSON is read as such from a file called .json");
     return std::streambuf::xsgetn(to, most);
   }
 

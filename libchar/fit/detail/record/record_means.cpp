@@ -118,9 +118,10 @@ void doubt_walk(const char* rival, double gain, NoiseFit& fit) {
 /// Their share of the record is not known: N may be that of the undisturbed part.
 void report_bursts(const detail::Bursts& bursts, NoiseFit& fit) {
   constexpr double kSaid = 0.98;
+  constexpr double kLonger = 0.8;  // bursts weigh most at times at which the median holds some of them
   Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
   if (!white.value) return;
-  white.ci95.low *= bursts.core;
+  white.ci95.low *= bursts.core > kSaid ? bursts.core : kLonger * bursts.core;
   const bool known = std::any_of(fit.findings.begin(), fit.findings.end(),
                                  [](const Finding& one) { return one.code == "heavy_tails"; });
   if (known || bursts.core > kSaid) return;
