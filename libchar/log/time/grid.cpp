@@ -18,6 +18,12 @@ namespace {
 
 constexpr std::size_t kTogether = 256;  // rows whose stamps are looked at together
 
+/// The largest or the smallest number where the difference does not fit.
+std::int64_t whole_step(std::int64_t from, std::int64_t to) {
+  std::int64_t step = 0;
+  return __builtin_sub_overflow(to, from, &step) ? (to > from ? INT64_MAX : INT64_MIN) : step;
+}
+
 /// All n stamps are `shortest` (>= 1) to `longest` after the one before.
 LIBCHAR_LANES bool steps_between_lanes(std::int64_t before, const std::int64_t* stamps, std::size_t n,
                                        std::int64_t shortest, std::int64_t longest) {
@@ -161,11 +167,11 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
     std::int64_t stamp = 0;
     if (__builtin_add_overflow(time[i], last_.wrap, &stamp)) stamp = INT64_MAX;
     stamp = checked(front, i, stamp);
-    if (!window_.begun && last_.any && stamp - last_.first >= window_.from_ns) {
+    if (!window_.begun && last_.any && whole_step(last_.first, stamp) >= window_.from_ns) {
       learned_ = false;
       return i;
     }
-    const std::int64_t step = last_.any ? stamp - last_.stamp : 0;
+    const std::int64_t step = last_.any ? whole_step(last_.stamp, stamp) : 0;
     if (step <= 0 || step > step_.longest) {
       output_.rows(front.block, run, i);
       run = i;
@@ -176,7 +182,7 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
       }
     }
     if (backward_.in_a_row > 0) backward_ = {};
-    if (last_.any && !step_.coarse) watch_step(front, i, stamp - last_.stamp);
+    if (last_.any && !step_.coarse) watch_step(front, i, whole_step(last_.stamp, stamp));
     ++last_.index;
     ++last_.row;
     last_.as_read = time[i] + last_.wrap;
