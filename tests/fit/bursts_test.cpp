@@ -60,6 +60,16 @@ TEST_CASE("bursts: Gaussian noise of any colour has none") {
   CHECK(found == 0);
 }
 
+TEST_CASE("bursts: gaps that were bridged are none, and bursts between gaps are found") {
+  test::Gaussian normal(9);
+  for (const double height : {0.0, 6.0}) {
+    std::vector<double> y = height > 0 ? with_bursts(normal, height, 0.01, 10) : quiet(normal);
+    for (std::size_t t = 0; t < y.size(); ++t)
+      if (t % 60 < 20) y[t] = std::nan("");
+    CHECK(bursts_of(y).has_value() == (height > 0));
+  }
+}
+
 TEST_CASE("bursts: short ones and long ones are found, with the share of the quiet part") {
   test::Gaussian normal(6);
   for (const std::size_t length : {3U, 10U, 30U}) {

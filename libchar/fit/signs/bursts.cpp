@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libchar/core/numeric/median.hpp"
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar::detail {
@@ -26,11 +27,15 @@ std::vector<double> seen_values(const EventSeries& series, std::span<const Event
   for (std::size_t i = 0; i < out.size() && !events.empty(); ++i)
     out[i] -= event_mean(events, rate_hz, series.start_s * rate_hz + static_cast<double>(i * series.per_point),
                          static_cast<double>(series.per_point));
-  for (const Interval& gap : series.unseen_s)
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const double from = series.start_s + static_cast<double>(i) * series.step_s;
-      if (from < gap.high && from + series.step_s > gap.low) out[i] = std::nan("");
-    }
+  const auto point_at = [&](double at_s) {
+    const double point = (at_s - series.start_s) / series.step_s;
+    return clamped_whole<std::size_t>(std::clamp(point, 0.0, static_cast<double>(out.size())));
+  };
+  for (const Interval& gap : series.unseen_s) {
+    const auto from = static_cast<std::ptrdiff_t>(point_at(gap.low));
+    const auto to = static_cast<std::ptrdiff_t>(point_at(std::max(gap.low, gap.high) + series.step_s));
+    std::fill(out.begin() + from, out.begin() + to, std::nan(""));
+  }
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/bias/bias_filter.hpp"
 #include "libchar/fusion/detail/device/c_steps.hpp"
+#include "libchar/fusion/detail/variances/reweighted_variances.hpp"
 
 namespace libchar::fusion {
 namespace {
@@ -198,7 +199,7 @@ CForm Maker::minque() {
                                        {"DAMPING", number(s["damping"])},
                                        {"NOISE_OF_ROUNDING", number(1e4)},
                                        {"LEAST_RATIO", number(1e-26)},
-                                       {"LEAST_RIDGE", number(0.1)},
+                                       {"LEAST_RIDGE", number(kLeastRidge)},
                                        {"FLOOR_LARGEST", number(std::max(s["floor_largest"], 1e-26))},
                                        {"FLOOR", number(s["floor"])},
                                        {"TINY", number(choice_.single ? 1e-36 : 1e-280)},

@@ -123,65 +123,30 @@ std::optional<std::string> with_signs(std::string_view text) {
 
 // 1…12 for a month as a word, in English, German, French or Spanish; 0 for none.
 int month_word(DateScanner& at) {
-  static constexpr std::pair<std::string_view, int> kOthers[] = {{"januar", 1},
-                                                                 {"j\u00E4n", 1},
-                                                                 {"janv", 1},
-                                                                 {"janvier", 1},
-                                                                 {"ene", 1},
-                                                                 {"enero", 1},
-                                                                 {"februar", 2},
-                                                                 {"f\u00E9vr", 2},
-                                                                 {"fevr", 2},
-                                                                 {"feb", 2},
-                                                                 {"febrero", 2},
-                                                                 {"f\u00E9vrier", 2},
-                                                                 {"m\u00E4rz", 3},
-                                                                 {"m\u00E4r", 3},
-                                                                 {"maerz", 3},
-                                                                 {"mrz", 3},
-                                                                 {"mars", 3},
-                                                                 {"marzo", 3},
-                                                                 {"avr", 4},
-                                                                 {"avril", 4},
-                                                                 {"abr", 4},
-                                                                 {"abril", 4},
-                                                                 {"mai", 5},
-                                                                 {"mayo", 5},
-                                                                 {"juni", 6},
-                                                                 {"juin", 6},
-                                                                 {"junio", 6},
-                                                                 {"juli", 7},
-                                                                 {"juil", 7},
-                                                                 {"juillet", 7},
-                                                                 {"julio", 7},
-                                                                 {"ao\u00FBt", 8},
-                                                                 {"aout", 8},
-                                                                 {"ago", 8},
-                                                                 {"agosto", 8},
-                                                                 {"sept", 9},
-                                                                 {"septembre", 9},
-                                                                 {"septiembre", 9},
-                                                                 {"okt", 10},
-                                                                 {"oktober", 10},
-                                                                 {"octobre", 10},
-                                                                 {"octubre", 10},
-                                                                 {"novembre", 11},
-                                                                 {"noviembre", 11},
-                                                                 {"dez", 12},
-                                                                 {"dezember", 12},
-                                                                 {"d\u00E9c", 12},
-                                                                 {"dec", 12},
-                                                                 {"d\u00E9cembre", 12},
-                                                                 {"dic", 12},
-                                                                 {"diciembre", 12}};
+  static constexpr std::array<std::string_view, 12> kOthers = {"januar|j\u00E4n|janv|janvier|ene|enero",
+                                                               "februar|f\u00E9vr|fevr|febrero|f\u00E9vrier",
+                                                               "m\u00E4rz|m\u00E4r|maerz|mrz|mars|marzo",
+                                                               "avr|avril|abr|abril",
+                                                               "mai|mayo",
+                                                               "juni|juin|junio",
+                                                               "juli|juil|juillet|julio",
+                                                               "ao\u00FBt|aout|ago|agosto",
+                                                               "sept|septembre|septiembre",
+                                                               "okt|oktober|octobre|octubre",
+                                                               "novembre|noviembre",
+                                                               "dez|dezember|d\u00E9c|d\u00E9cembre|dic|diciembre"};
   static constexpr std::array<std::string_view, 12> kMonths = {"january",   "february", "march",    "april",
                                                                "may",       "june",     "july",     "august",
                                                                "september", "october",  "november", "december"};
   if (!std::isalpha(static_cast<unsigned char>(at.peek()))) return 0;
   for (std::size_t m = 0; m < kMonths.size(); ++m)
     if (at.word(kMonths[m]) || at.word(kMonths[m].substr(0, 3))) return static_cast<int>(m + 1);
-  for (const auto& [name, month] : kOthers)
-    if (at.word(name)) return month;
+  for (std::size_t m = 0; m < kOthers.size(); ++m)
+    for (std::string_view rest = kOthers[m]; !rest.empty();) {
+      const std::size_t bar = std::min(rest.find('|'), rest.size());
+      if (at.word(rest.substr(0, bar))) return static_cast<int>(m + 1);
+      rest.remove_prefix(std::min(bar + 1, rest.size()));
+    }
   return 0;
 }
 

@@ -15,8 +15,6 @@ namespace {
 constexpr int kFirstInstants = 16, kPasses = 10;
 /// The gain of the start falls as kFall / k: what is wrong at first is forgotten as 1 / k^kFall.
 constexpr double kFall = 2;
-/// Part of the ridge that stays where one channel carries nearly all the weight.
-constexpr double kLeastRidge = 0.1;
 
 }  // namespace
 

@@ -37,6 +37,9 @@ struct ReweightingOptions {
   double start_variance = 0;
 };
 
+/// Part of the ridge that stays where one channel carries nearly all the weight.
+inline constexpr double kLeastRidge = 0.1;
+
 /// Variances, weights and residuals of n channels, some of which may sit out an instant.
 class ReweightedVariances {
  public:
