@@ -90,6 +90,11 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   fit.theta = out.best.theta;
   out.half_deviance = half_deviance(problem, out.best);
   if (!report) return out;
+  if (out.band.small.amplitude != 0) {
+    Band plain = out.band;
+    plain.small = {};
+    reach_limits(problem_of(bins, plain, rate_hz), out.options.terms, fit);
+  }
   if (!out.band.tau_s && !options.clock) report_bounds(decision.kept, fit);
   describe_band(bins, out.band, problem, out.best, rate_hz, fit);
   fit.goodness = goodness_of(inside_of(fit.residuals), count_of(only_positive(fit.theta)) + unknowns_of(out.band));

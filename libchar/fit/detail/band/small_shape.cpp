@@ -28,6 +28,7 @@
 namespace libchar {
 namespace {
 
+constexpr auto kWhite = static_cast<std::size_t>(Term::white);
 constexpr double kScale = 1.4;  ///< of the prior, in standard deviations of the shape
 struct Order {
   int power;
@@ -244,8 +245,9 @@ double take_small_shape(const std::vector<PowerBin>& bins, double rate_hz, const
       if (!with.low_pass) return taken;
     }
     // Beyond the reach of a straight line through the score it is no small shape.
-    const BinProblem changed = bin_problem(bins_of(bins, with, rate_hz));
-    if (!(score(changed, terms).half_deviance < now.half_deviance)) return taken;
+    const ScoringResult changed = score(bin_problem(bins_of(bins, with, rate_hz)), terms);
+    if (!(changed.half_deviance < now.half_deviance)) return taken;
+    if (now.at.theta[kWhite] > 0 && !(changed.at.theta[kWhite] > 0)) return taken;  // it is in the place of a term
     band = std::move(with);
     taken = std::abs(best->posterior.mean);
   }

@@ -189,16 +189,21 @@ double lower_rise(double ratio, double relative_sd, double threshold) {
   return selected_rise(ratio, bound < 1 ? std::max(threshold, ratio * bound * bound) : threshold);
 }
 
-/// Limits of a term that has no value: it is put back into the model for that.
-void report_limits(const BinProblem& problem, TermSet terms, const Optimum& reported, std::size_t i,
-                   Coefficient& term) {
+/// Limits of a term that has no value: it is put back into the model for that, alone and with all that were offered.
+void report_limits(const BinProblem& problem, TermSet terms, const Optimum& reported, const WithDropped& all,
+                   std::size_t i, Coefficient& term) {
   terms[i] = true;
   const ScoringResult with = score(problem, terms);
   const bool better = with.half_deviance <= reported.half_deviance;
   const Optimum best = better ? Optimum{with.at, with.half_deviance} : reported;
   const double sd = sd_of_theta(problem, best.at, terms, i);
-  term.upper95 = std::sqrt(profile_upper(problem, terms, best, i, sd, 2 * kEachTail));
-  term.ci95 = {0, std::sqrt(profile_upper(problem, terms, best, i, sd, kEachTail))};
+  const auto limit = [&](double tail) {
+    const double alone = profile_upper(problem, terms, best, i, sd, tail);
+    const bool more = all.any && all.terms != terms;
+    return std::sqrt(more ? profile_upper(problem, all.terms, all.best, i, sd, tail, alone) : alone);
+  };
+  term.upper95 = limit(2 * kEachTail);
+  term.ci95 = {0, limit(kEachTail)};
   term.profile = true;
 }
 
@@ -211,7 +216,7 @@ void join_alone(const BinProblem& problem, const Decision& decision, std::size_t
   }
   const ScoringResult found = score(problem, alone);
   Coefficient limits;
-  report_limits(problem, alone, {found.at, found.half_deviance}, i, limits);
+  report_limits(problem, alone, {found.at, found.half_deviance}, {}, i, limits);
   term.ci95.high = std::max(term.ci95.high, limits.ci95.high);
   if (term.upper95) term.upper95 = std::max(*term.upper95, *limits.upper95);
 }
@@ -263,7 +268,7 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
     const bool ambiguous = decision.ambiguous[i];
     if (!(fit.theta[i] > 0)) {
       term.status = decision.kept[i] && ambiguous ? Status::undetermined : Status::not_detected;
-      report_limits(problem, decision.kept, best, i, term);
+      report_limits(problem, decision.kept, best, all, i, term);
       continue;
     }
     if (!polished.known) {
@@ -276,11 +281,11 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
     term.relative_sd = sd / 2;
     const double spread = std::exp(kNormal95 * sd / 2);
     term.ci95 = {*term.value / spread, *term.value * spread};
-    term.profile = term.relative_sd > options.profile_above;
+    term.profile = ambiguous || term.relative_sd > options.profile_above;
     const double rise =
         ambiguous ? kTwoSided95 : lower_rise(decision.ratio_in_all[i], term.relative_sd, options.threshold);
     if (term.profile) term.ci95 = profile_interval(problem, decision.kept, best, i, rise);
-    if (all.any && term.relative_sd > kWellKnown && all.best.at.theta[i] > 0) {
+    if (all.any && term.relative_sd > kWellKnown) {
       const Interval wide = profile_interval(problem, all.terms, all.best, i, rise);
       term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
       term.profile = true;
@@ -292,6 +297,27 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
   for (std::size_t p = 0; p < kNeighbours.size(); ++p)
     if (decision.either[p]) fit.findings.push_back(finding(kNeighbours[p].code, kNeighbours[p].sentence));
   return best.at;
+}
+
+void reach_limits(const BinProblem& other, const TermSet& offered, NoiseFit& fit) {
+  const ScoringResult found = score(other, offered);
+  const Optimum best{found.at, found.half_deviance};
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (!offered[i]) continue;
+    const bool slow = i == static_cast<std::size_t>(Term::flicker) || i == static_cast<std::size_t>(Term::walk);
+    if (slow && term.value && term.profile) {
+      const Interval wide = profile_interval(other, offered, best, i, kTwoSided95);
+      term.ci95 = {std::min(term.ci95.low, wide.low), std::max(term.ci95.high, wide.high)};
+    }
+    if (term.value || !term.upper95 || !std::isfinite(*term.upper95)) continue;
+    const double sd = sd_of_theta(other, found.at, offered, i);
+    const auto reach = [&](double limit, double tail) {
+      return std::sqrt(profile_upper(other, offered, best, i, sd, tail, limit * limit));
+    };
+    term.upper95 = reach(*term.upper95, 2 * kEachTail);
+    term.ci95.high = reach(term.ci95.high, kEachTail);
+  }
 }
 
 void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit) {

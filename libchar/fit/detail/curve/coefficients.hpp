@@ -32,6 +32,10 @@ Decision decide(const BinProblem& problem, const TermSet& offered, double thresh
 ModelPoint report_coefficients(const BinProblem& problem, const Decision& decision, const FitOptions& options,
                                NoiseFit& fit);
 
+/// Limits of terms without a value, and wide intervals of slow terms, reach to those that another model of the same
+/// bins has for them.
+void reach_limits(const BinProblem& other, const TermSet& offered, NoiseFit& fit);
+
 /// Bounds and record lengths for 10 % of every term with a value; marks those above 30 % as undetermined.
 void report_bounds(const TermSet& fitted, NoiseFit& fit);
 

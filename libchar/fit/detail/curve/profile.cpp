@@ -129,14 +129,15 @@ double root_beyond(const F& f, double in, double f_in, double step) {
 }  // namespace
 
 double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
-                     double tail) {
+                     double tail, double at_least) {
   Profile profile(problem, terms, best, term);
-  const double goal = std::sqrt(rise_below(tail, 0)), at = best.at.theta[term];
+  const double goal = std::sqrt(rise_below(tail, 0)), at = std::max(best.at.theta[term], at_least);
   const auto f = [&](double theta) {
     const double root = profile.root_rise(theta);
     return root - profile.root_at(theta, tail);
   };
-  return root_beyond(f, at, -goal, goal * sd);
+  const double below = at > best.at.theta[term] ? f(at) : -goal;
+  return below < 0 ? root_beyond(f, at, below, goal * sd) : at;
 }
 
 double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,

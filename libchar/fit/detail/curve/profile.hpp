@@ -25,10 +25,10 @@ struct Optimum {
   double half_deviance = 0;
 };
 
-/// The theta of the term under which as little as was found has the probability `tail`; `sd` is a first guess of
-/// theta's standard deviation.
+/// The theta of the term under which as little as was found has the probability `tail`, or `at_least` where that is
+/// larger; `sd` is a first guess of theta's standard deviation.
 double profile_upper(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
-                     double tail);
+                     double tail, double at_least = 0);
 /// Smallest theta with 2 (lnL_max - lnL_profile) <= rise; 0 when zero is not excluded.
 double profile_lower(const BinProblem& problem, const TermSet& terms, const Optimum& best, std::size_t term, double sd,
                      double rise);
