@@ -25,6 +25,7 @@ struct Statement {
   std::string key;
   std::optional<double> number;
   std::string_view unit;
+  bool of_a_name = false;  // the number of "<Tau20>"
 };
 
 Statement statement_in(std::string_view lower) {
@@ -34,6 +35,7 @@ Statement statement_in(std::string_view lower) {
   if (at == std::string_view::npos) return out;
   for (const char c : lower.substr(0, at))
     if (c >= 'a' && c <= 'z') out.key += c;
+  out.of_a_name = at > 0 && lower[at - 1] >= 'a' && lower[at - 1] <= 'z';
   std::size_t end = at;
   while (end < lower.size() &&
          ((lower[end] >= '0' && lower[end] <= '9') || lower[end] == '.' || lower[end] == '+' || lower[end] == '-' ||
@@ -102,7 +104,8 @@ double interval_of(const Statement& said) {
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
   const bool clock = key == "clock" && (factor < 1 || unit == "s");  // "#CLOCK=400.000uS" of Hantek
-  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" || clock ? *said.number * factor : 0;
+  const bool step = (key == "dt" || key == "tau") && !said.of_a_name;
+  return ends_with_any(key, kKeys) || step || clock ? *said.number * factor : 0;
 }
 
 }  // namespace
