@@ -377,3 +377,27 @@ TEST_CASE("dates behind the clock, and stamps of digits with their fraction") {
   CHECK(stamp->ns == read_calendar("2014-04-25 11:47:22.5", DateOrder::day_first)->ns);
   CHECK(!read_calendar("11:47:22 25", DateOrder::day_first));
 }
+
+TEST_CASE("a line of sources or of processing between units and rows has no names") {
+  const auto rows = [](int k) { return fmt::format("{:.2f},{}", 1767150797 + 0.02 * k, field_cells(k)); };
+  for (const char* front : {"timestamp,speed,lean\nunix time,m/s^2,rad/s\n,100: gps,200: obd\n",
+                            "TIMESTAMP,speed,lean\nTS,m/s^2,deg\n,Avg,Smp\n"}) {
+    INFO(front);
+    const std::string text = front + field_text(rows);
+    check_field_log(text, 50);
+    const Recording log = read_text(text);
+    CHECK(log.info.channels[0].name == "speed");
+    CHECK(log.info.channels[0].unit == "m/s^2");
+    CHECK(log.info.channels[1].name == "lean");
+  }
+}
+
+TEST_CASE("names that are twice are refused with the line behind which the table is read without them") {
+  const std::string rows = field_text([](int k) { return fmt::format("{:.2f},{}", 0.02 * k, field_cells(k)); });
+  const std::string text = "a recorder\nof another kind\nt,x,x\n" + rows;
+  CHECK(failure(text).find("skip_rows` 3") != std::string::npos);
+  ReadOptions options;
+  options.header = "no";
+  options.skip_rows = 3;
+  check_field_log(text, 50, kFieldRows, options);
+}

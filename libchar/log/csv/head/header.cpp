@@ -359,7 +359,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
           .says("two columns have the same name (first at {}:{})", other->second->line, other->second->position)
           .got(column.name)
-          .hint("rename one, or read with `header` no and `skip_rows` 1 to use positions");
+          .hint("rename one, or read with `header` no and `skip_rows` {} to use positions", column.line);
   }
 }
 
