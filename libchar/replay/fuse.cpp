@@ -66,7 +66,7 @@ class Fusing {
     find_entry();
     find_channels();
     describe_scene();
-    instants_ = std::make_unique<Instants>(scene_, progress_);
+    instants_ = std::make_unique<Instants>(scene_, progress_, copies());
     tell_frozen();
     prepare_instants();
     make_runner();
@@ -82,6 +82,7 @@ class Fusing {
   double to_recorded(const LearntSensor& sensor, const Channel& channel) const;
   void without(const std::string& sensor);
   void describe_scene();
+  OfCopies copies() const;
   void tell_frozen();
   void prepare_instants();
   void make_runner();
@@ -133,7 +134,6 @@ class Fusing {
     std::optional<StepNoiseMeter> steps;
     std::optional<detail::ReadingMeter> readings;
     std::optional<detail::SensorDoubt> doubt;
-    CopiedSensors copies;
   } check_;
 };
 
@@ -281,9 +281,17 @@ void Fusing::check_rate() {
       fmt::format("{} Hz, learnt at {} Hz", brief_text(instants_->info().rate_hz, 6), brief_text(learnt_.rate_hz, 6)));
 }
 
+// The original may be one that the algorithm does without.
+OfCopies Fusing::copies() const {
+  const auto out = [](const LearntSensor& sensor) { return sensor.left_out; };
+  const bool all = std::none_of(learnt_.sensors.begin(), learnt_.sensors.end(), out);
+  return all && entry_->description->needs.accepts_missing ? OfCopies::missing : OfCopies::recorded;
+}
+
 void Fusing::tell_frozen() {
   const SourceInfo& source = instants_->source().info();
   result_.warnings.merge(source.samples_say);
+  say_copies(source, scene_, result_.warnings, [&](std::size_t i) { return !learnt_.sensors[present_[i]].left_out; });
   for (std::size_t i = 0; i < std::min(source.frozen.size(), scene_.sensors.size()); ++i)
     if (!source.frozen[i].empty())
       result_.warnings.add("frozen_sensor", kFrozenMissing,
@@ -444,7 +452,6 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
   if (check_.steps && check_.rows.size() < sensor_of_.size())
     check_.steps->push(all(check_.rows, Eigen::indexing::all));
   if (check_.readings) check_.readings->push(all);
-  check_.copies.push(all);
   faults_.done += all.cols();
   const std::vector<std::span<const double>> columns(out_.begin(), out_.end());
   sink.block(columns);
@@ -519,11 +526,6 @@ void Fusing::tell() {
   tell_learnt();
   check_noise();
   check_readings();
-  for (std::size_t k = 0; k < sensor_of_.size(); ++k)
-    if (const auto original = check_.copies.original_of(k))
-      result_.warnings.add(
-          "copied_sensor", kCopiedSensors,
-          learnt_.sensors[sensor_of_[k]].name + " repeats " + learnt_.sensors[sensor_of_[*original]].name);
   runner_->remarks(result_.warnings);
   const fusion::FaultLog* const log = runner_->faults();
   if (log == nullptr) return;

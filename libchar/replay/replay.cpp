@@ -330,7 +330,6 @@ class Replay {
   void judge_sensors(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& healthy, const Eigen::MatrixXd& truth,
                      Eigen::Index skip) {
     const bool errors = truth.rows() > 0 && !scene_.tilt;
-    copies_.push(samples);
     if (truth.rows() > 0) truths_ += truth.row(0).array().isFinite().count();
     if (errors) expected_ = plan_.array.h() * truth;
     std::vector<double> error(static_cast<std::size_t>(samples.cols()));
@@ -452,7 +451,6 @@ class Replay {
   std::vector<std::unique_ptr<BlindRun>> blind_;  // one a run, none where there is a reference
   std::vector<SensorMeter> sensors_;
   RunTracker tracker_;
-  CopiedSensors copies_;
   double largest_ = 0;   // magnitude of the sensors' usable samples
   bool beyond_ = false;  // there are larger ones
   std::vector<Eigen::MatrixXd> kept_;
@@ -472,9 +470,9 @@ SensorResult Replay::sensor_result(std::size_t i, const ScoreOptions& scoring) c
   out.noise_source = knowledge_.noise_sources[i];
   out.offset = knowledge_.offsets[i];
   out.missing = static_cast<double>(sensors_[i].missing) / static_cast<double>(plan_.run_to - plan_.run_from);
-  out.constant = sensors_[i].constant;
-  if (const auto original = copies_.original_of(i); original && !out.constant)
-    out.copy_of = scene_.sensors[*original].name;
+  const SourceInfo& source = instants_.source().info();
+  if (i < source.copies.size() && source.copies[i]) out.copy_of = scene_.sensors[source.copies[i]->original].name;
+  out.constant = sensors_[i].constant && out.copy_of.empty();
   out.h = scene_.sensors[i].h;
   return out;
 }
@@ -513,9 +511,6 @@ void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {
   for (std::size_t i = 0; i < sensors_.size(); ++i) out.sensors.push_back(sensor_result(i, scoring));
   for (const SensorResult& sensor : out.sensors)
     if (sensor.constant) out.warnings.add("constant_sensor", "sensors that never change during the run", sensor.name);
-  for (const SensorResult& sensor : out.sensors)
-    if (!sensor.copy_of.empty())
-      out.warnings.add("copied_sensor", kCopiedSensors, sensor.name + " repeats " + sensor.copy_of);
   for (const SceneSensor& sensor : scene_.sensors)
     for (const Finding& one : sensor.model ? sensor.model->findings : std::vector<Finding>{})
       if (one.severity != Severity::note)

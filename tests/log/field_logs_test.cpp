@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
+#include "libchar/log/time/calendar.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;
@@ -297,4 +298,106 @@ TEST_CASE("frames of a bus and messages of Gazebo are recognized, syslog is no w
                     return "<14>1 2024-05-01T" + field_clock(k) + "000Z host imu 123 - - " + field_cells(k, ' ');
                   }),
                   50);
+}
+
+namespace {
+
+/// As Sea-Bird writes: what the header says of columns and interval is behind lines of another kind.
+std::string cast_text(int rows, const std::string& interval, const std::string& clock) {
+  std::string out = "* Sea-Bird SBE 21 Data File:\n* Temperature SN = 3311\n# nquan = 3\n# name 0 = " + clock +
+                    "\n# name 1 = t090C: Temperature [ITS-90, deg C]\n# name 2 = c0S/m: Conductivity [S/m]\n" +
+                    interval + "# <Tau20> 1.4500</Tau20>\n# bad_flag = -9.990e-29\n# file_type = ascii\n*END*\n";
+  for (int k = 0; k < rows; ++k)
+    out += fmt::format("{:11.6f} {:10.4f} {:10.6f}\n", 236.736690 + 5.0 / 86400 * k, 27 + field_value(k, 1),
+                       5.7 + field_value(k, 2));
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a stated interval behind other lines gives stamps in days their unit, and numbered lines name columns") {
+  const Recording log = read_text(cast_text(kFieldRows, "# interval = seconds: 5\n", "timeJ: Julian Days"));
+  CHECK(log.info.time.rate_hz == Approx(0.2).epsilon(1e-3));
+  CHECK(log.info.time.missing_samples == 0);
+  const auto& channels = log.info.channels;
+  REQUIRE(channels.size() >= 2);
+  CHECK(channels[channels.size() - 2].name == "t090C");
+  CHECK(channels[channels.size() - 2].unit == "deg C");
+  CHECK(channels.back().name == "c0S/m");
+  CHECK(log.samples.back()[0] == Approx(5.7 + field_value(0, 2)));
+  const Recording elapsed =
+      read_text("# Sample interval: 5 s\n" + field_text([](int k) {
+                  return fmt::format("{:.6f} {}", 236.736690 + 5.0 / 86400 * k, field_cells(k, ' '));
+                }));
+  CHECK(elapsed.info.time.rate_hz == Approx(0.2).epsilon(1e-3));
+  CHECK(elapsed.info.time.unit == "d");
+}
+
+TEST_CASE("a comment names the columns behind a word that announces them, and not when it is a sentence") {
+  const auto named = [](const std::string& front, const std::string& rows) {
+    std::vector<std::string> out;
+    for (const auto& channel : read_text(front + rows).info.channels) out.push_back(channel.name);
+    return out;
+  };
+  const std::string two = field_text([](int k) { return field_cells(k, '\t'); });
+  CHECK(named("# Sampling Rate (Hz):= 100\n# Labels:= acc_x\tacc_y\n", two) ==
+        std::vector<std::string>{"acc_x", "acc_y"});
+  CHECK(named("# Columns: a\tb\n", two) == std::vector<std::string>{"a", "b"});
+  const std::string one = field_text([](int k) { return fmt::format("{:.3f}", field_value(k, 1)); });
+  CHECK(named("# Sampling Rate (Hz):= 125\n# Labels:= EEG\n", one) == std::vector<std::string>{"EEG"});
+  CHECK(named("# recorded indoors\n", one) == std::vector<std::string>{"c0"});
+  const std::string counts =
+      field_text([](int k) { return fmt::format("{:7},2017-06-01 {}, {}", k + 1, field_clock(k, 3000), 20 + k % 7); });
+  CHECK(named("#LOGGING with cycle 3.0 sec, and mode 'CPM', using device 'X v4.20'\n", counts) ==
+        std::vector<std::string>{"c0", "c1"});
+}
+
+TEST_CASE("rows without anything between rows with stamps are blank lines") {
+  for (const char sign : {',', ';'}) {
+    const std::string empty(2, sign);
+    const std::string text = fmt::format("t{0}a{0}b\n", sign) + field_text([&](int k) {
+                               return fmt::format("{}\n{:.2f}{}{}", empty, 0.02 * k, sign, field_cells(k, sign));
+                             });
+    const Recording log = read_text(text);
+    CHECK(test::count(log, "blank_line") == kFieldRows - 1);  // the first one holds the units
+    check_field_log(text, 50);
+  }
+  CHECK(failure("t,a\n0,1\n1,2\n2,3\n,4\n5,6\n").find("E0313") != std::string::npos);
+}
+
+TEST_CASE("dates behind the clock, and stamps of digits with their fraction") {
+  check_field_log(
+      "Time/Date,a,b\n" + field_text([](int k) { return field_clock(k) + " 25/04/2014," + field_cells(k); }), 50);
+  check_field_log(field_text([](int k) {
+                    return fmt::format("20240730_1635{:02}{:06} {}", 8 + k / 50, 20000 * (k % 50), field_cells(k, ' '));
+                  }),
+                  50);
+  const auto stamp = read_calendar("11:47:22.5 2014-04-25", DateOrder::day_first);
+  REQUIRE(stamp);
+  CHECK(stamp->ns == read_calendar("2014-04-25 11:47:22.5", DateOrder::day_first)->ns);
+  CHECK(!read_calendar("11:47:22 25", DateOrder::day_first));
+}
+
+TEST_CASE("a line of sources or of processing between units and rows has no names") {
+  const auto rows = [](int k) { return fmt::format("{:.2f},{}", 1767150797 + 0.02 * k, field_cells(k)); };
+  for (const char* front : {"timestamp,speed,lean\nunix time,m/s^2,rad/s\n,100: gps,200: obd\n",
+                            "TIMESTAMP,speed,lean\nTS,m/s^2,deg\n,Avg,Smp\n"}) {
+    INFO(front);
+    const std::string text = front + field_text(rows);
+    check_field_log(text, 50);
+    const Recording log = read_text(text);
+    CHECK(log.info.channels[0].name == "speed");
+    CHECK(log.info.channels[0].unit == "m/s^2");
+    CHECK(log.info.channels[1].name == "lean");
+  }
+}
+
+TEST_CASE("names that are twice are refused with the line behind which the table is read without them") {
+  const std::string rows = field_text([](int k) { return fmt::format("{:.2f},{}", 0.02 * k, field_cells(k)); });
+  const std::string text = "a recorder\nof another kind\nt,x,x\n" + rows;
+  CHECK(failure(text).find("skip_rows` 3") != std::string::npos);
+  ReadOptions options;
+  options.header = "no";
+  options.skip_rows = 3;
+  check_field_log(text, 50, kFieldRows, options);
 }

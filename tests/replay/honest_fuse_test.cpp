@@ -251,24 +251,41 @@ TEST_CASE("fuse: that one of two sensors reads otherwise is told, and either may
   }
 }
 
-TEST_CASE("fuse: a channel that repeats another one is told") {
-  HonestBench bench;
-  KeptColumns kept;
-  std::string twice;
-  const std::string sound = honest_log(3);
-  for (std::string_view rest = sound, line; !rest.empty();) {  // b holds what a does
+/// A log in which b is a, times `scale` and shifted.
+std::string with_copy(const std::string& log, double scale, double shift) {
+  std::string out;
+  for (std::string_view rest = log, line; !rest.empty();) {
     line = rest.substr(0, rest.find('\n') + 1);
     rest.remove_prefix(line.size());
     const std::size_t a = line.find(',') + 1, b = line.find(',', a) + 1, c = line.find(',', b);
+    const std::string cell(line.substr(a, b - 1 - a));
     const bool head = line.starts_with('t');
-    twice += std::string(line.substr(0, b)) + std::string(head ? line.substr(b, c - b) : line.substr(a, b - 1 - a)) +
-             std::string(line.substr(c));
+    out += std::string(line.substr(0, b)) +
+           (head ? std::string(line.substr(b, c - b)) : shortest(scale * std::stod(cell) + shift)) +
+           std::string(line.substr(c));
   }
-  CHECK(bench.fuse_log(honest_log(3), "minque", kept).warnings.find("copied_sensor") == nullptr);
-  KeptColumns again;
-  const FuseResult told = bench.fuse_log(twice, "minque", again);
-  REQUIRE(told.warnings.find("copied_sensor") != nullptr);
-  CHECK(told.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"b repeats a"});
+  return out;
+}
+
+TEST_CASE("fuse: a channel that repeats another one is told, and left out where the method can do without") {
+  for (const char* method : {"minque", "mean", "least-squares", "inverse-variance"}) {
+    HonestBench bench;
+    KeptColumns kept;
+    INFO(method);
+    CHECK(bench.fuse_log(honest_log(3), method, kept).warnings.find("copied_sensor") == nullptr);
+    for (const auto& [scale, shift] : {std::pair{1.0, 0.0}, {1.0, 0.01}, {0.99, 0.02}}) {
+      INFO(method << " " << scale << " " << shift);
+      KeptColumns again;
+      const FuseResult told = bench.fuse_log(with_copy(honest_log(3), scale, shift), method, again);
+      REQUIRE(told.warnings.find("copied_sensor") != nullptr);
+      CHECK_THAT(told.warnings.find("copied_sensor")->where.rows.at(0), StartsWith("b repeats a"));
+      CHECK_THAT(told.warnings.find("copied_sensor")->sentence, Contains("left out"));
+      CHECK(told.sensors[1].missing == static_cast<std::uint64_t>(kHonestRows));
+      if (std::string_view(method) == "least-squares") continue;  // no deviation without one of the sensors
+      CHECK(coverage(again) >= 0.9);
+      CHECK(coverage(again) <= 0.975);
+    }
+  }
 }
 
 TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does not show, as weights remember it") {

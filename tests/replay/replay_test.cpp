@@ -282,7 +282,7 @@ TEST_CASE("replay: of many sensors without reference some are left out in turn")
   std::string log = head + "\n";
   for (int k = 0; k < 300; ++k) {
     log += std::to_string(0.01 * k);
-    for (int i = 0; i < 40; ++i) log += "," + std::to_string((k * 7 + i * i * 13) % 17);
+    for (int i = 0; i < 40; ++i) log += "," + std::to_string((k * 7 + i * i * 13) % (17 + i));
     log += "\n";
   }
   bench.put("many.csv", log);
@@ -451,9 +451,29 @@ TEST_CASE("replay: a sensor that repeats another one is named") {
   CHECK_THAT(test::verdict_of(twice, false), Catch::Contains("(again repeats a)"));
   CHECK(twice.sensors[2].copy_of == "a");
   CHECK(twice.sensors[3].copy_of.empty());
-  const std::vector<double> w = named(twice, "optimal-weights").weights.at(0);
-  CHECK(w[0] == w[2]);
-  for (const double one : w) CHECK(std::abs(one) < 1);
+  const ReplayResult once =
+      replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, b, d]\nreference: x\nalgorithms: "
+                        "[mean, optimal-weights]\n"));
+  for (const char* one : {"mean", "optimal-weights"}) CHECK(named(twice, one).rmse == named(once, one).rmse);
+  CHECK(named(twice, "optimal-weights").weights.at(0)[0] == named(once, "optimal-weights").weights.at(0)[0]);
+  const ReplayResult two =
+      replay(bench.read("format: scene\nversion: 1\nrecording: five.csv\nsensors: [a, {name: again, channel: a}]\n"));
+  REQUIRE(two.warnings.find("copied_sensor") != nullptr);
+  CHECK_THAT(two.warnings.find("copied_sensor")->sentence, Catch::Contains("counted twice"));
+}
+
+TEST_CASE("replay: a sensor that is another one scaled and shifted is left out") {
+  const test::SceneBench bench;
+  const auto cells = [&](int i, int k) {
+    return i == 2   ? fmt::format("{:.9g}", 4 + 2.5 * std::sin(0.3 * k))
+           : i == 0 ? fmt::format("{:.9g}", std::sin(0.3 * k))
+                    : std::string("keep");
+  };
+  bench.put("five.csv", five_sensors(3000, cells));
+  const ReplayResult twice = replay(bench.read(kFive + "reference: x\nalgorithms: [mean, minque]\n"));
+  REQUIRE(twice.warnings.find("copied_sensor") != nullptr);
+  CHECK(twice.warnings.find("copied_sensor")->where.rows == std::vector<std::string>{"c repeats a, scaled or shifted"});
+  CHECK(twice.sensors[2].copy_of == "a");
 }
 
 TEST_CASE("replay: the warm-up runs and is not scored") {

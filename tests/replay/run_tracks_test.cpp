@@ -31,8 +31,9 @@ std::string log_of(std::size_t rows, bool with_truth) {
   std::string out = with_truth ? "t[s],a,b,c,truth\n" : "t[s],a,b,c\n";
   for (std::size_t k = 0; k < rows; ++k) {
     const double x = std::sin(0.01 * static_cast<double>(k)), wiggle = k % 7 == 0 ? 0.25 : 0;
+    const double own = 2e-6 * (static_cast<double>(k % 3) - 1);  // else c would be a copy of a
     out += std::to_string(0.01 * static_cast<double>(k)) + "," + std::to_string(x + 0.5) + "," +
-           (k % 11 == 3 ? "" : std::to_string(x - wiggle)) + "," + std::to_string(x - 1) +
+           (k % 11 == 3 ? "" : std::to_string(x - wiggle)) + "," + std::to_string(x - 1 + own) +
            (with_truth ? "," + std::to_string(x) : "") + "\n";
   }
   return out;

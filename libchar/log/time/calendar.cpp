@@ -300,8 +300,9 @@ std::int64_t behind_seconds(DateScanner& at) {
 // for days, and "59:58.0" and "35:10" without an hour
 bool clock_time(DateScanner& at, CalendarStamp& out) {
   DateScanner s = at;
-  const bool compact = out.date && (s.digits_ahead() == 6 || s.digits_ahead() == 4);
-  const bool with_seconds = s.digits_ahead() == 6;
+  const std::size_t digits = s.digits_ahead();
+  const bool fraction = digits == 9 || digits == 12;  // "20240501_120000123456" of %f
+  const bool with_seconds = digits == 6 || fraction, compact = out.date && (digits == 4 || with_seconds);
   const auto hour = compact ? std::optional(s.fixed(2)) : s.number(1, out.date ? 2 : 4);
   const char sign = out.date && (s.peek() == '-' || s.peek() == '_') ? s.peek() : ':';
   if (!hour || (!compact && !s.take(sign))) return false;
@@ -323,7 +324,7 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
     const std::size_t n = s.digits_ahead();
     if (n == 0 || (!compact && n > 2)) return false;
     second = s.fixed(std::min<std::size_t>(n, 2));
-    part = behind_seconds(s);
+    part = compact && fraction ? second_fraction(s) : behind_seconds(s);
   }
   int hours = *hour;
   DateScanner half = s;
@@ -416,6 +417,16 @@ std::optional<CalendarStamp> duration(std::string_view text) {
   return at.rest.empty() && out.clock ? std::optional(out) : std::nullopt;
 }
 
+// "11:47:22 07/04/2014": the date behind the clock, which `at` has taken of the text.
+std::optional<CalendarStamp> date_behind(DateScanner at, std::string_view text, DateOrder order) {
+  const std::string_view clock = text.substr(0, text.size() - at.rest.size());
+  at.blanks();
+  const std::string_view date = at.rest;
+  CalendarStamp day;
+  if (at.peek() < '0' || at.peek() > '9' || !numbered_date(at, order, day) || !at.rest.empty()) return std::nullopt;
+  return read_calendar(std::string(date) + " " + std::string(clock), order);
+}
+
 // "12-00-05-250" and "12_00_05.250": a clock time between the signs of a file's name, with its fraction.
 std::optional<CalendarStamp> dashed_clock(std::string_view text) {
   constexpr std::size_t kShortest = 12, kMinute = 2, kSecond = 5, kMark = 8;
@@ -491,7 +502,9 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
     if (at.rest.empty()) return out;
   }
   if (!dated) whole_days(at, out);
-  if (!clock_time(at, out) || !take_zone(at, out)) return std::nullopt;
+  if (!clock_time(at, out)) return std::nullopt;
+  if (const auto behind = dated ? std::nullopt : date_behind(at, text, order)) return behind;
+  if (!take_zone(at, out)) return std::nullopt;
   return out;
 }
 

@@ -207,9 +207,8 @@ bool rates_agree(double rate_hz, double stated_hz) { return rate_hz > 0.8 * stat
 // The unit in which the stamps run at the rate that the file states.
 std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, const LogInfo& info) {
   if (rates_agree(rate_in(step, guess), stated_hz)) return guess;
-  for (const std::int64_t unit :
-       {std::int64_t{1}, std::int64_t{1000}, std::int64_t{100000}, std::int64_t{1000000}, std::int64_t{1000000000}})
-    if (rates_agree(rate_in(step, unit), stated_hz)) return unit;
+  for (const NamedUnit& unit : kNamedUnits)
+    if (rates_agree(rate_in(step, unit.ns), stated_hz)) return unit.ns;
   throw input_error("E0325", info.file)
       .says("the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no unit",
             shortest(stated_hz), brief_text(step, 6), brief_text(rate_in(step, guess), 6), unit_name(guess))

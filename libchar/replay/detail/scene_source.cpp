@@ -45,6 +45,9 @@ struct FirstReading final : BlockSink {
       channels[c].push(samples.first, {samples.channels[c], samples.rows});
       meters[c].push({samples.channels[c], samples.rows});
     }
+    each.assign(samples.channels.size(), {});
+    for (std::size_t c = 0; c < each.size(); ++c) each[c] = {samples.channels[c], samples.rows};
+    copies.push(each);
     keep(samples);
   }
   void keep(const SampleBlock& samples) {
@@ -61,6 +64,8 @@ struct FirstReading final : BlockSink {
   }
   std::vector<Presence> channels;
   std::vector<QualityMeter> meters;
+  CopiedSensors copies;
+  std::vector<std::span<const double>> each;
   bool keeps = false;
   std::vector<std::vector<double>> kept;  // all or none
 };
@@ -80,7 +85,7 @@ std::size_t position(const std::vector<std::string>& names, const std::string& n
 class SensorPath {
  public:
   SensorPath(const Scene& scene, const std::vector<SensorFault>& faults, const SourceInfo& source)
-      : scene_(scene), hidden_(source.frozen) {
+      : scene_(scene), source_(source), hidden_(source.frozen) {
     const std::uint64_t seed = scene.simulated ? scene.simulated->seed : 1;
     for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
       std::vector<SensorFault> own;
@@ -94,6 +99,10 @@ class SensorPath {
   /// Samples `first` and on of a channel: of the sensors, then of the others.
   std::span<const double> operator()(std::size_t channel, std::uint64_t first, std::span<const double> y) {
     const bool sensor = channel < injectors_.size(), hides = channel < hidden_.size() && !hidden_[channel].empty();
+    if (sensor && source_.copies_missing && source_.copies[channel]) {
+      changed_[channel].assign(y.size(), kMissing);
+      return changed_[channel];
+    }
     const double scale = sensor ? scene_.sensors[channel].scale : 1;
     if (scale == 1 && !hides && (!sensor || injectors_[channel].idle())) return y;
     std::vector<double>& out = changed_[channel];
@@ -117,6 +126,7 @@ class SensorPath {
   }
 
   const Scene& scene_;
+  const SourceInfo& source_;
   const std::vector<std::vector<Presence::Run>>& hidden_;
   std::vector<FaultInjector> injectors_;
   std::vector<std::vector<double>> changed_;
@@ -146,7 +156,7 @@ Error of_scene(const Error& error, const std::string& file) {
   return Error(problem);
 }
 
-SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene) {
+SceneSource::SceneSource(const Scene& scene, Progress& progress, OfCopies copies) : scene_(&scene) {
   want_channels();
   known_faults_ = injected_ = scene.faults;
   if (scene.simulate) {
@@ -159,6 +169,7 @@ SceneSource::SceneSource(const Scene& scene, Progress& progress) : scene_(&scene
     else
       scan(progress);
     if (hides_frozen()) hide_frozen();
+    info_.copies_missing = info_.copies_missing && copies == OfCopies::missing;
   }
 }
 
@@ -169,6 +180,20 @@ void SceneSource::hide_frozen() {
   for (std::size_t i = 0; i < info_.presence.size(); ++i)
     if (is_frozen(info_.presence, i, info_.samples) && info_.frozen[i].empty())
       info_.frozen[i].push_back({info_.presence[i].still_from, info_.presence[i].still});
+}
+
+// Two others at least are left to be fused.
+void SceneSource::note_copies(const CopiedSensors& copies) {
+  std::size_t own = 0;
+  for (std::size_t k = 0; k < scene_->sensors.size(); ++k) {
+    std::optional<SourceInfo::Copy> found;
+    for (std::size_t i = 0; i < k && !found; ++i)
+      if (const Likeness how = copies.between(columns_[i], columns_[k]); how != Likeness::none)
+        found = SourceInfo::Copy{i, how};
+    own += found ? 0 : 1;
+    info_.copies.push_back(found);
+  }
+  info_.copies_missing = hides_frozen() && own >= 2 && own < scene_->sensors.size();
 }
 
 bool SceneSource::hides_frozen() const { return scene_->faults.empty() && !scene_->tilt; }  // else it is to be found
@@ -221,6 +246,9 @@ void SceneSource::read_even(Progress& progress) {
         (k < scene_->sensors.size() ? info_.units : info_.reference_units).push_back(channel.unit);
   info_.logs.push_back(std::move(even.log));
   for (std::size_t k = 0; k < scene_->sensors.size(); ++k) info_.presence.emplace_back().push(0, kept_[k]);
+  CopiedSensors copies;
+  copies.push(std::vector<std::span<const double>>(kept_.begin(), kept_.end()));
+  note_copies(copies);
 }
 
 void SceneSource::say_of(std::size_t k, const ChannelQuality& quality, const std::vector<Presence::Run>& runs) {
@@ -275,6 +303,7 @@ void SceneSource::scan(Progress& progress) {
     throw input_error("E0901", scene_->file)
         .says("the recording {} states no sampling rate", scene_->recording)
         .hint(scene_->file == scene_->recording ? "`rate_hz` RATE says it" : "recording: {file: …, rate_hz: …}");
+  note_copies(first.copies);
   info_.logs.push_back(std::move(log));
   if (first.keeps) kept_ = std::move(first.kept);
   info_.kept = !kept_.empty();
@@ -383,6 +412,18 @@ bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t 
   const double usual = std::max(median_in_place(others, Middle::upper), static_cast<double>(presence[i].next_still));
   return static_cast<double>(presence[i].still) >
          std::max({kShortest, kShareOfRun * static_cast<double>(samples), kLonger * usual});
+}
+
+void say_copies(const SourceInfo& source, const Scene& scene, Findings& to,
+                const std::function<bool(std::size_t)>& used) {
+  for (std::size_t i = 0; i < source.copies.size(); ++i)
+    if (const auto& copy = source.copies[i]; copy && used(i))
+      to.add("copied_sensor",
+             source.copies_missing
+                 ? "sensors that repeat another one, sample by sample, were left out: they measure nothing of their own"
+                 : "sensors that repeat another one, sample by sample: one sensor counted twice",
+             fmt::format("{} repeats {}{}", scene.sensors[i].name, scene.sensors[copy->original].name,
+                         copy->how == Likeness::line ? ", scaled or shifted" : ""));
 }
 
 std::string frozen_words(const std::string& name, const std::vector<Presence::Run>& runs, const SourceInfo& source) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "libchar/core/finding.hpp"
 #include "libchar/core/process/progress.hpp"
 #include "libchar/log/recording.hpp"
+#include "libchar/replay/detail/copied_sensors.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {
@@ -42,6 +44,9 @@ struct Presence {
 /// value so often, and a quantity that rests between coarse steps does so for all.
 bool is_frozen(std::span<const Presence> presence, std::size_t i, std::uint64_t samples);
 
+/// What a sensor that repeats another one is: missing, or as it is recorded (for a method that needs every sensor).
+enum class OfCopies { missing, recorded };
+
 struct SourceInfo {
   double rate_hz = 0;
   std::uint64_t samples = 0;
@@ -52,11 +57,21 @@ struct SourceInfo {
   std::vector<Presence> presence;            ///< of the sensors; empty for a simulation
   /// of the sensors, then of the references in this source: where they stand still, and are missing
   std::vector<std::vector<Presence::Run>> frozen;
-  Findings samples_say;  ///< what makes the samples of sensors doubtful
-  bool kept = false;     ///< in memory, not read again for each pass
+  struct Copy {
+    std::size_t original;
+    Likeness how;
+  };
+  std::vector<std::optional<Copy>> copies;  ///< of the sensors: the earlier one that each repeats
+  bool copies_missing = false;              ///< they are left out
+  Findings samples_say;                     ///< what makes the samples of sensors doubtful
+  bool kept = false;                        ///< in memory, not read again for each pass
 };
 
 inline constexpr const char* kFrozenMissing = "sensors that are frozen while the others move: missing there";
+/// Which of the sensors that are used repeat another one.
+void say_copies(
+    const SourceInfo& source, const Scene& scene, Findings& to,
+    const std::function<bool(std::size_t)>& used = [](std::size_t) { return true; });
 /// "NAME from 120 to 240 s", "NAME in 12 stretches of 8 to 50 samples, 3.1 % of the recording".
 std::string frozen_words(const std::string& name, const std::vector<Presence::Run>& runs, const SourceInfo& source);
 
@@ -74,7 +89,7 @@ class SceneSource {
  public:
   /// Reads a recording once, for its length and rate. Throws Error(input) when a channel of the
   /// scene is not in the recording or no rate is known.
-  SceneSource(const Scene& scene, Progress& progress);
+  SceneSource(const Scene& scene, Progress& progress, OfCopies copies);
   const SourceInfo& info() const { return info_; }
   /// Samples 0 to `until` (not included).
   void stream(std::uint64_t until, const SourceBlock& block, Progress& progress) const;
@@ -90,6 +105,7 @@ class SceneSource {
   void read_even(Progress& progress);
   /// What is odd about the samples of a channel, of all but the further axes.
   void say_of(std::size_t k, const ChannelQuality& quality, const std::vector<Presence::Run>& runs);
+  void note_copies(const CopiedSensors& copies);
   void hide_frozen();
   bool hides_frozen() const;
   void stream_kept(std::uint64_t until, const SourceBlock& block) const;

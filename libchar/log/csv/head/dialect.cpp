@@ -49,6 +49,7 @@ void read_lines(Study& study) {
   study.dialect.lines.semicolon_comments = found.semicolon_comments;
   study.sample = std::move(found.lines);
   study.comments = std::move(found.comments);
+  study.later_comments = std::move(found.later_comments);
 }
 
 // Excel's "sep=;" in the first line; 0 where there is none.
@@ -215,6 +216,8 @@ void choose_header(Study& study) {
   const Line& above = lines[start.data - (start.names ? 1 : 0)];
   study.dialect.data_offset = start.names ? above.after : above.offset;
   study.dialect.first_data_line = above.number + (start.names ? above.lines : 0);
+  for (const Line& line : study.later_comments)
+    if (line.offset < study.dialect.data_offset) study.comments.push_back(line);
   if (!start.names) return do_without_names(study);
   read_names(study, lines[first], lines[first].text);
   if (start.units) read_units(study, lines[*start.units]);

@@ -25,6 +25,7 @@ struct Statement {
   std::string key;
   std::optional<double> number;
   std::string_view unit;
+  bool of_a_name = false;  // the number of "<Tau20>"
 };
 
 Statement statement_in(std::string_view lower) {
@@ -34,6 +35,7 @@ Statement statement_in(std::string_view lower) {
   if (at == std::string_view::npos) return out;
   for (const char c : lower.substr(0, at))
     if (c >= 'a' && c <= 'z') out.key += c;
+  out.of_a_name = at > 0 && lower[at - 1] >= 'a' && lower[at - 1] <= 'z';
   std::size_t end = at;
   while (end < lower.size() &&
          ((lower[end] >= '0' && lower[end] <= '9') || lower[end] == '.' || lower[end] == '+' || lower[end] == '-' ||
@@ -102,7 +104,8 @@ double interval_of(const Statement& said) {
   if (unit == "us" || unit == "µs") factor = 1e-6;
   if (unit == "ns") factor = 1e-9;
   const bool clock = key == "clock" && (factor < 1 || unit == "s");  // "#CLOCK=400.000uS" of Hantek
-  return ends_with_any(key, kKeys) || key == "dt" || key == "tau" || clock ? *said.number * factor : 0;
+  const bool step = (key == "dt" || key == "tau") && !said.of_a_name;
+  return ends_with_any(key, kKeys) || step || clock ? *said.number * factor : 0;
 }
 
 }  // namespace
@@ -219,6 +222,18 @@ bool unit_of_the_time(const Cells& names, const Cells& units) {
   return false;
 }
 
+bool any_empty(const Cells& line) {
+  return std::any_of(line.begin(), line.end(), [](const Field& field) { return field.text.empty(); });
+}
+
+// Names, units, and in front of the rows at `rows` what some of the columns are from or what was done with them:
+// ",,100: gps" of RaceChrono, ",,Avg" of Campbell's without the line of the station.
+bool sources_below_units(const std::vector<Cells>& lines, std::size_t rows) {
+  const Cells &names = lines[rows - 3], &units = lines[rows - 2], &sources = lines[rows - 1];
+  return names.size() == sources.size() && !any_empty(names) && any_empty(sources) && !line_of_units(names) &&
+         !line_of_units(sources) && (line_of_units(units) || unit_of_the_time(names, units));
+}
+
 // Shimmer has a line between names and units that says what was done with the values.
 bool states_calibration(const Cells& line) {
   return std::all_of(line.begin(), line.end(), [](const Field& field) {
@@ -301,6 +316,10 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
          (has_doubles(lines[last - 1]) && !has_doubles(lines[last - 2])))) {
       out.units = last - 1;
       out.names = last - 2;
+    }
+    if (last > 2 && census[last - 2].words() && sources_below_units(lines, last)) {
+      out.units = last - 2;
+      out.names = last - 3;
     }
     if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words()) --*out.names;
     const auto empty = [](const Field& field) { return field.text.empty() && !field.quoted; };

@@ -57,27 +57,66 @@ std::string header_text(Study& study, const Field& field, const Line& line, std:
                  : "`encoding` latin1 takes every byte for the character of ISO 8859-1");
 }
 
+// "Headers,time,Ax,Ay", "Labels:= acc_x": what stands behind a word that announces names; empty where none does.
+std::string_view announced_names(std::string_view text) {
+  static constexpr std::array<std::string_view, 6> kWords = {"headers", "header", "labels",
+                                                             "columns", "fields", "channels"};
+  const std::string lower = ascii_lower(text.substr(0, text.find_first_of(",:=")));
+  if (std::find(kWords.begin(), kWords.end(), lower) == kWords.end()) return {};
+  text.remove_prefix(lower.size());
+  return text.substr(std::min(text.find_first_not_of(",:= "), text.size()));
+}
+
 // EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
 // time,Ax,Ay": the last comment before the data, when it has as many cells.
 bool named_by_comment(Study& study) {
-  if (study.options.header != "auto" || study.columns < 2) return false;
-  constexpr std::string_view kPrefix = "headers,";
+  if (study.options.header != "auto") return false;
+  bool announced = false;
   const auto stripped = [&](std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
-    return ascii_lower(text.substr(0, kPrefix.size())) == kPrefix ? text.substr(kPrefix.size()) : text;
+    const std::string_view names = announced_names(text);
+    announced = !names.empty();
+    return announced ? names : text;
   };
   const auto last = std::find_if_not(study.comments.rbegin(), study.comments.rend(),
                                      [&](const Line& one) { return is_ruler(stripped(one.text)); });
   if (last == study.comments.rend()) return false;
   const Line& line = *last;
   const std::string_view text = stripped(line.text);
-  if (text.empty()) return false;
+  if (text.empty() || (study.columns < 2 && !announced)) return false;
   const Cells names = table_cells(study, text);
   const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {
     return read_sampled(name.text, study.style()).kind != Cell::bad;
   });
-  if (names.size() != study.columns || numbers) return false;
+  const bool sentence = std::any_of(names.begin(), names.end(), [](const Field& name) {
+    return name.text.starts_with("and ");  // "logging every 3 s, and mode CPM, using device 4"
+  });
+  if (names.size() != study.columns || numbers || sentence) return false;
   read_names(study, line, text);
+  return true;
+}
+
+// Sea-Bird writes "# name 4 = t090C: Temperature [ITS-90, deg C]" in front of its rows, a line for each column.
+bool named_one_by_one(Study& study) {
+  constexpr std::string_view kKey = "# name ";
+  std::vector<const Line*> lines;
+  for (const Line& line : study.comments)
+    if (line.text.starts_with(fmt::format("{}{} = ", kKey, lines.size()))) lines.push_back(&line);
+  if (study.options.header != "auto" || lines.size() != study.columns) return false;
+  for (const Line* line : lines) {
+    const std::string_view text = line->text;
+    const std::size_t from = text.find("= ") + 2, open = text.find('['), close = text.rfind(']');
+    Field name{std::string(trimmed(text.substr(from, text.find(':', from) - from)))};
+    Column& added = study.dialect.columns.emplace_back();
+    added.text = header_text(study, name, *line, from);
+    added.line = line->number;
+    added.position = from + 1;
+    if (open == text.npos || close == text.npos || close < open) continue;
+    const std::string_view unit = text.substr(open + 1, close - open - 1);
+    added.unit_below = decoded(study, std::string(trimmed(unit.substr(unit.find(',') + 1)))).value_or("");
+  }
+  study.dialect.has_header = true;
+  study.info.dialect.push_back(fmt::format("names in lines {} to {}", lines.front()->number, lines.back()->number));
   return true;
 }
 
@@ -230,7 +269,7 @@ void read_units(Study& study, const Line& line) {
 }
 
 void do_without_names(Study& study) {
-  if (named_by_comment(study) || named_between_other_signs(study)) return;
+  if (named_one_by_one(study) || named_by_comment(study) || named_between_other_signs(study)) return;
   const Line& first = study.sample[0];
   // What looks like the end of the first rows may be a column that is filled further on.
   const Cells all = cells_in(study.dialect, first.text);
@@ -320,7 +359,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
           .says("two columns have the same name (first at {}:{})", other->second->line, other->second->position)
           .got(column.name)
-          .hint("rename one, or read with `header` no and `skip_rows` 1 to use positions");
+          .hint("rename one, or read with `header` no and `skip_rows` {} to use positions", column.line);
   }
 }
 

@@ -35,9 +35,9 @@ Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::
     }
     const std::string_view text = trimmed(line.text);
     const bool comment = is_comment(text, sample.semicolon_comments);
-    if (sample.lines.empty() && comment) {
-      sample.comments.push_back(line);
-    } else if (!text.empty() && !comment) {
+    if (comment) {
+      (sample.lines.empty() ? sample.comments : sample.later_comments).push_back(line);
+    } else if (!text.empty()) {
       sample.lines.push_back(line);
     }
     offset = line.after;

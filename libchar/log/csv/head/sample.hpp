@@ -10,6 +10,7 @@ inline constexpr std::size_t kSample = 100;  ///< lines studied
 struct Sample {
   std::vector<Line> lines;     ///< neither blank nor comments; the first may be a header of several physical lines
   std::vector<Line> comments;  ///< before the first of them
+  std::vector<Line> later_comments;
   bool semicolon_comments = false;
 };
 

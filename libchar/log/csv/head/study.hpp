@@ -15,7 +15,8 @@ struct Study {
   LogInfo& info;
   Dialect dialect = {};
   std::vector<Line> sample = {};    ///< lines that are neither blank nor comments
-  std::vector<Line> comments = {};  ///< before the first of them
+  std::vector<Line> comments = {};  ///< before the first of them, then those before the table
+  std::vector<Line> later_comments = {};
   std::vector<Line> preamble = {};  ///< those of the sample in front of the table
   std::size_t columns = 1;
   std::vector<Cells> rows = {};  ///< the first ones

@@ -253,6 +253,12 @@ class CarefulLines {
   }
 
  private:
+  // ",,,": a row with stamps that has nothing, not even its stamp.
+  bool empty_row(std::string_view line) const {
+    return line[0] == to_.dialect.delimiter && to_.dialect.time.column >= 0 &&
+           line.find_first_not_of(to_.dialect.delimiter) == std::string_view::npos;
+  }
+
   const char* take_line(const char* start) {
     const char* stop = start;
     while (stop < end_ && *stop != '\n' && *stop != '\r') ++stop;
@@ -278,7 +284,7 @@ class CarefulLines {
       return after;
     }
     if (kind != LineEnd::none && kind != to_.dialect.line_end) to_.out.mixed_end.add(to_.line, line.size() + 1);
-    if (line.find_first_not_of(" \t") == std::string_view::npos) {
+    if (line.find_first_not_of(" \t") == std::string_view::npos || empty_row(line)) {
       to_.out.blank.add(to_.line, 1);
       to_.out.account.blank_bytes += bytes;
       to_.list_lines();

@@ -205,9 +205,9 @@ class Instants::Columns {
   std::size_t seen_ = 0;
 };
 
-Instants::Instants(const Scene& scene, Progress& progress)
+Instants::Instants(const Scene& scene, Progress& progress, OfCopies copies)
     : scene_(&scene),
-      source_(scene, progress),
+      source_(scene, progress, copies),
       offsets_(scene.sensors.size(), 0.0),
       factors_(scene.sensors.size(), 1.0),
       sensors_(scene.sensors.size()) {

@@ -34,7 +34,7 @@ struct InstantsInfo {
 class Instants {
  public:
   /// Throws Error(input) when the scene does not fit its files.
-  Instants(const Scene& scene, Progress& progress);
+  Instants(const Scene& scene, Progress& progress, OfCopies copies = OfCopies::missing);
   const InstantsInfo& info() const { return info_; }
   const SceneSource& source() const { return source_; }
 

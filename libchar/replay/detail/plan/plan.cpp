@@ -116,6 +116,7 @@ constexpr double kMostFrozen = 0.5;
 std::vector<Eigen::Index> live_sensors(const Scene& scene, const Instants& instants, ReplayPlan& plan) {
   std::vector<Eigen::Index> live;
   const SourceInfo& source = instants.source().info();
+  say_copies(source, scene, plan.warnings);
   if (scene.tilt || source.presence.empty()) return live;
   const auto sample = [&](std::int64_t instant) {
     return (instants.info().start_s + static_cast<double>(instant) / instants.info().rate_hz) * source.rate_hz;
@@ -123,6 +124,7 @@ std::vector<Eigen::Index> live_sensors(const Scene& scene, const Instants& insta
   const double from = sample(plan.run_from), to = sample(plan.run_to);
   for (std::size_t i = 0; i < source.presence.size(); ++i) {
     const Presence& at = source.presence[i];
+    if (source.copies_missing && source.copies[i]) continue;
     if (i < source.frozen.size() && !source.frozen[i].empty()) {
       double inside = 0;
       for (const Presence::Run& run : source.frozen[i]) {

@@ -51,24 +51,4 @@ double model_factor(const Scene& scene, const Instants& instants, std::size_t se
 /// Measures the rest when the scene has one, and asks scene and models for noise levels.
 SensorKnowledge know_sensors(const Scene& scene, const Instants& instants, Progress& progress);
 
-inline constexpr const char* kCopiedSensors =
-    "sensors that repeat another one, sample by sample: one sensor counted twice";
-/// Sensors that repeat another one, sample by sample, as far as a float tells: a channel recorded twice is one sensor.
-class CopiedSensors {
- public:
-  /// A row a sensor, a column an instant; NaN: missing.
-  void push(const Eigen::MatrixXd& samples);
-  /// The earlier sensor that this one repeated throughout, in a hundred instants at least; none: none.
-  std::optional<std::size_t> original_of(std::size_t sensor) const;
-
- private:
-  struct Pair {
-    Eigen::Index copy, original;
-    std::uint64_t instants = 0;
-  };
-  void find_pairs(const Eigen::MatrixXd& samples);
-  std::vector<Pair> pairs_;
-  bool begun_ = false;
-};
-
 }  // namespace libchar
