@@ -173,3 +173,10 @@ TEST_CASE("an absent term has no value, only a limit, in the JSON too") {
   CHECK(json["white_noise"]["ci95"].size() == 2);
   CHECK(json["quantization"]["status"] == "not_fitted");
 }
+
+TEST_CASE("a fit converges whose scoring creeps towards a bound") {
+  test::NoiseSource source(200, 1, 32);
+  std::vector<double> record;
+  for (int r = 0; r <= 1272; ++r) record = source.record(1, 1, 0);  // one in 12,000
+  CHECK(fit_record(record, 1, nullptr).search.converged);
+}

@@ -190,7 +190,6 @@ TEST_CASE("the first line that cannot be is named with line, column and byte") {
   CHECK(failure("\x1F\x8B\x08").find(LIBCHAR_HAVE_ZLIB ? "compressed" : "cannot unpack") != std::string::npos);
   CHECK(failure("PK\x03\x04zip").find("ZIP") != std::string::npos);
   CHECK(failure(std::string("t\0,\0x\0\n\0", 8)).find("UTF-16") != std::string::npos);
-  CHECK(failure("t,x,x\n0,1,2\n").find("log.csv:1:5: error E0307: two columns have the same name (first at 1:3)") == 0);
   CHECK(failure("t," + std::string(1025, 'n') + "\n0,1\n").find("1024") != std::string::npos);
   CHECK(failure("t,x\n0,1\n" + std::string(3U << 20U, '1'))
             .find("log.csv:3:1 (byte 8): error E0305: line longer than 1 MiB") == 0);

@@ -76,8 +76,8 @@ TEST_CASE("columns without a header are c0, c1 and so on, the time not counted")
 TEST_CASE("what is wrong with the first lines is told with line, column and number of lines") {
   CHECK(failure("# nothing\n\n").find("log.csv:1:1 (byte 0): error E0322: no data") == 0);
   // A name of two lines: the columns behind it count from the second.
-  CHECK(failure("t,\"a\nb\",x,x\n0,1,2,3\n")
-            .find("log.csv:2:6: error E0307: two columns have the same name (first at 2:4)") == 0);
+  const Recording two_lines = read_text("t,\"a\nb\",x,x\n0,1,2,3\n1,2,3,4\n2,3,4,6\n");
+  CHECK(two_lines.info.warnings.find("doubled_name")->sentence.find("line 2, column 6") != std::string::npos);
   CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n").info.dialect[1] ==
         "2 lines in front of the table left out");
   ReadOptions named;
@@ -85,6 +85,15 @@ TEST_CASE("what is wrong with the first lines is told with line, column and numb
   CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).info.channels[0].name == "x");
   named.header = "no";
   CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).samples.size() == 2);
+}
+
+TEST_CASE("columns of one name are numbered, whatever other names there are") {
+  const Recording doubled = read_text("t,x,x,x_2,x\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,6,8\n3,4,6,8,1\n");
+  std::vector<std::string> names;
+  for (const Channel& channel : doubled.info.channels) names.push_back(channel.name);
+  CHECK(names == std::vector<std::string>{"x", "x_2", "x_2_2", "x_3"});
+  CHECK(doubled.info.warnings.find("doubled_name")->count == 3);
+  CHECK(read_text("t,x,y\n0,1,2\n1,2,3\n2,3,4\n").info.warnings.find("doubled_name") == nullptr);
 }
 
 TEST_CASE("a file exactly as long as the head is whole though no line end follows") {

@@ -83,6 +83,7 @@ INPUTS = {
     "no_header": Input(text("header.csv", lambda: plain().split("\n", 1)[1])),
     "formula_name": Input(text("formula.csv", lambda: plain().replace("w[deg/s]", "=w", 1))),
     "control_in_name": Input(text("control.csv", lambda: plain().replace("w[deg/s]", "w\u202e", 1))),
+    "doubled_name": Input(text("doubled.csv", two_columns("w[deg/s]", lambda i: f"{0.1 * (i * 37 % 101)}"))),
     "unnamed_column": Input(text("unnamed.csv", two_columns("", lambda i: f"{0.1 * (i * 37 % 101)}"))),
     "unused_option": Input(text("option.csv", plain), ("--unit", "gyro=deg/s")),
     "unknown_unit": Input(text("unit.csv", plain), ("--unit", "w=sverdrup")),

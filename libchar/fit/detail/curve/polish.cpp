@@ -133,6 +133,7 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   // may find no step at all, which the solver calls a failure.
   const double slack = 1e-9 + 1e-13 * result.half_deviance;
   result.converged = value <= result.half_deviance + slack;
+  result.stationary = summary.termination_type == ceres::CONVERGENCE;
   if (result.converged) {
     result.at = polished;
     result.half_deviance = value;

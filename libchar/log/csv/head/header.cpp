@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -330,7 +331,8 @@ void name_columns(Dialect& dialect, LogInfo& info) {
     if (column.unit.empty()) column.unit = column.unit_below;
     ++stripped[column.name];
   }
-  std::map<std::string, const Column*> seen;
+  std::set<std::string> seen;
+  std::map<std::string, int> numbers;  // put behind a name
   for (std::size_t i = 0; i < dialect.columns.size(); ++i) {
     Column& column = dialect.columns[i];
     if (!dialect.has_header) continue;
@@ -350,16 +352,13 @@ void name_columns(Dialect& dialect, LogInfo& info) {
       info.warnings.add("control_in_name",
                         "channel names with invisible or direction-changing characters: shown escaped",
                         place_name(column.line, column.position));
-    auto [other, fresh] = seen.emplace(column.name, &column);
-    if (!fresh && (unit_behind({column.text, column.unit_below}) != 0 || called_time(column.text))) {
-      column.name += fmt::format("_{}", stripped[column.name + " again"]++ + 2);  // "X[s],EMG,X[s],ACC" of Delsys
-      std::tie(other, fresh) = seen.emplace(column.name, &column);
-    }
-    if (!fresh)
-      throw input_error("E0307", fmt::format("{}:{}:{}", info.file, column.line, column.position))
-          .says("two columns have the same name (first at {}:{})", other->second->line, other->second->position)
-          .got(column.name)
-          .hint("rename one, or read with `header` no and `skip_rows` {} to use positions", column.line);
+    if (seen.insert(column.name).second) continue;
+    // "X[s],EMG,X[s],ACC" of Delsys: its names are clear in pairs.
+    if (unit_behind({column.text, column.unit_below}) == 0 && !called_time(column.text))
+      info.warnings.add("doubled_name", "columns with the name of an earlier one: a number was put behind it",
+                        place_name(column.line, column.position));
+    const std::string name = column.name;
+    while (!seen.insert(column.name).second) column.name = fmt::format("{}_{}", name, ++numbers[name] + 1);
   }
 }
 
