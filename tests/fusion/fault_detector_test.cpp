@@ -314,6 +314,36 @@ TEST_CASE("minque: noise of heavy tails is no fault, and a fault in it is found"
     }
 }
 
+TEST_CASE("minque: noise that grows with the motion is no fault, and a fault in it is found") {
+  for (const Eigen::Index n : {3, 4, 6})
+    for (const double follows : {1.0, 3.0})
+      for (const std::uint64_t seed : {1U, 2U}) {
+        INFO(n << " sensors, noise 1 + " << follows << " |x|, seed " << seed);
+        test::Gaussian gauss(seed);
+        Eigen::MatrixXd y(n, 200000);
+        double x = 0, slope = 0;
+        for (Eigen::Index k = 0; k < y.cols(); ++k) {
+          slope += 0.02 * gauss() - 0.05 * slope - 0.004 * x;
+          x += slope;
+          for (Eigen::Index i = 0; i < n; ++i) y(i, k) = 40 * x + 0.5 * (1 + follows * std::abs(x)) * gauss();
+        }
+        Array array = test::array(n);
+        array.rate_hz = 100;
+        array.fault_free_samples = 20000;
+        auto clean = test::make("minque", array);
+        test::run(*clean, y);
+        CHECK(clean->faults()->events().empty());
+        y.row(1).tail(40000).array() += 2;
+        auto hit = test::make("minque", array);
+        test::run(*hit, y);
+        const auto events = hit->faults()->events();
+        REQUIRE_FALSE(events.empty());
+        CHECK(events[0].channel == 1);
+        CHECK(events[0].sample >= 160000);
+        CHECK(events[0].sample < 160400);
+      }
+}
+
 TEST_CASE("minque: rare outliers of all sensors are no faults and make nobody stand down") {
   for (const Eigen::Index n : {3, 4, 6})
     for (const Eigen::Index fault_free : {0, 6000}) {

@@ -83,8 +83,9 @@ LIBCHAR_LANES void standardise_all_lanes(double* q, const Evidence& out, std::si
   const Four most_recent = {kMostRecent, kMostRecent, kMostRecent, kMostRecent};
   for (std::size_t i = 0; i < padded; i += 4, q += FaultBaseline::kStride) {
     const Four x = LIBCHAR_GROUP(kX), dx = LIBCHAR_GROUP(kDx), here = LIBCHAR_GROUP(kHere);
-    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) + LIBCHAR_GROUP(kBiasVar) +
-                          LIBCHAR_GROUP(kGainVar) * (x * x) + LIBCHAR_GROUP(kDelayVar) * (dx * dx);
+    const Four variance = LIBCHAR_GROUP(kS) * LIBCHAR_GROUP(kStartMargin) * LIBCHAR_GROUP(kMotion) +
+                          LIBCHAR_GROUP(kBiasVar) + LIBCHAR_GROUP(kGainVar) * (x * x) +
+                          LIBCHAR_GROUP(kDelayVar) * (dx * dx);
     double* const one_over = q + 4 * FaultBaseline::kRoot;
     LIBCHAR_FOUR_TO(one_over) = 1 / variance;
     take_roots(one_over);
@@ -211,6 +212,7 @@ FaultBaseline::FaultBaseline(std::size_t sensors)
       long_run(padded) {
   for (SensorColumn* one : {&bias_var, &s, &start_margin, &recent, &scale_bias, &scale_gain, &scale_noise})
     one->fill(1);
+  column(kMotion).fill(1);
   clip.fill(kUntoldClip);
   gain_var.fill(kPriorGain * kPriorGain);
   delay_var.fill(kPriorDelay * kPriorDelay);
@@ -224,6 +226,22 @@ void FaultBaseline::standardise(CusumSample& sample) {
   standardise_all(block.data(),
                   {sample.z.data(), sample.present.data(), sample.uz.data(), sample.uu.data(), sample.zz.data()},
                   padded, 1 / excess);
+}
+
+void FaultBaseline::find_motion() {
+  if (!long_run.motion.any()) return;
+  SensorColumn motion = column(kMotion);
+  for (std::size_t i = 0; i < n; ++i) motion[i] = long_run.motion.at(i, x[i]);
+}
+
+void FaultBaseline::learn_motion(const std::vector<double>& tops, double frozen) {
+  for (std::size_t i = 0; i < n; ++i)
+    if (here[i] != 0 && tops[i] <= frozen) long_run.motion.add(i, x[i], z[i] * std::sqrt(motion(i)));
+}
+
+void FaultBaseline::renew_motion(double samples) {
+  long_run.motion.renew(samples);
+  if (!long_run.motion.any()) column(kMotion).fill(1);
 }
 
 void FaultBaseline::learn(const std::vector<double>& tops, double frozen) {

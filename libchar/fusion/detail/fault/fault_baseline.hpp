@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "libchar/fusion/detail/fault/cusum_bank.hpp"
+#include "libchar/fusion/detail/fault/motion_level.hpp"
 
 namespace libchar::fusion {
 
@@ -89,6 +90,7 @@ struct FaultBaseline {
     kClip,
     kRecentSquare,
     kLevel,
+    kMotion,
     kKinds
   };
   static constexpr double kMostDeviations = 1e6;
@@ -122,13 +124,15 @@ struct FaultBaseline {
     std::vector<double> blocks;             ///< how many
     std::vector<double> tails, tails_of;    ///< samples with |z| > kTail, of so many
     double most_clip = kMostDeviations;     ///< where tails are not heavy
+    MotionLevel motion;                     ///< variance by the size of the input
     explicit LongRun(std::size_t padded)
         : bias(padded, 1.0),
           gain(padded, 1.0),
           noise(padded, 1.0),
           blocks(padded, 0.0),
           tails(padded, 0.0),
-          tails_of(padded, 0.0) {}
+          tails_of(padded, 0.0),
+          motion(padded) {}
   } long_run;
   double excess = 1;  ///< median of `recent`, where it is clearly above one
 
@@ -141,10 +145,18 @@ struct FaultBaseline {
 
   /// f, here and y → x, dx and y less its slow mean.
   void predict();
+  /// By how much the variance of a sensor differs at this input from what it is on average.
+  double motion(std::size_t i) const { return block[i / 4 * kStride + 4 * kMotion + i % 4]; }
+  double motion_at(std::size_t i, double input) const { return long_run.motion.at(i, input); }
+  /// For the x of this instant.
+  void find_motion();
   /// e, s → z and the input of the bank.
   void standardise(CusumSample& sample);
   /// b, g, d follow z, of those whose evidence (`tops`, padded) is not above `frozen`.
   void learn(const std::vector<double>& tops, double frozen);
+  /// The same gates for the variances by the size of the input, and what they are from now on.
+  void learn_motion(const std::vector<double>& tops, double frozen);
+  void renew_motion(double samples);
   /// `excess` from the m sensors in use; scratch has room for them.
   void find_excess(const int* index, int m, std::vector<double>& scratch);
   /// What changes slowly: floors, units, by how much variances at the start are widened.

@@ -151,6 +151,7 @@ void FaultDetector::step_with(Variances& variances, const double* y) {
     watch_repeats(y);
     return;
   }
+  base_.find_motion();
   base_.standardise(sample_);
   if (now_ % 8 == 0) base_.find_excess(index_.data(), m_, median_);
   note_window();
@@ -162,6 +163,7 @@ void FaultDetector::step_with(Variances& variances, const double* y) {
   if (since_change_ == before) {
     const double frozen = threshold_ / 2;
     base_.learn(bank_.all_tops(), frozen);
+    if (now_ % 4 == 0) base_.learn_motion(bank_.all_tops(), frozen);
     if (top <= frozen) variances.update();
     if (count_noisy_ > 0) follow_noisy();
   }
@@ -219,8 +221,10 @@ bool FaultDetector::residuals(Variances& variances, const double* y) {
 void FaultDetector::note_window() {
   const std::size_t row = at(0, 0);
   for (std::size_t i = 0; i < base_.n; ++i) {
-    ring_e_[row + i] = base_.here[i] != 0 ? base_.e[i] : std::numeric_limits<double>::quiet_NaN();
-    ring_x_[row + i] = base_.x[i];
+    // Of noise that follows the motion each instant counts by its own variance.
+    const double by = base_.motion(i) != 1 ? 1 / std::sqrt(base_.motion(i)) : 1;
+    ring_e_[row + i] = base_.here[i] != 0 ? base_.e[i] * by : std::numeric_limits<double>::quiet_NaN();
+    ring_x_[row + i] = base_.x[i] * by;
   }
 }
 
@@ -228,6 +232,7 @@ void FaultDetector::note_window() {
 template <class Variances>
 void FaultDetector::slow_work(Variances& variances) {
   base_.renew(FaultBaseline::kMemory, median_);
+  if (now_ % FaultBaseline::kBlock == 0) base_.renew_motion(FaultBaseline::kBlock / 4);
   const bool wait = now_ + 1 < fault_free_ || now_ < armed_again_;
   any_armed_ = false;
   double samples = 0;
@@ -301,8 +306,9 @@ void FaultDetector::follow_out(Variances& variances, const double* y) {
     const double x = base_.f[i] - base_.mean_f[i];
     const double sample = y[i] - (base_.bias[i] + base_.gain[i] * x + base_.delay[i] * out_step_[i]);
     const double e = variances.innovation(i, sample);
-    const double s = std::max(variances.innovation_variance(i) * base_.start_margin[i] + base_.gain_var[i] * x * x,
-                              kRoundingErrors * variances.rounding());
+    const double s = std::max(
+        variances.innovation_variance(i) * base_.start_margin[i] * base_.motion_at(i, x) + base_.gain_var[i] * x * x,
+        kRoundingErrors * variances.rounding());
     if (!recovery_[i].add(e, s, x)) continue;
     const RecoveryWindow& window = recovery_[i];
     if (window.all_fit(base_.scale_bias[i], base_.scale_gain[i], base_.scale_noise[i])) {
