@@ -390,13 +390,3 @@ TEST_CASE("a line of sources or of processing between units and rows has no name
     CHECK(log.info.channels[1].name == "lean");
   }
 }
-
-TEST_CASE("names that are twice are refused with the line behind which the table is read without them") {
-  const std::string rows = field_text([](int k) { return fmt::format("{:.2f},{}", 0.02 * k, field_cells(k)); });
-  const std::string text = "a recorder\nof another kind\nt,x,x\n" + rows;
-  CHECK(failure(text).find("skip_rows` 3") != std::string::npos);
-  ReadOptions options;
-  options.header = "no";
-  options.skip_rows = 3;
-  check_field_log(text, 50, kFieldRows, options);
-}

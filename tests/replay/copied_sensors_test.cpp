@@ -40,7 +40,7 @@ Column line(const Column& x, double scale, double shift, double step) {
 
 }  // namespace
 
-TEST_CASE("copied sensors: equal, scaled, shifted, turned, rounded; in any blocks") {
+TEST_CASE("copied sensors: equal, scaled, shifted, turned or rounded, in any blocks") {
   for (const double step : {0.0, 1e-6, 1e-3})
     for (const std::size_t block : {70, 1000, 5000}) {
       const Column x = noisy(4000, 0.1, step, 1);

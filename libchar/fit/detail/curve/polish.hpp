@@ -11,7 +11,7 @@ struct Polished {
   TermMatrix covariance = TermMatrix::Zero();  ///< of ln theta of the positive terms
   int iterations = 0;
   bool converged = false;   ///< not worse than the start
-  bool stationary = false;  ///< the solver came to rest
+  bool stationary = false;  ///< the solver's last steps gain nothing
   bool known = true;        ///< the covariance; else the likelihood cannot be computed around `at`
 };
 
