@@ -314,6 +314,7 @@ class Scoring {
 }  // namespace
 
 ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start, double tolerance) {
+  constexpr double kFarthest = 64;  // steps
   const Scoring scoring(problem, free, start);
   ScoringResult result;
   result.at = start != nullptr ? *start : scoring.first_guess();
@@ -342,6 +343,15 @@ ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelP
       if (at_middle < value) {
         next = middle;
         value = at_middle;
+      }
+      // And where they bend it less, full steps creep.
+      for (double far = 2; far <= kFarthest && at_middle >= value; far *= 2) {
+        const ModelPoint beyond = between(result.at, goal, far);
+        if (std::any_of(beyond.theta.begin(), beyond.theta.end(), [](double theta) { return theta < 0; })) break;
+        const double at_beyond = half_deviance(problem, beyond);
+        if (!(at_beyond < value)) break;
+        next = beyond;
+        value = at_beyond;
       }
     }
     const double gain = result.half_deviance - value;
