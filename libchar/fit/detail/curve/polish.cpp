@@ -103,7 +103,6 @@ DevianceResidual deviance_residual(double energy, double model, double dof) {
 }
 
 Polished polish(const BinProblem& problem, const ModelPoint& start) {
-  constexpr double kAtRest = 1e-9;  // of the likelihood, by the last step
   const SilentGlog silent;
   std::vector<Eigen::Index> terms;
   std::vector<double> unknown;
@@ -134,8 +133,6 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
   // may find no step at all, which the solver calls a failure.
   const double slack = 1e-9 + 1e-13 * result.half_deviance;
   result.converged = value <= result.half_deviance + slack;
-  result.stationary = summary.termination_type == ceres::CONVERGENCE ||
-                      (!summary.iterations.empty() && std::abs(summary.iterations.back().cost_change) < kAtRest);
   if (result.converged) {
     result.at = polished;
     result.half_deviance = value;
