@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libchar/fit/signs/rounding.hpp"
 #include "tests/support/digital.hpp"
 #include "tests/support/noise.hpp"
 #include "tests/support/npy.hpp"
@@ -129,4 +130,23 @@ TEST_CASE("a counter of coarse steps hides what a clock does between its reading
         "what the clock does between samples, and short averaging times show its rounding.");
   CHECK(said(1000, 4).empty());  // rounding that is noise
   CHECK(said(9900, std::nullopt).empty());
+}
+
+TEST_CASE("digital: rounding hides white noise only where it is a part of it") {
+  const auto after = [](double variance) {
+    NoiseFit fit;
+    fit.rate_hz = 1;
+    Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+    white.status = Status::detected;
+    white.value = 0.1;
+    white.relative_sd = 0.3;
+    white.ci95 = {0, 0.2};
+    fit.theta[static_cast<std::size_t>(Term::white)] = 0.01;
+    detail::take_out_rounding({1e-5, variance, 0}, fit);
+    return fit[Term::white];
+  };
+  CHECK(after(1e-11).status == Status::detected);
+  CHECK(*after(1e-11).value == Approx(0.1));
+  CHECK(after(1e-11).ci95.low == 0);
+  CHECK(after(0.009).status == Status::not_detected);
 }

@@ -94,6 +94,10 @@ TEST_CASE("columns of one name are numbered, whatever other names there are") {
   CHECK(names == std::vector<std::string>{"x", "x_2", "x_2_2", "x_3"});
   CHECK(doubled.info.warnings.find("doubled_name")->count == 3);
   CHECK(read_text("t,x,y\n0,1,2\n1,2,3\n2,3,4\n").info.warnings.find("doubled_name") == nullptr);
+  const Recording units = read_text("t[s],w[deg/s],w[deg/s]\n0,1,2\n1,2,3\n2,3,4\n");
+  CHECK(units.info.channels[0].name == "w");
+  CHECK(units.info.channels[1].name == "w_2");
+  CHECK(units.info.channels[1].unit == "deg/s");
 }
 
 TEST_CASE("a file exactly as long as the head is whole though no line end follows") {

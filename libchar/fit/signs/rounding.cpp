@@ -70,6 +70,7 @@ void say_rounding(const DigitalFaults::Rounding& rounding, double before, const 
 }  // namespace
 
 void detail::take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit& fit) {
+  constexpr double kLeastShare = 0.1;  // of the white noise
   Coefficient& white = fit.term[kRoundedTerm];
   // What is not known is not known better without rounding.
   if (!white.value || white.status == Status::undetermined) return;
@@ -80,7 +81,9 @@ void detail::take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit
   fit.rounding = density;
   double& theta = fit.theta[kRoundedTerm];
   theta = std::max(0.0, theta - density);
-  if (white.ci95.low * white.ci95.low > density && before * before > density)
+  // An interval that begins at zero without a rounding that matters is the fit's own.
+  const bool matters = density > kLeastShare * before * before;
+  if (!matters || (white.ci95.low * white.ci95.low > density && before * before > density))
     take_out_of_value(density, rounding.sd / fit.rate_hz, white);
   else {
     limit_white(density, white);

@@ -7,8 +7,8 @@
 namespace libchar::detail {
 
 /// Takes it out of N and out of the shape of the noise in front of it; `fit.rounding` is what it adds to the density.
-/// Where N² is not above it beyond its interval N becomes a limit; where it is below it, the samples were not rounded
-/// so, and nothing changes.
+/// N becomes a limit where rounding is a tenth of N² or more, and N² not above it beyond its interval. Where N² is
+/// below it, the samples were not rounded so, and nothing changes.
 void take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit& fit);
 
 /// With it in N again: for consumers that do not round.

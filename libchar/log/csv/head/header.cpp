@@ -325,11 +325,11 @@ std::string place_name(std::uint64_t line, std::uint64_t column) {
 }
 
 void name_columns(Dialect& dialect, LogInfo& info) {
-  std::map<std::string, int> stripped;
+  std::map<std::string, std::set<std::string_view>> texts;  // of a name
   for (Column& column : dialect.columns) {
     std::tie(column.name, column.unit) = name_and_unit(column.text);
     if (column.unit.empty()) column.unit = column.unit_below;
-    ++stripped[column.name];
+    texts[column.name].insert(trimmed(column.text));
   }
   std::set<std::string> seen;
   std::map<std::string, int> numbers;  // put behind a name
@@ -339,7 +339,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
     if (column.name.empty()) {
       column.name = fmt::format("c{}", i);
       column.unnamed = true;
-    } else if (stripped[column.name] > 1) {
+    } else if (texts[column.name].size() > 1) {
       column.name = std::string(trimmed(column.text));  // acc_g beside acc_mg: the full texts differ
     }
     if (std::string_view("=+-@\t\r").find(column.name[0]) != std::string_view::npos)
