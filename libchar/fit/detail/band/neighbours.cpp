@@ -112,50 +112,61 @@ void reach_by(double shift, Coefficient& term) {
   term.ci95.high *= std::exp(std::max(0.0, shift));
 }
 
+/// A term that was dropped is not known to be zero, nor that it stays dropped behind another shape.
+ScoringResult likeliest(const BinProblem& problem, const TermSet& kept, const TermSet& offered) {
+  const ScoringResult first = score(problem, kept);
+  return score(problem, offered, &first.at);
+}
+
+/// Ends of the shifts of ln of a coefficient, and what the shapes say of it.
+struct NeighbourReach {
+  double least = 0, most = 0;
+  std::vector<Opinion> opinions;
+};
+
+void extend(const NeighbourReach& by, Coefficient& term) {
+  reach_by(by.least, term);
+  reach_by(by.most, term);
+  if (by.opinions.size() < 2) return;
+  term.ci95.low = std::min(term.ci95.low, std::exp(end_of(by.opinions, -1)));
+  term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
+}
+
 }  // namespace
 
 void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5;  ///< of ln L
-  const bool taps = band.filter.kind != NoiseShape::Kind::none;
+  const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
+  const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
   if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
-  // A term that was dropped is not known to be zero, nor that it stays dropped behind another shape.
-  TermSet terms = only_positive(fit.theta);
+  const TermSet kept = only_positive(fit.theta);
+  TermSet terms = kept;
   for (std::size_t i = 0; i < kTerms; ++i) terms[i] = terms[i] || offered[i];
-  // A filter of equal weights is one of twenty-six that were tried.
-  const double cost = taps ? 3 : band.orders;
-  const double chosen = score(band_problem(bins, band, fit.rate_hz), terms).half_deviance;
-  std::array<std::vector<Opinion>, kTerms> opinions;
+  const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), kept, terms).half_deviance;
+  std::array<NeighbourReach, kTerms> reach;
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (fit.term[i].value && fit.theta[i] > 0 && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
-      opinions[i] = {opinion_of(fit, i)};
-  std::array<double, kTerms> least{}, most{};
-  for (const Band& other : neighbours_of(bins, band, terms, fit.rate_hz)) {
+    if (fit.term[i].value && kept[i] && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
+      reach[i].opinions = {opinion_of(fit, i)};
+  for (const Band& other : neighbours_of(bins, band, kept, fit.rate_hz)) {
     const BinProblem problem = band_problem(bins, other, fit.rate_hz);
-    const ScoringResult there = score(problem, terms);
-    const double weight = std::exp(chosen + cost - there.half_deviance - other.orders);
+    const ScoringResult there = likeliest(problem, kept, terms);
+    const double weight = std::exp(chosen - there.half_deviance - price * (other.orders - band.orders));
     if (!(weight > 0)) continue;
-    const bool shifts = there.half_deviance < chosen + kAsLikely && other.orders > band.orders;
+    const bool shifts = there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
     const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
     for (std::size_t i = 0; i < kTerms; ++i) {
       const double theta = there.at.theta[i];
-      if (!(fit.theta[i] > 0) || !(theta > 0)) continue;
+      if (!kept[i] || !(theta > 0)) continue;
       const double shift = 0.5 * std::log(theta / fit.theta[i]);
-      if (shifts) least[i] = std::min(least[i], shift);
-      if (shifts) most[i] = std::max(most[i], shift);
+      if (shifts) reach[i].least = std::min(reach[i].least, shift);
+      if (shifts) reach[i].most = std::max(reach[i].most, shift);
       const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
-      if (!opinions[i].empty() && sd > 0 && std::isfinite(sd))
-        opinions[i].push_back({weight, 0.5 * std::log(theta), sd, sd});
+      if (!reach[i].opinions.empty() && sd > 0 && std::isfinite(sd))
+        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), sd, sd});
     }
   }
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    Coefficient& term = fit.term[i];
-    if (!term.value) continue;
-    reach_by(least[i], term);
-    reach_by(most[i], term);
-    if (opinions[i].size() < 2) continue;
-    term.ci95.low = std::min(term.ci95.low, std::exp(end_of(opinions[i], -1)));
-    term.ci95.high = std::max(term.ci95.high, std::exp(end_of(opinions[i], 1)));
-  }
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (fit.term[i].value) extend(reach[i], fit.term[i]);
 }
 
 }  // namespace libchar
