@@ -10,10 +10,12 @@
 // Model Averaging", Stat. Sci. 14 (1999) 382, with the score in the place of a second maximum: R. D. Cook and S.
 // Weisberg, Biometrika 70 (1983) 1). Shrinking is right on the average of the prior, not at every strength: where
 // |z_m| is beyond 1 an interval reaches to where a_hat itself has the term. It does so (neighbours.cpp) for an exponent
-// of the slow noise near one or two, whose phi is its share of the density times ln f, and which moves N alone: B and
-// K have no meaning apart from their exponents. Heavy tails of the prior leave a shape that is seen as it is; a larger
-// scale covers N better where the tests are blind and costs more where there is nothing: tests/bench/valley_bench shows
-// both.
+// of the slow noise near one or two, whose phi is its share of the density times ln f, and for slow noise that ends at a
+// frequency f_e, its share times -ln(1 + f²/f_e²), as that of a few processes does; both move N alone: B and K have no
+// meaning apart from their exponents. And for a hump w²/((f - f_c)² + w²) of excitations that ring, or of a line that
+// wanders, the clearest of a grid, from 2.5 standard deviations on, for N leaves its interval far below what is left out
+// as a peak. Heavy tails of the prior leave a shape that is seen as it is; a larger scale covers N better where the
+// tests are blind and costs more where there is nothing: tests/bench/valley_bench shows both.
 #include "libchar/fit/detail/band/small_shape.hpp"
 
 #include <algorithm>
@@ -39,6 +41,8 @@ struct Order {
 constexpr std::array<Order, 3> kOrders = {{{1, 0.75, 0.9}, {2, 0.15, 0.07}, {4, 0.1, 0.03}}};
 constexpr double kLeastWeight = 0.05;  ///< of a shape that intervals reach to
 constexpr double kReachFrom = 1;       ///< standard deviations of a shape from which on intervals reach to it
+constexpr double kHump = 2.5;          ///< the same of a hump: of twenty that are looked for one reaches 2 by chance
+constexpr double kEnds = 1.5;          ///< the same of slow noise that ends
 constexpr double kTaken = 1;           ///< standard deviations from which on the shape is a part of the model
 
 double mean_sine_power(const PowerBin& bin, double rate_hz, int power) {
@@ -164,18 +168,52 @@ bool is_slow(std::size_t term) {
   return term == static_cast<std::size_t>(Term::flicker) || term == static_cast<std::size_t>(Term::walk);
 }
 
-/// Of another exponent of the slow noise; it moves white noise alone.
-Answer tilt_answer(const Slopes& slopes, const std::vector<PowerBin>& inside) {
-  Eigen::VectorXd shape = Eigen::VectorXd::Zero(slopes.root.size());
+/// Share of the slow noise in the model, weighted.
+Eigen::VectorXd slow_share(const Slopes& slopes) {
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(slopes.root.size());
   for (std::size_t i = 0; i < slopes.terms.size(); ++i)
-    if (is_slow(slopes.terms[i]) && slopes.shown[i]) shape += slopes.columns.col(static_cast<Eigen::Index>(i));
-  if (shape.isZero()) return {};
-  for (Eigen::Index j = 0; j < shape.size(); ++j)
-    shape[j] *= std::log(inside[static_cast<std::size_t>(j)].frequency_hz);
+    if (is_slow(slopes.terms[i]) && slopes.shown[i]) share += slopes.columns.col(static_cast<Eigen::Index>(i));
+  return share;
+}
+
+/// It moves white noise alone.
+Answer slow_answer(const Slopes& slopes, const Eigen::VectorXd& shape) {
   Answer out = answer_of(slopes, shape, {0, 1, 1});
   for (std::size_t i = 0; i < slopes.terms.size(); ++i)
-    if (is_slow(slopes.terms[i])) out.slope[static_cast<Eigen::Index>(i)] = 0;
+    if (out.slope.size() > 0 && is_slow(slopes.terms[i])) out.slope[static_cast<Eigen::Index>(i)] = 0;
   return out;
+}
+
+/// Of another exponent of the slow noise, and of slow noise that ends at a frequency, as that of a few processes does.
+std::array<Answer, 2> slow_answers(const Slopes& slopes, const Eigen::ArrayXd& frequency) {
+  const Eigen::VectorXd share = slow_share(slopes);
+  if (share.isZero()) return {};
+  std::array<Answer, 2> out = {slow_answer(slopes, (share.array() * frequency.log()).matrix()), {}};
+  for (double end = frequency.maxCoeff(); end > 16 * frequency.minCoeff(); end /= 2) {
+    const Answer ends = slow_answer(slopes, (-share.array() * (1 + (frequency / end).square()).log()).matrix());
+    if (ends.z > std::max(kEnds, out[1].z)) out[1] = ends;
+  }
+  return out;
+}
+
+/// Of the clearest hump above the model.
+Answer hump_answer(const Slopes& slopes, const Eigen::ArrayXd& frequency, double rate_hz) {
+  constexpr std::array<double, 2> kQualities = {1.5, 4};
+  constexpr double kLowest = 1.0 / 256;  ///< of half the rate
+  const Eigen::MatrixXd basis = column_basis(slopes.columns);
+  double clearest = kHump;
+  Eigen::VectorXd best;
+  for (const double quality : kQualities)
+    for (double centre = rate_hz / 2; centre > kLowest * rate_hz / 2; centre *= std::exp2(-0.75 / quality)) {
+      const double width = centre / (2 * quality);
+      const Eigen::VectorXd hump = (slopes.root / (((frequency - centre) / width).square() + 1)).matrix();
+      const Eigen::VectorXd apart = without_columns_of(basis, hump);
+      const double z = apart.dot(slopes.residual + slopes.taken) / apart.norm();
+      if (!(z > clearest)) continue;
+      clearest = z;
+      best = hump;
+    }
+  return best.size() > 0 ? answer_of(slopes, best, {0, 1, 1}) : Answer{};
 }
 
 Answers answers_of(const Slopes& slopes, const std::vector<PowerBin>& inside, const Band& band, double rate_hz) {
@@ -274,7 +312,10 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& ba
   Reach reach{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (const Answer& answer : answers)
     if (answer.weight > kLeastWeight) reach_to(answer, mean, reach);
-  reach_to(tilt_answer(slopes, inside), mean, reach);
+  Eigen::ArrayXd frequency(slopes.root.size());
+  for (Eigen::Index j = 0; j < frequency.size(); ++j) frequency[j] = inside[static_cast<std::size_t>(j)].frequency_hz;
+  for (const Answer& slow : slow_answers(slopes, frequency)) reach_to(slow, mean, reach);
+  reach_to(hump_answer(slopes, frequency, fit.rate_hz), mean, reach);
   shift += mean;
   for (Eigen::Index a = 0; a < n; ++a) {
     const std::size_t i = slopes.terms[static_cast<std::size_t>(a)];
