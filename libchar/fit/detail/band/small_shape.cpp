@@ -9,13 +9,13 @@
 // J the weighted log slopes of the terms (and of a corner), phi_m those of the shape (J. A. Hoeting et al., "Bayesian
 // Model Averaging", Stat. Sci. 14 (1999) 382, with the score in the place of a second maximum: R. D. Cook and S.
 // Weisberg, Biometrika 70 (1983) 1). Shrinking is right on the average of the prior, not at every strength: where
-// |z_m| is beyond 1 an interval reaches to where a_hat itself has the term. It does so (neighbours.cpp) for an exponent
-// of the slow noise near one or two, whose phi is its share of the density times ln f, and for slow noise that ends at a
-// frequency f_e, its share times -ln(1 + f²/f_e²), as that of a few processes does; both move N alone: B and K have no
-// meaning apart from their exponents. And for a hump w²/((f - f_c)² + w²) of excitations that ring, or of a line that
-// wanders, the clearest of a grid, from 2.5 standard deviations on, for N leaves its interval far below what is left out
-// as a peak. Heavy tails of the prior leave a shape that is seen as it is; a larger scale covers N better where the
-// tests are blind and costs more where there is nothing: tests/bench/valley_bench shows both.
+// |z_m| is beyond 1 an interval reaches to where a_hat itself has the term. It does so (neighbours.cpp) for an
+// exponent of the slow noise near one or two, whose phi is its share of the density times ln f, and for slow noise
+// that ends at a frequency f_e, its share times -ln(1 + f²/f_e²), as that of a few processes does; both move N alone:
+// B and K have no meaning apart from their exponents. And for a hump w²/((f - f_c)² + w²) of excitations that ring, or
+// of a line that wanders, the clearest of a grid, from 2.5 standard deviations on, for N leaves its interval far below
+// what is left out as a peak. Heavy tails of the prior leave a shape that is seen as it is; a larger scale covers N
+// better where the tests are blind and costs more where there is nothing: tests/bench/valley_bench shows both.
 #include "libchar/fit/detail/band/small_shape.hpp"
 
 #include <algorithm>
