@@ -56,6 +56,7 @@ NamedShape shape_of(const Unknowns& u, double rate_hz) {
   shape.damping = pair ? std::exp(u.x[1]) : 1;
   const double third_hz = u.family == Family::second_order ? 0 : corner_of_square(std::exp(u.x[2]), rate_hz);
   (u.family == Family::third_order ? shape.real_pole_hz : shape.zero_hz) = third_hz;
+  shape.tilt = u.x[3];
   return shape;
 }
 
@@ -90,13 +91,18 @@ class Gain {
         zero_(std::exp(u.x[2])),
         tilt_(u.x[3]) {}
 
-  /// Of the mean gain over the bin, slopes as means of those of the log.
+  /// Of the mean gain over the bin.
   LogGain operator()(const Nodes& nodes) const {
     LogGain out;
     double sum = 0;
-    for (std::size_t i = 0; i < Nodes::kCount; ++i) sum += at(nodes.s[i], nodes.nyquist[i], out);
+    for (std::size_t i = 0; i < Nodes::kCount; ++i) {
+      LogGain node;
+      const double gain = at(nodes.s[i], nodes.nyquist[i], node);
+      sum += gain;
+      for (std::size_t k = 0; k < out.slope.size(); ++k) out.slope[k] += gain * node.slope[k];
+    }
     out.value = std::log(sum / Nodes::kCount);
-    for (double& slope : out.slope) slope /= Nodes::kCount;
+    for (double& slope : out.slope) slope /= sum;
     return out;
   }
 
