@@ -25,7 +25,7 @@ struct Session {
   std::vector<std::string> warned_files;  ///< files that had warnings, in order
 };
 
-/// On stderr, as the end of a run says it: for runs that go on.
+/// On stderr, as at the end of a run: for runs that go on.
 void say_error(Session& session, const libchar::Error& error);
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
@@ -57,7 +57,7 @@ struct DocumentOutput {
   bool json = false, force = false;
 };
 
-/// The keys of `json` behind the head of a document of this format, or `csv`; the log's warnings are said before.
+/// The keys of `json` after the head of a document of this format, or `csv`; the log's warnings are said before.
 void write_document(Session& session, const libchar::LogInfo& log, const std::string& format, const libchar::Json& json,
                     const std::string& csv, const DocumentOutput& output);
 

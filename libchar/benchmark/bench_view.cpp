@@ -63,8 +63,8 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (const TermAccuracy& term : bench.methods.front().terms)
     truth += fmt::format("{} = {} (bound {}), ", kTermNames[static_cast<std::size_t>(term.term)].letter,
                          number_text(term.truth, 3), percent_text(term.bound / term.truth));
-  out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.", truth, bench.records,
-                               count_text(bench.signal.samples), brief_text(bench.signal.rate_hz, 4))};
+  out.sentences = {fmt::format("{}{} simulated records of {} samples at {}.", truth, bench.records,
+                               count_text(bench.signal.samples), frequency_text(bench.signal.rate_hz, 4))};
   out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
   out.table = Table("Method");
   for (const TermAccuracy& term : bench.methods.front().terms)
@@ -198,7 +198,7 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
   out.title = "Growth of cost over " + over;
   const bool sensors = over == "sensors";
   out.table = Table("Work|at the least|at the most|Memory at the most|Exponent");
-  if (sensors) out.table.columns.push_back({fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3))});
+  if (sensors) out.table.columns.push_back({fmt::format("Keeps up to, at {}", frequency_text(bench.rate_hz, 3))});
   for (const ScalingSeries& series : bench.series) {
     if (series.over != over || series.points.empty()) continue;
     const ScalingPoint &least = series.points.front(), &most = series.points.back();
@@ -218,9 +218,8 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
     out.notes = {"Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
   if (sensors)
     out.notes = {
-        "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the time of an instant "
-        "reaches the time between two); beyond the largest number tried by the exponent. More sensors than that are "
-        "not worth their error with this method on one processor."};
+        "One true input. Keeps up to: the number of sensors that takes one whole processor at that rate (extrapolated "
+        "beyond the largest number tried). With more sensors this method does not keep up on one processor."};
   return out;
 }
 

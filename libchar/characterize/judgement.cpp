@@ -76,7 +76,7 @@ struct Judge {
     constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
     const bool unexplained = !letters_with(fit, Status::misfit).empty() || fit.goodness.p < kMisfit;
     if (unexplained && !said)
-      add("misfit", "The noise terms do not describe the recording: no coefficient is borne out.",
+      add("misfit", "The noise terms do not describe the recording: the data support no coefficient.",
           "the noise terms do not describe the recording");
     if (!fit.search.converged) add("not_converged", "The fit did not converge.");
   }
@@ -115,7 +115,7 @@ struct Judge {
     }
     if (strongest != nullptr)
       lines.sentence +=
-          fmt::format(" The strongest is at {} Hz, amplitude {}{}.", brief_text(strongest->frequency_hz),
+          fmt::format(" The strongest is at {}, amplitude {}{}.", frequency_text(strongest->frequency_hz),
                       brief_text(strongest->amplitude), channel.channel.unit.empty() ? "" : " " + channel.channel.unit);
     return lines;
   }

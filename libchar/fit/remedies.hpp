@@ -37,7 +37,7 @@ struct DespikedRecord {
 /// `kurtosis`: of the first differences, where it is known.
 DespikedRecord without_spikes(std::span<const double> record, std::optional<double> kurtosis = {});
 
-/// Puts the answer in front of what else a fit says.
+/// Puts the answer before what else a fit says.
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 
 Remedy lines_remedy(std::uint64_t clipped);

@@ -187,8 +187,7 @@ std::vector<std::string> unlike(const ReplayReport& a, const ReplayReport& b) {
   compare_sources(a, b, found);
   compare_sensors(a, b, found);
   compare_references(a, b, found);
-  if (!same_number(a.rate_hz, b.rate_hz))
-    found.add("rate", brief_text(a.rate_hz, 7) + " Hz", brief_text(b.rate_hz, 7) + " Hz");
+  if (!same_number(a.rate_hz, b.rate_hz)) found.add("rate", frequency_text(a.rate_hz, 7), frequency_text(b.rate_hz, 7));
   if (!same_window(a.evaluation, b.evaluation))
     found.add("evaluation", words(a.evaluation), words(b.evaluation));
   else if (a.instants != b.instants)

@@ -272,13 +272,14 @@ void Fusing::check_rate() {
             "the log's rate is {} times that of the log where this was learnt: the noise of a sample, which {} weighs "
             "against the drifts, is not known there",
             brief_text(ratio, 4), algorithm_.label)
-        .got("{} Hz", brief_text(instants_->info().rate_hz, 6))
+        .got(frequency_text(instants_->info().rate_hz, 6))
         .hint("learn on a log of this rate, or choose another algorithm");
   result_.warnings.add(
       "another_rate",
       "the log's rate is not that of the log where this was learnt: delays and times are kept, what counts samples "
       "(memories, noise of a sample) is not",
-      fmt::format("{} Hz, learnt at {} Hz", brief_text(instants_->info().rate_hz, 6), brief_text(learnt_.rate_hz, 6)));
+      fmt::format("{}, learnt at {}", frequency_text(instants_->info().rate_hz, 6),
+                  frequency_text(learnt_.rate_hz, 6)));
 }
 
 // The original may be one that the algorithm does without.
@@ -532,7 +533,7 @@ void Fusing::tell() {
   result_.faults = found_faults(*log, sensor_of_, 0, instants_->info().rate_hz);
   if (log->dropped() > 0)
     result_.warnings.add("faults_not_kept",
-                         "more faults than are kept: flags of sensors behind the last one are not complete", "",
+                         "more faults than are kept: flags of sensors after the last one are incomplete", "",
                          log->dropped());
 }
 

@@ -179,7 +179,7 @@ TEST_CASE("summary: where the band is cut the sentence says up to where the term
   ChannelResult c = clean();
   c.fit->band.whole = false;
   c.fit->band.top_hz = 12.5;
-  CHECK_THAT(sentence_of(c), Contains(" They hold below 12.5 Hz."));
+  CHECK_THAT(sentence_of(c), Contains(" Valid below 12.5 Hz."));
   CHECK_THAT(sentence_of(clean()), !Contains("hold below"));
 }
 

@@ -272,7 +272,7 @@ class Remarks {
 };
 
 std::string band_text(const ReportedChannel& c) {
-  return c.band.whole ? "the whole spectrum" : fmt::format("up to {} Hz", number_text(c.band.top_hz, 3));
+  return c.band.whole ? "the whole spectrum" : fmt::format("up to {}", frequency_text(c.band.top_hz, 3));
 }
 
 std::string unit_or_none(const std::string& unit) { return unit.empty() ? "no unit" : unit; }

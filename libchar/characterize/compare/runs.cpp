@@ -49,7 +49,7 @@ void check_channels(const Characterization& first, const Characterization& run) 
           .says("channel {} is in {}, and in {} in {}: runs of one sensor have one unit", c.channel.name,
                 other->channel.unit.empty() ? "no unit" : other->channel.unit,
                 c.channel.unit.empty() ? "no unit" : c.channel.unit, first.log.file)
-          .hint("`units` says it where a log does not");
+          .hint("if a log does not state it, give `units`");
   }
   for (const ChannelResult& c : run.channels)
     if (find_channel(first, c.channel.name) == nullptr)
@@ -231,7 +231,8 @@ std::string consistency_sentence(const PooledChannel& c, std::span<const Charact
   const std::string named = files_of(c, runs);
   return fmt::format("The runs do not have one set of coefficients ({}); {}.", figures,
                      named.empty() ? "no run differs alone" : "not like the rest: " + named) +
-         (c.rest_alike ? " The coefficients are those of the rest." : " The common ones are a mean of unlike runs.");
+         (c.rest_alike ? " The coefficients are those of the rest."
+                       : " The common ones are a mean of runs that differ.");
 }
 
 std::string bias_sentence(const PooledChannel& c) {

@@ -109,20 +109,20 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   for (const ChosenCurve& other : chosen) {
     if (other.curve->unit != first.curve->unit)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.name,
+          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.name,
                 first.curve->unit.empty() ? "1" : first.curve->unit, other.name,
                 other.curve->unit.empty() ? "1" : other.curve->unit)
           .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(first.curve->channel));
     if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
         other.curve->is_allan)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
+          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
                 first.curve->value_unit, other.curve->statistic, other.curve->value_unit)
           .hint("a figure for each unit");
     const std::string &a = first.curve->statistic, &b = other.curve->statistic;
     if (!of_one_kind(a, b) && statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
       throw input_error("E0983")
-          .says("unlike curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
+          .says("different curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
           .hint("compute both in the same way");
   }
   if (chosen.size() > detail::kMostCurves)
@@ -385,7 +385,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     const auto& [trace, name] = chosen[k];
     if (trace->unit != chosen[0].first->unit)
       throw input_error("E0976")
-          .says("records in unlike units do not share an axis: {} in {}, {} in {}", chosen[0].second,
+          .says("recordings in different units do not share an axis: {} in {}, {} in {}", chosen[0].second,
                 chosen[0].first->unit, name, trace->unit)
           .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(chosen[0].second));
     FigureSeries series;

@@ -59,8 +59,8 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
 
 std::string event_sentence(const Event& event, std::string_view unit) {
   const double relative = event.sd / std::max(std::abs(event.size), 1e-300);
-  const std::string size = fmt::format("{} ± {}{}{}", number_text(event.size, digits_for(relative)),
-                                       number_text(kNormal95 * event.sd, 2), unit.empty() ? "" : " ", unit);
+  const std::string size =
+      fmt::format("{}{}{}", plus_minus_text(event.size, kNormal95 * event.sd), unit.empty() ? "" : " ", unit);
   std::string text;
   if (event.kind == EventKind::step)
     text = event.in_gap ? fmt::format("A step of {} while nothing was recorded, between {} and {} s", size,

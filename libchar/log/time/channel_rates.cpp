@@ -41,7 +41,7 @@ class RatedRows final : public RowSource {
     for (std::size_t c = 0; c < rates_hz.size(); ++c) {
       channels_.push_back({rates_hz[c]});
       said +=
-          fmt::format("{}{} {} Hz", c == 0 ? "" : ", ", printable(info_.channels[c].name), brief_text(rates_hz[c], 6));
+          fmt::format("{}{} {}", c == 0 ? "" : ", ", printable(info_.channels[c].name), frequency_text(rates_hz[c], 6));
     }
     info_.dialect.push_back("rates as stated: " + said);
     info_.time.column = "rates of the channels";

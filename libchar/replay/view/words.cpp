@@ -175,11 +175,11 @@ std::vector<std::string> preparation_words(const Scene& scene) {
     out.push_back(fmt::format("From each sensor{} its own {} over the whole recording is subtracted.", reference,
                               p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
-  const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
+  const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {}", frequency_text(p.to_hz, 6)) : "";
   out.push_back(fmt::format(
-      "All sensors{} go through one filter: a Butterworth high-pass of second order at {} Hz{}, causal. Its first {} "
-      "are not learnt from and not scored; noise levels are those behind it, and noise models are not used.",
-      reference, brief_text(p.from_hz, 6), band, duration_text(settling_s(p))));
+      "All sensors{} go through one filter: a Butterworth high-pass of second order at {}{}, causal. Its first {} "
+      "are not learnt from and not scored; noise levels are those after it, and noise models are not used.",
+      reference, frequency_text(p.from_hz, 6), band, duration_text(settling_s(p))));
   return out;
 }
 

@@ -43,9 +43,9 @@ void add_derived_rows(Table& table, const ChannelView& view, double rate_hz) {
   const Coefficient& white = (*c.fit)[Term::white];
   if (white.value)
     add("Noise of a single sample", value_text(white, std::sqrt(rate_hz)), view.shown_unit,
-        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this recording have a standard "
+        fmt::format("N·√f: what white noise alone gives at f = {}; the samples of this recording have a standard "
                     "deviation of {} {}",
-                    brief_text(rate_hz, 6), number_text(c.quality.standard_deviation, 4), view.shown_unit));
+                    frequency_text(rate_hz, 6), number_text(c.quality.standard_deviation, 4), view.shown_unit));
   if (const AllanPoint* lowest = view.allan_minimum)
     add("Minimum of the Allan curve", Cell::number(lowest->deviation), view.shown_unit,
         fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
@@ -138,8 +138,8 @@ std::string lines_table(const ChannelView& view) {
   Table out("frequency|amplitude (peak)|above the floor|width");
   out.title = "Spectral lines";
   for (const SpectralLine& line : c.lines)
-    out.add({number_text(line.frequency_hz, 5) + " Hz", number_text(line.amplitude, 3) + " " + view.unit,
-             "×" + number_text(line.excess, 3), number_text(line.width_hz, 2) + " Hz"});
+    out.add({frequency_text(line.frequency_hz, 5), number_text(line.amplitude, 3) + " " + view.unit,
+             "×" + number_text(line.excess, 3), frequency_text(line.width_hz, 2)});
   return html_table(out);
 }
 
@@ -169,7 +169,7 @@ Table quality_table(const ChannelView& view) {
 std::string consumers(const ChannelView& view, double rate_hz) {
   if (view.consumers.empty()) return "";
   Table out("for|name there|formula|value|unit");
-  out.note = "f = " + brief_text(rate_hz, 6) + " Hz. ≤ marks an upper 95 % limit of a term that was not detected.";
+  out.note = "f = " + frequency_text(rate_hz, 6) + ". ≤ marks an upper 95 % limit of a term that was not detected.";
   const std::string* before = nullptr;
   for (const ConsumerNumber& row : view.consumers) {
     const bool repeated = before != nullptr && *before == row.consumer;
@@ -385,7 +385,7 @@ std::string time_base(const LogInfo& log) {
   const TimeBase& t = log.time;
   Table out("|");
   out.title = "Time base";
-  out.add({"Rate", t.rate_hz > 0 ? brief_text(t.rate_hz, 9) + " Hz" : "unknown"});
+  out.add({"Rate", t.rate_hz > 0 ? frequency_text(t.rate_hz, 9) : "unknown"});
   out.add({"Where from", t.from_stamps ? "stamps in " + t.column + " (" + t.unit + (t.unit_guessed ? ", guessed)" : ")")
                                        : "stated by the user or the file"});
   if (t.from_stamps) {

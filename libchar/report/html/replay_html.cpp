@@ -238,8 +238,8 @@ std::string cost_section(const ReplayView& view) {
   std::string out = "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n";
   if (view.figures.time_matters) return out + all + "</section>\n";
   return out +
-         fmt::format("<p>At {} Hz every method takes less than {} of one core: run time decides nothing here.</p>\n",
-                     brief_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
+         fmt::format("<p>At {} every method takes less than {} of one core: run time decides nothing here.</p>\n",
+                     frequency_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
          folded("Error against run time and memory", all) + "</section>\n";
 }
 

@@ -49,8 +49,8 @@ Table conditions(const Json& document, const ReportedCharacterization& report) {
   const double rate_hz = number_at(document, "/recording/rate_hz"), samples = number_at(document, "/recording/samples");
   if (rate_hz > 0)
     out.add({"Duration",
-             fmt::format("{}: {} samples at {} Hz, {} missing", duration_text(samples / rate_hz),
-                         count_text(clamped_whole<std::uint64_t>(samples)), brief_text(rate_hz, 9),
+             fmt::format("{}: {} samples at {}, {} missing", duration_text(samples / rate_hz),
+                         count_text(clamped_whole<std::uint64_t>(samples)), frequency_text(rate_hz, 9),
                          count_text(clamped_whole<std::uint64_t>(number_at(document, "/recording/missing_samples"))))});
   for (const ReportedChannel& c : report.channels)
     if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});

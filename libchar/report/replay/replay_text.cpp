@@ -140,8 +140,8 @@ std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
 }  // namespace
 
 std::string fuse_text(const FuseResult& result, const std::vector<std::string>& files) {
-  std::string out = fmt::format("{}: {} instants at {} Hz fused by {}, {} with an estimate", printable(result.log.file),
-                                result.instants, brief_text(result.rate_hz, 6), result.algorithm.label,
+  std::string out = fmt::format("{}: {} instants at {} fused by {}, {} with an estimate", printable(result.log.file),
+                                result.instants, frequency_text(result.rate_hz, 6), result.algorithm.label,
                                 percent(result.estimates, result.instants));
   out += result.deviations == 0
              ? fmt::format("; {} states no standard deviation\n", result.algorithm.label)

@@ -274,8 +274,8 @@ void Instants::prepare(Progress& progress) {
   const double most_hz = info_.rate_hz / 2, highest_hz = std::max(asked.from_hz, asked.to_hz);
   if (highest_hz >= most_hz)
     throw input_error("E0912", scene_->file)
-        .says("{}: instants at {} Hz have nothing above {} Hz", asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
-              brief_text(info_.rate_hz, 6), brief_text(most_hz, 6))
+        .says("{}: instants at {} have nothing above {}", asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
+              frequency_text(info_.rate_hz, 6), frequency_text(most_hz, 6))
         .got(brief_text(highest_hz, 6))
         .hint("corners are below half the rate");
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);

@@ -335,8 +335,8 @@ std::string stretch_text(double from_s, double to_s) {
 
 std::vector<std::string> run_facts(const ReplayView& view) {
   const ReplayResult& r = *view.result;
-  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {} Hz, {} from {} on.", r.sensors.size(),
-                                              r.instants, brief_text(r.rate_hz, 6), duration_text(view.duration_s),
+  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {}, {} from {} on.", r.sensors.size(),
+                                              r.instants, frequency_text(r.rate_hz, 6), duration_text(view.duration_s),
                                               instant_text(r.start_s))};
   out.push_back(r.has_reference ? "Reference: " + r.reference_use + "." : "No reference.");
   for (const InputResult& input : r.inputs)
