@@ -47,8 +47,8 @@ RULES = [
     ("beside", r"\bbesides?\b", "next to, as well as", ""),
     ("of which", r"\bof\s+(?:which|whose)\b|\bof\s+those\s+(?:of|that|which|who|in|with)\b", "of, or a new sentence",
      ""),
-    ("behind", r"\b(?:rows?|words|lines|bytes|put|those|all|nothing(?=\s+behind\s+\w)|stamps|columns?|units|digits|comes?"
-     r"|begins|ends)\s+behind\b"
+    ("behind", r"\b(?:rows?|words|lines|bytes|put|those|all|nothing(?=\s+behind\s+\w)|stamps|columns?|units|digits"
+     r"|comes?|begins|ends)\s+behind\b"
      r"|\bbehind\s+(?:(?:the|their|its)\s+)?(?:last|first|end|beginning|array|row|head|stamp|learning|warm-up|document"
      r"|script|words?|numbers?|\{\}|@|comma|mark)", "after", ""),
     ("in front of", r"\bin\s+front\s+of\b", "before", ""),
@@ -60,6 +60,7 @@ RULES = [
     ("borne out", r"\bborne\s+out\b", "supported by the data", ""),
     ("says it", r"\bsays?\s+(?:it|this)\b", "states it; given by …", ""),
     ("unlike", r"(?<!--)\bunlike\s+(?:\w+s)\b(?!\s*,)", "different", ""),
+    ("what is said", r"\bwhat\s+is\s+said\b", "the notes on …", ""),
     ("as asked", r"\bas\s+asked\b", "as requested", ""),
     ("exponent", r"(?<![\w.])\d+(?:\.\d+)?e[-+]?\d+\b", "an SI prefix or a word; digits", "table"),
     ("digits", r"(?<![\w.^/-])(?<!arXiv )\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),

@@ -14,6 +14,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/record/mean_meter.hpp"
 #include "libchar/log/between_channels.hpp"
 #include "libchar/log/channel_names.hpp"
@@ -185,7 +186,7 @@ void read_slow_channels_alone(const std::string& path, const CharacterizeOptions
     result.channels[c].channel.rate_hz = channel.rate_hz;
     result.log.warnings.add("own_grid",
                             "channels with a clock of their own in the table, each analysed on its own grid",
-                            fmt::format("channel {} at {}", channel.name, frequency_text(channel.rate_hz, 6)));
+                            fmt::format("channel {} at {}", channel.name, detail::frequency_text(channel.rate_hz, 6)));
   }
 }
 

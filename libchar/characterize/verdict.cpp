@@ -5,6 +5,7 @@
 
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
@@ -96,7 +97,7 @@ std::string unsaid_sentence(const Characterization& result, const std::vector<Ju
   if (names.empty()) return "";
   return fmt::format(" {} {}{}: {}.", rating == Rating::bad ? "Do not use" : "Use",
                      judged.size() == 1 ? "it" : first_names(names), rating == Rating::bad ? "" : " with caution",
-                     one_reason ? phrase : "see what is said of them");
+                     one_reason ? phrase : "see the notes on them");
 }
 
 }  // namespace
@@ -125,7 +126,7 @@ std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::s
   if (fit.bandwidth_hz) {
     out.push_back(
         fmt::format("A first-order low-pass at {} colours the short averaging times; it is part of the model.",
-                    frequency_text(*fit.bandwidth_hz)));
+                    detail::frequency_text(*fit.bandwidth_hz)));
   }
   return out;
 }
@@ -188,7 +189,7 @@ std::string beside_phrase(const NoiseFit& fit) {
   const std::string temperature =
       fit.temperature && fit.temperature->order > 0 ? " Its dependence on temperature was taken out." : "";
   if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz) return temperature;
-  return fmt::format(" Valid below {}.", frequency_text(fit.band.top_hz)) + temperature;
+  return fmt::format(" Valid below {}.", detail::frequency_text(fit.band.top_hz)) + temperature;
 }
 
 constexpr std::size_t kMostSpoils = 4;

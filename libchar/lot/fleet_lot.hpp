@@ -154,7 +154,7 @@ struct FleetOutlier {
   double value = 0;           ///< of these the geometric mean
   double ratio = 1;           ///< to the mean of the others, of what is compared as logarithm
   double deviation = 0;       ///< from the others, in standard deviations of that difference
-  double p = 1;               ///< of so large a deviation of any device
+  double p = 1;               ///< of such a large deviation of any device
   std::string sentence;
 };
 

@@ -10,6 +10,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
@@ -272,14 +273,14 @@ void Fusing::check_rate() {
             "the log's rate is {} times that of the log where this was learnt: the noise of a sample, which {} weighs "
             "against the drifts, is not known there",
             brief_text(ratio, 4), algorithm_.label)
-        .got(frequency_text(instants_->info().rate_hz, 6))
+        .got(detail::frequency_text(instants_->info().rate_hz, 6))
         .hint("learn on a log of this rate, or choose another algorithm");
   result_.warnings.add(
       "another_rate",
       "the log's rate is not that of the log where this was learnt: delays and times are kept, what counts samples "
       "(memories, noise of a sample) is not",
-      fmt::format("{}, learnt at {}", frequency_text(instants_->info().rate_hz, 6),
-                  frequency_text(learnt_.rate_hz, 6)));
+      fmt::format("{}, learnt at {}", detail::frequency_text(instants_->info().rate_hz, 6),
+                  detail::frequency_text(learnt_.rate_hz, 6)));
 }
 
 // The original may be one that the algorithm does without.

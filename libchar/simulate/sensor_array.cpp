@@ -14,6 +14,7 @@
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
@@ -40,7 +41,7 @@ void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
   if (sensor.model.bandwidth_hz && *sensor.model.bandwidth_hz > 10 * rate)
     throw input_error("E0554")
         .says("sensor {}: a bandwidth of {} is far above the rate of {}", sensor.name,
-              frequency_text(*sensor.model.bandwidth_hz, 6), rate)
+              detail::frequency_text(*sensor.model.bandwidth_hz, 6), rate)
         .hint("leave bandwidth_hz out: nothing of it would be seen");
   check_hold("white_hold_s", sensor.model.white_hold_s, sensor.name, rate);
   check_hold("flicker_hold_s", sensor.model.flicker_hold_s, sensor.name, rate);

@@ -15,6 +15,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
@@ -244,7 +245,7 @@ std::string comparison_verdict(const CharacterizationComparison& c) {
     std::string said = group.sentence;
     for (const std::string& more : {group.terms_sentence, warning_words(group)})
       if (!more.empty()) said += (said.empty() || more[0] == ' ' ? "" : " ") + more;
-    if (said.empty()) said = "no term and no averaging time is known of two.";
+    if (said.empty()) said = "no term and no averaging time is known for two of them.";
     out += fmt::format("{}{}: {}", out.empty() ? "" : "\n", group.name, said);
   }
   return out.empty() ? "No channel is in both." : out;
@@ -272,7 +273,7 @@ class Remarks {
 };
 
 std::string band_text(const ReportedChannel& c) {
-  return c.band.whole ? "the whole spectrum" : fmt::format("up to {}", frequency_text(c.band.top_hz, 3));
+  return c.band.whole ? "the whole spectrum" : fmt::format("up to {}", detail::frequency_text(c.band.top_hz, 3));
 }
 
 std::string unit_or_none(const std::string& unit) { return unit.empty() ? "no unit" : unit; }
@@ -367,8 +368,10 @@ void refuse_unlike(const std::vector<ReportedCharacterization>& sides, const std
     measured.push_back(fmt::format("{} of {} is in {}", c.name, side.name, unit_or_none(c.unit)));
   }
   throw input_error("E0976")
-      .says("no two channels measure the same: {}", fmt::join(measured, ", "))
-      .hint("two recordings of one quantity and axis at least; `units` says the unit where a log does not");
+      .says("no two channels measure the same quantity: {}", fmt::join(measured, ", "))
+      .hint(
+          "at least two recordings of one quantity and axis are needed; give `units` where a log does not state the "
+          "unit");
 }
 
 void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {

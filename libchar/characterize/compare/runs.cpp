@@ -243,8 +243,8 @@ std::string bias_sentence(const PooledChannel& c) {
                        number_text(b.spread, 3), unit, number_text(b.spread_ci95.low, 3),
                        number_text(b.spread_ci95.high, 3), number_text(b.mean), unit);
   return fmt::format(
-      "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be seen in a run "
-      "included, lets expect ({}); its spread is at most {} {} (97.5 %).",
+      "Turn-on bias: the means of the runs scatter no more than noise, including slow noise that a run may not show, "
+      "explains ({}); its spread is at most {} {} (97.5 %).",
       probability_text(b.p), number_text(b.spread_ci95.high, 3), unit);
 }
 
@@ -322,7 +322,7 @@ void refuse_same_recording(std::span<const Characterization> runs) {
     for (std::size_t j = 0; j < i; ++j)
       if (!runs[i].log.sha256.empty() && runs[i].log.sha256 == runs[j].log.sha256)
         throw input_error("E0762", runs[i].log.file)
-            .says("is the same recording as {}: taken twice it would count as two", runs[j].log.file)
+            .says("is the same recording as {}: it would count twice", runs[j].log.file)
             .hint("leave one of them out");
 }
 

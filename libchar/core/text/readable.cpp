@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/text/shown.hpp"
+
 namespace libchar {
 namespace {
 
@@ -92,30 +94,6 @@ std::string duration_text(double seconds, int digits) {
   return brief_text(seconds / kYear, digits) + " years";
 }
 
-std::string frequency_text(double hz, int digits) {
-  struct {
-    double below, unit;
-    const char* symbol;
-  } constexpr kSizes[] = {{1e-7, 1e-9, "nHz"}, {1e-4, 1e-6, "µHz"}, {0.1, 1e-3, "mHz"},
-                          {1e5, 1, "Hz"},      {1e7, 1e3, "kHz"},   {1e10, 1e6, "MHz"}};
-  if (!std::isfinite(hz)) return "–";
-  if (hz == 0) return "0 Hz";
-  for (const auto& size : kSizes)
-    if (std::fabs(hz) < size.below) return brief_text(hz / size.unit, digits) + " " + size.symbol;
-  return brief_text(hz / 1e9, digits) + " GHz";
-}
-
-std::string plus_minus_text(double value, double half_width) {
-  if (!std::isfinite(value) || !(half_width > 0) || !std::isfinite(half_width)) return number_text(value);
-  const double larger = std::max(std::fabs(value), half_width);
-  // Of a value that is written with a power of ten both have that one.
-  const Scientific scale = scientific(larger, digits_for(half_width / larger));
-  const double unit = scale.power ? std::pow(10.0, scale.exponent) : 1;
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width / unit))), 0, 9);
-  const std::string both = fmt::format("{:.{}f} ± {:.{}f}", value / unit, decimals, half_width / unit, decimals);
-  return scale.power ? "(" + both + ")×" + power_of_ten(scale.exponent) : both;
-}
-
 std::string place_text(double seconds) {
   return std::fabs(seconds) < 1e6 ? brief_text(seconds, 6) : fmt::format("{:.0f}", seconds);
 }
@@ -174,7 +152,7 @@ std::string bytes_text(const std::optional<std::uint64_t>& bytes) {
 
 std::string error_text(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "–";
-  return brief_text(value, 4) + (unit.empty() ? "" : " " + unit);
+  return brief_text(value, 4) + (unit.empty() ? "" : " " + detail::usual_unit(unit));
 }
 
 }  // namespace libchar

@@ -32,12 +32,6 @@ int digits_for(double relative_uncertainty);
 /// "12.5 ms", "3.2 s", "41 min", "5.6 h", "12 d".
 std::string duration_text(double seconds, int digits = 3);
 
-/// "25 Hz", "16.7 mHz", "46 µHz", "12.5 kHz".
-std::string frequency_text(double hz, int digits = 3);
-
-/// A value with the half width of its interval, to two digits of that: "-18.0 ± 9.5", "0.00310 ± 0.00062".
-std::string plus_minus_text(double value, double half_width);
-
 /// "12 %"; "–" for NaN.
 std::string percent_text(double share, int digits = 2);
 

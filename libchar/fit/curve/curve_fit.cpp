@@ -30,6 +30,7 @@
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
@@ -406,7 +407,7 @@ void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit
                               ? fmt::format("coefficients from averaging times of {} on, {} of {} points left out",
                                             duration_text(edge), left_out, curve.x.size())
                               : fmt::format("coefficients from below {}, {} of {} points left out",
-                                            frequency_text(edge, 4), left_out, curve.x.size()),
+                                            detail::frequency_text(edge, 4), left_out, curve.x.size()),
                           left_out});
 }
 

@@ -75,8 +75,8 @@ std::string worst_part(const FleetReport& report) {
   std::string out = "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
   if (count > open) out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
   return out +
-         "<p class=\"note\">By how improbable the reason is: so large a deviation from the others, of any device of "
-         "the fleet; or so high a value of a device that is at its limit.</p>\n</section>\n";
+         "<p class=\"note\">Sorted by the probability of the reason: of such a deviation from the others in any device "
+         "of the fleet, or of such a high value in a device that is exactly at its limit.</p>\n</section>\n";
 }
 
 std::string quantities_part(const FleetLot& lot) {
@@ -88,11 +88,10 @@ std::string quantities_part(const FleetLot& lot) {
   if (has_kinds) out += folded("The same of each channel", html_table(channels, kLook));
   return out +
          "<p class=\"note\">Means of coefficients are geometric. In brackets: 95 % intervals. Spread between devices, "
-         "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \"of\" "
-         "more devices than are counted includes undetected or doubtful ones, by the square that their records show. "
+         "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \\"of\\" more devices than are counted includes undetected or doubtful ones, by the squares measured in their recordings. "
          "Otherwise only detected values count: no mean is given if fewer than two thirds of the devices were "
          "detected, "
-         "and “too large by up to” is the bias if all others are smaller.</p>\n";
+         "and “too large by up to” is the bias if all other devices are smaller.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {

@@ -9,6 +9,7 @@
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/make_figure.hpp"
@@ -50,7 +51,7 @@ Table conditions(const Json& document, const ReportedCharacterization& report) {
   if (rate_hz > 0)
     out.add({"Duration",
              fmt::format("{}: {} samples at {}, {} missing", duration_text(samples / rate_hz),
-                         count_text(clamped_whole<std::uint64_t>(samples)), frequency_text(rate_hz, 9),
+                         count_text(clamped_whole<std::uint64_t>(samples)), detail::frequency_text(rate_hz, 9),
                          count_text(clamped_whole<std::uint64_t>(number_at(document, "/recording/missing_samples"))))});
   for (const ReportedChannel& c : report.channels)
     if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
@@ -179,7 +180,7 @@ namespace {
 Finding resonance_finding(const std::vector<Resonance>& resonances) {
   const bool one = resonances.size() == 1;
   std::vector<std::string> frequencies;
-  for (const Resonance& resonance : resonances) frequencies.push_back(frequency_text(resonance.top_hz, 2));
+  for (const Resonance& resonance : resonances) frequencies.push_back(detail::frequency_text(resonance.top_hz, 2));
   Finding found = finding(
       "resonance",
       fmt::format(
@@ -201,7 +202,7 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
   if (band.low_pass)
     fit.remedies.push_back({"bandwidth", alarm,
                             fmt::format("first-order low-pass with corner {} added to the model",
-                                        frequency_text(band.low_pass->corner_hz, 4)),
+                                        detail::frequency_text(band.low_pass->corner_hz, 4)),
                             1});
   if (band.filter.kind != NoiseShape::Kind::none)
     fit.remedies.push_back(
@@ -226,7 +227,8 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
     fit.remedies.push_back(
         {"band", alarm,
          fmt::format("coefficients from {} {}, {} of {} bins left out", band.bottom_hz > 0 ? "above" : "below",
-                     frequency_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4), left_out, bins.size()),
+                     detail::frequency_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4), left_out,
+                     bins.size()),
          left_out});
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/view/words.hpp"
@@ -27,10 +28,10 @@ std::string reading(const Scene& scene, const Instants& instants) {
   const SourceInfo& source = instants.source().info();
   if (scene.simulate)
     return fmt::format("simulates {} sensors, {} samples at {}, seed {}, again for each pass", scene.sensors.size(),
-                       source.samples, frequency_text(source.rate_hz, 6), scene.simulate->seed);
+                       source.samples, detail::frequency_text(source.rate_hz, 6), scene.simulate->seed);
   return fmt::format("reads {} of {}: {} samples at {}, {}",
                      plural(source.units.size() + source.reference_units.size(), "channel"), source.logs[0].file,
-                     source.samples, frequency_text(source.rate_hz, 6),
+                     source.samples, detail::frequency_text(source.rate_hz, 6),
                      source.kept ? "once, and keeps them" : "again for each pass");
 }
 
@@ -126,7 +127,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan, const Scene& scene, c
   if (scene.align) out.push_back(align(*scene.align));
   if (scene.reference) out.push_back(learning(plan, scene.learning || !scene.align || !scene.align->choose));
   out.push_back(fmt::format("evaluation: {} instants at {} from {} to {}", plan.run_to - plan.run_from,
-                            frequency_text(instants.info().rate_hz, 6), seconds(plan.evaluation.from_s),
+                            detail::frequency_text(instants.info().rate_hz, 6), seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
   if (plan.warm_up > 0)
     out.push_back(fmt::format("warm-up: the first {} of it are run and not scored",
