@@ -31,7 +31,7 @@ void say_error(Session& session, const libchar::Error& error);
 void report_warnings(Session& session, const libchar::LogInfo& info);
 /// What is known of a channel, at most five lines, the worst first.
 void report_findings(Session& session, const std::string& channel, const std::vector<libchar::Finding>& findings);
-/// Of a document: what is said of the recording and of the channels that fit one of the patterns (none: all).
+/// Of a document: all about the recording and of the channels that fit one of the patterns (none: all).
 void report_findings(Session& session, const std::string& document, std::span<const libchar::Finding> findings,
                      const std::vector<std::string>& channels);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
@@ -66,7 +66,7 @@ void write_document(Session& session, const libchar::LogInfo& log, const std::st
 void refuse_standard_output(const char* flag, const std::string& place,
                             const char* what = "the results are several files", const char* hint = "name a folder");
 
-/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a
+/// The report on a log that was written: on stdout, or, where the log itself may be there, as a
 /// note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 

@@ -88,7 +88,9 @@ std::string quantities_part(const FleetLot& lot) {
   if (has_kinds) out += folded("The same of each channel", html_table(channels, kLook));
   return out +
          "<p class=\"note\">Means of coefficients are geometric. In brackets: 95 % intervals. Spread between devices, "
-         "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \\"of\\" more devices than are counted includes undetected or doubtful ones, by the squares measured in their recordings. "
+         "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \"of\" "
+         "more devices than are counted includes undetected or doubtful ones, by the squares measured in their "
+         "recordings. "
          "Otherwise only detected values count: no mean is given if fewer than two thirds of the devices were "
          "detected, "
          "and “too large by up to” is the bias if all other devices are smaller.</p>\n";
