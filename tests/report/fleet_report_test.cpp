@@ -357,6 +357,20 @@ TEST_CASE("the page of a fleet links the worst devices, and no name becomes a ta
   CHECK_THAT(page, Contains("id=\"device-search\""));
 }
 
+TEST_CASE("a list of devices that only names them again is left out") {
+  test::MadeLot made;
+  made.devices = 3;
+  std::vector<DeviceRecord> records = test::made_lot(made, 3);
+  const auto page_of = [](const std::vector<DeviceRecord>& all) {
+    const FleetLot lot = fleet_lot(all);
+    return fleet_html({all, &lot, "", {}, {}});
+  };
+  for (DeviceRecord& record : records) record.batch = "";
+  CHECK_THAT(page_of(records), Contains(">Each device<") && !Contains(">All devices<"));
+  records[1].batch = "second";
+  CHECK_THAT(page_of(records), Contains(">Each device<") && Contains(">All devices<"));
+}
+
 TEST_CASE("the text of a fleet has its table and its worst devices") {
   const auto records = two_batches();
   const FleetLot lot = fleet_lot(records);

@@ -374,10 +374,37 @@ void refuse_unlike(const std::vector<ReportedCharacterization>& sides, const std
           "unit");
 }
 
-void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {
+/// Whether a name is that of a channel of the group on any side, or says what they measure.
+bool names_group(const std::string& name, const ComparedGroup& group) {
+  const auto is_named = [&](const std::string& channel) {
+    return name == channel || name == detail::usual_channel_name(channel, group.unit);
+  };
+  return name == group.name ||
+         std::any_of(group.candidates.begin(), group.candidates.end(), [&](const ComparedGroup::Candidate& one) {
+           return std::any_of(one.channels.begin(), one.channels.end(), is_named);
+         });
+}
+
+/// The limits with each channel under the name of its group; `some`: of those that are compared.
+NoiseLimits by_group(NoiseLimits limits, const std::vector<ComparedGroup>& groups, bool some) {
+  for (LimitBlock& block : limits.blocks) {
+    std::vector<std::string> names;
+    for (const std::string& name : block.channels) {
+      const auto group =
+          std::find_if(groups.begin(), groups.end(), [&](const ComparedGroup& one) { return names_group(name, one); });
+      if (group == groups.end() && some) continue;
+      const std::string& known = group == groups.end() ? name : group->name;
+      if (std::find(names.begin(), names.end(), known) == names.end()) names.push_back(known);
+    }
+    if (!names.empty()) block.channels = std::move(names);
+  }
+  return limits;
+}
+
+void add_limits(CharacterizationComparison& out, const NoiseLimits& limits, bool some) {
   std::vector<NamedChannel> named;
-  for (const ComparedGroup& group : out.groups) named.push_back({group.candidates[0].channels[0], group.unit});
-  for (const ChannelLimit& limit : limits_for(limits, named)) {
+  for (const ComparedGroup& group : out.groups) named.push_back({group.name, group.unit});
+  for (const ChannelLimit& limit : limits_for(by_group(limits, out.groups, some), named)) {
     ComparedGroup& group = out.groups[limit.channel];
     for (ComparedTerm& term : group.terms)
       if (term.term == limit.term) term.limit = limit.most;
@@ -410,7 +437,7 @@ CharacterizationComparison compare_characterizations(std::vector<ReportedCharact
   for (const ComparedGroup& group : out.groups) judgements += judgements_of(group);
   for (ComparedGroup& group : out.groups)
     judge(group, options.probability / static_cast<double>(std::max<std::size_t>(1, judgements)));
-  if (options.limits) add_limits(out, *options.limits);
+  if (options.limits) add_limits(out, *options.limits, !options.channels.empty());
   out.remarks = remarks_of(out.sides, pairs);
   out.known = known_of(out.sides, options.channels);
   out.verdict = comparison_verdict(out);

@@ -376,6 +376,25 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
   return out;
 }
 
+namespace {
+
+/// All have one colour: one mark as it is called, several by their kinds ("5 × step, warm-up, quietest").
+std::string marks_name(const std::vector<SourceTrace::Mark>& marks) {
+  if (marks.size() == 1) return marks[0].label;
+  std::vector<std::pair<std::string, std::size_t>> kinds;
+  for (const SourceTrace::Mark& mark : marks) {
+    const std::string kind = mark.label.substr(0, mark.label.find(' '));
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == kind; });
+    known == kinds.end() ? void(kinds.emplace_back(kind, 1)) : void(++known->second);
+  }
+  std::string out;
+  for (const auto& [kind, count] : kinds)
+    out += (out.empty() ? "" : ", ") + (count > 1 ? fmt::format("{} × {}", count, kind) : kind);
+  return out;
+}
+
+}  // namespace
+
 Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const auto chosen = chosen_parts(sources, options, &FigureSource::traces, [](const SourceTrace&) { return true; });
   if (chosen.empty()) throw kind_refusal(sources[0], "trace").says("it holds no recording");
@@ -399,7 +418,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     x.take(static_cast<double>(trace->low.size()) * trace->block_s);
     if (chosen.size() == 1)
       for (const SourceTrace::Mark& mark : trace->marks)
-        out.stretches.push_back({mark.from_s, mark.to_s, mark.label, Ink::orange});
+        out.stretches.push_back({mark.from_s, mark.to_s, marks_name(trace->marks), Ink::orange});
     out.series.push_back(std::move(series));
   }
   x.take(0.0);

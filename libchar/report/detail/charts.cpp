@@ -279,7 +279,7 @@ std::string histogram_figure(const Histogram& h, const LotAxis& axis, const std:
   };
   upright(axis.mean, Ink::green, "mean");
   upright(axis.limit, Ink::vermilion, "limit");
-  std::string caption = beyond_text(axis, chart.x) + "How many devices have which value";
+  std::string caption = beyond_text(axis, chart.x) + "Histogram of the devices' values";
   if (h.below + h.above > 0) caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
   return drawn_figure(chart, kHalf, caption + ".");
 }

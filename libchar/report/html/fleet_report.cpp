@@ -138,12 +138,14 @@ bool anything_is_the_matter(const FleetLot& lot) {
   return any(lot.stands_out) || any(lot.fails) || !lot.failed.empty() || !lot.awaited.empty();
 }
 
-std::string devices_part(const FleetLot& lot) {
+/// Where the table of coefficients has every device, a list that only names them again is left out.
+std::string devices_part(const FleetLot& lot, bool in_table) {
   Table devices("device");
   for (const auto& [head, shown] :
        {std::pair("recording", has_several_recordings(lot)), std::pair("type", says_anything(lot.types)),
         std::pair("batch", says_anything(lot.batches)), std::pair("what is the matter", anything_is_the_matter(lot))})
     if (shown) devices.columns.push_back({head});
+  if (in_table && devices.columns.size() == 1) return "";
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, batch\"></label>\n"
          "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option value=\"1\">"
@@ -288,7 +290,7 @@ std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) + quantities_part(lot) +
                            "</section>\n" + worst_part(report) + channels_part(report) + curves_part(report) +
-                           figures_part(report) + devices_part(*report.lot) +
+                           figures_part(report) + devices_part(*report.lot, !all_channels(report).rows.empty()) +
                            many_provenance(report.recordings, report.command);
   PageParts parts;
   parts.title = "A lot of sensors";

@@ -69,7 +69,7 @@ Table method(const Json& document) {
   for (const Json& word : found(document, "/command")) words.push_back(text_at(word, ""));
   Table out("|");
   out.add({"Coefficients", fmt::format("{}", fmt::join(fits, "; "))});
-  if (!terms.empty()) out.add({"Offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
+  if (!terms.empty()) out.add({"Terms offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
   out.add({"Allan curve", text_at(document, "/allan/type") + ", 95 % intervals"});
   add_program(out, words);
   return out;
@@ -148,7 +148,7 @@ std::string detail::test_form_html(const ReportedCharacterization& report, const
       part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(document, report))) +
       part(3, "Method", facts(method(document))) +
       part(4, "Results", html_table(detail::coefficient_rows(report, channels)) + figures(report, source, channels)) +
-      part(5, "Limits", limits(document)) + part(6, "To be known", known) + part(7, "Signatures", signatures());
+      part(5, "Limits", limits(document)) + part(6, "Remarks", known) + part(7, "Signatures", signatures());
   return html_page({"Test report: sensor noise", text_at(document, "/recording/file"),
                     "reportPage.start({}, () => 320);\n", std::string(page_css()) + kStyle, false},
                    body, "{}");
