@@ -229,7 +229,7 @@ std::string facts(const CharacterizationView& view) {
   out += fmt::format("<b>{}</b> {} · <b>{}</b> samples per channel", result.channels.size(),
                      result.channels.size() == 1 ? "channel" : "channels", count_text(log.samples));
   if (log.time.rate_hz > 0) {
-    out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>", brief_text(log.time.rate_hz, 6),
+    out += fmt::format(" at <b>{}</b>{} · <b>{}</b>", detail::frequency_text(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
                        html_text(duration_text(view.duration_s)));
   }
