@@ -793,10 +793,10 @@ std::vector<Export> printed_rows() {
       "x[]", 20, 0, {1000.5}, "typesetting");
   add(
       "logging of Python", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 INFO:{}.5,-2\n", k, k); },
-      "INFO[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {0.5, -2}, "in front of the lines");
+      "INFO[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {0.5, -2}, "before the lines");
   add(
       "logging of Python, blanks", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 -1.5 {}.5\n", k, k); },
-      "c0[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {-1.5, 0.5}, "in front of the lines");
+      "c0[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {-1.5, 0.5}, "before the lines");
   add(
       "columns that pandas numbered",
       [](int k) { return (k == 0 ? "0,1,2\n" : "") + fmt::format("{:.2f},{}.5,-2.0\n", 0.05 * k, k); }, "1[] 2[]", 20,
