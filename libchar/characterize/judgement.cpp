@@ -9,6 +9,7 @@
 
 #include "libchar/characterize/compare/verification.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/fit/remedies.hpp"
 
@@ -49,8 +50,8 @@ std::string events_taken_out(const NoiseFit& fit) {
 
 /// So few spikes are repaired without a trace in the coefficients.
 constexpr double kManySpikes = 0.001;
-/// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out.
-constexpr double kMostMissing = 0.01;
+/// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out, and N keeps its interval.
+constexpr double kMostMissing = 0.1;
 
 double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -76,7 +77,7 @@ struct Judge {
     constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
     const bool unexplained = !letters_with(fit, Status::misfit).empty() || fit.goodness.p < kMisfit;
     if (unexplained && !said)
-      add("misfit", "The noise terms do not describe the recording: no coefficient is borne out.",
+      add("misfit", "The noise terms do not describe the recording: the data support no coefficient.",
           "the noise terms do not describe the recording");
     if (!fit.search.converged) add("not_converged", "The fit did not converge.");
   }
@@ -85,8 +86,8 @@ struct Judge {
     if (const std::string letters = letters_with(fit, Status::undetermined);
         !letters.empty() && !has(fit.findings, "undetermined")) {
       add("undetermined",
-          fmt::format("Undetermined: {}. Another term could explain the same part of the record, or its Allan curve "
-                      "speaks against it.",
+          fmt::format("Undetermined: {}. Another term could explain the same part of the recording, or the Allan curve "
+                      "contradicts it.",
                       letters),
           letters + " undetermined: not distinguished from another term, or contradicted by the Allan curve");
       if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
@@ -115,7 +116,7 @@ struct Judge {
     }
     if (strongest != nullptr)
       lines.sentence +=
-          fmt::format(" The strongest is at {} Hz, amplitude {}{}.", brief_text(strongest->frequency_hz),
+          fmt::format(" The strongest is at {}, amplitude {}{}.", detail::frequency_text(strongest->frequency_hz),
                       brief_text(strongest->amplitude), channel.channel.unit.empty() ? "" : " " + channel.channel.unit);
     return lines;
   }
@@ -202,6 +203,9 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
     if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   if (channel.fit && has_step(*channel.fit))
     std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
+  // The zeros of a held value's spectrum lie between humps.
+  if (has(found.out, "held_values"))
+    std::erase_if(found.out, [](const Finding& one) { return one.code == "resonance"; });
   // Marks are far from all samples: they look like movement, and what moves is seen without them.
   if (has(found.out, "missing_mark"))
     std::erase_if(found.out, [](const Finding& one) {
@@ -218,12 +222,15 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
 }
 
 std::vector<Finding> detail::findings_of_curve(ChannelResult channel) {
-  std::vector<Finding> of_fit;
-  if (channel.fit) of_fit = std::move(channel.fit->findings);
+  Judge of_fit{channel, {}};
+  if (channel.fit) of_fit.look_at_fit(*channel.fit);
   channel.fit.reset();
   std::vector<Finding> out = findings_of(channel);
-  for (const Finding& one : of_fit)
-    if (one.code == "not_stationary") out.push_back(one);
+  constexpr std::string_view kInCurve[] = {"not_stationary", "event",     "events_left_in", "cycle",
+                                           "hump",           "resonance", "lines_left_out"};
+  for (Finding& one : of_fit.out)
+    if (std::find(std::begin(kInCurve), std::end(kInCurve), one.code) != std::end(kInCurve))
+      out.push_back(std::move(one));
   return worst_first(std::move(out));
 }
 

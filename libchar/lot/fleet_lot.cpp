@@ -327,23 +327,10 @@ std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   out += without_result(lot) + "." + outlying_sentence(lot, fleet);
   const std::size_t held = lot.failing + lot.open + lot.keeping;
   if (held > 0)
-    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.", plural(held, "device"),
+    out += fmt::format(" Of {} compared with limits, {} {}, {} not decided, {} all of them.", plural(held, "device"),
                        lot.failing, lot.failing == 1 ? "fails one" : "fail one or more", lot.open,
                        lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
   return out + batch_sentence(lot) + chart_sentence(lot);
-}
-
-/// What was mended in the logs does not get lost in the number of them.
-std::vector<std::string> warnings_note(std::span<const DeviceRecord> records, std::span<const std::size_t> order) {
-  const DeviceRecord* first = nullptr;
-  std::size_t count = 0;
-  for (const std::size_t r : order) {
-    if (records[r].warnings.empty()) continue;
-    if (++count == 1) first = &records[r];
-  }
-  if (count == 0) return {};
-  return {fmt::format("{} of {} read with warnings, which their pages say; the first, of {}: {}", count,
-                      plural(records.size(), "recording"), first->device, first->warnings[0])};
 }
 
 /// One for each code, with the devices that have it, the worst first.
@@ -400,7 +387,6 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   for (Statistic& s : statistics) out.quantities.push_back(std::move(s.lot));
   out.notes = fleet.sorted.notes;
   for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups)) out.notes.push_back(std::move(note));
-  for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.findings = known_of(records, out.order);
   out.verdict = fleet_verdict(out, fleet);
   return out;

@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/detail/rest_doubt.hpp"
 #include "libchar/core/axis_name.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
@@ -96,6 +97,7 @@ class Finish {
   void doubt_unit(ChannelResult& result, double rate_hz) const;
   void doubt_frequency(ChannelResult& result) const;
   void doubt_rate(ChannelResult& result, double rate_hz) const;
+  void doubt_rest(ChannelResult& result, double rate_hz) const;
   std::optional<double> white_limit(const Coefficient& walk, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
   void find_motion(ChannelResult& result, double rate_hz);
@@ -408,8 +410,8 @@ void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
     return doubt_frequency(result);
   if (!time && (known->quantity != Quantity::angle || !detail::names_angular_rate(result.channel.name))) return;
   const bool increments = !time && found_.difference_sd > found_.standard_deviation;
-  const char* const what = time ? "as the time error of a clock the samples are a phase, and no fractional frequency"
-                           : increments ? "the samples are increments of an angle, and no angular rate"
+  const char* const what = time ? "as the time error of a clock the samples are a phase, not a fractional frequency"
+                           : increments ? "the samples are increments of an angle, not an angular rate"
                                         : "the samples are an angle, and no angular rate";
   Finding integral = finding("integral_unit", fmt::format("The unit is {}: {}.", unit, what));
   Finding::Help& help = integral.help.emplace_back(
@@ -476,10 +478,18 @@ void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   const auto limit = white.status == Status::undetermined ? white_limit(walk, rate_hz) : white.upper95;
   if (!limit || *limit > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
   Finding integral = finding("looks_integrated",
-                             "The record is a random walk up to its fastest samples, without white noise: so is an "
-                             "angle, a velocity or a phase, and no rate.");
+                             "The record is a random walk up to its fastest samples, without white noise: this is "
+                             "typical of an angle, a velocity or a phase, not of a rate.");
   integral.help.push_back({"Where it is one, say so.", {{"data", "phase"}}});
   result.findings.push_back(std::move(integral));
+}
+
+// Where it moves for a part of the record, the rest of it may be used.
+void Finish::doubt_rest(ChannelResult& result, double rate_hz) const {
+  if (options_.data != SampleKind::rate || !result.fit || has(result.findings, "motion")) return;
+  const double step = found_.resolution.value_or(0);
+  if (auto moves = detail::doubt_rest(*result.fit, result.channel.unit, step * step / (12 * rate_hz)))
+    result.findings.push_back(*std::move(moves));
 }
 
 // Differenced phase and fractional frequency have other units than the samples in the log.
@@ -534,6 +544,7 @@ ChannelResult Finish::result(const Channel& channel, const TimeBase& time) {
   make_rate(rate_hz);
   finish(result, rate_hz);
   doubt_rate(result, rate_hz);
+  doubt_rest(result, rate_hz);
   result.noise_types = noise_types_;
   if (result.fit && !noise_types_.empty())
     result.fit->findings.push_back(finding(
