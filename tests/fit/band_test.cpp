@@ -384,6 +384,45 @@ TEST_CASE("short records behind filters of one, two and three poles, at a tenth 
   }
 }
 
+TEST_CASE("white noise behind shapes that have no name here, or another: its interval knows the choice") {
+  struct Row {
+    const char* name;
+    std::vector<double> b, a;
+    int most;  ///< of 24 intervals that do not hold 0.1
+  };
+  const std::vector<Row> rows = {
+      {"fifteen weights, at .12",  // half of the records look like a triangular average of four samples
+       {-0.003089, -0.006581, -0.009530, 0.004390, 0.052822, 0.132098, 0.209188, 0.241403, 0.209188, 0.132098, 0.052822,
+        0.004390, -0.009530, -0.006581, -0.003089},
+       {},
+       4},
+      {"shelf of 2 at .1", {1.754763, -1.264288}, {-0.509525}, 3},
+      {"shelf of 1.5 at .05", {1.431636, -1.158178}, {-0.726543}, 2},  // as a high-pass and a walk behind it
+      {"echo of three samples", {1.052632, 0, 0, -0.052632}, {}, 2},   // the terms alone pass
+      {"Bessel's three at .11", {0.020812, 0.062435, 0.062435, 0.020812}, {-1.523598, 0.867197, -0.177104}, 4}};
+  for (const Row& row : rows) {
+    CAPTURE(row.name);
+    test::Gaussian normal(21);
+    int missed = 0;
+    for (int r = 0; r < 24; ++r) {
+      const NoiseFit fit = fit_record(filtered_white(normal, row.b, row.a), kRate, nullptr, {});
+      const Interval held = fit[Term::white].ci95;
+      missed += held.low <= 0.1 && held.high >= 0.1 ? 0 : 1;
+    }
+    CHECK(missed <= row.most);
+  }
+}
+
+TEST_CASE("white noise behind a high-pass is what is above its corner, whatever the residuals") {
+  test::Gaussian normal(22);
+  for (int r = 0; r < 48; ++r) {
+    const NoiseFit fit = fit_record(filtered_white(normal, {1, -1}, {-0.969072}), kRate, nullptr, {});
+    CAPTURE(r);
+    CHECK(says(fit, "high_passed"));
+    CHECK(fit[Term::white].value.value_or(0) == Approx(0.10157).epsilon(0.04));
+  }
+}
+
 TEST_CASE("a named shape says its family and corners") {
   using Family = NamedShape::Family;
   CHECK(named_shape_text({Family::high_pass, 0.5, 0, 1, 0}) == "a high-pass at 0.5 Hz");

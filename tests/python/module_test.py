@@ -297,6 +297,31 @@ class TakesWhatPeopleHave(unittest.TestCase):
         for result in (curve, libchar.psd(log)[0], libchar.characterize(log)):
             self.assertGreater(len(result.to_dataframe()), 1)
 
+    def test_series_and_equal_names(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        x = noise()
+        series = pandas.Series(x, index=pandas.date_range("2026-01-01", periods=len(x), freq="10ms"), name="wz")
+        curve = libchar.allan(series)
+        self.assertEqual((curve.name, curve.deviation.tolist()), ("wz", libchar.allan(x, 100).deviation.tolist()))
+        self.assertEqual(libchar.fit(pandas.Series(x), 100).name, "c0")
+        twice = pandas.DataFrame(np.column_stack([x, 2 * x]), columns=["w", "w"])
+        self.assertEqual([one.name for one in libchar.allan(twice, 100)], ["w", "w_2"])
+        with self.assertRaises(libchar.UsageError) as caught:
+            libchar.allan(series[::-1])
+        self.assertEqual((caught.exception.where, caught.exception.hint), ("index", "frame.sort_index()"))
+
+    def test_one_name_is_a_list_of_one(self):
+        truth = np.sin(np.arange(20000) / 500)
+        array = {f"s{k}": truth + noise(seed=k) * (0.1 + 0.1 * k) for k in range(3)} | {"truth": truth}
+        one, several = (libchar.replay(array, rate=100, sensors=sensors, reference="truth", algorithms=algorithms,
+                                       timing=False)
+                        for sensors, algorithms in (("s*", "mean"), (["s*"], ["mean"])))
+        self.assertEqual(one.to_dict()["algorithms"], several.to_dict()["algorithms"])
+        self.assertEqual(libchar.fit(array, 100, channels="s0")[0].name, "s0")
+
     def test_what_a_mask_hides_is_missing(self):
         x = noise()
         x[500:520] = 1e6
@@ -385,6 +410,8 @@ class HasEveryVerb(unittest.TestCase):
         self.assertEqual([side["name"] for side in found["sides"]], ["ours", "new"])
         self.assertTrue(found.verdict)
         self.assertIn("<html", found.html)
+        model, curve = self.result.models()[0], libchar.allan(other)[0]
+        self.assertTrue(libchar.compare(model, curve, channels=["gyro_z"]).verdict)
         logs = [libchar.simulate(self.result.models()[0], duration_s=300, seed=seed) for seed in range(3)]
         found = libchar.lot(*logs, channel="gyro_z")
         self.assertEqual(found["devices"], 3)
@@ -419,6 +446,13 @@ class HasEveryVerb(unittest.TestCase):
                 self.assertEqual((pathlib.Path(folder) / "figure.svg").read_text(), figure.svg)
             both = libchar.plot(self.result, libchar.allan(self.log)[0], channel="gyro_z", label=["a", "b"])
             self.assertIn(">b<", both.svg)
+            model = self.result.models()[0]
+            raw = libchar.plot(self.log, model, channel="gyro_z", label=["log", "model"])
+            self.assertIn(">model<", raw.svg)
+            self.assertIn("<svg", libchar.plot(noise(), noise(seed=2), rate=100).svg)
+            self.assertIn("<svg", self.log.plot(kind="trace", channel="gyro_z").svg)
+            self.assertIn("<svg", libchar.plot(IMU, channel="gyro_z").svg)
+        self.assertEqual(list(libchar.fit(self.log)[0].to_dataframe()["coefficient"])[0], "white_noise")
         for shown in (self.log, self.result, libchar.fit(self.log)[0], libchar.allan(self.log)[0]):
             self.assertRegex(shown._repr_html_(), "<(table|svg)")
 
@@ -490,6 +524,24 @@ class Refuses(unittest.TestCase):
                      lambda: libchar.allan(x, 1, taus="eighth")):
             self.refused(libchar.UsageError, call, "E0202")
         self.assertRaises(ValueError, lambda: libchar.allan(x, 1, type="odev"))
+        for call in (lambda: libchar.fit(x, 1, units=3), lambda: libchar.simulate(["a", "b"]),
+                     lambda: libchar.replay({"a": x}, rate=1, sensors=[1])):
+            self.refused(libchar.UsageError, call, "E0208")
+
+    def test_names_of_python(self):
+        """Options are keywords, and what is in memory has a name instead of the path of a file that is gone."""
+        x = noise(1000)
+        error = self.refused(libchar.UsageError, lambda: libchar.allan(x, 1).plot(kind="alan"), "E0202")
+        self.assertIn("`kind`", str(error))
+        self.assertNotIn("--", str(error))
+        for call in (lambda: libchar.replay({"a": x, "b": -x}, rate=1, sensors="q*"),
+                     lambda: libchar.cross_spectrum({"a": x}, "a", "q", 1)):
+            error = self.refused(libchar.UsageError, call, "E0320")
+            self.assertEqual(error.where, "recording")
+            self.assertNotIn(tempfile.gettempdir(), str(error))
+        with tempfile.TemporaryDirectory() as folder:
+            libchar.write(pathlib.Path(folder) / "log.csv", {"a": x}, 50)
+            self.assertEqual(libchar.read(pathlib.Path(folder) / "log.csv").rate_hz, 50)
 
     def test_numbers(self):
         self.refused(libchar.NumericError, lambda: libchar.fit(noise(3), 1), "E0711")

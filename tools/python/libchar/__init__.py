@@ -14,10 +14,10 @@ otherwise.
 from . import program
 from ._libchar import build, version as _version
 from .errors import CopyWarning, Error, InputError, NumericError, UsageError
-from .functions import (allan, bench, characterize, compare, cornered_hat, cross_spectrum, fit, fuse, inspect, lot, psd,
-                        read, replay, simulate, write)
+from .functions import (allan, bench, characterize, compare, cornered_hat, cross_spectrum, fit, fuse, inspect, lot,
+                        plot, psd, read, replay, simulate, write)
 from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, Document, Figure, Model, NoiseFit,
-                      NoiseTerm, Recording, ReplayResult, Spectrum, export, plot)
+                      NoiseTerm, Recording, ReplayResult, Spectrum, export)
 
 __version__ = _version()
 __all__ = ["read", "write", "inspect", "allan", "psd", "fit", "characterize", "compare", "lot", "cross_spectrum",

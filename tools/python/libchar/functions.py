@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _libchar, program
-from .errors import CopyWarning, NumericError, UsageError
-from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, Document, NoiseFit, NoiseTerm, Recording,
-                      ReplayResult, Spectrum)
+from .errors import CopyWarning, InputError, NumericError, UsageError
+from .results import (AllanCurve, Algorithm, Characterization, ChannelReport, Document, Figure, Model, NoiseFit,
+                      NoiseTerm, Recording, ReplayResult, Spectrum, document_of)
 
 #: A path of a log, a recording that was read, an array (one channel, or a table whose longer axis is the time), arrays
 #: by name, or a pandas.DataFrame.
@@ -52,8 +52,39 @@ def _column(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
     return out
 
 
+def _listed(names: Any, where: str) -> Optional[list[str]]:
+    """One name, or several, as a list."""
+    if names is None or isinstance(names, str):
+        return names if names is None else [names]
+    try:
+        listed = list(names)
+    except TypeError:
+        listed = [names]
+    wrong = next((one for one in listed if not isinstance(one, str)), None)
+    if wrong is not None:
+        raise UsageError(f"{where}: a name or a list of names was expected, this is {wrong!r}", "E0208", where)
+    return listed
+
+
 def _is_frame(source: Any) -> bool:
     return hasattr(source, "columns") and hasattr(source, "index") and hasattr(source, "to_numpy")
+
+
+def _is_series(source: Any) -> bool:
+    return hasattr(source, "to_frame") and hasattr(source, "index") and hasattr(source, "to_numpy")
+
+
+def _by_name(frame: Any) -> dict[str, npt.NDArray[np.float64]]:
+    """The columns of a frame; of one name the second is NAME_2, as in a file."""
+    out: dict[str, npt.NDArray[np.float64]] = {}
+    for k, given in enumerate(frame.columns):
+        name = str(given)
+        for n in range(2, len(frame.columns) + 1):
+            if name not in out:
+                break
+            name = f"{given}_{n}"
+        out[name] = _of_series(frame[given] if list(frame.columns).count(given) == 1 else frame.iloc[:, k], name)
+    return out
 
 
 def _of_series(series: Any, name: str) -> npt.NDArray[np.float64]:
@@ -92,7 +123,7 @@ def _nanoseconds(instant: datetime.datetime) -> int:
 def _of_frame(frame: Any) -> Source:
     """A DataFrame as a recording, by its own stamps if its index has instants, else its columns by name. What the
     stamps mean (their rate, jitter, gaps) is decided as for a file."""
-    columns = {str(name): _of_series(frame[name], str(name)) for name in frame.columns}
+    columns = _by_name(frame)
     stamps = _instants(frame.index)
     if stamps is None:
         return columns
@@ -105,16 +136,23 @@ def _of_frame(frame: Any) -> Source:
     table["t[ns]"] = stamps
     for name, values in columns.items():
         table[name] = values
-    with program.folder() as place:
+    with program.folder() as place, program.known_as(place / "frame.npy", "DataFrame"):
         np.save(place / "frame.npy", table)
-        return read(place / "frame.npy")
+        try:
+            return read(place / "frame.npy")
+        except InputError as error:
+            if error.code != "E0315":
+                raise
+            raise UsageError("index: its times fall from row to row", "E0208", "index", "frame.sort_index()") from error
 
 
 def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Names, channels: Names) -> dict[str, Any]:
     """Names, units and contiguous columns of what is in memory."""
+    if _is_series(source):
+        source = source.to_frame("c0" if source.name is None else str(source.name))  # type: ignore[union-attr]
     if _is_frame(source):
         source = _of_frame(source)
-    units, names = ([one] if isinstance(one, str) else one for one in (units, names))
+    units, names, channels = _listed(units, "units"), _listed(names, "names"), _listed(channels, "channels")
     if isinstance(source, Recording):
         found = dict(zip(source.names, source.samples))
         unit_of = dict(zip(source.names, source.units))
@@ -155,7 +193,12 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
 
 
 def _path(source: Source) -> Optional[str]:
-    return os.fsdecode(source) if isinstance(source, (str, bytes, os.PathLike)) else None
+    named = isinstance(source, (str, bytes, os.PathLike)) and not isinstance(source, Model)
+    return os.fsdecode(source) if named else None  # type: ignore[arg-type]
+
+
+def _kind(value: Any) -> str:
+    return type(value).__name__
 
 
 def _one_or_all(source: Source, results: list[Any]) -> Any:
@@ -185,10 +228,17 @@ def _on_disk(source: Any, rate_hz: Optional[float] = None, names: Names = None, 
         if isinstance(source, Characterization):
             log = place / f"{name}.json"
             log.write_text(json.dumps(source.to_dict()))
+        elif isinstance(source, AllanCurve):
+            log = place / f"{name}.json"
+            log.write_text(document_of(source)[1])
+        elif isinstance(source, Model):
+            log = place / f"{name}.sensor.yaml"
+            log.write_text(source)
         else:
             log = place / f"{name}.f64"
             _libchar.write_recording(str(log), _columns(source, rate_hz, names, units, None), False)
-        yield str(log)
+        with program.known_as(log, name):
+            yield str(log)
 
 
 def _reading(arguments: Mapping[str, Any], in_memory: bool) -> dict[str, Any]:
@@ -200,10 +250,8 @@ def _reading(arguments: Mapping[str, Any], in_memory: bool) -> dict[str, Any]:
         if wrong:
             raise UsageError(f"{wrong[0]} says how a file is read, and these are samples in memory", "E0208", wrong[0])
         return {key: value for key, value in given.items() if key == "threads"}
-    for key in ("channels", "names", "units"):
-        if key in given:
-            given[key] = [given[key]] if isinstance(given[key], str) else list(given[key])
-    return given
+    lists = ("channels", "names", "units")
+    return {key: _listed(value, key) if key in lists else value for key, value in given.items()}
 
 
 def _characterized(source: Source, reading: Mapping[str, Any], options: Mapping[str, Any]) -> _libchar.Characterized:
@@ -274,7 +322,7 @@ def read(path: Union[str, "os.PathLike[str]"], *, channels: Names = None, names:
                                     _reading({k: v for k, v in locals().items() if k != "path"}, False)))
 
 
-def write(path: Union[str, "os.PathLike[str]"], samples: Source, *, rate_hz: Optional[float] = None,
+def write(path: Union[str, "os.PathLike[str]"], samples: Source, rate_hz: Optional[float] = None, *,
           names: Names = None,
           units: Names = None, overwrite: bool = False) -> None:
     """Writes samples as a log; the suffix says the format (.csv, .npy, raw with a sidecar). The file reads
@@ -359,7 +407,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
     """
     rate_hz = rate if rate_hz is None else rate_hz
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
-    options = {"only": "fit", "terms": None if terms is None else list(terms), "threshold": threshold,
+    options = {"only": "fit", "terms": _listed(terms, "terms"), "threshold": threshold,
                "remedies": remedies,
                "second_opinion": second_opinion, "still": still, "temperature": temperature, "data": data,
                "nominal_frequency": nominal_frequency}
@@ -384,7 +432,7 @@ def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str =
     rate_hz = rate if rate_hz is None else rate_hz
     reading = {"rate_hz": rate_hz, "channels": channels, "names": names, "units": units, "threads": threads}
     options = {"type": type, "taus": taus if isinstance(taus, str) else [float(t) for t in taus],
-               "terms": None if terms is None else list(terms), "threshold": threshold, "remedies": remedies,
+               "terms": _listed(terms, "terms"), "threshold": threshold, "remedies": remedies,
                "second_opinion": second_opinion, "still": still, "temperature": temperature, "data": data,
                "nominal_frequency": nominal_frequency}
     kept = _characterized(source, reading, options)
@@ -410,9 +458,12 @@ def simulate(model: Union[str, "os.PathLike[str]"], *, duration_s: float = 3600,
     truth       what the sensors measure: "0.5", "sine,amplitude=2,frequency_hz=0.1" (docs/scenes.md)
     faults      "SENSOR:KIND=VALUE@FROM..TO", times in s
     """
+    if not isinstance(model, (str, os.PathLike)):
+        raise UsageError(f"model: the path or the text of one model was expected, this is a {_kind(model)}", "E0208",
+                         "model")
     text = os.fspath(model)
     options = {"duration_s": float(duration_s), "rate_hz": rate_hz, "seed": seed, "devices": devices, "truth": truth,
-               "faults": None if faults is None else list(faults)}
+               "faults": _listed(faults, "faults")}
     return _recording(_libchar.simulate(text, "\n" in text, options))
 
 
@@ -433,11 +484,9 @@ def replay(source: Source, *, sensors: Names = None, reference: Union[None, str,
     algorithms  these only (`sensorchar replay --list`)
     """
     rate_hz = rate if rate_hz is None else rate_hz
-    listed = [reference] if isinstance(reference, str) else reference
-    options = {"sensors": None if sensors is None else list(sensors),
-               "reference": None if listed is None else list(listed),
+    options = {"sensors": _listed(sensors, "sensors"), "reference": _listed(reference, "reference"),
                "learning": learning, "evaluation": evaluation, "rest": rest, "warm_up_s": warm_up_s,
-               "algorithms": None if algorithms is None else list(algorithms), "models_folder": models_folder,
+               "algorithms": _listed(algorithms, "algorithms"), "models_folder": models_folder,
                "allan": allan, "budget_s": budget_s, "timing": timing, "allow_outside": allow_outside}
     with _on_disk(source, rate_hz, names, units) as log:
         reading = {"rate_hz": rate_hz, "names": names, "units": units} if _path(source) is not None else {}
@@ -462,7 +511,8 @@ def compare(*sources: Any, rate_hz: Optional[float] = None, labels: Names = None
     """Which sensor has the lowest noise, and at which averaging times (`sensorchar compare`): `verdict`, `groups`, and
     the page as `html`.
 
-    sources   paths (logs, reports, models), Characterizations, Recordings or arrays, in any mixture
+    sources   paths (logs, reports, models), Characterizations, AllanCurves, Models, Recordings or arrays, in any
+              mixture
     rate_hz   sampling rate in Hz, of arrays
     labels    a name for each; channels: those to compare, by name or pattern
     Times are in s; further options are those of the program, such as limits="sheet.yaml".
@@ -475,6 +525,22 @@ def compare(*sources: Any, rate_hz: Optional[float] = None, labels: Names = None
         made = Document(program.document("compare", [*paths, *words, f"--output={page}"]))
         made.html = page.read_text()
     return made
+
+
+def plot(*sources: Any, rate_hz: Optional[float] = None, **options: Any) -> Figure:
+    """One figure of several results, overlaid (`sensorchar plot`): curves, spectra, characterizations, replays, models,
+    paths; Recordings and arrays are characterized first. rate_hz in Hz, of arrays; options are those of the program,
+    such as label=["a", "b"], kind="psd"."""
+    rate_hz = options.pop("rate", None) if rate_hz is None else rate_hz
+    drawn: list[tuple[str, Optional[str]]] = []
+    for one in sources:
+        if isinstance(one, Model):
+            drawn.append((f"{one.channel}.sensor.yaml", str(one)))
+        elif _path(one) is not None:
+            drawn.append((os.path.abspath(os.fsdecode(one)), None))
+        else:
+            drawn.append(document_of(one if hasattr(one, "_drawn") else characterize(one, rate_hz)))
+    return Figure(drawn, options)
 
 
 def lot(*sources: Any, rate_hz: Optional[float] = None, **options: Any) -> Document:
@@ -519,7 +585,8 @@ def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options
             learnt = place / "fusion.yaml"
         words = [log, f"--with={os.fspath(learnt)}", *program.words_of(options), f"--output={place / 'fused.f64'}"]
         findings = program.document("fuse", words)["findings"]
-        return dataclasses.replace(read(place / "fused.f64"), warnings=[one["sentence"] for one in findings])
+        sentences = [one["sentence"] for one in findings]
+        return dataclasses.replace(read(place / "fused.f64"), file="fused", warnings=sentences)
 
 
 def bench(**options: Any) -> Document:

@@ -47,6 +47,23 @@ def words_of(options: dict[str, Any]) -> list[str]:
     return words
 
 
+def _in_python(text: str) -> str:
+    """Options as keywords ("--still" is `still`), but in the commands that a sentence quotes."""
+    return re.sub(r"(sensorchar [a-z]+ [^;]*)|(?<![\w-])--([a-z][a-z-]*)",
+                  lambda found: found[1] or f"`{found[2].replace('-', '_')}`", text)
+
+
+@contextlib.contextmanager
+def known_as(path: pathlib.Path, name: str) -> Iterator[None]:
+    """A refusal of what is in memory names it, not the file of the call that it was written to."""
+    try:
+        yield
+    except Error as error:
+        error.args = (error.args[0].replace(str(path), name),)
+        error.where = error.where.replace(str(path), name)
+        raise
+
+
 def run(verb: str, words: Sequence[str]) -> bytes:
     """What the program prints. Raises what it refuses."""
     done = subprocess.run([path(), verb, *words, "--quiet"], stdin=subprocess.DEVNULL, capture_output=True)
@@ -55,7 +72,9 @@ def run(verb: str, words: Sequence[str]) -> bytes:
     said = done.stderr.decode(errors="replace").strip().splitlines() or [f"sensorchar ended with {done.returncode}"]
     line = next((found for found in map(_LINE.match, reversed(said)) if found), None)
     kind = _KINDS.get(done.returncode, InputError)
-    raise kind(said[-1]) if line is None else kind(line[0], line["code"], line["where"] or "", line["hint"] or "")
+    if line is None:
+        raise kind(said[-1])
+    raise kind(*(_in_python(part or "") for part in line.group(0, "code", "where", "hint")))
 
 
 def _arrays(value: Any) -> Any:

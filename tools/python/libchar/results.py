@@ -72,8 +72,8 @@ def _range(values: Array) -> str:
 class Figure:
     """A figure as `sensorchar plot` draws it (docs/plots.md): a notebook shows it, `save` writes it."""
 
-    def __init__(self, documents: Sequence[tuple[str, str]], options: Mapping[str, Any]) -> None:
-        self._documents = list(documents)  # name and text each, of what is drawn
+    def __init__(self, documents: Sequence[tuple[str, Optional[str]]], options: Mapping[str, Any]) -> None:
+        self._documents = list(documents)  # name and text each, of what is drawn; of a file its path and no text
         self._options = dict(options)
         self.svg: str = self._drawn(["-o", "-"]).decode()
 
@@ -81,9 +81,10 @@ class Figure:
         with program.folder() as place:
             files = []
             for k, (name, text) in enumerate(self._documents):
-                files.append(place / str(k) / name)
-                files[-1].parent.mkdir()
-                files[-1].write_text(text)
+                files.append(place / str(k) / name)  # an absolute path stays itself
+                if text is not None:
+                    files[-1].parent.mkdir()
+                    files[-1].write_text(text)
             return program.run("plot", [*map(str, files), *program.words_of(self._options), *words])
 
     def _repr_svg_(self) -> str:
@@ -108,17 +109,14 @@ class _Drawn(_Result):
 
     def plot(self, **options: Any) -> Figure:
         """A figure; options are those of `sensorchar plot`: kind="psd", width="two-columns", channel="gyro_z"…"""
-        return plot(self, **options)
+        return Figure([document_of(self)], options)
 
 
-def plot(*results: _Drawn, **options: Any) -> Figure:
-    """One figure of several results, overlaid; options are those of `sensorchar plot`, such as label=["a", "b"]."""
-    documents = []
-    for result in results:
-        format_, document = result._drawn()
-        head = {"format": format_, "version": 1, "tool": {"name": "libchar", "version": _libchar.version()}}
-        documents.append((f"{format_}.json", json.dumps({**head, **plain(document)})))
-    return Figure(documents, options)
+def document_of(result: _Drawn) -> tuple[str, str]:
+    """Name and text of the document that the program draws."""
+    format_, document = result._drawn()
+    head = {"format": format_, "version": 1, "tool": {"name": "libchar", "version": _libchar.version()}}
+    return f"{format_}.json", json.dumps({**head, **plain(document)})
 
 
 class Model(str):
@@ -215,6 +213,11 @@ class Recording(_Shown, _Result):
         out = frame(dict(zip(self.names, self.samples)), self.time_s)
         out.index.name = "t[s]"
         return out
+
+    def plot(self, **options: Any) -> Figure:
+        """A figure of what it is characterized to; options are those of `sensorchar plot`: kind="trace"…"""
+        from .functions import plot
+        return plot(self, **options)
 
     def _table(self) -> tuple[str, list[dict[str, Any]]]:
         rows = [{"channel": name, "unit": unit, "samples": int(np.isfinite(x).sum()), "missing": int(np.isnan(x).sum()),
@@ -346,6 +349,11 @@ class NoiseFit(_Shown, _Result):
     def terms(self) -> dict[str, NoiseTerm]:
         """The coefficients by their names."""
         return {name: value for name, value in vars(self).items() if isinstance(value, NoiseTerm)}
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, one row per coefficient."""
+        rows = self._table()[1]
+        return frame({key: [row[key] for row in rows] for key in (rows[0] if rows else {})})
 
     def _table(self) -> tuple[str, list[dict[str, Any]]]:
         return self.name, [

@@ -42,7 +42,6 @@ constexpr std::size_t kSkirt = 2;        ///< bins on each side of it that hold 
 constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
 constexpr double kNull = 0.01;  ///< of a filter's power gain
-constexpr int kMany = 3;        ///< coefficients of a polynomial that stand for a filter with a corner
 constexpr double kAsWide = 0.7;
 constexpr auto kQuantizationTerm = static_cast<std::size_t>(Term::quantization);
 constexpr auto kLentTerm = static_cast<std::size_t>(Term::ramp);  ///< to a Gauss-Markov process
@@ -248,6 +247,22 @@ struct Search {
         keep_closest(std::move(trial));
       }
     }
+  }
+
+  /// The whole band with the polynomial that is the likeliest for its coefficients; none where that is worth little.
+  std::optional<Band> wavy(const Trial& plain) const {
+    constexpr double kWorth = 4;  ///< of ln L beyond one a coefficient
+    double least = plain.half_deviance - kWorth;
+    std::optional<Band> best;
+    Band band = plain.band;
+    band.quantized = false;
+    for (band.orders = 1; band.orders <= kMostShape; ++band.orders) {
+      const std::optional<Trial> trial = at(band);
+      if (!trial || !trial->band.passes || !(trial->half_deviance + band.orders < least)) continue;
+      least = trial->half_deviance + band.orders;
+      best = trial->band;
+    }
+    return best;
   }
 
   /// `band` with the likeliest shape of a family in it; none where its corner is not seen there.
@@ -640,12 +655,14 @@ BinProblem band_problem(const std::vector<PowerBin>& bins, const Band& band, dou
 namespace {
 
 /// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its corner at one of the
-/// octaves of the record: what rises from the slow end on is behind a high-pass.
+/// octaves of the record: what rises from the slow end on is behind a high-pass. And that of tests for an echo of k
+/// samples, ln gain = a (cos(2 pi k f / rate) - 1).
 struct ShelfTest {
-  double largest = 0, rising = 0;
+  double largest = 0, rising = 0, echo = 0;
 };
 ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest_hz) {
   constexpr double kTopOctave = 0.25, kSeen = 1e-3;
+  constexpr int kLongestEcho = 8;
   const BinProblem problem = band_problem(search.bins, unshaped.band, search.rate_hz);
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, unshaped.theta);
   std::vector<Eigen::Index> in;
@@ -661,11 +678,16 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
   for (Eigen::Index j = 0; j < problem.size(); ++j)
     square[j] = std::pow(search.bins[unshaped.index[static_cast<std::size_t>(j)]].frequency_hz, 2);
   ShelfTest out;
-  for (double corner = kTopOctave * search.rate_hz / 2; corner > 4 * slowest_hz; corner /= 2) {
-    const Eigen::VectorXd shape = (root * square / (square + corner * corner)).matrix();
+  const auto deviate_of = [&](const Eigen::ArrayXd& log_gain) {
+    const Eigen::VectorXd shape = (root * log_gain).matrix();
     const Eigen::VectorXd apart = without_columns_of(basis, shape);
-    if (!(apart.norm() > kSeen * shape.norm())) continue;
-    const double deviate = apart.dot(residual) / apart.norm();
+    return apart.norm() > kSeen * shape.norm() ? apart.dot(residual) / apart.norm() : 0;
+  };
+  const Eigen::ArrayXd angle = 2 * std::numbers::pi / search.rate_hz * square.sqrt();
+  for (int lag = 1; lag <= kLongestEcho; ++lag)
+    out.echo = std::max(out.echo, std::abs(deviate_of((lag * angle).cos() - 1)));
+  for (double corner = kTopOctave * search.rate_hz / 2; corner > 4 * slowest_hz; corner /= 2) {
+    const double deviate = deviate_of(square / (square + corner * corner));
     out.largest = std::max(out.largest, std::abs(deviate));
     out.rising = std::max(out.rising, deviate);
   }
@@ -700,25 +722,64 @@ double slow_end_of(const Search& search, const Trial& trial) {
   return std::min(slow, dof > 0 ? energy / dof : slow) / most;
 }
 
+double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, trial.band.top.p); }
+
+Band passing(const Trial& trial) {
+  Band band = trial.band;
+  band.passes = true;
+  return band;
+}
+
+/// The band with the likeliest corner in it, which the ends of the record do not draw upwards.
+std::optional<Trial> high_passed_in(const Search& search, Band band) {
+  Band plain = band;
+  plain.named = {};
+  const std::vector<PowerBin> inside = bins_of(search.bins, plain, search.rate_hz);
+  if (inside.size() < kFewestBins) return std::nullopt;
+  if (const auto shape = fit_named_shape(inside, search.rate_hz, search.terms, band.named.family, band.named))
+    band.named = *shape;
+  return search.at(band);
+}
+
+/// A walk behind a high-pass is level below its corner: with white noise it has the spectrum of a shelf that rises.
+bool is_shelf(const Search& search, const Trial& high_passed) {
+  constexpr double kAsLikely = 2;  ///< of ln L
+  if (!(high_passed.theta[static_cast<std::size_t>(Term::walk)] > 0)) return false;
+  Band band = high_passed.band;
+  band.named = {};
+  const auto shelf = search.named_in(band, NamedShape::Family::shelf, {}, std::numeric_limits<double>::infinity());
+  return shelf && shelf->half_deviance < high_passed.half_deviance + kAsLikely;
+}
+
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it. A walk
 /// leaves a plateau behind a high-pass, as processes do: then it is none, and the band has `doubtful_end`.
 std::optional<Band> high_passed(const Search& search, Trial& unshaped, double slowest_hz) {
-  constexpr double kFalls = 0.5;  ///< at the slow end, of the largest
-  constexpr double kNeeded = 15;  ///< of 2 lnL; records without a high-pass reach 12.5 in 2 of 1,000
-  constexpr double kPeriods = 4;  ///< of the corner in the record: below, a drift looks like that
+  constexpr double kFalls = 0.5;   ///< at the slow end, of the largest
+  constexpr double kShelf = 0.15;  ///< the same, of what a shelf may be
+  constexpr double kClear = 50;    ///< of ln L
+  constexpr double kNeeded = 15;   ///< of 2 lnL; records without a high-pass reach 12.5 in 2 of 1,000
+  constexpr double kPeriods = 4;   ///< of the corner in the record: below, a drift looks like that
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
   double least = unshaped.half_deviance - kNeeded / 2;
-  for (const NamedShape& start : high_pass_starts(search.rate_hz, duration_s)) {
-    band.named = start;
+  const auto take = [&](const NamedShape& shape) {
+    band.named = shape;
     const BinProblem problem = bin_problem(bins_of(search.bins, band, search.rate_hz));
     const double value = score(problem, search.terms, nullptr, 1e-6).half_deviance;
-    if (!(value < least)) continue;
+    if (!(value < least)) return;
     least = value;
-    best = start;
-  }
+    best = shape;
+  };
+  for (const NamedShape& start : high_pass_starts(search.rate_hz, duration_s)) take(start);
   if (best.family == NamedShape::Family::none) return std::nullopt;
+  // Between the octaves too: a walk that fills what a corner too high takes away keeps a step in its place.
+  for (double apart = std::numbers::sqrt2; apart > 1.1; apart = std::sqrt(apart))
+    for (const double factor : {apart, 1 / apart}) {
+      NamedShape next = best;
+      next.pole_hz *= factor;
+      take(next);
+    }
   const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz), search.rate_hz, search.terms,
                                      NamedShape::Family::high_pass, best);
   if (!shape || !(shape->pole_hz * duration_s > kPeriods)) return std::nullopt;
@@ -737,10 +798,14 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   const double ends_hz = 2 * corner / std::sqrt(2 * std::numbers::pi * corner * duration_s);
   for (std::size_t j = 0; j < search.bins.size(); ++j)
     if (search.bins[j].high_hz < ends_hz) band.inside[j] = 0;
-  const std::optional<Trial> trial = search.at(band);
-  if (!trial || !trial->band.passes) return std::nullopt;
-  unshaped.band.doubtful_end = slow_end_of(search, *trial) > kFalls;
-  return unshaped.band.doubtful_end ? std::nullopt : std::optional(trial->band);
+  const std::optional<Trial> trial = high_passed_in(search, band);
+  // What a cut would leave of a record that falls this clearly is its foot.
+  const bool clear = unshaped.half_deviance - least > kClear;
+  if (!trial || chance_of(*trial) < (clear ? search.options.misfit : search.options.probability)) return std::nullopt;
+  const double slow_end = slow_end_of(search, *trial);
+  unshaped.band.doubtful_end = slow_end > kFalls;
+  if (unshaped.band.doubtful_end || (slow_end > kShelf && is_shelf(search, *trial))) return std::nullopt;
+  return passing(*trial);
 }
 
 }  // namespace
@@ -760,14 +825,6 @@ std::optional<Band> with_shelf(const std::vector<PowerBin>& bins, double rate_hz
 
 namespace {
 
-double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, trial.band.top.p); }
-
-Band passing(const Trial& trial) {
-  Band band = trial.band;
-  band.passes = true;
-  return band;
-}
-
 Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const BandOptions& options) {
   Band whole = whole_band(bins, rate_hz);
   whole.tau_s = options.tau_s;
@@ -780,7 +837,8 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
   const bool peaked = options.corners && highest_peak(bins, *unshaped).deviations > options.peak;
-  if (describes && !(shelf.largest > options.shelf) && !peaked) return passing(*unshaped);
+  const bool echoes = shelf.echo > options.shelf;
+  if (describes && !(shelf.largest > options.shelf) && !echoes && !peaked) return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;
   const std::optional<Trial> quantized = search.at(with_quantization);
@@ -802,7 +860,10 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
   if (low_pass.low_pass)
     if (const auto trial = search.at(low_pass); trial && trial->band.passes && worth(*trial)) return trial->band;
-  if (describes) return search.named(whole).value_or(passing(rises ? *quantized : *unshaped));
+  const Trial& plainest = rises ? *quantized : *unshaped;
+  if (describes && echoes)
+    if (const auto wavy = search.wavy(plainest)) return *wavy;
+  if (describes) return search.named(whole).value_or(passing(plainest));
   std::optional<Band> best = search.widest(whole, rate_hz / 2);
   const bool simple = best && best->orders < kMany;
   const std::optional<Band> named = simple && best->top_hz > 0.99 * rate_hz / 2 ? std::nullopt : search.named(whole);

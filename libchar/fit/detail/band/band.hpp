@@ -13,6 +13,8 @@
 
 namespace libchar {
 
+inline constexpr int kMany = 3;  ///< coefficients of a polynomial that stand for a filter with a corner
+
 /// White noise and slow noise of one exponent, in units of `with_law`.
 struct SlowLaw {
   double exponent = 1;

@@ -268,10 +268,9 @@ double density_between(const NoiseFit& fit, double from, double to) {
 /// A free shape that falls to a level that the top octave keeps: the same two levels. A filter goes on falling, or its
 /// stop band is far lower.
 void report_floor(const Band& band, NoiseFit& fit) {
-  constexpr int kFree = 3;  ///< coefficients
   constexpr double kLevel = 0.1, kHighest = 0.7, kLowest = 1.0 / 32;
   Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
-  if (band.named.family != NamedShape::Family::none || band.orders < kFree || !white.value ||
+  if (band.named.family != NamedShape::Family::none || band.orders < kMany || !white.value ||
       white.status != Status::detected)
     return;
   const double below = density_between(fit, 0.5, 0.7), top = density_between(fit, 0.7, 1);

@@ -287,9 +287,12 @@ class Scoring {
   }
 
   ModelPoint first_guess() const {
-    if (problem_.shapes() > 0) return slow_start(problem_, free_, fixed_);
     const Eigen::ArrayXd weight = problem_.dof / (2 * problem_.energy * problem_.energy);
-    return {solved(weight), {}};
+    const ModelPoint plain{solved(weight), {}};
+    if (problem_.shapes() == 0) return plain;
+    // A named shape is a straight line about its maximum: it begins without a change, a polynomial by what is left.
+    const ModelPoint shaped = slow_start(problem_, free_, fixed_);
+    return half_deviance(problem_, plain) < half_deviance(problem_, shaped) ? plain : shaped;
   }
 
   ModelPoint goal(const ModelPoint& now) const {

@@ -1,15 +1,21 @@
 // An interval within one shape does not know that the shape was chosen. Where s has m unknowns more than needed and s'
 // is nested in it, theta(s) - theta(s') has the variance var(s) - var(s') (J. A. Hausman, Econometrica 46 (1978) 1251):
 // the shift is about a standard deviation where the poorer shape is right, and is its bias where it is not. So each
-// interval is joined with itself as shifted to the richer shapes:
-//   low = min over s of low exp(min(0, d_s)),  high = max over s of high exp(max(0, d_s)),  d_s = ln of the shift.
-// Neighbours: a polynomial with one and two orders more; of a filter or loop those with one root more, where they are
-// as likely.
+// interval is joined with itself as shifted to the richer shapes,
+//   low = min over s of low exp(min(0, d_s)),  high = max over s of high exp(max(0, d_s)),  d_s = ln of the shift,
+// and with that of the average over the shapes, L: sum_s w_s Phi((L - m_s) / sd_s) = .025, and likewise above, with
+// m = ln theta / 2 and Akaike's weights (D. Turek, D. Fletcher, Comput. Stat. Data Anal. 56 (2012) 2809): a shift is
+// known no better than the richer shape.
+// Neighbours: a polynomial, or a filter of equal weights, with one and two orders more; of a filter or loop those with
+// one root more, where they are as likely; of a polynomial of many coefficients the filters with corners.
 #include "libchar/fit/detail/band/neighbours.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
@@ -19,10 +25,10 @@ namespace {
 using Family = NamedShape::Family;
 
 std::vector<Band> richer_polynomials(const Band& band) {
-  constexpr int kMore = 2;
+  const int more = band.filter.kind == NoiseShape::Kind::none ? 2 : 4;
   const int most = kMostShape - static_cast<int>(unknowns_of(band.resonances));
   std::vector<Band> out;
-  for (int orders = band.orders + 1; orders <= std::min(most, band.orders + kMore); ++orders) {
+  for (int orders = band.orders + 1; orders <= std::min(most, band.orders + more); ++orders) {
     out.push_back(band);
     out.back().orders = orders;
   }
@@ -35,17 +41,21 @@ std::vector<Family> richer(Family family) {
   return {};
 }
 
-std::vector<Band> richer_roots(const std::vector<PowerBin>& bins, const Band& band, const TermSet& terms,
-                               double rate_hz) {
+std::vector<Band> with_roots(const std::vector<PowerBin>& bins, const Band& band, const TermSet& terms,
+                             const std::vector<Family>& families, double rate_hz) {
   Band plain = band;
   plain.named = {};
   plain.orders = 0;
   const std::vector<PowerBin> inside = bins_of(bins, plain, rate_hz);
   std::vector<Band> out;
-  for (const Family family : richer(band.named.family)) {
-    const auto start = family == Family::third_order ? std::optional(band.named) : std::nullopt;
-    const auto shape = fit_named_shape(inside, rate_hz, terms, family, start);
+  std::optional<NamedShape> second;
+  if (band.named.family == Family::second_order) second = band.named;
+  for (const Family family : families) {
+    if (family == Family::third_order && !second) continue;
+    const auto shape =
+        fit_named_shape(inside, rate_hz, terms, family, family == Family::third_order ? second : std::nullopt);
     if (!shape) continue;
+    if (family == Family::second_order) second = shape;
     plain.named = *shape;
     plain.orders = static_cast<int>(unknowns_of(family));
     out.push_back(plain);
@@ -53,35 +63,110 @@ std::vector<Band> richer_roots(const std::vector<PowerBin>& bins, const Band& ba
   return out;
 }
 
+std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const TermSet& terms,
+                                double rate_hz) {
+  if (band.named.family != Family::none) return with_roots(bins, band, terms, richer(band.named.family), rate_hz);
+  std::vector<Band> out = richer_polynomials(band);
+  if (band.orders < kMany || !band.resonances.empty()) return out;
+  const std::vector<Family> corners = {Family::shelf, Family::second_order, Family::third_order, Family::loop};
+  for (Band& other : with_roots(bins, band, terms, corners, rate_hz)) out.push_back(std::move(other));
+  return out;
+}
+
+/// What a shape says of a term: ln of the coefficient and its standard deviations below and above.
+struct Opinion {
+  double weight = 0, mean = 0, below = 0, above = 0;
+};
+
+/// Where the average over the opinions has less than 2.5 % beyond: below them for a side of -1, above for 1.
+double end_of(const std::vector<Opinion>& opinions, int side) {
+  constexpr double kTail = 0.025;
+  constexpr int kHalvings = 40;
+  double sum = 0, inner = std::numeric_limits<double>::infinity(), outer = -inner;
+  const auto deviation = [side](const Opinion& of) { return side < 0 ? of.below : of.above; };
+  for (const Opinion& of : opinions) {
+    const double end = side * of.mean + kNormal95 * deviation(of);
+    sum += of.weight;
+    inner = std::min(inner, end);
+    outer = std::max(outer, end);
+  }
+  for (int i = 0; i < kHalvings; ++i) {
+    const double end = (inner + outer) / 2;
+    double tail = 0;
+    for (const Opinion& of : opinions)
+      tail += of.weight / sum * std::erfc((end - side * of.mean) / deviation(of) / std::numbers::sqrt2) / 2;
+    (tail > kTail ? inner : outer) = end;
+  }
+  return side * outer;
+}
+
+Opinion opinion_of(const NoiseFit& fit, std::size_t i) {
+  const double mean = 0.5 * std::log(fit.theta[i]);
+  const Coefficient& term = fit.term[i];
+  return {1, mean, std::log(*term.value / term.ci95.low) / kNormal95,
+          std::log(term.ci95.high / *term.value) / kNormal95};
+}
+
 void reach_by(double shift, Coefficient& term) {
   term.ci95.low *= std::exp(std::min(0.0, shift));
   term.ci95.high *= std::exp(std::max(0.0, shift));
 }
 
+/// A term that was dropped is not known to be zero, nor that it stays dropped behind another shape.
+ScoringResult likeliest(const BinProblem& problem, const TermSet& kept, const TermSet& offered) {
+  const ScoringResult first = score(problem, kept);
+  return score(problem, offered, &first.at);
+}
+
+/// Ends of the shifts of ln of a coefficient, and what the shapes say of it.
+struct NeighbourReach {
+  double least = 0, most = 0;
+  std::vector<Opinion> opinions;
+};
+
+void extend(const NeighbourReach& by, Coefficient& term) {
+  reach_by(by.least, term);
+  reach_by(by.most, term);
+  if (by.opinions.size() < 2) return;
+  term.ci95.low = std::min(term.ci95.low, std::exp(end_of(by.opinions, -1)));
+  term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
+}
+
 }  // namespace
 
-void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, NoiseFit& fit) {
+void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5;  ///< of ln L
-  const bool named = band.named.family != Family::none;
-  if (band.orders == 0 || band.named.family == Family::high_pass) return;
-  const TermSet terms = only_positive(fit.theta);
-  const double chosen = score(band_problem(bins, band, fit.rate_hz), terms).half_deviance;
-  std::array<double, kTerms> least{}, most{};
-  for (const Band& other : named ? richer_roots(bins, band, terms, fit.rate_hz) : richer_polynomials(band)) {
-    const ScoringResult there = score(band_problem(bins, other, fit.rate_hz), terms);
-    if (!(there.half_deviance < chosen + kAsLikely)) continue;
+  const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
+  const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
+  if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
+  const TermSet kept = only_positive(fit.theta);
+  TermSet terms = kept;
+  for (std::size_t i = 0; i < kTerms; ++i) terms[i] = terms[i] || offered[i];
+  const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), kept, terms).half_deviance;
+  std::array<NeighbourReach, kTerms> reach;
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (fit.term[i].value && kept[i] && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
+      reach[i].opinions = {opinion_of(fit, i)};
+  for (const Band& other : neighbours_of(bins, band, kept, fit.rate_hz)) {
+    const BinProblem problem = band_problem(bins, other, fit.rate_hz);
+    const ScoringResult there = likeliest(problem, kept, terms);
+    const double weight = std::exp(chosen - there.half_deviance - price * (other.orders - band.orders));
+    if (!(weight > 0)) continue;
+    const bool shifts = there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
     for (std::size_t i = 0; i < kTerms; ++i) {
-      if (!(fit.theta[i] > 0) || !(there.at.theta[i] > 0)) continue;
-      const double shift = 0.5 * std::log(there.at.theta[i] / fit.theta[i]);
-      least[i] = std::min(least[i], shift);
-      most[i] = std::max(most[i], shift);
+      const double theta = there.at.theta[i];
+      if (!kept[i] || !(theta > 0)) continue;
+      const double shift = 0.5 * std::log(theta / fit.theta[i]);
+      if (shifts) reach[i].least = std::min(reach[i].least, shift);
+      if (shifts) reach[i].most = std::max(reach[i].most, shift);
+      const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
+      if (!reach[i].opinions.empty() && sd > 0 && std::isfinite(sd))
+        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), sd, sd});
     }
   }
-  for (std::size_t i = 0; i < kTerms; ++i) {
-    if (!fit.term[i].value) continue;
-    reach_by(least[i], fit.term[i]);
-    reach_by(most[i], fit.term[i]);
-  }
+  for (std::size_t i = 0; i < kTerms; ++i)
+    if (fit.term[i].value) extend(reach[i], fit.term[i]);
 }
 
 }  // namespace libchar

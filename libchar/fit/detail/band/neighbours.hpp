@@ -9,6 +9,6 @@
 namespace libchar {
 
 /// Intervals of the terms of a band with a free shape reach to where its neighbours have them.
-void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, NoiseFit& fit);
+void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const TermSet& offered, NoiseFit& fit);
 
 }  // namespace libchar
