@@ -2,7 +2,8 @@
 
 usage: words.py ROOT [--lower] [--list [KEY]]
 Reads README.md, the pages of docs/ and fixtures/, the texts of findings, the documentation of the Python module, the
-string literals of libchar/ and tools/ and the comments of public headers. RULES lists what is refused and what to
+string literals of libchar/ and tools/ and of the scripts of pages, the words of tools/page/page.html, and the comments
+of public headers, of docs/examples and of the C that `model --to c` writes. RULES lists what is refused and what to
 write instead. gates/words.tsv lists where a pattern may still occur, and how often, with a reason: a number there may
 fall, never grow, and --lower lowers it to what is there. --list prints each occurrence (of the keys that begin with
 KEY).
@@ -46,13 +47,30 @@ RULES = [
     ("beside", r"\bbesides?\b", "next to, as well as", ""),
     ("of which", r"\bof\s+(?:which|whose)\b|\bof\s+those\s+(?:of|that|which|who|in|with)\b", "of, or a new sentence",
      ""),
+    ("behind", r"\b(?:rows?|words|lines|bytes|put|those|all|nothing(?=\s+behind\s+\w)|stamps|columns?|units|digits"
+     r"|comes?|begins|ends)\s+behind\b"
+     r"|\bbehind\s+(?:(?:the|their|its)\s+)?(?:last|first|end|beginning|array|row|head|stamp|learning|warm-up|document"
+     r"|script|words?|numbers?|\{\}|@|comma|mark)", "after", ""),
+    ("in front of", r"\bin\s+front\s+of\b", "before", ""),
+    ("so much", r"(?:^|[,;:(]|\b(?:by|over|to|of|reads|for|than)\b)\s*so\s+(?:long|much|many)\b"
+     r"(?!\s+(?:as|that|for)\b)",
+     "how much, this much, a noun", ""),
+    ("anew", r"\banew\b", "again", ""),
+    ("otherwise than", r"\botherwise\s+than\b", "differently from", ""),
+    ("borne out", r"\bborne\s+out\b", "supported by the data", ""),
+    ("says it", r"\bsays?\s+(?:it|this)\b", "states it; given by …", ""),
+    ("unlike", r"(?<!--)\bunlike\s+(?:\w+s)\b(?!\s*,)", "different", ""),
+    ("what is said", r"\bwhat\s+is\s+said\b", "the notes on …", ""),
+    ("as asked", r"\bas\s+asked\b", "as requested", ""),
     ("exponent", r"(?<![\w.])\d+(?:\.\d+)?e[-+]?\d+\b", "an SI prefix or a word; digits", "table"),
     ("digits", r"(?<![\w.^/-])(?<!arXiv )\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),
 ]
-# Of a command's help alone: options are noun phrases.
+# Of a command's help alone: options are noun phrases, and a default is marked as one.
 QUESTION = ("question", r"[a-z]\?(?=\s*(?:\(default|$))", "an imperative or a noun phrase", "")
+DEFAULT = ("default", r"\((?:\d+(?:\.\d+)?|all|none|one|auto|the [a-z ]+|from the \w+|by its \w+|auto: [^)]*)\)$",
+           "(default: …)", "")
 PATTERNS = {name: re.compile(pattern, 0 if name in ("per", "is none") else re.I)
-            for name, pattern, *_ in [*RULES, QUESTION]}
+            for name, pattern, *_ in [*RULES, QUESTION, DEFAULT]}
 
 
 def blanks(match):
@@ -83,6 +101,21 @@ def strings(text):
     return [(line, re.sub(r"\\n", " ", value)) for line, value in found if re.search(r"\w\s+\w", value)]
 
 
+SCRIPT = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'|`(?:[^`\\]|\\.)*`", re.S)
+
+
+def script_strings(text):
+    """The literals of a script of a page that are a phrase; what it puts in between is a word."""
+    found = [(text.count("\n", 0, token.start()) + 1, re.sub(r"\$\{[^}]*\}", "X", token[0][1:-1]))
+             for token in SCRIPT.finditer(text) if token[0][0] in "\"'`"]
+    return [(line, value) for line, value in found if re.search(r"\w\s+\w", value)]
+
+
+def words_of_html(text):
+    """What a browser shows, in the same places."""
+    return re.sub(r"<(script|style)\b.*?</\1>|<!--.*?-->|<[^>]*>", blanks, text, flags=re.S)
+
+
 def comments(text):
     """The comments of a source, lines that follow each other joined."""
     found, end = [], -1
@@ -108,16 +141,26 @@ def texts(root):
     for number, line in enumerate((root / "libchar/core/findings.tsv").read_text().splitlines(), 1):
         if not line.startswith("#"):
             yield "libchar/core/findings.tsv", "libchar/core/findings.tsv", number, line, RULES
-    for path in sorted((root / "tools/python").rglob("*.py")):
+    for path in sorted([*(root / "tools/python").rglob("*.py"), *(root / "docs/examples").rglob("*.py")]):
         name = path.relative_to(root).as_posix()
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 yield name, name, node.lineno, node.value, RULES
+    html = root / "tools/page/page.html"
+    yield "tools/page", "tools/page/page.html", 1, words_of_html(html.read_text()), RULES
+    for path in sorted([*(root / "tools/page").rglob("*.js"), *(root / "libchar/report").rglob("*.js")]):
+        if not path.name.endswith(".min.js"):
+            for line, value in script_strings(path.read_text()):
+                yield "tools/page", path.relative_to(root).as_posix(), line, value, RULES
+    for path in sorted([*(root / "libchar/fusion").rglob("*.c.in"), *(root / "docs/examples").glob("*.cpp")]):
+        name = path.relative_to(root).as_posix()
+        for line, value in comments(path.read_text()):
+            yield name, name, line, value, RULES
     tree = structure.Tree(root)
     for path, text in tree.cpp("libchar", "tools").items():
         floor = "/".join(path.split("/")[:2]) if path.startswith("libchar/") else "tools"
         for line, value in strings(text):
-            yield f"strings {floor}", path, line, value, RULES + [QUESTION] * (floor == "tools")
+            yield f"strings {floor}", path, line, value, RULES + [QUESTION, DEFAULT] * (floor == "tools")
         if path.endswith(".hpp") and (rooms.is_public(path) or floor == "tools"):
             for line, value in comments(text):
                 yield f"comments {floor}", path, line, value, RULES
@@ -156,7 +199,7 @@ def main():
         structure.lower(CEILINGS, counts, limits)
     ceilings = structure.read_ceilings(CEILINGS)
     faults = list(structure.faults_of(counts, ceilings, limits))
-    print("\n".join(faults) or f"words: {len(RULES) + 1} rules hold; {len(ceilings)} rows with "
+    print("\n".join(faults) or f"words: {len(PATTERNS)} rules hold; {len(ceilings)} rows with "
           f"{sum(number for number, _ in ceilings.values())} older occurrences may only shrink")
     return bool(faults)
 

@@ -97,9 +97,9 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_number(
       "--nominal-frequency", a.nominal_frequency,
       "with --data frequency: the frequency that counts as zero deviation, Hz (default: values are fractional)", 0);
-  verb.add_number(
-      "--unwrap", a.options.unwrap,
-      "the values start again after this much, in their unit, as a phase or an angle does (default: they do not)", 0);
+  verb.add_number("--unwrap", a.options.unwrap,
+                  "period at which the values wrap, in their unit, as for a phase or an angle (default: no wrapping)",
+                  0);
   verb.add_parsed(
       "--frozen", "N", [&a](const std::string& text) { a.options.frozen = parse_count(text, 2); },
       "treat runs of N or more equal values as missing (default: they count)");
@@ -108,7 +108,7 @@ void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
       "treat samples on straight lines of N or more samples as missing, as in gaps that were filled; lines of fewer "
       "than 8 must be straight to 0.1 % (default: they count)");
   verb.add_bytes("--memory", a.options.memory_bytes,
-                 "samples kept in memory at most: with less, a log of many channels is read several times, and an "
+                 "limit of the memory for samples: with less, a log of many channels is read several times, and an "
                  "option that needs all samples of a long log is refused; no result changes (default: 1GiB)");
 }
 
@@ -121,30 +121,29 @@ bool has_bias(const AnalysisOptions& analysis) {
 
 void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_choices("--type", a.types, deviation_words(),
-                   a.several_types
-                       ? "statistic, or several of one reading: oadev,mdev (default: oadev, overlapping Allan)"
-                       : "deviation (default: oadev, overlapping Allan)");
+                   a.several_types ? "statistic, or several: oadev,mdev (default: oadev, overlapping Allan)"
+                                   : "deviation (default: oadev, overlapping Allan)");
   verb.add_parsed(
       "--taus", "TEXT",
       [&a](const std::string& text) {
         a.options.ten_a_decade = a.ten_asked = text == "ten";
         read_taus(text == "ten" ? "octave" : text, a.options.allan);
       },
-      "averaging times: octave, decade, dense, all (every multiple of the interval), ten (a decade and the octaves; "
-      "octaves alone where a log streams), or a list such as 0.1s,1s,1min (default: " +
+      "averaging times: octave, decade, dense, all (every multiple of the interval), ten (ten per decade and the "
+      "octaves; octaves alone for logs that are streamed), or a list such as 0.1s,1s,1min (default: " +
           std::string(a.options.ten_a_decade ? "ten" : "octave") + ")");
   verb.add_duration("--tau-min", a.tau_min_s, "shortest averaging time (default: one sample)");
-  verb.add_duration(
-      "--tau-max", a.tau_max_s,
-      "longest averaging time (default: half the record; Theo three quarters, mtie and tierms all of it)");
+  verb.add_duration("--tau-max", a.tau_max_s,
+                    "longest averaging time (default: half of the recording; three quarters for Theo, all of it for "
+                    "mtie and tierms)");
   verb.add_enum("--bias", a.options.allan.bias,
-                "bias of mtotdev, ttotdev and htotdev: taken out as SP 1065 states it, or none, as allantools leaves "
-                "it (default: sp1065)")
+                "bias of mtotdev, ttotdev and htotdev: sp1065 removes it as in SP 1065, none keeps it as allantools "
+                "does (default: sp1065)")
       .only("with --type mtotdev, ttotdev or htotdev", [&a] { return has_bias(a); });
   verb.add_flag("--full-overlap", a.options.full_overlap,
-                "use every term however long the record is (default: octaves and dense times take every (m/4)th term "
-                "beyond 1048576 samples, all times beyond 131072; Theo1 and the total deviations of windows every "
-                "(m/16)th or less where they would take seconds a time)");
+                "use every term of the deviation, however long the recording is (default: octaves and dense times take "
+                "every (m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total deviations of "
+                "windows every (m/16)th or less where one averaging time would take seconds)");
 }
 
 void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s, bool& quarter) {
@@ -163,10 +162,9 @@ void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& seg
 void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_parsed(
       "--terms", "TEXT", [&a](const std::string& text) { a.options.fit.terms = read_terms(text); },
-      "terms offered to the fit from the start, of N,B,K,R,quantization (default: N,B,K; the others join when an alarm "
-      "asks)");
+      "terms of the first fit, of N,B,K,R,quantization (default: N,B,K; others are added when a test requires them)");
   verb.add_number("--threshold", a.options.fit.threshold,
-                  "likelihood ratio above which a term counts as present (default: 5.41, 1 % false)", 0);
+                  "likelihood ratio above which a term counts as present (default: 5.41, 1 % false alarms)", 0);
   verb.add_flag("--no-remedies", a.no_remedies,
                 "do not clean spikes, clip lines, or add ramp, bandwidth or quantization terms");
   verb.add_parsed(
@@ -175,11 +173,11 @@ void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {
         if (text != "white-top") throw usage_error("E0201", "--assume").says("white-top was expected").got(text);
         a.options.fit.white_top = true;
       },
-      "nothing shapes the top of the spectrum: no filter, no quantization noise too weak to be seen. N is known better "
-      "by a third then");
+      "assume that nothing shapes the top of the spectrum (no filter, no quantization noise): the uncertainty of N "
+      "falls by a third");
   verb.add_text("--temperature", a.options.temperature,
-                "channel that is the temperature: a polynomial of it, with a lag, is taken out of the others before "
-                "their noise is fitted");
+                "temperature channel: a polynomial of it, with a lag, is removed from the other channels before their "
+                "noise is fitted");
   verb.add_flag("--no-second-opinion", a.no_second_opinion, "do not fit the Allan curve as well");
 }
 

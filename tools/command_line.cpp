@@ -98,7 +98,7 @@ void check_verb(const CLI::App& app, const std::vector<std::string>& command) {
     if (std::find(kOwn.begin(), kOwn.end(), command[1]) != kOwn.end()) return;
     const auto near = libchar::nearest(command[1], kOwn);
     throw libchar::usage_error("E0204", app.get_name())
-        .says("unknown option in front of the verb")
+        .says("unknown option before the verb")
         .got(command[1])
         .hint(libchar::did_you_mean(near, "options follow the verb"));
   }
@@ -170,7 +170,7 @@ void refuse_twice(const CLI::Option& option) {
   for (const std::string& value : option.results())
     if (!named.insert(value.substr(0, value.rfind('='))).second)
       throw libchar::usage_error("E0205", flag_of(option))
-          .says("one is named twice, and only one of the two would count")
+          .says("named twice; only one of the two would count")
           .got(value);
 }
 
@@ -215,8 +215,8 @@ void refuse_empty_words(const CLI::App& app, const std::vector<std::string>& com
     throw libchar::usage_error("E0207", cut         ? word.substr(0, word.size() - 1)
                                         : of_option ? before
                                                     : app.get_name())
-        .says("a value is expected, and this one is empty")
-        .hint("a variable of the shell that is not set? leave the option out for its default");
+        .says("a value is expected, but it is empty")
+        .hint("is a shell variable unset? leave the option out to use its default");
   }
 }
 
@@ -391,7 +391,7 @@ Option VerbOptions::add_bytes(const std::string& names, std::uint64_t& bytes, co
 
 Option VerbOptions::add_document_output(std::string& path) {
   const auto read = [&path](const std::string& text) { path = text == "-" ? "" : text; };
-  return add_parsed("-o,--output", "FILE", read, "write there instead of to stdout, which is - too");
+  return add_parsed("-o,--output", "FILE", read, "output file (default: -, standard output)");
 }
 
 Option VerbOptions::add_choice(const std::string& names, std::string& value, std::vector<std::string> words,

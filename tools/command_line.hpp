@@ -37,7 +37,7 @@ struct OptionNote {
 };
 using OptionNotes = std::map<const CLI::Option*, OptionNote>;
 
-/// An option or argument that was added, for what is said about few of them.
+/// An option or argument that was added, for what holds for few of them.
 class Option {
  public:
   Option(CLI::Option* option, OptionNotes* notes) : option_(option), notes_(notes) {}

@@ -16,12 +16,12 @@ namespace {
 
 void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
   verb.add_text("--topic", options.topic,
-                "of a log that holds several streams (bags, flight logs, arrays), the one to read, or several as one, "
-                "by a pattern or the name of instances (default: the only one)")
+                "stream to read, where a log holds several (bags, flight logs, arrays); a pattern or the name of "
+                "instances reads several as one (default: the only one)")
       .value_name("NAME")
       .group("Reading");
   verb.add_choice("--time-source", options.time_source, {"auto", "header", "log", "publish"},
-                  "whose stamps, where messages have several: header (the sensor's), log (when recorded), publish "
+                  "stamps to use, where messages have several: header (the sensor's), log (when recorded), publish "
                   "(default: auto)")
       .group("Reading");
   verb.add_text("--msg", options.unsaid.msg,
@@ -46,13 +46,14 @@ void add_time_options(VerbOptions& verb, libchar::ReadOptions& options) {
               options.rate_hz = libchar::parse_rate_hz(text, options.unsaid.rate_uncertainty_hz);
           },
           "sampling rate (Hz, 1.5kHz, 1/300…), with its uncertainty if it has one (200±0.5Hz, 200Hz±0.1%), of a log "
-          "without stamps and without a rate; 'gyro*=200Hz,temp=10Hz' of channels of unlike rates, by name or pattern")
+          "without stamps and without a rate; 'gyro*=200Hz,temp=10Hz' for channels with different rates, by name or "
+          "pattern")
       .once_each()
       .group("Reading");
   verb.add_parsed(
           "--interval", "TIME",
           [&options](const std::string& text) { options.rate_hz = 1 / libchar::parse_duration_s(text, true); },
-          "the same as the time from sample to sample (s, or 5min…)")
+          "sampling interval, in place of --rate (s, or 5min…)")
       .group("Reading");
   verb.add_text("--time-column", options.time_column,
                 "column of time stamps: auto, none, a name, or its position c0, c1… (default: auto)")
@@ -96,7 +97,7 @@ void add_long_format_options(VerbOptions& verb, libchar::ReadOptions& options) {
       .value_name("COLUMN")
       .group(csv);
   verb.add_choice("--date-order", options.date_order, {"auto", "day", "month", "year"},
-                  "first number in 05/01/2024 (default: auto)")
+                  "meaning of the first number in 05/01/2024 (default: auto)")
       .group(csv);
 }
 
@@ -118,7 +119,7 @@ void add_dialect_options(VerbOptions& verb, libchar::ReadOptions& options, bool 
                   .got(text);
             options.delimiter = text;
           },
-          "between two cells: auto, tab, space, or one character (default: auto)")
+          "separator of cells: auto, tab, space, or one character (default: auto)")
       .group(csv);
   verb.add_choice("--decimal", options.decimal, {"auto", "point", "comma"}, "decimal sign (default: auto)").group(csv);
   verb.add_choice("--header", options.header, {"auto", "yes", "no"},
@@ -149,8 +150,8 @@ void add_accepting_flag(VerbOptions& verb, const std::string& name, const std::s
 
 void add_reading_options(VerbOptions& verb, Session& session, libchar::ReadOptions& options) {
   verb.add_texts("-c,--channel", options.channels,
-                 "channel to read, by name, position c0, c1… or pattern ('gyro*'), or with ! in front not to read "
-                 "('!temp'); repeat it or separate by commas (default: all)")
+                 "channels to read, by name, position (c0, c1…) or pattern ('gyro*'); ! excludes one ('!temp'); repeat "
+                 "it or separate by commas (default: all)")
       .separated_by_commas()
       .once_each()
       .one_value_each()
@@ -188,7 +189,7 @@ void add_reading_options_without_channel(VerbOptions& verb, Session& session, li
   add_accepting_flag(verb, "--overflow", "nan", options.missing.overflow,
                      "nan: a number out of range counts as missing (default: error)");
   add_accepting_flag(verb, "--bad-rows", "drop", options.missing.bad_rows,
-                     "drop: rows that cannot be read are left out and counted, of ten one at most (default: error)");
+                     "drop: leave out and count rows that cannot be read, at most one in ten (default: error)");
   add_accepting_flag(verb, "--repeated-header", "skip", options.skip_repeated_header,
                      "skip: header lines inside the data are skipped (default: error)");
   verb.add_parsed(

@@ -63,7 +63,7 @@ SceneAlign align_from_words(const std::string& text, const Scene& scene) {
     return align;
   }
   if (!where.empty() && where != "rest" && where != "learning" && where != "run")
-    throw usage_error("E0910", "--align").says("expected rest, learning, run or FROM..TO behind the @").got(where);
+    throw usage_error("E0910", "--align").says("expected rest, learning, run or FROM..TO after the @").got(where);
   if ((where == "rest" && !scene.rest) || (where == "learning" && !scene.learning))
     throw usage_error("E0910", "--align")
         .says("there is no such window")
@@ -77,7 +77,7 @@ void set_grid(const ReplaySource& source, Scene& scene) {
   if (!source.prepare.resample_hz) return;
   if (scene.simulate) throw usage_error("E0910", "--resample").says("a simulation has an even grid");
   if (scene.reading.rate_hz)
-    throw usage_error("E0910", "--resample").says("goes by the stamps of the log, --rate is for logs without stamps");
+    throw usage_error("E0910", "--resample").says("uses the stamps of the log; --rate is for logs without stamps");
   scene.resample_hz = source.prepare.resample_hz;
 }
 
@@ -135,7 +135,7 @@ void refuse_words_of_recordings(const ReplaySource& source) {
   if (option == nullptr && reading.empty()) return;
   const std::string flag = reading.empty() ? "" : reading.substr(1, reading.find(' ', 1) - 1);
   throw usage_error("E0910", option != nullptr ? option : flag)
-      .says("describes a recording, and {} is a scene, which says this itself", printable(source.path))
+      .says("describes a recording, and {} is a scene, which has its own", printable(source.path))
       .hint("change the scene, or give its recording instead");
 }
 
@@ -187,7 +187,7 @@ void add_data_options(VerbOptions& options, Session& session, ReplaySource& sour
       .one_value_each()
       .value_name("NAME,…")
       .group(group);
-  options.add_texts("--reference", source.reference, "channel with the truth; of several the mean (default: none)")
+  options.add_texts("--reference", source.reference, "channel with the truth; the mean of several (default: none)")
       .separated_by_commas()
       .once_each()
       .one_value_each()
@@ -216,22 +216,23 @@ void add_window(VerbOptions& options, const std::string& name, std::string& valu
 void add_preparation_options(VerbOptions& options, ReplaySource& source) {
   options.add_rate("--resample", source.prepare.resample_hz,
                    "interpolate each channel by its own stamps to an even grid of this rate, for uneven stamps and "
-                   "channels of unlike rates (default: the scene's)");
+                   "channels with different rates (default: the scene's)");
   options.add_choice("--detrend", source.prepare.detrend, {"none", "mean", "line"},
                      "subtract this from each sensor and the reference, of the whole recording (default: the scene's)");
   const Option high_pass = options.add_rate("--high-pass", source.prepare.high_pass_hz,
                                             "one high-pass for all sensors and the reference (default: the scene's)");
   options
-      .add_text("--band", source.prepare.band, "instead: from one frequency to another, in Hz (default: the scene's)")
+      .add_text("--band", source.prepare.band,
+                "band-pass from LOW to HIGH in Hz, in place of --high-pass (default: the scene's)")
       .value_name("LOW..HIGH")
       .excludes(high_pass);
   options
       .add_text("--reference-lag", source.reference_lag,
-                "the sensors lag the reference by so many seconds, or estimate (default: the scene's)")
+                "lag of the sensors relative to the reference in seconds, or estimate (default: the scene's)")
       .value_name("S|estimate");
   options
       .add_text("--reference-offset", source.reference_offset,
-                "the reference reads so much more than the sensors, or estimate (default: the scene's)")
+                "offset of the reference relative to the sensors, or estimate (default: the scene's)")
       .value_name("NUMBER|estimate");
 }
 
@@ -247,17 +248,17 @@ void add_replay_source(VerbOptions& options, Session& session, ReplaySource& sou
              "learning window in seconds, or none (default: the scene's, else with a reference the first half of a "
              "recording)");
   add_window(options, "--evaluation", source.evaluation,
-             "what is scored, in seconds (default: the scene's, else all behind the learning window)");
+             "stretch that is scored, in seconds (default: the scene's, else all after the learning window)");
   add_window(options, "--rest", source.rest,
-             "the true input is zero there: offsets and noise are measured (default: the scene's)");
+             "stretch in which the true input is zero, to measure offsets and noise (default: the scene's)");
   options
       .add_text("--align", source.align,
-                "take these out of the sensors first: auto (those that pay), all, or some of "
+                "correct the sensors first: auto (terms that pay), all, or some of "
                 "delay,bias,gain,misalignment; learnt @rest, @learning, @run or @FROM..TO (default: the scene's)")
       .value_name("TERMS[@WHERE]");
   add_preparation_options(options, source);
   options.add_instant("--warm-up", source.warm_up_s,
-                      "so long at its start the evaluation is run and not scored (default: the scene's)");
+                      "time at the start of the evaluation that is run but not scored (default: the scene's)");
   options.add_texts("--fault", source.faults, std::string(kFaultHelp) + "; injected on top of the scene's")
       .value_name("FAULT");
   options.add_flag("--no-faults", source.no_faults, "leave out the faults that the scene injects");

@@ -1,5 +1,5 @@
 #pragma once
-// Runs again what a document of results says it was made by, into another folder, and compares.
+// Runs again the command that a document of results was made by, into another folder, and compares.
 
 #include <string>
 #include <vector>

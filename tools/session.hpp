@@ -25,13 +25,13 @@ struct Session {
   std::vector<std::string> warned_files;  ///< files that had warnings, in order
 };
 
-/// On stderr, as the end of a run says it: for runs that go on.
+/// On stderr, as at the end of a run: for runs that go on.
 void say_error(Session& session, const libchar::Error& error);
 /// Says the warnings of one input on stderr and remembers them for --strict.
 void report_warnings(Session& session, const libchar::LogInfo& info);
 /// What is known of a channel, at most five lines, the worst first.
 void report_findings(Session& session, const std::string& channel, const std::vector<libchar::Finding>& findings);
-/// Of a document: what is said of the recording and of the channels that fit one of the patterns (none: all).
+/// Of a document: all about the recording and of the channels that fit one of the patterns (none: all).
 void report_findings(Session& session, const std::string& document, std::span<const libchar::Finding> findings,
                      const std::vector<std::string>& channels);
 void report_warnings(Session& session, const libchar::Findings& warnings, const std::string& file);
@@ -57,7 +57,7 @@ struct DocumentOutput {
   bool json = false, force = false;
 };
 
-/// The keys of `json` behind the head of a document of this format, or `csv`; the log's warnings are said before.
+/// The keys of `json` after the head of a document of this format, or `csv`; the log's warnings are said before.
 void write_document(Session& session, const libchar::LogInfo& log, const std::string& format, const libchar::Json& json,
                     const std::string& csv, const DocumentOutput& output);
 
@@ -66,7 +66,7 @@ void write_document(Session& session, const libchar::LogInfo& log, const std::st
 void refuse_standard_output(const char* flag, const std::string& place,
                             const char* what = "the results are several files", const char* hint = "name a folder");
 
-/// What is said of a log that was written: on stdout, or, where the log itself may be there, as a
+/// The report on a log that was written: on stdout, or, where the log itself may be there, as a
 /// note; nothing when quiet.
 void print_summary(Session& session, const std::string& output, const std::string& text);
 

@@ -1,4 +1,4 @@
-// Three devices of one model, one of which gets stuck; the truth is the last channel.
+// Three devices of one model; one of them gets stuck. The truth is the last channel.
 #include <cstdio>
 
 #include "libchar/libchar.hpp"

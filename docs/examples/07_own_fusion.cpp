@@ -23,7 +23,7 @@ int main() {
   // Checks the contract when compiled.
   fusion::RunnerOf<Midrange> runner(array, fusion::Settings());
   Eigen::MatrixXd samples(3, 2), x(1, 2), variance(1, 2);
-  samples << 1.0, 2.0,  // a row a sensor, a column an instant
+  samples << 1.0, 2.0,  // one row per sensor, one column per instant
       1.2, 2.2, 1.1, 2.6;
   runner.run(samples, x, variance);
   std::printf("%.2f %.2f\n", x(0, 0), x(0, 1));

@@ -122,7 +122,7 @@ struct FusionBenchScene {
   std::uint64_t sensors = 0, inputs = 0;
   bool simulated = false;
   std::uint64_t runs = 0;
-  bool pooled = false;  ///< one of the most frequent kind: so many true inputs, or a tilt
+  bool pooled = false;  ///< one of the most frequent kind: this number of true inputs, or a tilt
 };
 
 /// A scene that feeds none of the algorithms asked for.
@@ -199,8 +199,8 @@ struct SensorsNeeded {
   std::string model;
   double single = 0;  ///< Allan deviation of one at tau
   std::uint64_t sensors = 0;
-  double predicted = 0;  ///< of so many
-  Figure simulated;      ///< of so many, root mean square over the records; no count: not checked
+  double predicted = 0;  ///< of this many records
+  Figure simulated;      ///< of this many records, root mean square over the records; no count: not checked
 };
 
 /// A record from which a method can know a coefficient so well.

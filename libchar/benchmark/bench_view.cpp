@@ -5,6 +5,7 @@
 
 #include "libchar/benchmark/bench_document.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 
 namespace libchar {
 namespace {
@@ -63,8 +64,8 @@ BenchSection section_of(const CharacterizationBench& bench) {
   for (const TermAccuracy& term : bench.methods.front().terms)
     truth += fmt::format("{} = {} (bound {}), ", kTermNames[static_cast<std::size_t>(term.term)].letter,
                          number_text(term.truth, 3), percent_text(term.bound / term.truth));
-  out.sentences = {fmt::format("{}{} simulated records of {} samples at {} Hz.", truth, bench.records,
-                               count_text(bench.signal.samples), brief_text(bench.signal.rate_hz, 4))};
+  out.sentences = {fmt::format("{}{} simulated records of {} samples at {}.", truth, bench.records,
+                               count_text(bench.signal.samples), detail::frequency_text(bench.signal.rate_hz, 4))};
   out.sentences.insert(out.sentences.end(), bench.notes.begin(), bench.notes.end());
   out.table = Table("Method");
   for (const TermAccuracy& term : bench.methods.front().terms)
@@ -101,7 +102,8 @@ std::string verdict_of(const CharacterizationBench& bench) {
   const EstimatorAccuracy *ours = best(true), *others = best(false);
   if (ours == nullptr) return "";
   std::string out = fmt::format(
-      "{}: of the methods that find the terms themselves {} is most exact, {} × the bound at {} ns per sample",
+      "{}: of the methods that choose the terms themselves, {} is the most accurate, {} × the bound at {} ns per "
+      "sample",
       bench.signal.name, ours->name, number_text(ours->error, 3), number_text(ours->ns_per_sample.value, 3));
   if (others != nullptr)
     out += fmt::format("; the best recipe of others, {}, {} ×", others->name, number_text(others->error, 3));
@@ -113,7 +115,7 @@ std::string verdict_of(const FusionBench& bench) {
   for (const FusionBenchRow& row : bench.rows)
     if (!row.bound && row.excess.count > 0 && (best == nullptr || row.excess.value < best->excess.value)) best = &row;
   return best == nullptr ? ""
-                         : fmt::format("Fusion: {} has the least error over all scenes, {} × that of the yardstick.",
+                         : fmt::format("Fusion: {} has the smallest error over all scenes, {} × that of the yardstick.",
                                        best->label, number_text(1 + best->excess.value, 3));
 }
 
@@ -123,8 +125,9 @@ BenchSection legend_section(const CharacterizationBench& bench) {
   out.table = Table("Method|What it does");
   for (const EstimatorAccuracy& method : bench.methods) out.table.add({method.name, method.what});
   out.notes = {
-      "Bound: Cramér and Rao's, the least standard deviation that an unbiased method can have on such a record. RMSE "
-      "over it: 1 is as good as can be; a coefficient that is in the records and not detected counts as an estimate of "
+      "Bound: the Cramér-Rao bound, the smallest standard deviation that an unbiased method can reach on such a "
+      "recording. RMSE over it: 1 is the best possible; a coefficient that is in the records and not detected counts "
+      "as an estimate of "
       "zero, which can be nearer than the bound says where the bound is wide. False terms: records in which a "
       "coefficient is stated that is not in them (–: its terms are given, or all are there). Time over the first: of "
       "the first method listed below, record by record. Methods that are given the terms count against each other "
@@ -198,7 +201,8 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
   out.title = "Growth of cost over " + over;
   const bool sensors = over == "sensors";
   out.table = Table("Work|at the least|at the most|Memory at the most|Exponent");
-  if (sensors) out.table.columns.push_back({fmt::format("Keeps up to, at {} Hz", number_text(bench.rate_hz, 3))});
+  if (sensors)
+    out.table.columns.push_back({fmt::format("Keeps up to, at {}", detail::frequency_text(bench.rate_hz, 3))});
   for (const ScalingSeries& series : bench.series) {
     if (series.over != over || series.points.empty()) continue;
     const ScalingPoint &least = series.points.front(), &most = series.points.back();
@@ -218,9 +222,8 @@ BenchSection growth_section(const ScalingBench& bench, const std::string& over) 
     out.notes = {"Exponent p of time ~ samplesᵖ over the last three octaves, 95 % interval by Student's t."};
   if (sensors)
     out.notes = {
-        "One true input. Keeps up to: so many sensors at that rate take one processor wholly (the time of an instant "
-        "reaches the time between two); beyond the largest number tried by the exponent. More sensors than that are "
-        "not worth their error with this method on one processor."};
+        "One true input. Keeps up to: the number of sensors that takes one whole processor at that rate (extrapolated "
+        "beyond the largest number tried). With more sensors this method does not keep up on one processor."};
   return out;
 }
 
@@ -238,7 +241,8 @@ BenchSection sensors_section(const DesignBench& bench) {
     out.table.add({row.model, number_text(row.single, 4), count_text(row.sensors), number_text(row.predicted, 4),
                    row.simulated.count == 0 ? "too long to check" : figure_text(row.simulated)});
   out.notes = {
-      "For independent sensors: what they share (temperature, supply, a common clock) no number of them removes."};
+      "For independent sensors: errors that they share (temperature, supply, a common clock) do not fall with their "
+      "number."};
   return out;
 }
 

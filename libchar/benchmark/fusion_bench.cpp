@@ -84,7 +84,7 @@ FusionBenchScene described(const Scene& scene, const ReplayResult& first, std::s
   out.name = scene.name.empty() ? scene.file : scene.name;
   out.file = scene.file;
   out.simulated = scene.simulate.has_value();
-  out.yardstick = first.has_reference ? "the least error that fixed weights, or the best filter, could have had"
+  out.yardstick = first.has_reference ? "the smallest error that fixed weights, or the best filter, could have had"
                                       : "the best of the methods";
   out.instants = first.instants;
   out.sensors = first.sensors.size();

@@ -74,9 +74,8 @@ Machine MachineWatch::finish() const {
 
 std::string load_sentence(const Machine& machine) {
   if (!(machine.others > 0.1)) return "";
-  return fmt::format(
-      "other programs kept {:.1f} of {} processors busy meanwhile: times have wider intervals than they need",
-      machine.others, machine.cores);
+  return fmt::format("other programs kept {:.1f} of {} processors busy: intervals of times are wider than necessary",
+                     machine.others, machine.cores);
 }
 
 namespace {

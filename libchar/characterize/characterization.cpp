@@ -14,6 +14,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/record/mean_meter.hpp"
 #include "libchar/log/between_channels.hpp"
 #include "libchar/log/channel_names.hpp"
@@ -122,7 +123,7 @@ std::string stretch_sentence(const Stretch& stretch, std::span<const ChannelResu
                                   : "Nothing moves in the recording: all of it was analysed.";
   std::string text =
       fmt::format("Only the stretch from {} to {} s was analysed, {}", brief_text(stretch.from_s, 6),
-                  brief_text(stretch.to_s, 6), stretch.found ? "the longest in which nothing moves" : "as asked");
+                  brief_text(stretch.to_s, 6), stretch.found ? "the longest in which nothing moves" : "as requested");
   if (stretch.moving.empty()) return text + ".";
   const std::size_t shown = std::min<std::size_t>(stretch.moving.size(), 6);
   text += " (moving or louder outside: ";
@@ -185,7 +186,7 @@ void read_slow_channels_alone(const std::string& path, const CharacterizeOptions
     result.channels[c].channel.rate_hz = channel.rate_hz;
     result.log.warnings.add("own_grid",
                             "channels with a clock of their own in the table, each analysed on its own grid",
-                            fmt::format("channel {} at {} Hz", channel.name, brief_text(channel.rate_hz, 6)));
+                            fmt::format("channel {} at {}", channel.name, detail::frequency_text(channel.rate_hz, 6)));
   }
 }
 

@@ -62,7 +62,7 @@ struct CharacterizeOptions {
   SampleKind data = SampleKind::rate;
   double nominal_frequency = 0;  ///< for SampleKind::frequency; 0 = values are fractional already
   double unwrap = 0;             ///< the values start again after this much, in their unit; 0: they do not
-  /// Runs of so many equal values and longer are missing; so are the samples inside of straight lines of so many
+  /// Runs of this many equal values and longer are missing; so are the samples inside of straight lines of this many
   /// samples and longer. 0: they count.
   std::uint64_t frozen = 0, interpolated = 0;
   /// name of the channel that is the temperature: what it does to the others is taken out before their noise is fitted
@@ -90,7 +90,7 @@ struct CharacterizeOptions {
 /// What was analysed of a log.
 struct Stretch {
   double from_s = 0, to_s = 0;      ///< after the first sample
-  bool found = false;               ///< as the longest still one; else as asked
+  bool found = false;               ///< as the longest still one; else as requested
   bool whole = false;               ///< it is all of the log
   std::vector<std::string> moving;  ///< channels that move outside
   std::string sentence;

@@ -62,7 +62,7 @@ struct ChannelView {
   std::string goodness;                           ///< how well the model explains the channel; "" without a fit
   const AllanPoint* allan_minimum = nullptr;      ///< lowest reliable point; null: none
   std::optional<double> per_sample_sd;            ///< N·√f: what white noise alone gives in a sample
-  std::optional<double> noise_density_one_sided;  ///< √2·N, as data sheets say it
+  std::optional<double> noise_density_one_sided;  ///< √2·N, as in data sheets
   std::vector<ReadOff> read_off;                  ///< points of the Allan curve
   std::optional<ModelCurve> allan_model, spectrum_model;              ///< none: no fit
   std::vector<std::optional<Interval>> spectrum_ci68, spectrum_ci95;  ///< one per bin; none: no dof

@@ -9,6 +9,7 @@
 
 #include "libchar/characterize/compare/verification.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/fit/remedies.hpp"
 
@@ -76,7 +77,7 @@ struct Judge {
     constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
     const bool unexplained = !letters_with(fit, Status::misfit).empty() || fit.goodness.p < kMisfit;
     if (unexplained && !said)
-      add("misfit", "The noise terms do not describe the recording: no coefficient is borne out.",
+      add("misfit", "The noise terms do not describe the recording: the data support no coefficient.",
           "the noise terms do not describe the recording");
     if (!fit.search.converged) add("not_converged", "The fit did not converge.");
   }
@@ -85,8 +86,8 @@ struct Judge {
     if (const std::string letters = letters_with(fit, Status::undetermined);
         !letters.empty() && !has(fit.findings, "undetermined")) {
       add("undetermined",
-          fmt::format("Undetermined: {}. Another term could explain the same part of the record, or its Allan curve "
-                      "speaks against it.",
+          fmt::format("Undetermined: {}. Another term could explain the same part of the recording, or the Allan curve "
+                      "contradicts it.",
                       letters),
           letters + " undetermined: not distinguished from another term, or contradicted by the Allan curve");
       if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
@@ -115,7 +116,7 @@ struct Judge {
     }
     if (strongest != nullptr)
       lines.sentence +=
-          fmt::format(" The strongest is at {} Hz, amplitude {}{}.", brief_text(strongest->frequency_hz),
+          fmt::format(" The strongest is at {}, amplitude {}{}.", detail::frequency_text(strongest->frequency_hz),
                       brief_text(strongest->amplitude), channel.channel.unit.empty() ? "" : " " + channel.channel.unit);
     return lines;
   }

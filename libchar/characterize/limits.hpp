@@ -25,13 +25,13 @@ struct LimitJudgement {
   std::string channel, unit;  ///< unit of the channel
   Term term = Term::white;
   double most = 0;       ///< the limit in the term's own unit
-  std::string text;      ///< the limit as its file says it
+  std::string text;      ///< the limit as in its file
   Coefficient measured;  ///< not_fitted: there is no fit
   LimitStatus status = LimitStatus::not_decided;
   std::string sentence;  ///< how it was decided, with numbers
 };
 
-/// A limit as its file says it, and in the unit of the values that are held against it: "0.4 deg/√h (0.006667
+/// A limit as in its file, and in the unit of the values that are compared with it: "0.4 deg/√h (0.006667
 /// deg/s·√s)".
 std::string limit_text(const std::string& text, double most, const std::string& unit);
 

@@ -63,7 +63,7 @@ void check_cover(const std::vector<OrderedState>& states) {
       throw input_error("E0725", one.state->name)
           .says("covers leaf {}{}, which {} does too", from, of_channel(one.head), before->state->name)
           .hint("leave one of them out");
-    if (from > next) refuse_hole(one, next, from - 1, "in front of");
+    if (from > next) refuse_hole(one, next, from - 1, "before");
     next = end;
     before = &one;
   }

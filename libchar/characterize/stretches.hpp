@@ -29,7 +29,7 @@ struct StretchRange {
   std::uint64_t first_leaf = 0, end_leaf = 0;
 };
 
-/// How many leaves a log of so many samples has.
+/// How many leaves a log of this many samples has.
 std::uint64_t leaves_of(std::uint64_t samples);
 
 /// "" or why this log, or what these options ask for, cannot be divided: "its rows have no fixed
@@ -39,7 +39,7 @@ std::string why_not_divided(const LogInfo& log, const CharacterizeOptions& optio
 /// Takes the partial states of a stretch, a channel each in their order, as bytes for a file.
 using StateSink = std::function<void(const std::string& bytes)>;
 
-/// The partial states of all channels over some leaves. Nothing in front of them is read, and nothing of the whole log
+/// The partial states of all channels over some leaves. Nothing before them is read, and nothing of the whole log
 /// is: `identity` (its digest, or whatever tells it from others) goes into the states as it is. Three channels are
 /// taken in one pass over the rows. Memory: that of three, each 8 MB and some 1 MB for each of up to 2 log2(leaves)
 /// nodes of the tree. Throws Error(usage) where the log or the options cannot be divided (E0726) or the range is not

@@ -5,6 +5,7 @@
 
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
@@ -96,7 +97,7 @@ std::string unsaid_sentence(const Characterization& result, const std::vector<Ju
   if (names.empty()) return "";
   return fmt::format(" {} {}{}: {}.", rating == Rating::bad ? "Do not use" : "Use",
                      judged.size() == 1 ? "it" : first_names(names), rating == Rating::bad ? "" : " with caution",
-                     one_reason ? phrase : "see what is said of them");
+                     one_reason ? phrase : "see the notes on them");
 }
 
 }  // namespace
@@ -124,8 +125,8 @@ std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::s
   if (fit.temperature && fit.temperature->order > 0) out.push_back(temperature_sentence(*fit.temperature, unit));
   if (fit.bandwidth_hz) {
     out.push_back(
-        fmt::format("A first-order low-pass at {} Hz colours the short averaging times; it is part of the model.",
-                    brief_text(*fit.bandwidth_hz)));
+        fmt::format("A first-order low-pass at {} colours the short averaging times; it is part of the model.",
+                    detail::frequency_text(*fit.bandwidth_hz)));
   }
   return out;
 }
@@ -154,7 +155,7 @@ namespace {
 
 std::string term_phrase(const std::string& name, const ShownValue& shown, Status status) {
   const char* doubt = status == Status::undetermined ? ", undetermined" : "";
-  return shown.low.empty() ? fmt::format("{} not seen ({}{})", name, said(shown), doubt)
+  return shown.low.empty() ? fmt::format("{} not detected ({}{})", name, said(shown), doubt)
                            : fmt::format("{} {} {}{}", name, said(shown), interval_brackets(shown), doubt);
 }
 
@@ -173,7 +174,7 @@ std::string terms_of(const NoiseFit& fit, const std::string& unit) {
     const TermCells cells = term_cells(fit.term[t], static_cast<Term>(t), unit, !laws.empty());
     say(cells.title + " " + cells.letter, headline(cells), fit.term[t]);
   }
-  // Without it, "not seen" of flicker and walk would read as no slow noise at all.
+  // Without it, "not detected" of flicker and walk would read as no slow noise at all.
   if (fit.gauss_markov && fit.gauss_markov->in_model && fit.gauss_markov->sigma.value) {
     const std::string symbol = shown_unit(unit);
     parts.push_back(fmt::format("a Gauss–Markov process of {}{}{} with a correlation time of {}",
@@ -188,7 +189,7 @@ std::string beside_phrase(const NoiseFit& fit) {
   const std::string temperature =
       fit.temperature && fit.temperature->order > 0 ? " Its dependence on temperature was taken out." : "";
   if (fit.band.whole || !(fit.rate_hz > 0) || fit.band.top_hz >= 0.499 * fit.rate_hz) return temperature;
-  return fmt::format(" They hold below {} Hz.", brief_text(fit.band.top_hz)) + temperature;
+  return fmt::format(" Valid below {}.", detail::frequency_text(fit.band.top_hz)) + temperature;
 }
 
 constexpr std::size_t kMostSpoils = 4;

@@ -18,7 +18,7 @@ class Refusal : public Error {
   Refusal(ErrorKind kind, std::string code, std::string where = "")
       : Error({kind, std::move(code), std::move(where)}) {}
 
-  /// "SUBJECT: " in front of what is said.
+  /// "SUBJECT: " before the message.
   Refusal& about(const std::string& subject) { return with(&Problem::what, subject + ": "); }
   Refusal& says(std::string_view what) { return with(&Problem::what, problem().what + std::string(what)); }
   Refusal& got(std::string_view excerpt) { return with(&Problem::got, std::string(excerpt)); }

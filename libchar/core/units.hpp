@@ -77,10 +77,10 @@ std::string term_unit(std::string_view term, std::string_view unit);
 std::string shown_unit(std::string_view unit);
 std::string shown_term_unit(std::string_view term, std::string_view unit);
 
-/// "0.05 deg/s", "1/16.4 deg/s", "3.33 mg": a number in front of a unit, which is the value of one count.
+/// "0.05 deg/s", "1/16.4 deg/s", "3.33 mg": a number before a unit, which is the value of one count.
 struct CountUnit {
   double factor = 1;
-  std::string unit;  ///< as written behind the number
+  std::string unit;  ///< as written after the number
 };
 std::optional<CountUnit> count_unit(std::string_view text);
 

@@ -182,13 +182,13 @@ struct Alike {
   std::string_view program, target, keys;
 };
 constexpr Alike kAlike[] = {
-    {"lio-sam", "gtsam", "imuAccNoise, imuGyrNoise, imuAccBiasN, imuGyrBiasN are the roots of its covariances"},
     {"lvi-sam", "gtsam", "acc_n, gyr_n, acc_w, gyr_w of its LIO part are the roots of its covariances"},
-    {"okvis", "kalibr", "sigma_a_c, sigma_g_c, sigma_aw_c, sigma_gw_c are its four densities"},
     {"msckf", "kalibr", "noise/acc, noise/gyro, noise/acc_bias, noise/gyro_bias are its four densities"},
-    {"maplab", "kalibr", "its sigmas are the same four densities"},
-    {"rovio", "gtsam", "PredictionNoise takes its covariances"},
-    {"fast-lio", "ros", "acc_cov and gyr_cov are variances of a sample"},
+    {"gazebo", "sdf", "its sensors are written in SDFormat"},
+    {"vins-mono", "vins", "its file has the same keys"},
+    {"vins-fusion", "vins", "its file has the same keys"},
+    {"okvis2", "okvis", "its file has the same keys"},
+    {"fast-lio2", "fast-lio", "its file has the same keys"},
     {"robot_localization", "ros", "it reads the covariances of the messages"},
     {"isaac", "pegasus", "the same densities and correlation time"},
     {"ekf2", "px4", "its parameters"},
@@ -196,8 +196,11 @@ constexpr Alike kAlike[] = {
 };
 
 std::string alike_hint(std::string_view name) {
+  // "robot-localization" as well as "robot_localization"
+  const auto same = [](char a, char b) { return a == b || (a == '-' && b == '_') || (a == '_' && b == '-'); };
   for (const Alike& one : kAlike)
-    if (one.program == name) return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
+    if (std::equal(one.program.begin(), one.program.end(), name.begin(), name.end(), same))
+      return fmt::format("{} takes what {} takes: {}", one.program, one.target, one.keys);
   return "";
 }
 

@@ -57,7 +57,7 @@ void refuse_mixed(std::span<const FigureSource> sources, const FigureKind& kind)
   if (kind.of_replay && sources.size() > 1)
     throw usage_error("E0978", sources[1].file)
         .says("a figure of a replay is of one report")
-        .hint("sensorchar compare A B holds two replays against each other");
+        .hint("sensorchar compare A B compares two replays");
 }
 
 void refuse_unused(const FigureOptions& options, const FigureKind& kind) {

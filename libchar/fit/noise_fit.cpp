@@ -15,6 +15,7 @@
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/curve/allan_fit.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/band/band.hpp"
@@ -246,9 +247,9 @@ void answer_hump(const std::vector<PowerBin>& bins, double bottom_hz, const Term
     term.ci95 = {0, largest};
   }
   Finding hump = finding("hump",
-                         fmt::format("Below {} Hz no noise term describes the record (a cycle, a movement, the "
-                                     "temperature): N is from above; B and K have limits only.",
-                                     brief_text(bottom_hz)),
+                         fmt::format("Below {} no noise term describes the record (a cycle, a movement, the "
+                                     "temperature): N is estimated above it; B and K have only limits.",
+                                     detail::frequency_text(bottom_hz)),
                          "its slow part is not noise");
   hump.where.frequency_hz.push_back({0, bottom_hz});
   fit.findings.push_back(std::move(hump));
@@ -279,9 +280,9 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
   fit.findings.push_back(
       finding("misfit",
               fmt::format("The model does not describe the record within its statistical accuracy (chi-square {:.0f} "
-                          "for {:.0f} degrees of freedom, worst near {} Hz), in no band: the intervals are widened by "
-                          "its scatter, and no coefficient is borne out.",
-                          fit.goodness.chi2, fit.goodness.dof, brief_text(worst->frequency_hz)),
+                          "for {:.0f} degrees of freedom, worst near {}), in any band: the intervals are widened by "
+                          "its scatter, and the data support no coefficient.",
+                          fit.goodness.chi2, fit.goodness.dof, detail::frequency_text(worst->frequency_hz)),
               "the noise terms do not describe the recording"));
 }
 

@@ -101,7 +101,7 @@ Finding detail::cycle_finding(std::span<const Event> cycles) {
   const std::size_t further = cycles.size() - 1;
   Finding found =
       finding("cycle",
-              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was taken out before the noise was "
+              fmt::format("The record holds a cycle of {} (amplitude {}{}): it was removed before the noise was "
                           "fitted, and stays in the Allan curve.",
                           duration_text(strongest.period_s), brief_text(strongest.size, 3),
                           further > 0 ? fmt::format(", {} further line{}", further, further > 1 ? "s" : "") : ""),

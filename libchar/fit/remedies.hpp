@@ -37,7 +37,7 @@ struct DespikedRecord {
 /// `kurtosis`: of the first differences, where it is known.
 DespikedRecord without_spikes(std::span<const double> record, std::optional<double> kurtosis = {});
 
-/// Puts the answer in front of what else a fit says.
+/// Puts the answer before what else a fit says.
 void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 
 Remedy lines_remedy(std::uint64_t clipped);
@@ -45,11 +45,11 @@ Remedy lines_remedy(std::uint64_t clipped);
 namespace detail {
 /// Standard deviation of the kurtosis of first differences of white noise.
 double kurtosis_sd(std::uint64_t samples);
-/// What is said of lines that were left out. `in_allan`: the Allan curve has them, and disagrees.
+/// The finding about lines that were left out. `in_allan`: the Allan curve has them, and disagrees.
 Finding lines_finding(const ClippedBins& lines, bool in_allan);
 /// Share of the power that lines hold, of the samples or of their differences: the larger.
 double share_of_lines(const ClippedBins& lines);
-/// What is said of slow cycles that were taken out; by frequency, at least one.
+/// The finding about slow cycles that were taken out; by frequency, at least one.
 Finding cycle_finding(std::span<const Event> cycles);
 }  // namespace detail
 

@@ -47,7 +47,7 @@ struct FleetJob {
   UnitCost cost;                   ///< sum of the times, largest memory
 };
 
-/// In the order of the plan; joins come behind all other units.
+/// In the order of the plan; joins come after all other units.
 std::vector<FleetJob> jobs_of(const FleetPlan& plan, const FleetStatus& status, const JobOptions& options);
 
 /// What an engine is given, in DIR: jobs/NAME.txt with one task file per line, and its own files.

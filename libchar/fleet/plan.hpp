@@ -23,7 +23,7 @@
 namespace libchar {
 
 struct FleetPlanOptions {
-  bool by_channel = false;  ///< a unit for each channel of a log without a thermometer, or with `temperature`
+  bool by_channel = false;  ///< one unit per channel of a log without a thermometer, or with `temperature`
   bool reports = true;      ///< each device's page and tables as well as its record
   std::uint64_t split_bytes = std::uint64_t{4}
                               << 30U;  ///< logs larger than this are divided in stretches where their format allows
@@ -43,7 +43,7 @@ struct FleetPlan {
   std::vector<FleetUnit> units;        ///< of the devices in their order; a join behind its stretches
   /// Why logs above `split_bytes` are not divided, and whose; not in the file.
   std::map<std::string, std::set<std::size_t>> undivided;
-  /// Logs that have warnings in front of their samples (an option that fits none of their channels); not in the file.
+  /// Logs that have warnings before their samples (an option that fits none of their channels); not in the file.
   std::vector<std::pair<std::string, Findings>> warned;
 };
 

@@ -46,7 +46,7 @@ StretchRange stretch_at(const MapReader& at) {
   constexpr double kMost = 0x1p53;  // numbers of a document are whole up to here
   const auto is_leaf = [&](double end) { return end >= 0 && end <= kMost && end == std::floor(end); };
   if (ends.size() != 2 || !is_leaf(ends[0]) || !is_leaf(ends[1]) || !(ends[1] > ends[0]))
-    at.refuse("leaves", "expected the first leaf and the one behind the last");
+    at.refuse("leaves", "expected the first leaf and the one after the last");
   return {static_cast<std::uint64_t>(ends[0]), static_cast<std::uint64_t>(ends[1])};
 }
 

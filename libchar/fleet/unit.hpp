@@ -63,7 +63,7 @@ std::string settings_id(const CharacterizeOptions& options);
 /// The same of a unit: those of the whole log, also where it is of one channel.
 std::string settings_id(const FleetUnit& unit);
 
-/// The same of what can make results differ that come from unlike logs. How a log is read (its names, units, rate,
+/// The same of what can make results differ that come from different logs. How a log is read (its names, units, rate,
 /// which rows) and which of its channels is the thermometer says what is in it, not how it is characterized.
 std::string analysis_id(const FleetUnit& unit);
 

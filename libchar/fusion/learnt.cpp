@@ -9,7 +9,7 @@
 namespace libchar::fusion {
 namespace {
 
-constexpr const char* kHint = "write the file anew with the replay that learnt it";
+constexpr const char* kHint = "write the file again with the replay that learnt it";
 
 Refusal learnt_refusal(std::string_view name, const std::string& what) {
   return input_error("E0866").says("learnt." + std::string(name) + ": " + what);

@@ -16,7 +16,7 @@ class Runner;  // runner.hpp
 struct Entry {
   const Description* description;
   std::span<const Option> options;
-  std::size_t own_options = 0;  ///< the first of them; the others are those of the fault detector in front of it
+  std::size_t own_options = 0;  ///< the first of them; the others are those of the fault detector before it
   /// Throws Error(usage) when the algorithm cannot run on what is given (ask `why_not` first).
   std::unique_ptr<Runner> (*make)(const Array&, const Settings&);
   /// Of a step, as declared: nanoseconds of a core of 3 GHz.

@@ -54,7 +54,7 @@ inline constexpr Option kStart{"start_s",
                                1,
                                0,
                                1e6,
-                               "the start is the mean of the angles of gravity of so long, carried along by the "
-                               "gyroscope; 0: the first one alone"};
+                               "time over which the angles of gravity are averaged for the start, carried along by the "
+                               "gyroscope; 0: the first angle alone"};
 
 }  // namespace libchar::fusion

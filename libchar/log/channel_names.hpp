@@ -8,7 +8,7 @@
 
 namespace libchar {
 
-/// What a log says of itself in front of its samples: channels (those that `options` choose, with
+/// What a log says of itself before its samples: channels (those that `options` choose, with
 /// their new names and units), format, dialect. Rate and length are not known yet. Throws as read_log.
 LogInfo read_log_head(const std::string& path, const ReadOptions& options);
 

@@ -26,7 +26,7 @@ struct LogFormat {
   bool topics = false;          ///< may hold several streams, each with a clock of its own
   bool time_sources = false;    ///< its messages may have several stamps (`ReadOptions::time_source`)
   bool text = false;            ///< a table of text, which has a dialect
-  bool rows_at_places = false;  ///< a row can be read without those in front of it
+  bool rows_at_places = false;  ///< a row can be read without those before it
   bool from_pipes = false;      ///< can be read from standard input and named pipes
 };
 

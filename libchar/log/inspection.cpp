@@ -7,6 +7,7 @@
 #include "libchar/core/error.hpp"
 #include "libchar/core/parallel/parallel.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/between_channels.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -89,7 +90,7 @@ std::string summary_line(const LogInfo& info) {
     return fmt::format("{}: {}, choose one", printable(info.file), plural(info.topics.size(), "topic"));
   std::string line = fmt::format("{}: {}, ", printable(info.file), plural(info.channels.size(), "channel"));
   if (time.rate_hz > 0) {
-    line += brief_text(time.rate_hz, 6) + " Hz";
+    line += detail::frequency_text(time.rate_hz, 6);
     line += time.from_stamps ? fmt::format(" (jitter {})", duration_text(time.jitter_s, 2)) : " (given)";
     line += ", " + duration_text(static_cast<double>(info.samples) / time.rate_hz);
   } else {

@@ -98,7 +98,7 @@ struct ChannelRange {
 };
 
 /// Rows first … end-1 of a log without stamps with rows at fixed places (.npy, raw binary),
-/// a sample each; nothing in front of them is read. Of channels out of the range the sink gets no
+/// a sample each; nothing before them is read. Of channels out of the range the sink gets no
 /// samples of the log but any numbers; what has to be said of the log, and not of a channel, is
 /// said with the first. `from_s` and `to_s` do not count, no digest is taken, and whether a channel
 /// has any value is not asked. Throws Error(usage) where rows have no fixed places or stamps.

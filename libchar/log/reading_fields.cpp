@@ -74,7 +74,7 @@ Fields<ReadOptions> time_fields() {
       field<&ReadOptions::time_column>("time_column", {.meaning = "auto, none, a name or c0", .otherwise = "auto"}),
       field<&ReadOptions::time_unit>("time_unit",
                                      {.words = kTimeUnits, .meaning = "of the stamps", .otherwise = "auto"}),
-      field<&ReadOptions::skip_rows>("skip_rows", {.meaning = "lines in front of the header (CSV)", .otherwise = "0"}),
+      field<&ReadOptions::skip_rows>("skip_rows", {.meaning = "lines before the header (CSV)", .otherwise = "0"}),
       field<&ReadOptions::format>("format", {.words = format_choices(), .meaning = "of the file", .otherwise = "auto"}),
       field<&ReadOptions::unsaid, &ReadOptions::Unsaid::preset>(
           "preset", {.meaning = "which instrument wrote a .imu file, as LN200", .otherwise = "none"}),

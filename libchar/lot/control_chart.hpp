@@ -82,7 +82,7 @@ ControlChart control_chart(std::span<const double> values);
 
 struct Capability {
   double most = 0;   ///< the limit, in the unit of the values
-  std::string text;  ///< as its file says it
+  std::string text;  ///< as in its file
   std::size_t pass = 0, fail = 0,
               not_decided = 0;  ///< devices; each by the interval of its own value
   /// (limit - mean) / (3 spread) in logarithms, by the devices' own mean and spread; infinite: no spread is seen

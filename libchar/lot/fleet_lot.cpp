@@ -327,7 +327,7 @@ std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   out += without_result(lot) + "." + outlying_sentence(lot, fleet);
   const std::size_t held = lot.failing + lot.open + lot.keeping;
   if (held > 0)
-    out += fmt::format(" Of {} held against limits, {} {}, {} not decided, {} all of them.", plural(held, "device"),
+    out += fmt::format(" Of {} compared with limits, {} {}, {} not decided, {} all of them.", plural(held, "device"),
                        lot.failing, lot.failing == 1 ? "fails one" : "fail one or more", lot.open,
                        lot.keeping == 1 ? "1 keeps" : fmt::format("{} keep", lot.keeping));
   return out + batch_sentence(lot) + chart_sentence(lot);

@@ -154,7 +154,7 @@ struct FleetOutlier {
   double value = 0;           ///< of these the geometric mean
   double ratio = 1;           ///< to the mean of the others, of what is compared as logarithm
   double deviation = 0;       ///< from the others, in standard deviations of that difference
-  double p = 1;               ///< of so large a deviation of any device
+  double p = 1;               ///< of such a large deviation of any device
   std::string sentence;
 };
 
@@ -203,7 +203,7 @@ struct FleetLot {
   std::vector<std::string> types, batches;         ///< in natural order
   std::vector<std::size_t> batch_of;               ///< of each record, that of its device
   std::vector<QuantityLot> quantities;             ///< kinds first, channel by channel then
-  std::vector<WorstDevice> worst;                  ///< the worst first, at most as many as asked for
+  std::vector<WorstDevice> worst;                  ///< the worst first, at most as many as requested
   std::size_t outlying = 0;                        ///< devices that are outliers
   std::size_t failing = 0, open = 0, keeping = 0;  ///< devices, by all limits that hold for them
   std::vector<bool> stands_out, fails;             ///< one per record, that of its device

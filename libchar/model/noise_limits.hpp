@@ -40,7 +40,7 @@ struct ChannelLimit {
   std::size_t channel = 0;  ///< index
   Term term = Term::white;
   double most = 0;   ///< in the term's own unit (core/units.hpp), two-sided
-  std::string text;  ///< as the file says it: "2 deg/√h"
+  std::string text;  ///< as in the file: "2 deg/√h"
   int line = 0;      ///< of the file
 };
 

@@ -103,8 +103,8 @@ struct SensorModel {
   };
   std::string channel;
   std::string unit;
-  std::string kind;  ///< "gyroscope", "accelerometer"…; empty: `kind_of` says it from the unit
-  std::string axis;  ///< "x", "y", "z"; empty: `axis_of` says it from the channel's name
+  std::string kind;  ///< "gyroscope", "accelerometer"…; empty: `kind_of` takes it from the unit
+  std::string axis;  ///< "x", "y", "z"; empty: `axis_of` takes it from the channel's name
   double rate_hz = 0;
 
   ScaleFactor scale_factor;

@@ -16,6 +16,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
@@ -188,7 +189,7 @@ std::vector<std::string> unlike(const ReplayReport& a, const ReplayReport& b) {
   compare_sensors(a, b, found);
   compare_references(a, b, found);
   if (!same_number(a.rate_hz, b.rate_hz))
-    found.add("rate", brief_text(a.rate_hz, 7) + " Hz", brief_text(b.rate_hz, 7) + " Hz");
+    found.add("rate", detail::frequency_text(a.rate_hz, 7), detail::frequency_text(b.rate_hz, 7));
   if (!same_window(a.evaluation, b.evaluation))
     found.add("evaluation", words(a.evaluation), words(b.evaluation));
   else if (a.instants != b.instants)

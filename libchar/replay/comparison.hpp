@@ -65,7 +65,7 @@ void refuse_unlike(const Comparison& comparison);
 
 // Checks on a comparison, such as a build server asks for: "rmse+5%", "minque:ns_per_sample+20%".
 
-/// Metrics: rmse, regret (by so many points, as it is a share itself), ns_per_sample, peak_bytes;
+/// Metrics: rmse, regret (in points, as it is a share itself), ns_per_sample, peak_bytes;
 /// labels are of algorithms.
 using ComparisonCheck = GrowthCheck;
 

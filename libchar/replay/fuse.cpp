@@ -10,6 +10,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/text/text.hpp"
@@ -272,13 +273,14 @@ void Fusing::check_rate() {
             "the log's rate is {} times that of the log where this was learnt: the noise of a sample, which {} weighs "
             "against the drifts, is not known there",
             brief_text(ratio, 4), algorithm_.label)
-        .got("{} Hz", brief_text(instants_->info().rate_hz, 6))
+        .got(detail::frequency_text(instants_->info().rate_hz, 6))
         .hint("learn on a log of this rate, or choose another algorithm");
   result_.warnings.add(
       "another_rate",
       "the log's rate is not that of the log where this was learnt: delays and times are kept, what counts samples "
       "(memories, noise of a sample) is not",
-      fmt::format("{} Hz, learnt at {} Hz", brief_text(instants_->info().rate_hz, 6), brief_text(learnt_.rate_hz, 6)));
+      fmt::format("{}, learnt at {}", detail::frequency_text(instants_->info().rate_hz, 6),
+                  detail::frequency_text(learnt_.rate_hz, 6)));
 }
 
 // The original may be one that the algorithm does without.
@@ -532,7 +534,7 @@ void Fusing::tell() {
   result_.faults = found_faults(*log, sensor_of_, 0, instants_->info().rate_hz);
   if (log->dropped() > 0)
     result_.warnings.add("faults_not_kept",
-                         "more faults than are kept: flags of sensors behind the last one are not complete", "",
+                         "more faults than are kept: flags of sensors after the last one are incomplete", "",
                          log->dropped());
 }
 

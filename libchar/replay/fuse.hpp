@@ -21,7 +21,7 @@ struct FuseOptions {
   std::string algorithm;  ///< label; empty: the recommended one
   /// {sensor of the file, channel of the log}; others are found under the channel that the file names.
   std::vector<std::pair<std::string, std::string>> map;
-  /// So long no sensor fails at the start of this log; none: not known, but of the log that was learnt from.
+  /// Time at the start of this log in which no sensor fails; none: not known, but of the log that was learnt from.
   std::optional<double> fault_free_s;
   std::size_t block = 0;  ///< instants at once; 0: 4096. Results do not depend on it
 };

@@ -198,9 +198,10 @@ const Fields<LearntFusion> kFusionHead = {
 
 // How samples become instants.
 const Fields<LearntFusion> kFusionInstants = {
-    field<&LearntFusion::average_s>(
-        "average_s",
-        {.unit = "s", .range = kPositive, .meaning = "an instant is the mean over so long", .otherwise = "one sample"}),
+    field<&LearntFusion::average_s>("average_s", {.unit = "s",
+                                                  .range = kPositive,
+                                                  .meaning = "an instant is the mean over this time",
+                                                  .otherwise = "one sample"}),
     field<&LearntFusion::resample_hz>("resample_hz",
                                       {.unit = "Hz",
                                        .range = kPositive,
@@ -220,7 +221,7 @@ const Fields<LearntFusion> kFusionInstants = {
                                             {.meaning = "with a reference, before the run", .otherwise = "0"}),
     field<&LearntFusion::fault_free_s>("fault_free_s", {.unit = "s",
                                                         .range = kNotNegative,
-                                                        .meaning = "so long no sensor failed at the start",
+                                                        .meaning = "time at the start in which no sensor failed",
                                                         .otherwise = "0: not known"}),
 };
 

@@ -83,11 +83,11 @@ struct LearntFusion {
   std::string name;          ///< of the scene
   std::vector<LearntFrom> learnt_from;
   double rate_hz = 0;                 ///< of the instants that were fused
-  std::optional<double> average_s;    ///< an instant is the mean over so long
+  std::optional<double> average_s;    ///< an instant is the mean over this time
   std::optional<double> resample_hz;  ///< samples are interpolated to this rate by their stamps
   ScenePreparation preparation;       ///< what every sensor goes through first
   std::uint64_t learning_instants = 0;
-  double fault_free_s = 0;  ///< so long no sensor failed at the start of the run
+  double fault_free_s = 0;  ///< time at the start in which no sensor failed of the run
   std::vector<LearntInput> inputs;
   std::vector<LearntSensor> sensors;
   LearntTilt tilt;                ///< gyroscope empty: no tilt

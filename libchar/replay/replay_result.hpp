@@ -196,7 +196,7 @@ struct ReplayFacts {
   double rate_hz = 0;             ///< of the instants that are fused
   std::uint64_t instants = 0;     ///< of the run
   double start_s = 0;             ///< of the run, seconds from the recording's first sample
-  double scored_from_s = 0;       ///< behind the warm-up
+  double scored_from_s = 0;       ///< after the warm-up
   std::optional<TimeWindow> learning;
   TimeWindow evaluation;
   double window_s = 0;  ///< of the window RMS

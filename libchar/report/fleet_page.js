@@ -4,6 +4,7 @@ reportPage.start({}, () => 320);
 (function () {
   "use strict";
   const data = reportPage.report, rows = document.querySelector("#devices tbody"), PAGE = 100;
+  if (rows === null) return;
   const search = document.getElementById("device-search"), chosen = document.getElementById("device-state"), place = document.getElementById("device-place");
   const STATES = [[4, "not characterized"], [8, "without a result yet"], [2, "fails a limit"], [1, "outlier"]];
   const recording = (i) => (data.recording === null ? "" : data.recording[i]);

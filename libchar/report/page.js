@@ -308,7 +308,9 @@
     if (!one) sets.push(Object.assign({ data: low, fill: false, pointHitRadius: 0, order: 3 }, plain));
     sets.push({ label: "", data: runningMean(low, high), borderColor: c.paper, borderWidth: 4, pointRadius: 0, pointHitRadius: 0, fill: false, spanGaps: false, order: 2 });
     sets.push(Object.assign({}, sets[sets.length - 1], { borderColor: c.model, borderWidth: 1.8, order: 1 }));
-    const straight = (title, min, max, most, step) => ({ type: "linear", min, max, title: { display: Boolean(title), text: title, color: c.ink, font: { size: 12 } }, ticks: { color: c.ink, maxRotation: 0, maxTicksLimit: most, stepSize: step, includeBounds: false, callback: (v) => numberText(v, 5) }, grid: { color: c.fine, borderColor: c.border } });
+    // Given ends that lie a whole number of steps apart, more or less, Chart.js divides the range instead: 146.7, 43.75, -59.2.
+    const multiples = (axis, step) => { axis.ticks = Array.from({ length: Math.floor(axis.max / step + 1e-9) - Math.ceil(axis.min / step - 1e-9) + 1 }, (_, k) => ({ value: (Math.ceil(axis.min / step - 1e-9) + k) * step })); };
+    const straight = (title, min, max, most, step) => ({ type: "linear", min, max, afterBuildTicks: (axis) => step && multiples(axis, step), title: { display: Boolean(title), text: title, color: c.ink, font: { size: 12 } }, ticks: { color: c.ink, maxRotation: 0, maxTicksLimit: most, stepSize: step, includeBounds: false, callback: (v) => numberText(v, 5) }, grid: { color: c.fine, borderColor: c.border } });
     const marks = t.marks.concat(missingMarks(t, seconds)).map((m) => ({
       from: m.from_s / scale, to: m.to_s / scale, label: m.label, ink: c.model, shade: m.to_s === m.from_s || m.kind === "ramp" ? "" : m.kind === "missing" ? c.missing : c.moved,
     })), end = length / scale, beside = timeMarks(marks, 0, end);

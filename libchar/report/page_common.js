@@ -69,7 +69,8 @@ const reportPage = (function () {
   }
   function logLabel(value, min, max) {
     const decades = Math.log10(max / min);
-    if (isPowerOfTen(value)) return "10" + superscript(Math.round(Math.log10(value)));
+    const plain = decades < 1.6 && value > 9e-4 && value < 2e4;  // next to 0.5 and 2 stands 1, not 10⁰
+    if (isPowerOfTen(value)) return plain ? numberText(value, 2) : "10" + superscript(Math.round(Math.log10(value)));
     const lead = Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
     return decades < 1.6 && (lead === 2 || lead === 5) ? numberText(value, 2) : "";
   }

@@ -323,6 +323,9 @@
     const all = report.sensors.map((s, i) => String(i)), busy = new Set(bars.map((p) => p.y));
     return all.length <= MOST_ROWS ? all : all.filter((i) => busy.has(i)).slice(0, MOST_ROWS);
   }
+  // libchar/fusion/fault_log.hpp: who leads, and why the lead changed.
+  const LEADS = { network: "network", retrained: "network, retrained", past: "network of the past" };
+  const ENDED = { right: "another leads", missing: "a sensor is missing", outside: "input is new to it", apart: "far from the baseline", inconsistent: "sensors disagree", no_gain: "no better than the baseline" };
   function faultsChart(index, axis, u, figure) {
     const end = whole[1], names = report.sensors.map((s) => s.name), c = colours();
     const bar = (f) => ({ x: [Math.max(f.from_s / TIME, whole[0]), Math.min(f.to_s === null ? end : f.to_s / TIME, end)], y: String(names.indexOf(f.sensor)), f });
@@ -330,7 +333,7 @@
     const known = report.faults.map((f, i) => Object.assign(bar(f), { answer: answerTo(i) })).filter((p) => p.x[0] < p.x[1]);
     known.forEach((p) => { p.note = [valued(p.f), p.answer].filter(Boolean).join(", "); });
     const found = (tracked ? tracked.faults : []).map((f) => Object.assign(bar(f), { note: f.kind.replace("_", " ") }));
-    const led = (tracked && tracked.leads ? tracked.leads : []).map((f) => Object.assign(bar(f), { y: String(names.length), note: f.lead + (f.ended ? ", until: " + f.ended.replace("_", " ") : "") }));
+    const led = (tracked && tracked.leads ? tracked.leads : []).map((f) => Object.assign(bar(f), { y: String(names.length), note: (LEADS[f.lead] || f.lead) + (f.ended ? ", until " + (ENDED[f.ended] || f.ended) : "") }));
     const rows = faultRows(known.concat(found)).concat(led.length ? [String(names.length)] : []), drawn = (bars) => bars.filter((p) => rows.includes(p.y));
     figure.querySelector(".canvas").style.height = 90 + Math.max(120, rows.length * 44) + "px";
     const ink = (p) => sensorStyle(Number(p.y)).colour, plain = { grouped: false, minBarLength: 3, borderSkipped: false };

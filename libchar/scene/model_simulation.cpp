@@ -8,6 +8,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/model/model_file.hpp"
 #include "libchar/scene/simulated_scene.hpp"
@@ -43,7 +44,8 @@ ArraySimulation simulation_of_models(const std::vector<std::string>& model_files
       if (simulation.rate_hz == 0) simulation.rate_hz = model.rate_hz;
       if (!options.rate_hz && model.rate_hz != simulation.rate_hz)
         throw usage_error("E0721", path)
-            .says("is a model at {} Hz and the one before at {} Hz", model.rate_hz, simulation.rate_hz)
+            .says("is a model at {} and the one before at {}", detail::frequency_text(model.rate_hz, 6),
+                  detail::frequency_text(simulation.rate_hz, 6))
             .hint("give one `rate_hz` for all");
       add_devices(simulation, model, name_of_sensor(model, path), options.devices);
     }
@@ -64,8 +66,8 @@ void read_recorded_signal(SignalSpec& signal, const std::string& place, const Ar
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
     throw refusal()
-        .says("the recording has {} Hz, and the simulation runs at {} Hz", brief_text(rate, 6),
-              brief_text(simulation.rate_hz, 6))
+        .says("the recording has {}, and the simulation runs at {}", detail::frequency_text(rate, 6),
+              detail::frequency_text(simulation.rate_hz, 6))
         .hint("`rate_hz` " + shortest(rounded(rate, 6)));
   signal.samples = std::move(log.samples[0]);
   if (signal.samples.empty()) throw refusal().says("the recording holds no sample");

@@ -46,9 +46,9 @@ struct SceneReference {
   ReadOptions reading;                   ///< of that log
   double lag_s = 0;                      ///< the sensors lag the reference by this
   bool estimate_lag = false;
-  double offset = 0;             ///< it reads so much more than the sensors; in its own unit
+  double offset = 0;             ///< offset relative to the sensors; in its own unit
   bool estimate_offset = false;  ///< found in the learning window, else in the evaluation
-  /// A mean over the interval behind the stamp, in front of it or around it; the value at the stamp.
+  /// A mean over the interval after the stamp, before it or around it; the value at the stamp.
   static constexpr std::string_view kReadings[] = {"mean_after", "mean_before", "mean_centred", "instant"};
   /// What the values of one that is slower than the sensors stand for: of kReadings, or estimate.
   std::string samples = "estimate";
@@ -114,7 +114,7 @@ struct Scene {
   std::optional<SceneTilt> tilt;  ///< then the reference is the tilt, and rows h say nothing
   std::optional<TimeWindow> learning, evaluation;
   std::optional<TimeWindow> rest;      ///< the true inputs are zero there
-  std::optional<double> fault_free_s;  ///< so long no sensor fails, from the start of the evaluation
+  std::optional<double> fault_free_s;  ///< time from the start of the evaluation in which no sensor fails
   /// From the start of the evaluation: run, but not scored.
   std::optional<double> warm_up_s;
   std::vector<SensorFault> faults;

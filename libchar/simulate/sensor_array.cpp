@@ -13,6 +13,8 @@
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/simulate/detail/sensor_chain.hpp"
 
 namespace libchar {
@@ -28,7 +30,7 @@ void check_hold(const char* key, const std::optional<double>& hold_s, const std:
   throw input_error("E0554")
       .says("sensor {}: {} of {} s renews the noise more than {} times between two samples", sensor, key, *hold_s,
             kMostRenewals)
-      .hint("leave {} out: noise is then made anew for each sample", key);
+      .hint("leave {} out: noise is then new for each sample", key);
 }
 
 void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
@@ -38,8 +40,8 @@ void check_sensor(const ArraySimulation& s, const SimulatedSensor& sensor) {
   const double rate = s.rate_hz * static_cast<double>(s.oversampling);
   if (sensor.model.bandwidth_hz && *sensor.model.bandwidth_hz > 10 * rate)
     throw input_error("E0554")
-        .says("sensor {}: a bandwidth of {} Hz is far above the rate of {} Hz", sensor.name, *sensor.model.bandwidth_hz,
-              rate)
+        .says("sensor {}: a bandwidth of {} is far above the rate of {}", sensor.name,
+              detail::frequency_text(*sensor.model.bandwidth_hz, 6), rate)
         .hint("leave bandwidth_hz out: nothing of it would be seen");
   check_hold("white_hold_s", sensor.model.white_hold_s, sensor.name, rate);
   check_hold("flicker_hold_s", sensor.model.flicker_hold_s, sensor.name, rate);

@@ -14,6 +14,7 @@
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/spectrum/detail/half_pass.hpp"
 #include "libchar/spectrum/detail/half_segments.hpp"
 #include "libchar/spectrum/detail/segments.hpp"
@@ -220,7 +221,7 @@ std::uint64_t segment_samples(double seconds, double rate_hz) {
   const bool few = samples < kShortestSegment;
   if (!few && samples <= kLongestSegment) return static_cast<std::uint64_t>(samples);
   throw usage_error("E0201", "`segment`")
-      .says("at {} Hz this is {} samples, and a segment {} {}", brief_text(rate_hz, 6), brief_text(samples, 6),
+      .says("at {} this is {} samples, and a segment {} {}", detail::frequency_text(rate_hz, 6), brief_text(samples, 6),
             few ? "needs at least" : "has at most", few ? kShortestSegment : kLongestSegment)
       .got(got);
 }

@@ -108,7 +108,7 @@ inline constexpr auto enum_table<SegmentAverage> = enum_words<SegmentAverage, "m
 double expected_median(std::uint64_t count);
 
 /// welch(), each bin the median of the segments' powers over its expected value. Degrees of freedom
-/// are the mean's, less what a median of so many is worse (0.48 of them in the end). Throws as
+/// are the mean's, less what a median of this many is worse (0.48 of them in the end). Throws as
 /// welch; Error(usage) where the powers of all segments are more than 2 GiB.
 Spectrum median_welch(std::span<const double> record, double rate_hz, const WelchOptions& options = {});
 

@@ -31,7 +31,7 @@ class WelchParts {
   /// `options.segment` > 0. `workspace`: shared with others, and must live as long.
   explicit WelchParts(const WelchOptions& options, WelchWorkspace* workspace = nullptr);
 
-  /// "" or why records cannot be divided into parts of so many samples, as a sentence without its end.
+  /// "" or why records cannot be divided into parts of this many samples, as a sentence without its end.
   static std::string why_not(const WelchOptions& options, std::uint64_t part);
 
   /// Length of the blocks that are shared with another stage; 0: none are.

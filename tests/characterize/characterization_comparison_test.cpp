@@ -123,6 +123,32 @@ TEST_CASE("compared terms: equal sensors are called different in at most 1 % of 
   CHECK(different >= 4);   // the share is used
 }
 
+TEST_CASE("limits of a data sheet find a channel by the name of any side, or by what it measures") {
+  const auto limit_for = [](const std::string& channels, std::vector<std::string> chosen = {}) {
+    std::vector<ReportedCharacterization> sides = {summary(known(2, 0.01), known(1, 0.01)),
+                                                   summary(known(1, 0.01), known(1, 0.01))};
+    for (std::size_t s = 0; s < 2; ++s) {
+      sides[s].file = sides[s].name = s == 0 ? "A" : "B";
+      sides[s].channels.push_back(sides[s].channels[0]);
+      sides[s].channels[0].name = s == 0 ? "wx" : "imu.angular_velocity.x";
+      sides[s].channels[1].name = s == 0 ? "wy" : "imu.angular_velocity.y";
+    }
+    CharacterizationCompareOptions options;
+    options.limits = parse_limits("format: noise-limits\nversion: 1\nlimits:\n  - channels: [" + channels +
+                                      "]\n    white_noise: {value: 180, unit: deg/√h}\n",
+                                  "sheet.yaml");
+    options.channels = std::move(chosen);
+    const auto found = compare_characterizations(std::move(sides), options);
+    return found.groups[0].terms[0].limit.value_or(0);
+  };
+  for (const char* name : {"gyro_x", "wx", "imu.angular_velocity.x", "gyro_x, gyro_y", "wx, wy"}) {
+    CAPTURE(name);
+    CHECK(limit_for(name) == Approx(3));
+    CHECK(limit_for(name, {"gyro_x"}) == Approx(3));
+  }
+  CHECK_THROWS_WITH(limit_for("gyro_q"), Contains("no such channel"));
+}
+
 TEST_CASE("compared terms: limits are compared as limits") {
   using enum TermDifference;
   CHECK(flicker_difference(known(2, 0.05), limit(1)) == smaller);

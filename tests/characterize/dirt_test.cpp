@@ -66,7 +66,7 @@ TEST_CASE("heavy tails of a record of leaves are left as they are") {
   const ChannelResult a = characterize(recording, with).channels[0], b = characterize(recording, without).channels[0];
   CHECK(spikes_of(a) == nullptr);
   REQUIRE(!a.fit->findings.empty());
-  CHECK(a.fit->findings[0].sentence.find("not taken for spikes") != std::string::npos);
+  CHECK(a.fit->findings[0].sentence.find("not treated as spikes") != std::string::npos);
   CHECK((*a.fit)[Term::white].value == (*b.fit)[Term::white].value);
 }
 

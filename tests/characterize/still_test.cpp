@@ -70,7 +70,7 @@ TEST_CASE("still: the longest stretch in which no channel moves, and a stretch a
   options.still = {false, Interval{300, 500}};
   const Characterization asked = characterize(recording, options);
   CHECK(asked.log.samples == 10'000);
-  CHECK(asked.still->sentence == "Only the stretch from 300 to 500 s was analysed, as asked.");
+  CHECK(asked.still->sentence == "Only the stretch from 300 to 500 s was analysed, as requested.");
 }
 
 TEST_CASE("still: a louder stretch is left out, and nothing contradicts the sentence") {

@@ -250,7 +250,7 @@ TEST_CASE("states of a channel that are missing or double are refused by name") 
     return refusal_of_states(some);
   };
   REQUIRE_THAT(without(1),
-               Catch::Contains("state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 in front of it"));
+               Catch::Contains("state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 before it"));
   REQUIRE_THAT(without(5),
                Catch::Contains("state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 behind it"));
   const std::vector<NamedState> no_third = {all[0], all[1], all[3], all[4]};

@@ -179,7 +179,7 @@ TEST_CASE("summary: where the band is cut the sentence says up to where the term
   ChannelResult c = clean();
   c.fit->band.whole = false;
   c.fit->band.top_hz = 12.5;
-  CHECK_THAT(sentence_of(c), Contains(" They hold below 12.5 Hz."));
+  CHECK_THAT(sentence_of(c), Contains(" Valid below 12.5 Hz."));
   CHECK_THAT(sentence_of(clean()), !Contains("hold below"));
 }
 
@@ -201,5 +201,5 @@ TEST_CASE("verdict: several channels with one reason say it, with unlike ones se
     judged[c] = {Rating::bad, {finding("not_gravity", "The mean is 1.", "the mean is 1")}};
   CHECK_THAT(verdict_of(result, judged), Contains(": the mean is 1."));
   judged[1].findings[0].phrase = "the mean is 2";
-  CHECK_THAT(verdict_of(result, judged), Contains("see what is said of them"));
+  CHECK_THAT(verdict_of(result, judged), Contains("see the notes on them"));
 }

@@ -119,7 +119,7 @@ TEST_CASE("fit of a stretch, beside a temperature, neither goes with a curve") {
   const Json to_the_end = parse_json(open.out, "stdout");
   CHECK(to_the_end["stretch_s"][0] == 20);
   CHECK(to_the_end["stretch_s"][1].get<double>() == 20 + to_the_end["channels"][0]["samples"].get<double>() / 100);
-  CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as asked.") != std::string::npos);
+  CHECK(still.err.find("Only the stretch from 20 to 60 s was analysed, as requested.") != std::string::npos);
   const auto warm = test::run({"fit", path, "--rate", "100", "--channel", "gx", "--temperature", "temp", "--json"});
   REQUIRE(warm.code == 0);
   const Json channels = parse_json(warm.out, "stdout")["channels"];

@@ -55,7 +55,7 @@ TEST_CASE("fleet compare: a lot is compared with another one only") {
   fleets.made("c", {"d2.csv", "d0.csv"});
   const test::Ran ran = fleets.run({"compare", "b", "a"});
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.out, Contains("2 devices of b and 2 devices of a") && Contains("decided by all of them"));
+  CHECK_THAT(ran.out, Contains("2 devices of b and 2 devices of a") && Contains("decided over all of them"));
   CHECK_THAT(fleets.refused({"compare", "a", "a"}).err, Contains("E0795"));
   CHECK_THAT(fleets.refused({"compare", "a", "./a/"}).err, Contains("E0795"));
   CHECK_THAT(fleets.refused({"compare", "a", "c"}).err, Contains("E0783") && Contains("d0 in a"));

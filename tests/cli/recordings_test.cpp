@@ -188,7 +188,7 @@ TEST_CASE("characterize --lot: limits hold for each log and for the lot") {
   std::ofstream(logs.folder / "sheet.yaml") << limits_text("0.5");
   const auto ran = logs.characterize(names, {"--lot", "--limits", logs.path("sheet.yaml")});
   CHECK(ran.code == 6);
-  CHECK_THAT(ran.out, Contains("Of 2 devices held against limits, 1 fails one, 0 not decided, 1 keeps all"));
+  CHECK_THAT(ran.out, Contains("Of 2 devices compared with limits, 1 fails one, 0 not decided, 1 keeps all"));
   CHECK(logs.json("out/lot.json").at("limits").at("failing") == 1);
   for (const char* report : {"out", "out/lot.json"})
     CHECK_THAT(test::run({"compare", logs.path(report), logs.path("out/a")}).err,

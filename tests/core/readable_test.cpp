@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "libchar/core/text/shown.hpp"
+
 using namespace libchar;
 
 TEST_CASE("numbers with few digits") {
@@ -50,6 +52,31 @@ TEST_CASE("digits follow the uncertainty: two digits of it") {
   CHECK(digits_for(0.3) == 2);
   CHECK(digits_for(2) == 2);
   CHECK(digits_for(1e-9) == 6);
+}
+
+TEST_CASE("frequencies have the unit that fits") {
+  CHECK(detail::frequency_text(0) == "0 Hz");
+  CHECK(detail::frequency_text(25) == "25 Hz");
+  CHECK(detail::frequency_text(12500, 6) == "12500 Hz");
+  CHECK(detail::frequency_text(0.5) == "0.5 Hz");
+  CHECK(detail::frequency_text(1.0 / 60, 6) == "16.6667 mHz");
+  CHECK(detail::frequency_text(3.26e-5) == "32.6 µHz");
+  CHECK(detail::frequency_text(2e-9) == "2 nHz");
+  CHECK(detail::frequency_text(1.25e6) == "1250 kHz");
+  CHECK(detail::frequency_text(10e6) == "10 MHz");
+  CHECK(detail::frequency_text(10e9) == "10 GHz");
+  CHECK(detail::frequency_text(std::nan("")) == "–");
+}
+
+TEST_CASE("a value and its uncertainty have the same decimals") {
+  CHECK(detail::plus_minus_text(-18, 9.5) == "-18.0 ± 9.5");
+  CHECK(detail::plus_minus_text(0.0031, 0.00062) == "0.00310 ± 0.00062");
+  CHECK(detail::plus_minus_text(52.8, 1.1) == "52.8 ± 1.1");
+  CHECK(detail::plus_minus_text(1234567, 1200) == "(1.2346 ± 0.0012)×10⁶");
+  CHECK(detail::plus_minus_text(2.5e-9, 3e-10) == "(2.50 ± 0.30)×10⁻⁹");
+  CHECK(detail::plus_minus_text(0, 0.5) == "0.00 ± 0.50");
+  CHECK(detail::plus_minus_text(1, 4000) == "1 ± 4000");
+  CHECK(detail::plus_minus_text(2, 0) == "2.000");
 }
 
 TEST_CASE("durations in the unit one would say") {

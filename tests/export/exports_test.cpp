@@ -261,6 +261,9 @@ TEST_CASE("what differs from axis to axis is said axis by axis") {
 TEST_CASE("an unknown target is refused with the nearest") {
   CHECK_THROWS_WITH(find_export_target("kalbir"), Contains("did you mean kalibr?"));
   CHECK_THROWS_WITH(find_export_target("unity"), Contains("targets are kalibr"));
+  for (const char* name : {"robot_localization", "robot-localization"})
+    CHECK_THROWS_WITH(find_export_target(name), Contains("takes what ros takes"));
+  CHECK_THROWS_WITH(find_export_target("gazebo"), Contains("takes what sdf takes"));
 }
 
 TEST_CASE("axes: the largest by default, with the spread in a comment, rms and one axis on request") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "libchar/core/error.hpp"
 #include "libchar/figure/detail/drawing.hpp"
@@ -216,6 +217,27 @@ TEST_CASE("names that try to become part of the drawing stay names") {
         draw_figure(chart_of(one, curve.is_allan ? "allan" : "psd"), FigureFormat::svg, {}, warnings);
     CHECK_THAT(svg, !Contains("<script") && !Contains("<img") && !Contains("\x01"));
   }
+}
+
+TEST_CASE("marks of a trace that look the same share one name in the legend") {
+  SourceTrace trace;
+  trace.channel = "x";
+  trace.unit = "V";
+  trace.low = {-1, -1, -1, -1};
+  trace.high = {1, 1, 1, 1};
+  FigureSource source = test::figure_source_of({});
+  source.traces.push_back(std::move(trace));
+  const auto names = [&] {
+    std::set<std::string> out;
+    FigureOptions options;
+    options.kind = "trace";
+    for (const FigureStretch& one : make_figure({&source, 1}, options).stretches) out.insert(one.name);
+    return out;
+  };
+  source.traces[0].marks = {{"step 3.1 V", 1, 1}};
+  CHECK(names() == std::set<std::string>{"step 3.1 V"});
+  source.traces[0].marks = {{"step 3.1 V", 1, 1}, {"warm-up -1 V, τ 27 s", 0, 1}, {"step -2 V", 2, 2}};
+  CHECK(names() == std::set<std::string>{"2 × step, warm-up"});
 }
 
 TEST_CASE("docs/plots.md has a row for each figure and for nothing else") {

@@ -251,7 +251,7 @@ TEST_CASE("heavy tails are said to be tails, and nothing is left out") {
   options.remedies = false;
   const NoiseFit as_is = fit_record(y, 100, nullptr, options);
   REQUIRE(!fit.findings.empty());
-  CHECK(fit.findings[0].sentence.find("like the tails of heavy-tailed noise") != std::string::npos);
+  CHECK(fit.findings[0].sentence.find("as in heavy-tailed noise") != std::string::npos);
   CHECK(fit[Term::white].value == as_is[Term::white].value);
 }
 

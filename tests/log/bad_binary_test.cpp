@@ -93,7 +93,7 @@ TEST_CASE("messages about bad binary files name place, numbers and remedy") {
   says("npy", "npy/013_shape_negative.npy", "negative");
   says("npy", "npy/034_datetime.npy", "calendar times");
   says("npy", "npy/039_dup_key.npy", "a key is repeated in the header; got \"shape\"");
-  says("raw", "raw/007_offset_past_end.f64", "offset of 1000000 bytes lies behind the end");
+  says("raw", "raw/007_offset_past_end.f64", "offset of 1000000 bytes lies after the end");
   says("raw", "raw/016_dtype_case.f64", "did you mean f64?");
   says("raw", "raw/019_unknown_key.f64", "did you mean channels?");
   says("raw", "raw/020_dup_key.f64", "repeated");

@@ -78,8 +78,7 @@ TEST_CASE("what is wrong with the first lines is told with line, column and numb
   // A name of two lines: the columns behind it count from the second.
   const Recording two_lines = read_text("t,\"a\nb\",x,x\n0,1,2,3\n1,2,3,4\n2,3,4,6\n");
   CHECK(two_lines.info.warnings.find("doubled_name")->where.rows == std::vector<std::string>{"line 2, column 6"});
-  CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n").info.dialect[1] ==
-        "2 lines in front of the table left out");
+  CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n").info.dialect[1] == "2 lines before the table left out");
   ReadOptions named;
   named.header = "yes";
   CHECK(read_text("made by hand\nin May\nt,x\n0,1\n1,2\n2,3\n", named).info.channels[0].name == "x");

@@ -167,7 +167,7 @@ std::vector<Export> robot_exports() {
                  2000,
                  1000000000,
                  {0, 5, 0},
-                 "4 lines in front of the table left out"});
+                 "4 lines before the table left out"});
   return out;
 }
 
@@ -330,28 +330,28 @@ std::vector<Export> imu_exports() {
                  50,
                  1000000000,
                  {0.01, 0, 0.98},
-                 "names in front of the values"});
+                 "names before the values"});
   out.push_back({"Arduino, key: value",
                  lines(12, [](int k) { return fmt::format("ax: 0.01, ay: {}, az: -0.98\n", k); }),
                  "ax[] ay[] az[]",
                  0,
                  kNoStart,
                  {0.01, 0, -0.98},
-                 "names in front of the values"});
+                 "names before the values"});
   out.push_back({"Arduino, key: value without commas",
                  lines(12, [](int k) { return fmt::format("ax: 0.01 ay: {} az: -0.98\n", k); }),
                  "ax[] ay[] az[]",
                  0,
                  kNoStart,
                  {0.01, 0, -0.98},
-                 "names in front of the values"});
+                 "names before the values"});
   out.push_back({"Arduino serial plotter",
                  lines(12, [](int k) { return fmt::format("gx:1.5\tgy:{}\tgz:-2\r\n", k); }),
                  "gx[] gy[] gz[]",
                  0,
                  kNoStart,
                  {1.5, 0, -2},
-                 "names in front of the values"});
+                 "names before the values"});
   out.push_back({"Arduino serial monitor with timestamps",
                  lines(12, [](int k) { return fmt::format("12:00:00.{:03d} -> 1.5,{},-2\n", 50 * k, k); }),
                  "c0[] c1[] c2[]",
@@ -537,7 +537,7 @@ std::vector<Export> bench_exports() {
                  100000,
                  -100000,
                  {0.02, 0},
-                 "in front of the table left out"});
+                 "before the table left out"});
   out.push_back({"Keysight InfiniiVision",
                  "x-axis,1,2\r\nsecond,Volt,Volt\r\n" +
                      lines(12, [](int k) { return fmt::format("{:.6E},0.02,{}\r\n", -5e-3 + 1e-3 * k, k); }),
@@ -563,7 +563,7 @@ std::vector<Export> bench_exports() {
                  500,
                  0,
                  {0.02, 0},
-                 "3 lines in front of the table left out"});
+                 "3 lines before the table left out"});
   out.push_back(
       {"Campbell CR1000, TOA5",
        "\"TOA5\",\"st\",\"CR1000\",\"123\",\"CR1000.Std.31\",\"CPU:a.CR1\",\"5\",\"T\"\r\n"
@@ -793,10 +793,10 @@ std::vector<Export> printed_rows() {
       "x[]", 20, 0, {1000.5}, "typesetting");
   add(
       "logging of Python", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 INFO:{}.5,-2\n", k, k); },
-      "INFO[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {0.5, -2}, "in front of the lines");
+      "INFO[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {0.5, -2}, "before the lines");
   add(
       "logging of Python, blanks", [](int k) { return fmt::format("2024-05-01 12:00:{:02d},250 -1.5 {}.5\n", k, k); },
-      "c0[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {-1.5, 0.5}, "in front of the lines");
+      "c0[] c1[]", 1, std::int64_t{1714564800250} * 1000000, {-1.5, 0.5}, "before the lines");
   add(
       "columns that pandas numbered",
       [](int k) { return (k == 0 ? "0,1,2\n" : "") + fmt::format("{:.2f},{}.5,-2.0\n", 0.05 * k, k); }, "1[] 2[]", 20,

@@ -405,7 +405,7 @@ TEST_CASE("devices are held against limits, and the lot's capability is that of 
   CHECK(lot.worst.size() == c.fail);
   CHECK_THAT(lot.worst[0].reasons[0], Contains("allowed 3e-3 deg/s (0.003000 deg/s)"));
   CHECK_FALSE(find(lot, "gyro_y", DeviceQuantity::bias_instability).capability);
-  CHECK_THAT(lot.verdict, Contains(fmt::format("Of 200 devices held against limits, {} fail", c.fail)) &&
+  CHECK_THAT(lot.verdict, Contains(fmt::format("Of 200 devices compared with limits, {} fail", c.fail)) &&
                               Contains(fmt::format("{} not decided, {} keep all of them.", c.not_decided, c.pass)));
 }
 

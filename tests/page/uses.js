@@ -314,7 +314,7 @@ async function aReport(one) {
 
 async function aCurve(one) {
   await one.drop(curve(one.folder));
-  await one.run("Curve of a data sheet", tab => tab.getByLabel("Length of the record behind it").fill("1h"));
+  await one.run("Curve of a data sheet", tab => tab.getByLabel("Length of its recording").fill("1h"));
   check(/0\.0?10|1\.0\d?e-2/.test(await one.text()), "the coefficients are shown");
   await one.has(".sensor.yaml");
 }

@@ -62,8 +62,8 @@ TEST_CASE("teaching: the first half teaches, and each term is taken only where i
   CHECK(late.learning->to_s == Approx(20));
   CHECK(late.evaluation.from_s == Approx(20));
   CHECK_THAT(fmt::format("{}", fmt::join(verdict_sentences(late, false), " ")),
-             Contains("The first half of the recording taught (0 s to 20 s)") &&
-                 Contains("taken out of the sensors in turn: delay") && Contains("not worth it: bias"));
+             Contains("The first half of the recording (0 s to 20 s) was used for learning") &&
+                 Contains("after correcting the sensors, in turn: delay") && Contains("without benefit: bias"));
   const Json json = replay_json(late)["alignment"]["trials"];
   CHECK(json[0]["term"] == "");
   CHECK(json[1]["term"] == "bias");

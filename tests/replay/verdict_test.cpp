@@ -190,8 +190,9 @@ TEST_CASE("verdict: what is known of the reading is said where the method is rec
     }
     bench.put("array.csv", log);
     const ReplayResult result = replay(bench.read(scene_of(2, "algorithms: [mean]\n")));
-    const bool said = test::verdict_of(result, false).find("Mend the samples first (channel with stamps of its own)") !=
-                      std::string::npos;
+    const bool said =
+        test::verdict_of(result, false).find("Repair the samples first (channel with stamps of its own)") !=
+        std::string::npos;
     CHECK(said == (rate_hz < 10));
   }
 }
@@ -396,7 +397,7 @@ TEST_CASE("verdict: of three sensors the method that withstands a failing one is
     REQUIRE(failing != nullptr);
     CHECK(failing->count == 1);
     CHECK_THAT(test::verdict_of(result, false),
-               StartsWith("Use minque: a sensor that fails") && Contains("s2: up to 2"));
+               StartsWith("Use minque: a failing or deviating sensor") && Contains("s2: up to 2"));
   }
 }
 
@@ -481,6 +482,6 @@ TEST_CASE("verdict: a record of a few instants tells no method from another") {
     REQUIRE(result.best);
     for (const AlgorithmResult& a : result.algorithms)
       if (a.ran && std::isfinite(a.rmse)) CHECK(a.as_good_as_best);
-    CHECK(test::verdict_of(result).find("long enough to tell") == std::string::npos);
+    CHECK(test::verdict_of(result).find("long enough to show it") == std::string::npos);
   }
 }

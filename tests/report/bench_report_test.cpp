@@ -53,7 +53,7 @@ TEST_CASE("bench: page, Markdown, text and document say the same, names escaped"
   const std::string page = bench_html(report);
   CHECK_THAT(page, Contains("&lt;b&gt;evil&lt;/b&gt;") && !Contains("<b>evil"));
   CHECK_THAT(page, Contains("<svg") && Contains("second"));
-  CHECK_THAT(page, Contains("first is most exact, 1.00 × the bound at 50.0 ns per sample"));
+  CHECK_THAT(page, Contains("first is the most accurate, 1.00 × the bound at 50.0 ns per sample"));
   CHECK_THAT(page, Contains("<a href=\"#part-1\">") && Contains("id=\"part-1\""));
   CHECK_THAT(bench_markdown(report), Contains("| first | 1.00 \\[0.900, 1.10\\] |"));
   CHECK_THAT(bench_text(report), Contains("first") && Contains("1.00 [0.900, 1.10]"));

@@ -372,6 +372,12 @@ def check_labels(browser, page, widths=(390, 800, 1400)):
             return scales.x.ticks.length < 2 || scales.y.ticks.length < 2;
           }).length""")
         expect(bare == 0, f"{page}: at {width} pixels {bare} traces have an axis without two numbers")
+        long = browser.run("""return Array.from(document.querySelectorAll('figure[data-kind=trace]')).flatMap((f) => {
+            const ticks = Chart.getChart(f.querySelector('canvas')).scales.y.ticks.map((t) => t.value);
+            const step = ticks[1] - ticks[0], digit = Number(step.toExponential(6).split('e')[0]);
+            return [1, 2, 5].includes(digit) && Math.abs(ticks[0] / step - Math.round(ticks[0] / step)) < 1e-6 ? [] : [ticks];
+          })""")
+        expect(not long, f"{page}: at {width} pixels a trace has uneven numbers at its axis: {long[:2]}")
     browser.protocol("Emulation.clearDeviceMetricsOverride")
     browser.console()
 

@@ -138,7 +138,7 @@ TEST_CASE("the report of a lot at several temperatures says where its coefficien
   CHECK_THAT(page,
              Contains("Slope of the turn-on bias over temperature: 12 devices with 48 recordings at -20 to 60 °C") &&
                  Contains("Coefficients of 12 devices"));
-  CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature of each"));
+  CHECK_THAT(page, Contains("their bias is given at 25 °C by a line over temperature for each"));
 }
 
 TEST_CASE("a mean that leaves devices out says by how much it can be off, a chart what chance brings") {
@@ -164,7 +164,7 @@ TEST_CASE("a mean that leaves devices out says by how much it can be off, a char
   }
   CHECK(left_out == 2);  // of the channel and of its kind
   const std::string page = fleet_html(report);
-  CHECK_THAT(page, Contains(", too large by up to ") && Contains("40 are not in it (40 not detected)"));
+  CHECK_THAT(page, Contains(", too large by up to ") && Contains("40 are excluded (40 not detected)"));
   CHECK_THAT(page, Contains("four of five beyond 1 σ") && Contains("expected by chance"));
 }
 
@@ -355,6 +355,20 @@ TEST_CASE("the page of a fleet links the worst devices, and no name becomes a ta
   CHECK_THAT(page, !Contains("<script>alert") && !Contains("href=\"javascript:"));
   CHECK_THAT(page, Contains("href=\"./javascript%3A%3Cscript%3Ealert%281%29%3C/script%3E%22%27/report.html\""));
   CHECK_THAT(page, Contains("id=\"device-search\""));
+}
+
+TEST_CASE("a list of devices that only names them again is left out") {
+  test::MadeLot made;
+  made.devices = 3;
+  std::vector<DeviceRecord> records = test::made_lot(made, 3);
+  const auto page_of = [](const std::vector<DeviceRecord>& all) {
+    const FleetLot lot = fleet_lot(all);
+    return fleet_html({all, &lot, "", {}, {}});
+  };
+  for (DeviceRecord& record : records) record.batch = record.type = "";
+  CHECK_THAT(page_of(records), Contains(">Each device<") && !Contains(">All devices<"));
+  records[1].batch = "second";
+  CHECK_THAT(page_of(records), Contains(">Each device<") && Contains(">All devices<"));
 }
 
 TEST_CASE("the text of a fleet has its table and its worst devices") {

@@ -80,7 +80,7 @@ TEST_CASE("html: the plot says what its points hold and its lines do not") {
       c.fit->remedies.clear();
       c.fit->events.clear();
     }
-  const char* const taken = "in what was measured but not in the models: ";
+  const char* const taken = "contained in the points but not in the models: ";
   CHECK(test::count(html_report(result), taken) == 0);
   result.channels[0].fit->remedies = {{"temperature", "", "", 1}, {"spikes", "", "", 4}};
   CHECK(test::count(html_report(result), std::string(taken) + "spikes; temperature.") == 1);

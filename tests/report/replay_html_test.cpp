@@ -67,7 +67,7 @@ TEST_CASE("replay html: without a reference the columns say what they are") {
   const std::string page = tables_of(without_replay_assets(replay_html(test::without_reference())));
   CHECK(test::count(page, "Leave-one-out RMS, rad/s") >= 1);
   CHECK(test::count(page, "Split-array RMS") >= 1);
-  CHECK(test::count(page, "Neither sees an error that all sensors share") == 1);
+  CHECK(test::count(page, "Neither shows an error that all sensors share") == 1);
   CHECK(test::count(page, ">Regret<") == 0);
   CHECK(test::count(page, ">RMSE") == 0);
 }

@@ -145,7 +145,7 @@ TEST_CASE("replay page: without a reference the scores have their own names and 
   const std::string body = body_of(test::without_reference());
   CHECK(test::count(body, "Leave-one-out RMS") > 0);
   CHECK(test::count(body, "Split-array RMS") > 0);
-  CHECK(test::count(body, "Neither sees an error that all sensors share") == 1);
+  CHECK(test::count(body, "Neither shows an error that all sensors share") == 1);
   CHECK(test::count(body, ">Regret<") == 0);
   CHECK(test::count(body, ">RMSE") == 0);
   CHECK(test::count(body, "data-kind=\"sensors\"") == 0);

@@ -64,12 +64,12 @@ std::string option_entry(const OptionUsage& option) {
 std::string exit_status() {
   std::string text = ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : {std::pair{"0", "success"},
-                                      {"1", "a fault of the program"},
+                                      {"1", "an error in the program"},
                                       {"2", "usage: an option or argument is wrong"},
                                       {"3", "an input is missing, malformed or over a limit"},
                                       {"4", "the numbers do not allow a result"},
                                       {"5", "an output cannot be written"},
-                                      {"6", "a check that was asked for failed"},
+                                      {"6", "a requested check failed"},
                                       {"130, 143", "stopped by a signal"}})
     text += tagged(bold(code), meaning);
   return text;
@@ -77,7 +77,7 @@ std::string exit_status() {
 
 std::string environment() {
   return ".SH ENVIRONMENT\n" + tagged(bold("NO_COLOR"), "where it is set and not empty, nothing is coloured") +
-         tagged(bold("COLUMNS"), "width that tables and help are fitted to, in place of the terminal\\(aqs") +
+         tagged(bold("COLUMNS"), "width of tables and help, in place of the terminal\\(aqs") +
          tagged(bold("TERM"), roff("\"dumb\": no progress and no colour"));
 }
 
@@ -100,8 +100,8 @@ std::string program_man_page(const ProgramUsage& program) {
   page += ".SH OPTIONS\n";
   for (const OptionUsage& option : program.options) page += option_entry(option);
   page += exit_status() + environment();
-  page += ".SH FILES\n" + tagged(italic("/usr/share/doc/sensorchar"),
-                                 "pages on formats, models, scenes, JSON, errors and the theory behind the numbers");
+  page += ".SH FILES\n" +
+          tagged(italic("/usr/share/doc/sensorchar"), "pages on formats, models, scenes, JSON, errors and the theory");
   page += ".SH SEE ALSO\n";
   std::string list;
   for (std::size_t k = 0; k < program.verbs.size(); ++k)

@@ -32,7 +32,7 @@ struct VerbUsage {
 
 struct ProgramUsage {
   std::string name, what, version, released, footer;
-  std::vector<OptionUsage> options;  ///< in front of the verb
+  std::vector<OptionUsage> options;  ///< before the verb
   std::vector<VerbUsage> verbs;
 };
 

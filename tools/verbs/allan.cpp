@@ -132,16 +132,15 @@ std::function<void()> allan_options(VerbOptions& options, Session& session) {
   options.add_flag("--force", verb->force, "overwrite the output file");
   const Option json = options.add_flag("--json", verb->json, "one JSON document instead of CSV");
   const Option hat = options.add_flag("--hat", verb->hat,
-                                      "single devices from the differences of three or more channels that measure the "
-                                      "same at once: the three-cornered hat, or any number of corners");
-  Option pairs =
-      options.add_flag("--hat-pairs", verb->hat_of_differences,
-                       "the same where three channels are differences a - b, b - c, c - a, each measured by itself");
+                                      "deviations of single devices from three or more channels that measure the same "
+                                      "quantity (three-cornered hat, or any number of corners)");
+  Option pairs = options.add_flag("--hat-pairs", verb->hat_of_differences,
+                                  "the same for three channels that are measured differences a - b, b - c, c - a");
   pairs.excludes(hat);
   Option dynamic = options.add_parsed(
       "--dynamic", "WINDOW[,STEP]",
       [verb = verb.get()](const std::string& text) { verb->dynamic = read_dynamic(text); },
-      "a curve for every window of this length, as it moves on by STEP (default: half of it)");
+      "one curve per window of this length, moved by STEP (default: half of it)");
   options.add_flag("--plot", verb->plot, "a plot for the terminal instead of CSV")
       .excludes(json)
       .excludes(hat)

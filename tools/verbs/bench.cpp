@@ -106,7 +106,7 @@ void check_options_are_used(const BenchVerb& verb, const BenchInputs& inputs) {
   }
   if (verb.tau_s && !verb.target)
     throw usage_error("E0205", "--at")
-        .says("it is the averaging time of a --target, and there is none")
+        .says("it is the averaging time of a --target, which is missing")
         .hint("--target DEVIATION");
 }
 
@@ -242,24 +242,24 @@ void run_bench(Session& session, BenchVerb& verb) {
 
 void add_design_options(VerbOptions& options, BenchVerb& verb) {
   options
-      .add_number("--target", verb.target,
-                  "design: Allan deviation that the fused sensors are to reach, in the models' unit", 1e-100, 1e100)
+      .add_number("--target", verb.target, "design: target Allan deviation of the fused sensors, in the models' unit",
+                  1e-100, 1e100)
       .value_name("DEVIATION");
   options.add_duration("--at", verb.tau_s, "design: averaging time of that target (default: 1 s)");
   options
-      .add_number("--within", verb.share,
-                  "design: percent of itself that a coefficient is to be known to (default: 10)", 0.01, 99)
+      .add_number("--within", verb.share, "design: target uncertainty of a coefficient in percent (default: 10)", 0.01,
+                  99)
       .value_name("PERCENT");
-  options.add_rate("--instants-rate", verb.rate_hz, "scaling: rate that a fusion has to keep up with (default: 1 kHz)");
+  options.add_rate("--instants-rate", verb.rate_hz, "scaling: rate that fusion must keep up with (default: 1 kHz)");
 }
 
 void add_comparison_options(VerbOptions& options, BenchVerb& verb) {
   options
       .add_text(
           "--against", verb.against,
-          "bench.json of an earlier run with the same options: exit 6 where a figure is worse beyond both intervals")
+          "bench.json of an earlier run with the same options: exit code 6 if a figure is worse beyond both intervals")
       .value_name("FILE");
-  options.add_number("--tolerance", verb.tolerance, "percent that a figure may be worse by (default: 5)", 0, 1000)
+  options.add_number("--tolerance", verb.tolerance, "percent by which a figure may be worse (default: 5)", 0, 1000)
       .value_name("PERCENT");
 }
 
@@ -277,13 +277,14 @@ std::function<void()> bench_options(VerbOptions& options, Session& session) {
       .known_words({kBenchParts.begin(), kBenchParts.end()});
   options.add_flag("--quick", verb->quick, "short records and few runs: under a minute");
   options.add_flag("--stress", verb->stress, "the same as --parts stress");
-  options.add_count("--seed", verb->seed, "of the first simulation (default: 1)");
-  options.add_count("--records", verb->records, "simulated records of each signal (default: 60; quick: 12)", 2, 100000);
+  options.add_count("--seed", verb->seed, "seed of the first simulation (default: 1)");
+  options.add_count("--records", verb->records, "simulated recordings of each signal (default: 60; quick: 12)", 2,
+                    100000);
   options.add_count("--samples", verb->samples,
-                    "of a record, at most (default: 200000, a design's 4000000; quick: 32768, 400000)", 64,
+                    "samples per recording at most (default: 200000, for a design 4000000; quick: 32768, 400000)", 64,
                     std::uint64_t{1} << 32U);
-  options.add_count("--runs", verb->runs, "of each scene (default: 12; quick: 3)", 2, 10000);
-  options.add_texts("--methods", verb->methods, "ways to get coefficients (default: all)")
+  options.add_count("--runs", verb->runs, "runs of each scene (default: 12; quick: 3)", 2, 10000);
+  options.add_texts("--methods", verb->methods, "estimators of coefficients (default: all)")
       .separated_by_commas()
       .one_value_each()
       .value_name("NAME,…");
@@ -314,7 +315,7 @@ VerbEntry verb_bench() {
           "Measure run time against error: estimators of noise coefficients, fusion algorithms",
           bench_options,
           {{"the whole comparison on short records, under a minute", "sensorchar bench --quick"},
-           {"how many sensors, and how long a record, for a target",
+           {"number of sensors and length of a recording for a target",
             "sensorchar bench report/gyro_z.sensor.yaml --parts design --target 0.001 --at 10s"}}};
 }
 

@@ -302,8 +302,7 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
       .writes();
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();
   options.add_flag("--json", verb->json, "print report.json to stdout instead of the tables");
-  options.add_flag("--no-timing", verb->no_timing,
-                   "without the time it took: the same input and options give the same bytes");
+  options.add_flag("--no-timing", verb->no_timing, "omit the run time: the same input and options give the same bytes");
   options.add_flag(
       "--verify", verb->verify,
       "simulate every channel from its model, characterize that, and compare (exit code 6 when they disagree)");
@@ -315,8 +314,8 @@ std::function<void()> characterize_options(VerbOptions& options, Session& sessio
   options.add_count("--seed", verb->seed, "seed of the simulations of --verify and --pool (default: 1)");
   const Option pool =
       options.add_flag("--pool", verb->pool,
-                       "the LOGs are runs of one sensor: one set of coefficients by one likelihood, whether they have "
-                       "one, spread of the turn-on bias (runs.html, runs.json, models)");
+                       "the LOGs are runs of one sensor: fit one set of coefficients to all, test whether all runs "
+                       "share it, and give the spread of the turn-on bias (runs.html, runs.json, models)");
   options
       .add_flag("--lot", verb->lot,
                 "compare the LOGs as devices side by side, as fleet merge does: mean and spread of each term, "

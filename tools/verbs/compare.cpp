@@ -106,7 +106,7 @@ std::string text_of(const CompareVerb& verb, const CharacterizationComparison& c
 
 void compare_sensors(Session& session, const CompareVerb& verb) {
   if (verb.unlike)
-    throw usage_error("E0205", "--unlike").says("goes with reports of replay, and these are characterizations");
+    throw usage_error("E0205", "--unlike").says("applies to reports of replay, and these are characterizations");
   if (!verb.output.empty()) foresee_output(verb.output, verb.inputs, verb.force);
   std::vector<GrowthCheck> checks;
   for (const std::string& text : verb.checks) checks.push_back(parse_characterization_check(text));
@@ -156,26 +156,25 @@ std::function<void()> compare_options(VerbOptions& options, Session& session) {
       .add_texts("--fail-if", verb->checks,
                  "exit code 6 when a later input is worse than the first by more: rmse+5%, ns_per_sample+20%, "
                  "peak_bytes+10%, regret+0.5% (points), white_noise+10% (beyond its interval); minque:rmse+5% for one "
-                 "algorithm, gyro_x:white_noise+5% for one channel; several times")
+                 "algorithm, gyro_x:white_noise+5% for one channel; may be repeated")
       .value_name("[LABEL:]METRIC+N%")
       .one_value_each();
-  options.add_flag("--unlike", verb->unlike, "compare reports of unlike scenes all the same");
+  options.add_flag("--unlike", verb->unlike, "compare reports even if their scenes differ");
   options
       .add_texts("-c,--channel", verb->channels,
-                 "channels by name or pattern; gyro_x and accel_x fit any channel that measures them (all)")
+                 "channels by name or pattern; gyro_x and accel_x fit any channel that measures them (default: all)")
       .separated_by_commas()
       .once_each();
-  options.add_texts("--label", verb->labels, "a name for each input (default: of its file)").separated_by_commas();
+  options.add_texts("--label", verb->labels, "name of each input (default: its file's)").separated_by_commas();
   options
       .add_text("--limits", verb->limits,
                 "data-sheet limits (docs/recordings.md) as a row of the table and a line in the figures")
       .value_name("FILE");
   const Option json = options.add_flag("--json", verb->json, "one JSON document instead of the table");
   const Option markdown =
-      options.add_flag("--markdown", verb->markdown, "a page of Markdown instead of the table").excludes(json);
-  const Option latex = options.add_flag("--latex", verb->latex, "the table alone as a tabular of LaTeX")
-                           .excludes(json)
-                           .excludes(markdown);
+      options.add_flag("--markdown", verb->markdown, "a Markdown page instead of the table").excludes(json);
+  const Option latex =
+      options.add_flag("--latex", verb->latex, "the table alone as a LaTeX tabular").excludes(json).excludes(markdown);
   options.add_flag("--csv", verb->csv, "the table alone, one number per column")
       .excludes(json)
       .excludes(markdown)

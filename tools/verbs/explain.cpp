@@ -125,7 +125,8 @@ void run_explain(const Session& session, const ExplainVerb& verb) {
 
 std::function<void()> explain_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ExplainVerb>();
-  options.add_texts("CODE", verb->codes, "codes of findings, as JSON and pages give them (all), or of errors");
+  options.add_texts("CODE", verb->codes,
+                    "codes of findings, as in JSON and pages, or of errors (default: all findings)");
   options.add_flag("--json", verb->json, "as JSON");
   return [&session, verb] { run_explain(session, *verb); };
 }

@@ -196,15 +196,16 @@ std::function<void()> fit_options(VerbOptions& options, Session& session) {
           "LOG|CURVE", verb->input,
           "recording (" + readable_files() + "), or with --curve a table: averaging time or frequency, then values")
       .required();
-  options.add_choice("--curve", verb->curve, {"none", "allan", "psd"},
-                     "the input is a curve: Allan deviation over s, or spectral density over Hz (none)");
-  options.add_enum("--sides", verb->analysis.options.spectrum.sides,
-                   "of a --curve psd whose table does not say it (one)");
   options.add_choice(
-      "--quantity", verb->quantity, {"auto", "root", "power"},
-      "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (auto: allan root, psd power)");
+      "--curve", verb->curve, {"none", "allan", "psd"},
+      "kind of curve that the input is: Allan deviation over s, or spectral density over Hz (default: none)");
+  options.add_enum("--sides", verb->analysis.options.spectrum.sides,
+                   "sides of a --curve psd whose table does not state them (default: one)");
+  options.add_choice("--quantity", verb->quantity, {"auto", "root", "power"},
+                     "values of a --curve: root (deviation, U/√Hz) or power (variance, U²/Hz) (default: auto, root for "
+                     "allan, power for psd)");
   options.add_duration("--duration", verb->duration_s,
-                       "length of the record behind a --curve allan: gives honest intervals");
+                       "length of the recording that a --curve allan was computed from: makes the intervals correct");
   options.add_document_output(verb->output);
   options
       .add_text("--models", verb->models,
@@ -231,7 +232,7 @@ VerbEntry verb_fit() {
           "Fit noise coefficients with 95 % intervals to a log, or to a curve digitized elsewhere",
           fit_options,
           {{"coefficients of every channel", "sensorchar fit imu.csv"},
-           {"coefficients of an Allan curve that was read off a data sheet, of a record of 10 min",
+           {"coefficients of an Allan curve from a data sheet, computed from 10 min of data",
             "sensorchar fit curve.csv --curve allan --duration 600"}}};
 }
 

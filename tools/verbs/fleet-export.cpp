@@ -70,16 +70,15 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
                   "job arrays of Slurm, a Snakefile, or commands for GNU parallel")
       .required();
   options.add_flag("--json", verb->json, "print what was written as JSON");
-  options.add_duration("--job", verb->job_s, "length of a job: as many units as that takes (default: 60s)");
-  options.add_count("--at-once", verb->jobs.at_once, "jobs at a time (default: as the engine likes)");
-  options.add_count("--retries", verb->retries, "times that a failed job is run again (default: 3)", 0, 100);
+  options.add_duration("--job", verb->job_s, "run time of a job; it gets as many units as fit (default: 60s)");
+  options.add_count("--at-once", verb->jobs.at_once, "jobs at a time (default: the engine's choice)");
+  options.add_count("--retries", verb->retries, "retries of a failed job (default: 3)", 0, 100);
   options.add_number("--slower", verb->jobs.slower,
                      "a worker may be this many times slower than the machine that planned (default: 3)", 1, 1000);
   options.only("where jobs have limits: slurm, snakemake", [verb] { return verb->engine != "parallel"; }, {"--slower"});
   options
       .add_text("--program", verb->jobs.program,
-                "the program on the workers: the path of one that is there, or a command line for a shell (default: "
-                "sensorchar)")
+                "the program on the workers: its path there, or a shell command (default: sensorchar)")
       .value_name("COMMAND");
   return [&session, verb] { run_export(session, *verb); };
 }

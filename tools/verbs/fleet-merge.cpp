@@ -110,12 +110,11 @@ void run_merge(Session& session, const MergeVerb& verb) {
 
 std::function<void()> merge_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<MergeVerb>();
-  options.add_texts("DIR", verb->fleets, "folder of a fleet; of several: one report of all").required();
+  options.add_texts("DIR", verb->fleets, "folder of a fleet; several make one report").required();
   options.add_text("-o,--output", verb->folder, "folder for the report (made when absent)")
       .value_name("REPORT")
       .required();
-  options.add_text("--name", verb->name, "of the fleet, in words (default: the names of the folders)")
-      .value_name("TEXT");
+  options.add_text("--name", verb->name, "title of the fleet (default: the names of the folders)").value_name("TEXT");
   options.add_flag("--partial", verb->partial, "merge the existing results; devices without a result are listed");
   options.add_flag("--force", verb->force, "overwrite the report of an earlier merge");
   options.add_flag("--json", verb->json, "print lot.json to stdout instead of the tables");
@@ -131,7 +130,7 @@ VerbEntry verb_fleet_merge() {
           merge_options,
           {{"the report of the lot", "sensorchar fleet merge fleet -o report"},
            {"of batches that were planned on two machines", "sensorchar fleet merge april may -o spring"},
-           {"of what is done so far", "sensorchar fleet merge fleet -o so-far --partial"}}};
+           {"of the results so far", "sensorchar fleet merge fleet -o so-far --partial"}}};
 }
 
 }  // namespace sensorchar

@@ -125,8 +125,8 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   verb->analysis.options.ten_a_decade = true;
   options
       .add_texts("MANIFEST|LOG", verb->inputs,
-                 "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or logs, each a device "
-                 "called as its file is; a quoted pattern stands for its files")
+                 "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or logs, each one device "
+                 "named after its file; a quoted pattern stands for its files")
       .required();
   options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results")
       .value_name("DIR")
@@ -134,18 +134,18 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
   options
       .add_texts(
           "--sums", verb->sums,
-          "file with digests of logs, as sha256sum prints them: the plan takes none of these, workers check them")
+          "file with digests of logs, as sha256sum prints them: the plan does not compute them; workers check them")
       .value_name("FILE")
       .one_value_each();
   options.add_flag("--json", verb->json, "print what was planned as JSON");
-  options.add_flag("--by-channel", verb->plan.by_channel, "a unit for each channel of a log");
+  options.add_flag("--by-channel", verb->plan.by_channel, "one unit per channel of a log");
   options.add_flag("--no-reports", verb->no_reports,
                    "coefficients only: no page, no tables and no models of each device");
   options.add_flag("--skip-unreadable", verb->plan.skip_unreadable,
-                   "plan the others where logs cannot be read; the report names those");
+                   "skip logs that cannot be read; the report lists them");
   options.add_bytes("--split-above", verb->plan.split_bytes,
-                    "logs larger than this are divided in stretches where their format allows (default: 4GiB)");
-  options.add_bytes("--stretch", verb->plan.stretch_bytes, "size of a stretch, about (default: 1GiB)");
+                    "logs larger than this are divided into stretches if their format allows it (default: 4GiB)");
+  options.add_bytes("--stretch", verb->plan.stretch_bytes, "approximate size of a stretch (default: 1GiB)");
   add_characterize_options(options, session, verb->analysis);
   return [&session, verb] { run_plan(session, *verb); };
 }
@@ -153,14 +153,14 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
 }  // namespace
 
 VerbEntry verb_fleet_plan() {
-  return {20,
-          "fleet-plan",
-          "Split many logs into jobs",
-          plan_options,
-          {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
-           {"with digests that sha256sum has taken",
-            "sensorchar fleet plan logs/*.npy --rate 200 --sums logs/SHA256SUMS -o fleet"},
-           {"devices, batches and limits by a manifest", "sensorchar fleet plan line7.yaml -o fleet"}}};
+  return {
+      20,
+      "fleet-plan",
+      "Split many logs into jobs",
+      plan_options,
+      {{"all logs of a folder", "sensorchar fleet plan logs/*.npy --rate 200 -o fleet"},
+       {"with digests from sha256sum", "sensorchar fleet plan logs/*.npy --rate 200 --sums logs/SHA256SUMS -o fleet"},
+       {"devices, batches and limits from a manifest", "sensorchar fleet plan line7.yaml -o fleet"}}};
 }
 
 }  // namespace sensorchar

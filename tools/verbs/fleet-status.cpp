@@ -126,7 +126,7 @@ std::function<void()> status_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<StatusVerb>();
   options.add_texts("DIR", verb->folders, "folder of a fleet, or of several").required();
   const Option json = options.add_flag("--json", verb->json, "print it as JSON");
-  options.add_flag("--list", verb->list, "print the tasks that are left, a line each").excludes(json);
+  options.add_flag("--list", verb->list, "print the remaining tasks, one per line").excludes(json);
   return [&session, verb] { run_status(session, *verb); };
 }
 
@@ -137,8 +137,8 @@ VerbEntry verb_fleet_status() {
           "fleet-status",
           "Show the progress of a fleet: units done, left, damaged",
           status_options,
-          {{"how far it is", "sensorchar fleet status fleet"},
-           {"the tasks that are left, for any shell", "sensorchar fleet status fleet --list"}}};
+          {{"its progress", "sensorchar fleet status fleet"},
+           {"the remaining tasks, for any shell", "sensorchar fleet status fleet --list"}}};
 }
 
 }  // namespace sensorchar

@@ -68,16 +68,17 @@ std::function<void()> fuse_options(VerbOptions& options, Session& session) {
       .value_name("FILE");
   options
       .add_text("--algorithm", verb->options.algorithm,
-                "what to fuse by, as the replay's report names it (default: what it recommends)")
+                "algorithm, by its name in the replay's report (default: the recommended one)")
       .value_name("NAME");
-  options.add_texts("--map", verb->map, "channel of a sensor where it is not that of the replay, SENSOR=CHANNEL")
+  options
+      .add_texts("--map", verb->map, "channels of sensors whose names differ from those in the replay, SENSOR=CHANNEL")
       .separated_by_commas()
       .one_value_each()
       .value_name("SENSOR=CHANNEL,…")
       .once_each();
   options.add_instant(
       "--fault-free", verb->options.fault_free_s,
-      "so long no sensor fails at the start of this log (default: not known, but of the log of the replay)");
+      "time at the start of this log in which no sensor fails (default: unknown, unless the replay used this log)");
   add_writing_options(options, verb->writing, "t[s] or t[ns]", verb->output);
   options.add_flag("--force", verb->writing.options.overwrite, "overwrite an existing file");
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
@@ -92,7 +93,7 @@ VerbEntry verb_fuse() {
           "fuse",
           "Fuse a log with the result of a replay: estimates, deviations, one flag per sensor",
           fuse_options,
-          {{"a log by what the replay recommends", "sensorchar fuse array.csv --with array-replay -o fused.csv"},
+          {{"a log, by the recommended algorithm", "sensorchar fuse array.csv --with array-replay -o fused.csv"},
            {"by another algorithm of that replay, as NumPy file",
             "sensorchar fuse array.csv --with array-replay --algorithm mean -o fused.npy"}}};
 }

@@ -61,7 +61,7 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
                        info.rows == 1 ? "gives" : "give");
   if (info.time.rate_hz <= 0)
     return info.time.candidate.empty()
-               ? fmt::format("  next: say the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags)
+               ? fmt::format("  next: give the sampling rate, RATE: sensorchar inspect {}{} --rate RATE\n", log, flags)
                : fmt::format("  next: sensorchar inspect {}{} --time-column {}\n", log, flags,
                              libchar::shell_word(info.time.candidate));
   const bool hopeless =
@@ -112,10 +112,8 @@ std::function<void()> inspect_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<InspectVerb>();
   options.add_texts("LOG", verb->logs, "logs to look at; - reads CSV from standard input").required();
   options.add_flag("--json", verb->json, "one JSON document on stdout instead of text");
-  options.add_flag(
-      "--preview", verb->preview,
-      "what a viewer shows at once: a small trace of each channel, and no digest, which takes as long as the "
-      "numbers in a browser");
+  options.add_flag("--preview", verb->preview,
+                   "small traces of each channel for a viewer, without the digest, which is slow in a browser");
   options.only("with --json", [verb = verb.get()] { return verb->json; }, {"--preview"});
   add_reading_options(options, session, verb->reading);
   return [&session, verb] {

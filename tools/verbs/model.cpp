@@ -67,7 +67,7 @@ Json head_of(const Session& session, const char* format, const std::vector<LogIn
 
 /// The only target that is not made of sensor models.
 constexpr const char* kDevice = "c";
-constexpr const char* kDeviceTitle = "C99: the method of a replay";
+constexpr const char* kDeviceTitle = "C99 code of a replay's method";
 constexpr const char* kDeviceConvention = "one file without heap; float or double (--dtype)";
 
 bool to_device(const ModelVerb& verb) { return verb.target == kDevice; }
@@ -178,30 +178,32 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
   ExportOptions& options = verb.options;
   constexpr double kSmall = 1e-300;
   sub.add_enum("--axes", options.axes,
-               "one number for three axes: the largest, their root mean square, or one axis (auto: each its own where "
-               "the consumer takes three, else max)");
+               "one number for three axes: the largest, their root mean square, or one axis (default: auto, one per "
+               "axis if the consumer takes three, else max)");
   sub.add_texts("--axis", verb.places,
-                "what a channel is, when its name and unit do not say: gx … gz, ax … az, mx … mz; g, a, m alone for "
+                "meaning of a channel whose name and unit do not tell: gx … gz, ax … az, mx … mz; g, a, m alone for "
                 "all three axes")
       .value_name("CHANNEL=PLACE")
       .one_value_each()
       .once_each();
-  sub.add_number("--inflate", options.inflate, "multiply every noise number (1)", kSmall);
-  sub.add_number("--floor-tau", options.floor_tau_s,
-                 "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (from the model)",
-                 kSmall);
-  sub.add_number("--correlation-time", options.correlation_s,
-                 "correlation time in s of a Gauss-Markov bias (floor-tau/1.8926, or ten records)", kSmall);
+  sub.add_number("--inflate", options.inflate, "factor on every noise number (default: 1)", kSmall);
   sub.add_number(
-      "--airsim-tau", options.bias_tau_s,
-      targets_that_take(&ExportTakes::bias_tau) + ": BiasStabilityTau in s (500 gyroscope, 800 accelerometer)", kSmall);
-  sub.add_number("--filter-step", options.filter_step_s,
-                 targets_that_take(&ExportTakes::filter_step) + ": step of the filter's prediction in s (0.01)",
+      "--floor-tau", options.floor_tau_s,
+      "averaging time in s of the flat part of the Allan curve, for a Gauss-Markov bias (default: the model's)",
+      kSmall);
+  sub.add_number("--correlation-time", options.correlation_s,
+                 "correlation time in s of a Gauss-Markov bias (default: floor-tau/1.8926, or ten recordings)", kSmall);
+  sub.add_number("--airsim-tau", options.bias_tau_s,
+                 targets_that_take(&ExportTakes::bias_tau) +
+                     ": BiasStabilityTau in s (default: 500 for gyroscopes, 800 for accelerometers)",
                  kSmall);
+  sub.add_number(
+      "--filter-step", options.filter_step_s,
+      targets_that_take(&ExportTakes::filter_step) + ": step of the filter's prediction in s (default: 0.01)", kSmall);
   sub.add_number("--gravity", options.gravity,
-                 targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (not written)", kSmall);
+                 targets_that_take(&ExportTakes::gravity) + ": gravity in m/s² (default: not written)", kSmall);
   sub.add_text("--topic", options.topic,
-               targets_that_take(&ExportTakes::topic) + ": ROS topic (default: of the bag, else /imu0)")
+               targets_that_take(&ExportTakes::topic) + ": ROS topic (default: that of the bag, else /imu0)")
       .value_name("NAME");
   sub.add_flag("--anyway", options.anyway, "also export coefficients with status misfit (marked)");
   sub.add_flag("--older", options.older, "basalt: one number in place of three; orbslam3: whole rate, no File.version");
@@ -239,10 +241,10 @@ std::function<void()> model_options(VerbOptions& options, Session& session) {
   options.add_texts("FILE", verb->files,
                     "model files (.sensor.yaml, .json), or what characterize wrote (its folder, report.json); the axes "
                     "of one device together. With --to c the folder of a replay or its fusion.yaml");
-  options.add_text("--algorithm", verb->algorithm, "c: method of the replay (default: what it recommends)")
+  options.add_text("--algorithm", verb->algorithm, "c: method of the replay (default: the recommended one)")
       .value_name("NAME");
   options.add_choice("--dtype", verb->dtype, {"f64", "f32"}, "c: double or float (default: f64)");
-  options.add_text("--to", verb->target, "target; --list names them").value_name("NAME").known_words(target_words());
+  options.add_text("--to", verb->target, "target; see --list").value_name("NAME").known_words(target_words());
   options.add_flag("--list", verb->list, "the targets, each with its convention").alone();
   options.add_document_output(verb->output);
   options.add_flag("--force", verb->force, "overwrite the output file");
@@ -260,7 +262,7 @@ VerbEntry verb_model() {
           "Show a sensor model, or export it (--to) for Kalibr, Gazebo, VINS and others",
           model_options,
           {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
-           {"the numbers of an IMU as Kalibr wants them, its z axes for all",
+           {"the numbers of an IMU for Kalibr, from its z axes",
             "sensorchar model report --to kalibr --axes z -o imu.yaml"}}};
 }
 

@@ -150,14 +150,14 @@ void run_plot(Session& session, PlotVerb& verb) {
 void add_looks(VerbOptions& options, PlotVerb& verb) {
   options
       .add_text("--width", verb.width,
-                "one-column (85 mm, the default), two-columns (178 mm), or a length such as 88mm, 7in")
+                "one-column (85 mm), two-columns (178 mm), or a length such as 88mm, 7in (default: one-column)")
       .value_name("LENGTH");
-  options.add_text("--height", verb.height, "a length (default: what suits width and legend)").value_name("LENGTH");
+  options.add_text("--height", verb.height, "a length (default: to suit width and legend)").value_name("LENGTH");
   options.add_enum("--legend", verb.drawing.legend,
-                   "place of the names (auto: in a corner without curves, else below)");
-  options.add_text("--title", verb.figure.title, "above the plot (default: none, for a caption says it)");
+                   "place of the names (default: auto, a corner without curves, else below)");
+  options.add_text("--title", verb.figure.title, "title above the plot (default: none)");
   options.add_flag("--grey", verb.drawing.grey, "greys in place of colours");
-  options.add_number("--dpi", verb.drawing.dpi, "resolution of a PNG (300)", 10, 4800);
+  options.add_number("--dpi", verb.drawing.dpi, "resolution of a PNG (default: 300)", 10, 4800);
   options.add_text("--x-range", verb.x_range, "ends of the horizontal axis").value_name("LOW..HIGH");
   options.add_text("--y-range", verb.y_range, "ends of the vertical axis").value_name("LOW..HIGH");
 }
@@ -185,17 +185,19 @@ std::function<void()> plot_options(VerbOptions& options, Session& session) {
   options
       .add_texts("-c,--channel", verb->figure.channels,
                  "channels (of a replay: methods or sensors) by name or pattern such as 'gyro*'; gyro_x fits any "
-                 "channel that measures it (all)")
+                 "channel that measures it (default: all)")
       .separated_by_commas()
       .once_each();
-  options.add_text("--algorithm", verb->figure.algorithm,
-                   "of a replay: whose weights, variances and findings (the best that has them)");
-  options.add_text("--input", verb->figure.input, "of a replay with several true inputs: which (the first)");
-  options.add_texts("--label", verb->figure.labels, "a name for each FILE in the legend").separated_by_commas();
+  options.add_text(
+      "--algorithm", verb->figure.algorithm,
+      "of a replay: method whose weights, variances and findings are drawn (default: the best that has them)");
+  options.add_text("--input", verb->figure.input,
+                   "of a replay with several true inputs: the one to draw (default: the first)");
+  options.add_texts("--label", verb->figure.labels, "name of each FILE in the legend").separated_by_commas();
   add_looks(options, *verb);
   options.add_text("--gnuplot", verb->gnuplot, "the numbers in a script for gnuplot").value_name("FILE");
   options.add_text("--csv", verb->csv, "the numbers that are drawn, as a table").value_name("FILE");
-  options.add_choice("--format", verb->format, words_of<FigureFormat>(), "what -o is (by its name)");
+  options.add_choice("--format", verb->format, words_of<FigureFormat>(), "format of -o (default: by its name)");
   options.add_flag("--force", verb->force, "overwrite the output files");
   add_recording_options(options, session, verb->analysis, verb->files, false);
   add_only(options, *verb);

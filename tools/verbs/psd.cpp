@@ -99,8 +99,7 @@ void add_only(VerbOptions& options, const PsdVerb& verb) {
                [&verb, of_table] { return verb.cross.empty() && verb.coherence.empty() && of_table(); }, {"--scaling"});
   options.only("without --coherence, and not for a table of --lines",
                [&verb, of_table] { return verb.coherence.empty() && of_table(); }, {"--sides"});
-  options.only("without --spectrogram, which says it itself", [&verb] { return verb.spectrogram.empty(); },
-               {"--segment"});
+  options.only("without --spectrogram, which sets it", [&verb] { return verb.spectrogram.empty(); }, {"--segment"});
 }
 
 std::function<void()> psd_options(VerbOptions& options, Session& session) {
@@ -120,11 +119,11 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
                    "list the spectral lines (with --json: in addition to the spectra)");
   add_spectrum_options(options, analysis.spectrum, analysis.segment_s, analysis.quarter_segments);
   options.add_enum("--average", analysis.average,
-                   "mean of the segments, or their median without its bias: bursts do not count (default: mean)");
+                   "mean of the segments, or their median without its bias, which ignores bursts (default: mean)");
   const Option cross =
       options
           .add_texts("--cross", verb->cross,
-                     "cross spectrum of two channels A,B: density, phase of B less that of A, coherence")
+                     "cross spectrum of two channels A,B: density, phase of B minus phase of A, coherence")
           .value_name("A,B")
           .separated_by_commas()
           .one_value_each();
@@ -143,12 +142,13 @@ std::function<void()> psd_options(VerbOptions& options, Session& session) {
             CharacterizeOptions& of_verb = verb->analysis.options;
             read_segment(text, of_verb.spectrum, of_verb.segment_s);
           },
-          "the spectrum of every segment of this length by itself, instead of their average")
+          "one spectrum per segment of this length, instead of their average")
       .excludes(cross)
       .excludes(coherence)
       .excludes(plot);
   options.add_count("--log-bins", analysis.spectrum_bins,
-                    "average into at most N bins of a logarithmic frequency axis (default: 0, do not)", 0, 1000000);
+                    "average into at most N bins of a logarithmic frequency axis (default: 0, no averaging)", 0,
+                    1000000);
   add_reading_options(options, session, analysis.reading);
   add_still_option(options, verb->analysis);
   add_data_options(options, verb->analysis);

@@ -285,13 +285,14 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
   options.add_text("-o,--output", verb->folder, "folder for the results, made when absent (default: LOG-replay)")
       .value_name("DIR")
       .writes();
-  const Option algorithms = options
-                                .add_texts("--algorithms", verb->algorithms,
-                                           "run these only (default: the scene's, else all that it has the data for)")
-                                .separated_by_commas()
-                                .once_each()
-                                .value_name("NAME,…")
-                                .known_words(algorithm_names());
+  const Option algorithms =
+      options
+          .add_texts("--algorithms", verb->algorithms,
+                     "algorithms to run (default: the scene's, else all that have the data they need)")
+          .separated_by_commas()
+          .once_each()
+          .value_name("NAME,…")
+          .known_words(algorithm_names());
   options
       .add_flag("--published", verb->published,
                 "also run the algorithms exactly as published (…-published), next to the robust ones")
@@ -307,22 +308,21 @@ std::function<void()> replay_options(VerbOptions& options, Session& session) {
       .value_name("SWEEP");
   options.add_duration("--window", verb->window_s, "length of the window RMS (default: a fiftieth of the evaluation)");
   options.add_instant("--budget", verb->budget_s,
-                      "processor time that leave-one-out of one algorithm may take, counted by its declared cost; "
-                      "beyond, it runs on stretches or not at all (default: 10 s)");
-  options.add_flag("--no-allan", verb->no_allan, "without the Allan deviation of each error");
+                      "processor time for leave-one-out of one algorithm, counted by its declared cost; beyond it, "
+                      "leave-one-out runs on stretches or not at all (default: 10 s)");
+  options.add_flag("--no-allan", verb->no_allan, "omit the Allan deviation of each error");
   options
       .add_text("--estimates", verb->estimates,
                 "also write truth and all estimates to DIR/estimates.FORMAT (csv, npy, f64)")
       .value_name("FORMAT");
   options.add_flag("--list", verb->list, "print all algorithms, what each needs and its options").alone();
   options.add_flag("--explain", verb->explain, "print the plan: what would be read, learnt, run, skipped and why");
-  options.add_flag("--no-timing", verb->no_timing, "without run times and memory: the same scene gives the same bytes");
+  options.add_flag("--no-timing", verb->no_timing, "omit run times and memory: the same scene gives the same bytes");
   options.add_flag("--no-skip", verb->no_skip,
                    "do all work whether an output needs it or not; the numbers are the same");
   options
-      .add_text(
-          "--write-scene", verb->scene_file,
-          "write all that was said as a scene file, which replays to the same results; without -o nothing else is done")
+      .add_text("--write-scene", verb->scene_file,
+                "write the settings as a scene file, which replays to the same results; without -o nothing is run")
       .writes()
       .value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite results of an earlier run").writes();

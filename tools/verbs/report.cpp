@@ -47,12 +47,10 @@ Reported reported(Session& session, const ReportVerb& verb, const std::string& f
 
 std::string form_of(Session& session, const ReportVerb& verb) {
   if (verb.files.size() > 1)
-    throw usage_error("E0205", "report").says("--form is of one recording").got(fmt::format("{}", verb.files.size()));
+    throw usage_error("E0205", "report").says("--form takes one recording").got(fmt::format("{}", verb.files.size()));
   const Reported one = reported(session, verb, verb.files[0]);
   if (one.report.format != "characterization")
-    throw usage_error("E0205", "--form")
-        .says("goes with a report of characterize or a recording")
-        .got(one.report.format);
+    throw usage_error("E0205", "--form").says("needs a report of characterize or a recording").got(one.report.format);
   report_findings(session, one.report.file, one.report.findings, verb.channels);
   return detail::test_form_html(one.report, parse_json(one.text, one.report.file),
                                 parse_figure_source(one.text, one.report.file), verb.channels);
@@ -90,12 +88,12 @@ void run_report(Session& session, const ReportVerb& verb) {
   } else {
     if (verb.files.size() > 1)
       throw usage_error("E0205", "report")
-          .says("a table of a replay is of one report")
-          .hint("sensorchar compare A B holds two replays against each other");
+          .says("the table of a replay takes one report")
+          .hint("sensorchar compare A B compares two replays");
     const ReplayReport replay = read_replay_report(verb.files[0]);
     if (!verb.channels.empty())
       throw usage_error("E0205", "--channel")
-          .says("goes with the report of a characterization, and this is one of a replay");
+          .says("applies to the report of a characterization, and this is one of a replay");
     text = ranking_table(replay, format);
   }
   if (verb.output.empty() || verb.output == "-") return print(text);
@@ -109,9 +107,8 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
                  "report.json of characterize or replay (runs.json of pooled runs, what fit --json prints) or its "
                  "folder, a recording, or sensor models; several make the table of compare")
       .required();
-  const Option markdown = options.add_flag("--markdown", verb->markdown, "a table of Markdown (the default)");
-  const Option latex =
-      options.add_flag("--latex", verb->latex, "a tabular of LaTeX, which needs no package").excludes(markdown);
+  const Option markdown = options.add_flag("--markdown", verb->markdown, "a table in Markdown (default)");
+  const Option latex = options.add_flag("--latex", verb->latex, "a LaTeX tabular; needs no package").excludes(markdown);
   const Option csv =
       options.add_flag("--csv", verb->csv, "one number per column, all digits").excludes(latex).excludes(markdown);
   options
@@ -119,7 +116,7 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
       .excludes(latex)
       .excludes(markdown)
       .excludes(csv);
-  options.add_texts("-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (all)")
+  options.add_texts("-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (default: all)")
       .separated_by_commas()
       .once_each();
   options.add_text("-o,--output", verb->output, "write there instead of to stdout").value_name("FILE");

@@ -148,7 +148,7 @@ void place_outputs(SimulateVerb& verb, const Scene& scene) {
   if (verb.scene_path.empty()) verb.scene_path = (fs::path(verb.output).replace_extension("").string() + ".scene.yaml");
   if (!verb.no_scene && !scene_given && writes_through(verb.output))
     throw usage_error("E0721", "--output")
-        .says("there is no place for a scene next to a pipe or device")
+        .says("a scene cannot be written next to a pipe or device")
         .got(verb.output)
         .hint("--no-scene, or --scene FILE");
   std::vector<std::string> outputs = {verb.output};
@@ -276,12 +276,12 @@ void add_input_options(VerbOptions& options, SimulateVerb& verb) {
       .value_name("SIGNAL");
   options
       .add_text("--temperature", verb.temperature,
-                "temperature in degC, a signal as well (default: the models' reference)")
+                "temperature in degC, a number or signal (default: the models' reference)")
       .value_name("SIGNAL");
   options.add_texts("--fault", verb.faults, kFaultHelp).value_name("FAULT");
   options.add_flag("--deterministic", verb.deterministic,
-                   "put in the steps, warm-ups and ramps that the models' recordings had, at their times (default: "
-                   "they are of that recording, not of the sensor)");
+                   "add the steps, warm-ups and ramps of the models' recordings, at their times (default: no, they "
+                   "belong to the recording, not to the sensor)");
   options.add_count("--oversampling", verb.oversampling, "oversampling factor of the simulation (default: 1)", 1, 1024);
 }
 
@@ -303,7 +303,7 @@ std::function<void()> simulate_options(VerbOptions& options, Session& session) {
   options.add_flag("--no-truth", verb->no_truth, "leave out the columns of the truth");
   const Option scene = options
                            .add_text("--scene", verb->scene_path,
-                                     "where the scene that replays the recording goes (default: LOG with .scene.yaml)")
+                                     "file of the scene that replays the recording (default: LOG with .scene.yaml)")
                            .value_name("FILE");
   options.add_flag("--no-scene", verb->no_scene, "write no scene").excludes(scene);
   add_writing_options(options, verb->writing, "t[s]", verb->output);
@@ -322,7 +322,7 @@ VerbEntry verb_simulate() {
           simulate_options,
           {{"ten minutes of a sensor at rest",
             "sensorchar simulate report/gyro_z.sensor.yaml --duration 10min -o simulated.csv"},
-           {"three devices that turn to and fro, the second with a fault",
+           {"three devices that rotate back and forth, the second with a fault",
             "sensorchar simulate report/gyro_z.sensor.yaml --devices 3 --duration 10min --truth "
             "sine,amplitude=5,frequency_hz=0.01 --fault gyro_z2:bias=0.3@200..260 -o array.csv"}}};
 }

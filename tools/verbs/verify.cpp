@@ -99,7 +99,7 @@ void run_again(Session& session, const VerifyVerb& verb, const std::string& docu
   if (run.holds()) return;
   throw Refusal(ErrorKind::check, "E0520", document)
       .says("a second run gives other results")
-      .hint(run.same_program ? "the same program wrote it: look at its inputs and at --in"
+      .hint(run.same_program ? "the same program wrote it: check its inputs and --in"
                              : "another build wrote it, and its numbers differ beyond 8 digits");
 }
 
@@ -108,7 +108,7 @@ void run_verify(Session& session, const VerifyVerb& verb) {
     const std::vector<std::string> documents = detail::result_documents(verb.results);
     if (documents.size() != 1)
       throw usage_error("E0205", "--rerun")
-          .says("runs one document again, and here are several")
+          .says("repeats one document, and several were given")
           .got(std::to_string(documents.size()))
           .hint("name the document itself");
     return run_again(session, verb, documents[0]);
@@ -126,8 +126,8 @@ void run_verify(Session& session, const VerifyVerb& verb) {
       std::find_if(checks.begin(), checks.end(), [](const ResultCheck& check) { return !check.holds(); });
   if (broken != checks.end())
     throw Refusal(ErrorKind::check, "E0520", broken->document)
-        .says("what it was written with is changed or missing")
-        .hint("run it again; inputs that lie elsewhere are found with --in");
+        .says("an input or a result has changed or is missing")
+        .hint("run it again; --in finds inputs in another folder");
 }
 
 std::function<void()> verify_options(VerbOptions& options, Session& session) {
@@ -135,12 +135,9 @@ std::function<void()> verify_options(VerbOptions& options, Session& session) {
   options.add_text("RESULTS", verb->results, "folder that characterize or replay wrote, or its report")
       .required()
       .value_name("DIR|REPORT");
-  options
-      .add_text("--in", verb->inputs_in, "folder that the paths of inputs are meant from (default: the one you are in)")
+  options.add_text("--in", verb->inputs_in, "folder that input paths are relative to (default: the current one)")
       .value_name("FOLDER");
-  options
-      .add_text("--rerun", verb->again,
-                "run it again into this new folder, as the report's command says, and compare every number")
+  options.add_text("--rerun", verb->again, "repeat the report's command into this new folder and compare every number")
       .value_name("FOLDER");
   options.add_flag("--allow-read", verb->allow_read,
                    "allow the report's command to read files outside this folder (or --in) and the report's");

@@ -15,6 +15,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 
 namespace libchar {
@@ -244,7 +245,7 @@ std::string comparison_verdict(const CharacterizationComparison& c) {
     std::string said = group.sentence;
     for (const std::string& more : {group.terms_sentence, warning_words(group)})
       if (!more.empty()) said += (said.empty() || more[0] == ' ' ? "" : " ") + more;
-    if (said.empty()) said = "no term and no averaging time is known of two.";
+    if (said.empty()) said = "no term and no averaging time is known for two of them.";
     out += fmt::format("{}{}: {}", out.empty() ? "" : "\n", group.name, said);
   }
   return out.empty() ? "No channel is in both." : out;
@@ -272,7 +273,7 @@ class Remarks {
 };
 
 std::string band_text(const ReportedChannel& c) {
-  return c.band.whole ? "the whole spectrum" : fmt::format("up to {} Hz", number_text(c.band.top_hz, 3));
+  return c.band.whole ? "the whole spectrum" : fmt::format("up to {}", detail::frequency_text(c.band.top_hz, 3));
 }
 
 std::string unit_or_none(const std::string& unit) { return unit.empty() ? "no unit" : unit; }
@@ -367,14 +368,43 @@ void refuse_unlike(const std::vector<ReportedCharacterization>& sides, const std
     measured.push_back(fmt::format("{} of {} is in {}", c.name, side.name, unit_or_none(c.unit)));
   }
   throw input_error("E0976")
-      .says("no two channels measure the same: {}", fmt::join(measured, ", "))
-      .hint("two recordings of one quantity and axis at least; `units` says the unit where a log does not");
+      .says("no two channels measure the same quantity: {}", fmt::join(measured, ", "))
+      .hint(
+          "at least two recordings of one quantity and axis are needed; give `units` where a log does not state the "
+          "unit");
 }
 
-void add_limits(CharacterizationComparison& out, const NoiseLimits& limits) {
+/// Whether a name is that of a channel of the group on any side, or says what they measure.
+bool names_group(const std::string& name, const ComparedGroup& group) {
+  const auto is_named = [&](const std::string& channel) {
+    return name == channel || name == detail::usual_channel_name(channel, group.unit);
+  };
+  return name == group.name ||
+         std::any_of(group.candidates.begin(), group.candidates.end(), [&](const ComparedGroup::Candidate& one) {
+           return std::any_of(one.channels.begin(), one.channels.end(), is_named);
+         });
+}
+
+/// The limits with each channel under the name of its group; `some`: of those that are compared.
+NoiseLimits by_group(NoiseLimits limits, const std::vector<ComparedGroup>& groups, bool some) {
+  for (LimitBlock& block : limits.blocks) {
+    std::vector<std::string> names;
+    for (const std::string& name : block.channels) {
+      const auto group =
+          std::find_if(groups.begin(), groups.end(), [&](const ComparedGroup& one) { return names_group(name, one); });
+      if (group == groups.end() && some) continue;
+      const std::string& known = group == groups.end() ? name : group->name;
+      if (std::find(names.begin(), names.end(), known) == names.end()) names.push_back(known);
+    }
+    if (!names.empty()) block.channels = std::move(names);
+  }
+  return limits;
+}
+
+void add_limits(CharacterizationComparison& out, const NoiseLimits& limits, bool some) {
   std::vector<NamedChannel> named;
-  for (const ComparedGroup& group : out.groups) named.push_back({group.candidates[0].channels[0], group.unit});
-  for (const ChannelLimit& limit : limits_for(limits, named)) {
+  for (const ComparedGroup& group : out.groups) named.push_back({group.name, group.unit});
+  for (const ChannelLimit& limit : limits_for(by_group(limits, out.groups, some), named)) {
     ComparedGroup& group = out.groups[limit.channel];
     for (ComparedTerm& term : group.terms)
       if (term.term == limit.term) term.limit = limit.most;
@@ -407,7 +437,7 @@ CharacterizationComparison compare_characterizations(std::vector<ReportedCharact
   for (const ComparedGroup& group : out.groups) judgements += judgements_of(group);
   for (ComparedGroup& group : out.groups)
     judge(group, options.probability / static_cast<double>(std::max<std::size_t>(1, judgements)));
-  if (options.limits) add_limits(out, *options.limits);
+  if (options.limits) add_limits(out, *options.limits, !options.channels.empty());
   out.remarks = remarks_of(out.sides, pairs);
   out.known = known_of(out.sides, options.channels);
   out.verdict = comparison_verdict(out);

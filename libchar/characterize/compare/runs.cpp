@@ -49,7 +49,7 @@ void check_channels(const Characterization& first, const Characterization& run) 
           .says("channel {} is in {}, and in {} in {}: runs of one sensor have one unit", c.channel.name,
                 other->channel.unit.empty() ? "no unit" : other->channel.unit,
                 c.channel.unit.empty() ? "no unit" : c.channel.unit, first.log.file)
-          .hint("`units` says it where a log does not");
+          .hint("if a log does not state it, give `units`");
   }
   for (const ChannelResult& c : run.channels)
     if (find_channel(first, c.channel.name) == nullptr)
@@ -231,7 +231,8 @@ std::string consistency_sentence(const PooledChannel& c, std::span<const Charact
   const std::string named = files_of(c, runs);
   return fmt::format("The runs do not have one set of coefficients ({}); {}.", figures,
                      named.empty() ? "no run differs alone" : "not like the rest: " + named) +
-         (c.rest_alike ? " The coefficients are those of the rest." : " The common ones are a mean of unlike runs.");
+         (c.rest_alike ? " The coefficients are those of the rest."
+                       : " The common ones are a mean of runs that differ.");
 }
 
 std::string bias_sentence(const PooledChannel& c) {
@@ -242,8 +243,8 @@ std::string bias_sentence(const PooledChannel& c) {
                        number_text(b.spread, 3), unit, number_text(b.spread_ci95.low, 3),
                        number_text(b.spread_ci95.high, 3), number_text(b.mean), unit);
   return fmt::format(
-      "Turn-on bias: the means of the runs scatter no more than noise, slow noise that may not be seen in a run "
-      "included, lets expect ({}); its spread is at most {} {} (97.5 %).",
+      "Turn-on bias: the means of the runs scatter no more than noise, including slow noise that a run may not show, "
+      "explains ({}); its spread is at most {} {} (97.5 %).",
       probability_text(b.p), number_text(b.spread_ci95.high, 3), unit);
 }
 
@@ -321,7 +322,7 @@ void refuse_same_recording(std::span<const Characterization> runs) {
     for (std::size_t j = 0; j < i; ++j)
       if (!runs[i].log.sha256.empty() && runs[i].log.sha256 == runs[j].log.sha256)
         throw input_error("E0762", runs[i].log.file)
-            .says("is the same recording as {}: taken twice it would count as two", runs[j].log.file)
+            .says("is the same recording as {}: it would count twice", runs[j].log.file)
             .hint("leave one of them out");
 }
 

@@ -408,8 +408,8 @@ void Finish::doubt_unit(ChannelResult& result, double rate_hz) const {
     return doubt_frequency(result);
   if (!time && (known->quantity != Quantity::angle || !detail::names_angular_rate(result.channel.name))) return;
   const bool increments = !time && found_.difference_sd > found_.standard_deviation;
-  const char* const what = time ? "as the time error of a clock the samples are a phase, and no fractional frequency"
-                           : increments ? "the samples are increments of an angle, and no angular rate"
+  const char* const what = time ? "as the time error of a clock the samples are a phase, not a fractional frequency"
+                           : increments ? "the samples are increments of an angle, not an angular rate"
                                         : "the samples are an angle, and no angular rate";
   Finding integral = finding("integral_unit", fmt::format("The unit is {}: {}.", unit, what));
   Finding::Help& help = integral.help.emplace_back(
@@ -476,8 +476,8 @@ void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   const auto limit = white.status == Status::undetermined ? white_limit(walk, rate_hz) : white.upper95;
   if (!limit || *limit > kShare * *walk.value / (std::numbers::pi * rate_hz)) return;
   Finding integral = finding("looks_integrated",
-                             "The record is a random walk up to its fastest samples, without white noise: so is an "
-                             "angle, a velocity or a phase, and no rate.");
+                             "The record is a random walk up to its fastest samples, without white noise: this is "
+                             "typical of an angle, a velocity or a phase, not of a rate.");
   integral.help.push_back({"Where it is one, say so.", {{"data", "phase"}}});
   result.findings.push_back(std::move(integral));
 }

@@ -66,13 +66,12 @@ Answer answer_of(const ChannelResult& thermometer, const std::vector<ChannelResu
 
 void say(const TemperatureEffect& effect, ChannelResult& channel) {
   const std::string& unit = channel.channel.unit;
-  Finding found = finding(
-      "temperature_left_in",
-      fmt::format("It moves with the temperature {} of the same log, by {} {}/{} (2 ln L {}): what is said of its slow "
-                  "noise is about that.",
-                  effect.channel, number_text(effect.coefficient[0], 2), unit.empty() ? "U" : unit, effect.unit,
-                  brief_text(effect.gain, 2)),
-      "it moves with the temperature " + effect.channel);
+  Finding found = finding("temperature_left_in",
+                          fmt::format("It moves with the temperature {} of the same log, by {} {}/{} (2 ln L {}): "
+                                      "statements about its slow noise describe that.",
+                                      effect.channel, number_text(effect.coefficient[0], 2), unit.empty() ? "U" : unit,
+                                      effect.unit, brief_text(effect.gain, 2)),
+                          "it moves with the temperature " + effect.channel);
   found.help.push_back({"Take out what temperature does.", {{"temperature", effect.channel}}});
   channel.findings.push_back(std::move(found));
   Coefficient& walk = channel.fit->term[static_cast<std::size_t>(Term::walk)];

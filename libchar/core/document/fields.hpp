@@ -32,7 +32,7 @@ namespace libchar {
 struct Word {
   std::string_view word;
   int value = 0;
-  std::string_view comment = "";  ///< behind the word in YAML
+  std::string_view comment = "";  ///< after the word in YAML
 };
 
 /// The word of `value`, "" when there is none.
@@ -352,7 +352,7 @@ Row<T> tool_row() {
   return row;
 }
 
-/// An empty line in YAML, in front of whatever is written next.
+/// An empty line in YAML, before whatever is written next.
 template <class T>
 Row<T> empty_line() {
   return Field{""};

@@ -14,7 +14,7 @@ namespace libchar {
 using Json = nlohmann::ordered_json;
 
 /// Parses one JSON document strictly: no duplicate keys, no NaN or Infinity, numbers that fit a double, depth <= 64,
-/// valid UTF-8, nothing behind the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
+/// valid UTF-8, nothing after the document, at most 16 MiB. Throws Error(input) with FILE:LINE:COL (byte N).
 Json parse_json(std::string_view text, const std::string& file);
 
 namespace detail {

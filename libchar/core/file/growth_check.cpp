@@ -36,14 +36,13 @@ GrowthCheck parse_growth_check(std::string_view text, const GrowthWords& words) 
   std::string_view metric = text.substr(0, plus);
   if (const std::size_t colon = metric.rfind(':'); colon != std::string_view::npos) {
     out.label = metric.substr(0, colon);
-    if (out.label.empty())
-      refuse_check(text, fmt::format("no {} in front of the colon", words.labelled), words.example);
+    if (out.label.empty()) refuse_check(text, fmt::format("no {} before the colon", words.labelled), words.example);
     metric.remove_prefix(colon + 1);
   }
   out.metric = metric;
   if (std::find(words.metrics.begin(), words.metrics.end(), out.metric) != words.metrics.end()) return out;
   const auto near = nearest(metric, words.metrics);
-  refuse_check(text, fmt::format("expected {} in front of the plus sign", either(words.metrics)),
+  refuse_check(text, fmt::format("expected {} before the plus sign", either(words.metrics)),
                did_you_mean(near, words.example));
 }
 

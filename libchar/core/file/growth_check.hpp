@@ -1,5 +1,5 @@
 #pragma once
-// Checks such as a build server asks for: "rmse+5%", "gyro_x:white_noise+10%": a number may have grown by so much.
+// Checks such as a build server asks for: "rmse+5%", "gyro_x:white_noise+10%": how much a number may have grown.
 
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
 #pragma once
-// Long work reports how far it is and lets itself be stopped; the library never prints and never reads signals itself.
+// Long work reports its progress and lets itself be stopped; the library never prints and never reads signals itself.
 
 #include <string_view>
 

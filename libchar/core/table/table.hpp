@@ -83,7 +83,7 @@ struct Table {
   void add(std::vector<Cell> cells, Kind kind = Kind::plain);
   Column& column(std::string_view head);
   void drop(std::string_view head);
-  /// An empty cell behind the end of a row.
+  /// An empty cell after the end of a row.
   const Cell& cell(std::size_t row, std::size_t column) const;
   /// Where no row says anything, a column is left out; where all heads are empty, they are.
   bool says_anything(std::size_t column) const;

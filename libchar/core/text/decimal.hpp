@@ -13,7 +13,7 @@ std::string shortest(double value);
 /// As `shortest`, with a decimal point always present (`200.0`, `1.0e-05`): YAML 1.1 readers take `1e-05` for a string.
 std::string shortest_yaml(double value);
 
-/// To so many significant digits; what is not finite as it is.
+/// To this many significant digits; what is not finite as it is.
 double rounded(double value, int digits);
 
 /// The whole text as one finite double (std::from_chars rules: no leading '+' or blanks, no locale), else nothing.

@@ -18,7 +18,7 @@ std::string markdown_text(std::string_view text);
 bool begins_like_a_formula(std::string_view text);
 
 /// A text cell of a table that may be opened in a spreadsheet: quoted when needed (RFC 4180), and
-/// an apostrophe put in front of what would start a formula. For results: the
+/// an apostrophe put before what would start a formula. For results: the
 /// columns of a log keep their names, which must read back as they were.
 std::string csv_cell(std::string_view text);
 

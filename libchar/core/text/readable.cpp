@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libchar/core/text/shown.hpp"
+
 namespace libchar {
 namespace {
 
@@ -150,7 +152,7 @@ std::string bytes_text(const std::optional<std::uint64_t>& bytes) {
 
 std::string error_text(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "–";
-  return brief_text(value, 4) + (unit.empty() ? "" : " " + unit);
+  return brief_text(value, 4) + (unit.empty() ? "" : " " + detail::usual_unit(unit));
 }
 
 }  // namespace libchar

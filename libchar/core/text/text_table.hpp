@@ -21,7 +21,7 @@ std::string tinted(std::string_view word, Tint tint, bool colours);
 /// Characters, not bytes: "°" takes one place on a terminal, a colour none.
 std::size_t width_of(std::string_view text);
 
-/// The text broken between words into lines of at most `width` characters, `indent` in front of each and counted; a
+/// The text broken between words into lines of at most `width` characters, `indent` before each and counted; a
 /// word that is longer than a line is alone. No newline at the end.
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent = "");
 

@@ -54,7 +54,7 @@ double row_value(const ConsumerRow& row, double coefficient, const RowTimes& tim
 /// "rad/s^2/sqrt(Hz)" for "rad/s²/√Hz".
 std::string ascii_unit(std::string_view unit);
 
-/// The row's unit as its file says it.
+/// The row's unit as in its file.
 std::string file_unit(const ConsumerRow& row);
 
 }  // namespace libchar

@@ -109,20 +109,20 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
   for (const ChosenCurve& other : chosen) {
     if (other.curve->unit != first.curve->unit)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.name,
+          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.name,
                 first.curve->unit.empty() ? "1" : first.curve->unit, other.name,
                 other.curve->unit.empty() ? "1" : other.curve->unit)
           .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(first.curve->channel));
     if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
         other.curve->is_allan)
       throw input_error("E0976")
-          .says("curves in unlike units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
+          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
                 first.curve->value_unit, other.curve->statistic, other.curve->value_unit)
           .hint("a figure for each unit");
     const std::string &a = first.curve->statistic, &b = other.curve->statistic;
     if (!of_one_kind(a, b) && statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
       throw input_error("E0983")
-          .says("unlike curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
+          .says("different curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
           .hint("compute both in the same way");
   }
   if (chosen.size() > detail::kMostCurves)
@@ -376,6 +376,25 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
   return out;
 }
 
+namespace {
+
+/// All have one colour: one mark as it is called, several by their kinds ("5 × step, warm-up, quietest").
+std::string marks_name(const std::vector<SourceTrace::Mark>& marks) {
+  if (marks.size() == 1) return marks[0].label;
+  std::vector<std::pair<std::string, std::size_t>> kinds;
+  for (const SourceTrace::Mark& mark : marks) {
+    const std::string kind = mark.label.substr(0, mark.label.find(' '));
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == kind; });
+    known == kinds.end() ? void(kinds.emplace_back(kind, 1)) : void(++known->second);
+  }
+  std::string out;
+  for (const auto& [kind, count] : kinds)
+    out += (out.empty() ? "" : ", ") + (count > 1 ? fmt::format("{} × {}", count, kind) : kind);
+  return out;
+}
+
+}  // namespace
+
 Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const auto chosen = chosen_parts(sources, options, &FigureSource::traces, [](const SourceTrace&) { return true; });
   if (chosen.empty()) throw kind_refusal(sources[0], "trace").says("it holds no recording");
@@ -385,7 +404,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     const auto& [trace, name] = chosen[k];
     if (trace->unit != chosen[0].first->unit)
       throw input_error("E0976")
-          .says("records in unlike units do not share an axis: {} in {}, {} in {}", chosen[0].second,
+          .says("recordings in different units do not share an axis: {} in {}, {} in {}", chosen[0].second,
                 chosen[0].first->unit, name, trace->unit)
           .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(chosen[0].second));
     FigureSeries series;
@@ -399,7 +418,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     x.take(static_cast<double>(trace->low.size()) * trace->block_s);
     if (chosen.size() == 1)
       for (const SourceTrace::Mark& mark : trace->marks)
-        out.stretches.push_back({mark.from_s, mark.to_s, mark.label, Ink::orange});
+        out.stretches.push_back({mark.from_s, mark.to_s, marks_name(trace->marks), Ink::orange});
     out.series.push_back(std::move(series));
   }
   x.take(0.0);

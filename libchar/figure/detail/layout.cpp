@@ -26,16 +26,24 @@ struct Margins {
   double left = 0, right = 0, top = 0, bottom = 0;
 };
 
+/// Without its middle, if it is too wide: names that begin alike end differently.
 std::string shortened(const std::string& name, double width) {
   if (text_width(text_runs(name), kTickSize) <= width) return name;
-  std::string out = name;
-  while (out.size() > 1 && text_width(text_runs(out + "…"), kTickSize) > width) {
-    out.pop_back();
-    // not in the middle of a character
-    while (out.size() > 1 && (static_cast<unsigned char>(out.back()) & 0xC0U) == 0x80U) out.pop_back();
-    if (static_cast<unsigned char>(out.back()) >= 0xC0U) out.pop_back();
-  }
-  return out + "…";
+  const auto begins_letter = [&](std::size_t at) {
+    return at >= name.size() || (static_cast<unsigned char>(name[at]) & 0xC0U) != 0x80U;
+  };
+  std::size_t head = name.size() / 2, tail = head;
+  const auto text = [&] { return name.substr(0, head) + "…" + name.substr(tail); };
+  const auto trim = [&](bool from_head) {
+    if (from_head && head > 0) --head;
+    if (!from_head && tail < name.size()) ++tail;
+    while (head > 0 && !begins_letter(head)) --head;
+    while (!begins_letter(tail)) ++tail;
+  };
+  trim(true);
+  while (head + name.size() - tail > 4 && text_width(text_runs(text()), kTickSize) > width)
+    trim(head >= name.size() - tail);
+  return text();
 }
 
 struct Axes {

@@ -30,6 +30,7 @@
 #include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/curve/curve_likelihood.hpp"
 #include "libchar/fit/detail/curve/profile.hpp"
@@ -405,8 +406,8 @@ void report_left_out(const DigitisedCurve& curve, std::size_t left_out, NoiseFit
                           curve.is_allan
                               ? fmt::format("coefficients from averaging times of {} on, {} of {} points left out",
                                             duration_text(edge), left_out, curve.x.size())
-                              : fmt::format("coefficients from below {} Hz, {} of {} points left out",
-                                            brief_text(edge, 4), left_out, curve.x.size()),
+                              : fmt::format("coefficients from below {}, {} of {} points left out",
+                                            detail::frequency_text(edge, 4), left_out, curve.x.size()),
                           left_out});
 }
 
@@ -511,7 +512,7 @@ NoiseFit fit_in_range(const DigitisedCurve& curve, const FitOptions& options) {
     if (term.value) term.status = Status::misfit;
   misfit.findings.push_back(finding("misfit",
                                     "The noise terms do not describe this curve, nor half of its points, within its "
-                                    "uncertainty: no coefficient is borne out.",
+                                    "uncertainty: the data support no coefficient.",
                                     "the noise terms do not describe the curve"));
   return misfit;
 }

@@ -34,7 +34,7 @@ struct PowerSums {
   std::array<PooledSums, 4> pieces;  ///< of 16384, 8192, 4096 and 2048 samples
   MeanPowers means;                  ///< of what is settled
   std::vector<PowerRun> runs;
-  std::vector<double> tail;  ///< samples behind the last block of the record's last part
+  std::vector<double> tail;  ///< samples after the last block of the record's last part
 };
 
 /// One part of a record: in blocks of `kBlock`, whose squares a stage that transforms them anyway may add up.
@@ -46,7 +46,7 @@ class PowerPart final : public BlockTaker {
   void push(std::span<const double> samples) override;
   bool take_block(std::span<const double> samples) override;
   void take_power(std::vector<double> power) override;
-  /// `last`: no part follows, so that what is left behind its last block is the record's tail. The object is done.
+  /// `last`: no part follows, so that what is left after its last block is the record's tail. The object is done.
   PowerSums finish(bool last);
 
  private:
@@ -58,7 +58,7 @@ class PowerPart final : public BlockTaker {
 void join(PowerSums& sums, PowerSums later);
 
 /// The series of means of a part of 2^29 samples becomes powers of its blocks and a slow series: nothing grows with a
-/// record but one value for 2^18 samples. `samples_before`: in front of the part, present or missing; a gap inside it
+/// record but one value for 2^18 samples. `samples_before`: before the part, present or missing; a gap inside it
 /// that is longer than a hundredth of those ends a segment.
 void settle_means(PowerSums& sums, std::uint64_t samples_before);
 

@@ -11,6 +11,8 @@
 #include "libchar/core/numeric/present.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
+#include "libchar/core/units.hpp"
 
 namespace libchar {
 
@@ -59,8 +61,8 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
 
 std::string event_sentence(const Event& event, std::string_view unit) {
   const double relative = event.sd / std::max(std::abs(event.size), 1e-300);
-  const std::string size = fmt::format("{} ± {}{}{}", number_text(event.size, digits_for(relative)),
-                                       number_text(kNormal95 * event.sd, 2), unit.empty() ? "" : " ", unit);
+  const std::string size = fmt::format("{}{}{}", detail::plus_minus_text(event.size, kNormal95 * event.sd),
+                                       unit.empty() ? "" : " ", detail::usual_unit(std::string(unit)));
   std::string text;
   if (event.kind == EventKind::step)
     text = event.in_gap ? fmt::format("A step of {} while nothing was recorded, between {} and {} s", size,

@@ -77,7 +77,7 @@ std::vector<Pause> leave_out_pauses(EventSeries& series);
 /// The instant of the record.
 double with_pauses(std::span<const Pause> pauses, double at_s);
 
-/// Means of so many points each, without what was unseen.
+/// Means of this many points each, without what was unseen.
 EventSeries means_of(const EventSeries& series, std::size_t each);
 
 }  // namespace detail

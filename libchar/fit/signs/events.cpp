@@ -475,7 +475,7 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
     const Telegraph& telegraph = *found.telegraph;
     found.findings.push_back(finding(
         "events_left_in", fmt::format("The record jumps between two levels about {}{}{} apart, {} times at least: "
-                                      "random telegraph noise. What is said of slow noise is about these jumps.",
+                                      "random telegraph noise. Statements about slow noise describe these jumps.",
                                       number_text(telegraph.size, digits_for(telegraph.sd / telegraph.size)),
                                       unit.empty() ? "" : " ", unit, telegraph.jumps)));
   } else if (found.more) {
@@ -483,9 +483,8 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
         longest_without_steps(found.events, search.series.start_s,
                               search.instant(search.series.start_s + duration_s) - search.series.start_s);
     Finding many = finding("events_left_in",
-                           fmt::format("There are more than {} steps and drifts: the sensor was moved or shaken; "
-                                       "they were not removed. "
-                                       "The longest stretch without a step that was found is from {} to {} s.",
+                           fmt::format("There are more than {} steps and drifts: the sensor was moved or shaken; they "
+                                       "were not removed. The longest stretch found without a step is from {} to {} s.",
                                        search.options.most, place_text(quiet.low), place_text(quiet.high)));
     many.help.push_back({"Use the longest stretch without a step.",
                          {{"from_s", place_text(quiet.low)}, {"to_s", place_text(quiet.high)}}});
@@ -495,13 +494,11 @@ void judge_many(const Search& search, const Hypothesis& now, std::string_view un
 
 Finding slow_cycle_finding(const Event& event, std::string_view unit) {
   const double frequency_hz = 1 / event.period_s;
-  Finding found = finding(
-      "cycle",
-      fmt::format(
-          "{} It was taken out before the noise was fitted: the recording holds too little of it to say more of "
-          "it, and a random walk looks like it in a shorter one.",
-          event_sentence(event, unit)),
-      "a slow cycle was taken out");
+  Finding found = finding("cycle",
+                          fmt::format("{} It was removed before the noise was fitted: the recording contains too "
+                                      "little of it to identify it, and a random walk looks like it in a shorter one.",
+                                      event_sentence(event, unit)),
+                          "a slow cycle was taken out");
   found.where.frequency_hz.push_back({frequency_hz, frequency_hz});
   return found;
 }

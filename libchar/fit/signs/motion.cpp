@@ -303,9 +303,9 @@ std::string change_sentence(const StrengthChange& change) {
 
 void describe(Motion& motion, double duration_s) {
   if (motion.whole) {
-    motion.findings.push_back(finding("moves_throughout",
-                                      "What is recorded changes throughout (motion, where the sensor is an inertial "
-                                      "one): it is a signal and no noise."));
+    motion.findings.push_back(
+        finding("moves_throughout",
+                "The recording changes throughout (motion, if the sensor is inertial): it is a signal, not noise."));
     return;
   }
   if (!motion.moving_s.empty()) {

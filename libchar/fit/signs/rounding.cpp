@@ -58,11 +58,11 @@ void say_rounding(const DigitalFaults::Rounding& rounding, double before, const 
   const std::string step = brief_text(rounding.step);
   if (!white.value)
     findings.push_back(finding(
-        "rounding_in_n", fmt::format("White noise is no more than rounding to {} gives: N has a limit only.", step)));
+        "rounding_in_n", fmt::format("White noise does not exceed that of rounding to {}: N has only a limit.", step)));
   else if (before / *white.value - 1 > kNoticeable * white.relative_sd)
     findings.push_back(finding(
         "rounding_in_n",
-        fmt::format("Rounding to {} adds {} to the white noise of the samples: N is that of the sensor in front of it.",
+        fmt::format("Rounding to {} adds {} to the white noise of the samples: N is the sensor's, before rounding.",
                     step, percent_text(before / *white.value - 1)),
         "the noise of rounding was taken out of N"));
 }

@@ -223,8 +223,8 @@ std::string spike_sentence(const SpikeCount& count) {
           percent_text(static_cast<double>(count.left_out) / static_cast<double>(count.samples)));
     case SpikeVerdict::heavy_tails:
       return fmt::format(
-          "{} sample{} beyond six standard deviations, like the tails of heavy-tailed noise, or a signal that jumps: "
-          "not taken for spikes, and kept.",
+          "{} sample{} beyond six standard deviations, as in heavy-tailed noise or a signal that jumps: not treated as "
+          "spikes, and kept.",
           count.left_out, count.left_out == 1 ? "" : "s");
     default:
       return "";

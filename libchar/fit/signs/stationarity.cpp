@@ -252,13 +252,14 @@ std::string sentence_of(const Stationarity& found, double limit) {
     last = s.tau_s;
   }
   return fmt::format(
-      "The noise is not the same throughout: at an averaging time of {} the Allan deviation of stretches of {} differs "
-      "by {} % (1 sd) beyond chance, from {} of the whole record's at {} to {} s to {} at {} to {} s{}. Another "
-      "recording may differ as much.",
+      "The noise is not the same throughout: at an averaging time of {}, the Allan deviations of {} stretches vary by "
+      "{} % (1 sd) more than chance explains, from {} times that of the whole recording ({} to {} s) to {} times ({} "
+      "to {} s){}. "
+      "Another recording may differ as much.",
       duration_text(found.clearest_tau_s), duration_text(found.stretch_s), number_text(100 * there, 2),
       number_text(found.smallest, 3), place_text(found.smallest_s.low), place_text(found.smallest_s.high),
       number_text(found.largest, 3), place_text(found.largest_s.low), place_text(found.largest_s.high),
-      last > first ? fmt::format("; so it does at other averaging times between {} and {}", duration_text(first),
+      last > first ? fmt::format("; the same at other averaging times between {} and {}", duration_text(first),
                                  duration_text(last))
                    : "");
 }

@@ -118,7 +118,7 @@ TemperatureSeries temperature_series(const TemperatureRecord& temperature, const
         "the temperature {} has {} values where the channel has samples; at least {} are needed", temperature.name,
         present, kFewestTemperatures);
   if (!(out.range.low < out.range.high))
-    throw numeric_error("E0703").says("the temperature {} is constant, {} throughout: what it does cannot be seen",
+    throw numeric_error("E0703").says("the temperature {} is constant, {} throughout: its effect cannot be seen",
                                       temperature.name, brief_text(out.range.low, 6));
   bridge_temperature(out.value, temperature.name, series.step_s);
   centre(out);

@@ -20,7 +20,7 @@ std::vector<OutputFile> parallel_files(const std::vector<FleetJob>& jobs, const 
   std::string first, joins;
   for (const FleetJob& job : jobs) (job.after.empty() ? first : joins) += job.name + "\n";
   std::string script =
-      "#!/bin/sh\n# Runs the jobs of a fleet on this machine; words behind the script's name go to parallel "
+      "#!/bin/sh\n# Runs the jobs of a fleet on this machine; words after the script's name go to parallel "
       "(--sshlogin …: this folder and the\n# logs have the same paths there).\ncd \"$(dirname \"$0\")\" || exit\n";
   std::vector<OutputFile> files;
   const auto add = [&](const std::string& names, const char* list) {

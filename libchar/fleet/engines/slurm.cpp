@@ -65,7 +65,7 @@ std::vector<OutputFile> slurm_files(const std::vector<FleetJob>& jobs, const fs:
   for (const FleetJob& job : jobs) (job.after.empty() ? first : joins).push_back(job);
   std::vector<OutputFile> files;
   std::string script =
-      "#!/bin/sh\n# Submits the jobs of a fleet; words behind the script's name go to sbatch (--partition=…, "
+      "#!/bin/sh\n# Submits the jobs of a fleet; words after the script's name go to sbatch (--partition=…, "
       "--account=…).\nset -e\ncd \"$(dirname \"$0\")\"\nids=\n";
   std::size_t number = 0;
   const auto add = [&](const std::vector<FleetJob>& some, bool after) {

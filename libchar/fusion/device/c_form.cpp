@@ -68,7 +68,7 @@ class Maker {
     const Settings& settings = *choice_.settings;
     for (const Option& option : settings.table())
       if (option.name == "fault_detection" && choice_.algorithm != "minque" && settings["fault_detection"] != 0)
-        throw no_form(choice_, " with fault detection in front of it");
+        throw no_form(choice_, " with fault detection before it");
     if (choice_.algorithm == "mean") return weighted(true);
     if (choice_.algorithm == "inverse-variance") return weighted(false);
     if (choice_.algorithm == "minque") return minque();

@@ -125,13 +125,13 @@ Packing packing_of(std::uint64_t method, std::uint64_t flags, std::string& why_n
 // The data stand behind the local header, whose extra field has a length of its own.
 std::uint64_t data_of(const BinaryFile& file, const ZipMember& member, std::uint64_t local) {
   if (local > file.size() || file.size() - local < kLocalBytes)
-    throw zip_refusal(file, local).says("has a member that begins behind its end");
+    throw zip_refusal(file, local).says("has a member that begins after its end");
   const std::string header = text_at(file, local, kLocalBytes);
   if (!header.starts_with(kLocalMagic))
     throw zip_refusal(file, local).says("has no member {} where its directory says", printable(member.name));
   const std::uint64_t data = local + kLocalBytes + Bytes(header).u16(26) + Bytes(header).u16(28);
   if (data > file.size() || member.stretch.packed_bytes > file.size() - data)
-    throw zip_refusal(file, local).says("has a member {} that ends behind its end", printable(member.name));
+    throw zip_refusal(file, local).says("has a member {} that ends after its end", printable(member.name));
   return data;
 }
 

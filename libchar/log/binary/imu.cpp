@@ -117,7 +117,7 @@ BinaryLayout layout_of(const BinaryFile& file, const Preset& preset, double rate
                               rate * (c < 3 ? preset.gyro_rad : preset.accel_m_s),
                               0});
   if (const std::uint64_t rest = file.size() % record; rest > 0)
-    layout.warnings.add("trailing_bytes", "bytes behind the last whole record were left out",
+    layout.warnings.add("trailing_bytes", "bytes after the last whole record were left out",
                         fmt::format("byte {}", layout.data_bytes), rest);
   return layout;
 }

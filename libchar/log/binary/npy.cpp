@@ -47,7 +47,7 @@ void check_size(const NpyHeader& header, std::uint64_t values, std::uint64_t nee
         .hint("copy it again, or cut the shape to what is there");
   }
   if (present > needed)
-    warnings.add("trailing_bytes", "bytes behind the array were left out",
+    warnings.add("trailing_bytes", "bytes after the array were left out",
                  fmt::format("byte {}", header.data_byte + needed), present - needed);
 }
 

@@ -16,7 +16,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
   const std::string& path = file.path();
   if (sidecar.offset > file.size())
     throw input_error("E0422", fmt::format("{} (byte {})", path, file.size()))
-        .says("the offset of {} bytes lies behind the end of the file ({} bytes)", sidecar.offset, file.size());
+        .says("the offset of {} bytes lies after the end of the file ({} bytes)", sidecar.offset, file.size());
   const std::uint64_t present = file.size() - sidecar.offset;
   const std::uint64_t record = sidecar.channels.size() * size_of(sidecar.number.type);
   const std::uint64_t whole = present / record;
@@ -37,7 +37,7 @@ std::uint64_t count_rows(const Sidecar& sidecar, const BinaryFile& file, Finding
         .says("{} bytes are not a whole number of rows of {} bytes, so the planes cannot be found", present, record)
         .hint("give rows in the sidecar");
   if (present > needed)
-    warnings.add("trailing_bytes", "bytes behind the last row were left out",
+    warnings.add("trailing_bytes", "bytes after the last row were left out",
                  fmt::format("byte {}", sidecar.offset + needed), present - needed);
   return rows;
 }

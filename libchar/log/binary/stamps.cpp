@@ -31,7 +31,7 @@ std::optional<WholeStamps> whole_stamps(const StampFormat& format) {
   throw input_error("E0314", std::move(where))
       .says("a time stamp does not fit 64-bit nanoseconds")
       .got(shortest(got))
-      .hint("is the time unit right? `time_unit` says it");
+      .hint("is the time unit right? `time_unit` sets it");
 }
 
 void read_whole_stamps(const std::byte* first, std::size_t stride, const StampFormat& format, const WholeStamps& line,

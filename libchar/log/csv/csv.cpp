@@ -167,7 +167,7 @@ class CsvSource final : public RowSource {
     add(warnings, "bad_row", "rows that cannot be read: left out, or missing where there are no stamps", odd_.bad);
     add(warnings, "blank_line", "blank lines skipped", odd_.blank);
     add(warnings, "comment_line", "comment lines between the rows skipped", odd_.comment);
-    add(warnings, "footer_line", "lines of words behind the last row left out", odd_.footers);
+    add(warnings, "footer_line", "lines of words after the last row left out", odd_.footers);
     add(warnings, "repeated_header", "repeated header lines skipped", odd_.repeated);
     add(warnings, "mixed_line_ends", "line ends of another kind than the first, accepted", odd_.mixed_end);
     add(warnings, "infinite_value", kInfiniteValues, odd_.infinite);

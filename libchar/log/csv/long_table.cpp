@@ -242,7 +242,7 @@ void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, D
   if (dialect.cycles && dialect.time.column >= 0) say_apart(dialect.groups, turns_of(rows, dialect), info.warnings);
   if (n > 1 && changes < n && rows.size() > 2 * n)
     throw usage_error("E0328", info.file)
-        .says("the rows of one kind come behind those of another, and are not side by side: " +
+        .says("the rows of one kind come after those of another, and are not side by side: " +
               first_names(dialect.groups))
         .hint("`where` {}={} reads one of them", options.kinds.group_by, dialect.groups[0]);
 }

@@ -144,7 +144,7 @@ class FromSigns final : public CleanedLines {
            : signs_.checksums ? "lines with a checksum"
            : signs_.boxes     ? "tables drawn in boxes"
            : signs_.exponents ? "exponents of Fortran"
-           : signs_.weekdays  ? "days of the week in front of dates"
+           : signs_.weekdays  ? "days of the week before dates"
            : signs_.listed    ? "samples that follow each other in a line"
                               : "blanks of typesetting";
   }

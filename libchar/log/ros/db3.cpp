@@ -29,7 +29,7 @@ constexpr std::uint64_t kSqliteHeader = 100;
 
 #if LIBCHAR_HAVE_SQLITE
 
-constexpr const char* kDamaged = "the database is cut or damaged: messages in front of the damage were read";
+constexpr const char* kDamaged = "the database is cut or damaged: messages before the damage were read";
 
 class Database {
  public:
@@ -141,7 +141,7 @@ class Db3Reader final : public MessageTopics {
       message.data = plain(query_->bytes(2), unpacked_);
       return true;
     }
-    if (query_->damaged()) warnings.add("cut_end", kDamaged, fmt::format("behind row {}: {}", seen_, query_->why()));
+    if (query_->damaged()) warnings.add("cut_end", kDamaged, fmt::format("after row {}: {}", seen_, query_->why()));
     ended_ = true;
     return false;
   }
@@ -207,8 +207,8 @@ class Db3Reader final : public MessageTopics {
     if (bytes_ < said)
       found_early().add(
           "cut_end",
-          fmt::format("the database ends at byte {} of {} (a copy that was cut): messages in front of that are read",
-                      bytes_, said));
+          fmt::format("the database ends at byte {} of {} (a copy that was cut): messages before that are read", bytes_,
+                      said));
   }
 
   void read_definitions() {

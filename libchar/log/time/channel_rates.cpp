@@ -11,6 +11,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 
 namespace libchar {
@@ -40,8 +41,8 @@ class RatedRows final : public RowSource {
     std::string said;
     for (std::size_t c = 0; c < rates_hz.size(); ++c) {
       channels_.push_back({rates_hz[c]});
-      said +=
-          fmt::format("{}{} {} Hz", c == 0 ? "" : ", ", printable(info_.channels[c].name), brief_text(rates_hz[c], 6));
+      said += fmt::format("{}{} {}", c == 0 ? "" : ", ", printable(info_.channels[c].name),
+                          detail::frequency_text(rates_hz[c], 6));
     }
     info_.dialect.push_back("rates as stated: " + said);
     info_.time.column = "rates of the channels";

@@ -9,6 +9,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
@@ -173,20 +174,20 @@ void TimeGrid::say_pattern(const StampModel& found) {
                                 shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::packets:
-      warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at {} Hz, rows "
+      warnings_.add("packets", fmt::format("the stamps are those of packets: rows are spaced evenly at {}, rows "
                                            "over time (`rate_hz` {}, the rate inside a packet, takes the rest as gaps)",
-                                           brief_text(span_hz, 5), shortest(rounded(step_hz, 5))));
+                                           detail::frequency_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::uneven:
       warnings_.add("uneven_stamps", fmt::format("the stamps take turns in steps of unlike length and keep to one "
-                                                 "line: rows are spaced evenly at {} Hz, rows over time",
-                                                 brief_text(span_hz, 5)));
+                                                 "line: rows are spaced evenly at {}, rows over time",
+                                                 detail::frequency_text(span_hz, 5)));
       return;
     case StampPattern::disputed:
       fail(pending_.front(), 0, "E0324",
-           fmt::format("two sampling rates: most stamps follow each other at {} Hz, rows over time give {} Hz, and "
+           fmt::format("two sampling rates: most stamps follow each other at {}, rows over time give {}, and "
                        "gaps do not explain it",
-                       brief_text(step_hz, 5), brief_text(span_hz, 5)),
+                       detail::frequency_text(step_hz, 5), detail::frequency_text(span_hz, 5)),
            fmt::format("`rate_hz` {} or `rate_hz` {} decides", shortest(rounded(step_hz, 5)),
                        shortest(rounded(span_hz, 5))));
   }

@@ -106,7 +106,7 @@ std::int64_t TimeGrid::checked(const Pending& front, std::size_t row, std::int64
     fail(front, row, "E0314",
          fmt::format("a time stamp of {} s; those within 146 years (2^62 ns) of zero are read",
                      shortest(static_cast<double>(stamp) * 1e-9)),
-         "is the time unit right? `time_unit` says it");
+         "is the time unit right? `time_unit` sets it");
   if (last_.any && (stamp - last_.first > kMostNs || stamp - last_.first < -kMostNs))
     fail(front, row, "E0316",
          fmt::format("wild time stamp: {} s away from the first",
@@ -131,7 +131,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     if (step_.coarse) return Verdict::keep;
     if (rows_go_on(front, row, ahead)) {
       warnings_.add("held_stamp",
-                    "rows with the stamp of the row before, and those behind them in time: they keep their place",
+                    "rows repeat the previous stamp, and the rows after them are on time: they keep their place",
                     place(front, row));
       return Verdict::keep;
     }
@@ -176,7 +176,7 @@ TimeGrid::Verdict TimeGrid::place_late_row(const Pending& front, std::size_t row
   const double late = static_cast<double>(stamp - last_.stamp) + recent_.rows.last_late(step_.ns) - passed;
   if (late > kWildSteps * step_.ns) return drop_wild(front, row);
   if (late <= 2 * step_.ns) return Verdict::keep;
-  warnings_.add("late_stamp", "stamps far ahead of the rows behind them: the rows are placed on the grid",
+  warnings_.add("late_stamp", "stamps far ahead of the rows after them: the rows are placed on the grid",
                 place(front, row));
   stamp = place_behind(gap);
   return Verdict::keep;

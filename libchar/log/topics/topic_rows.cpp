@@ -170,7 +170,7 @@ std::size_t topic_of_channels(const std::vector<LogTopic>& topics, const ReadOpt
     if (!why.empty()) hint = way_to_read(topics.front());
   } else if (losses.empty()) {
     what = "holds no messages and no arrays";
-    hint = "if it should hold some, it was cut behind its beginning: copy it again";
+    hint = "if it should hold some, it was cut after its beginning: copy it again";
   } else {
     what = "holds no whole message";
   }

@@ -79,7 +79,7 @@ struct GroupLimit {
 std::vector<GroupLimit> group_limits(const std::vector<LotGroup>& groups, const std::vector<std::string>& types,
                                      const std::map<std::string, NoiseLimits>& limits);
 
-/// A member that fails: its recording and how far it is above.
+/// A member that fails: its recording and its progress above.
 struct LimitFailure {
   std::uint32_t member = 0;
   LotPlace place;

@@ -1,5 +1,5 @@
 #pragma once
-// Says which pass of several it is; the source knows how far it is.
+// Says which pass of several it is; the source knows its progress.
 
 #include <string>
 #include <string_view>

@@ -302,7 +302,7 @@ void SceneSource::scan(Progress& progress) {
   if (!(log.time.rate_hz > 0))
     throw input_error("E0901", scene_->file)
         .says("the recording {} states no sampling rate", scene_->recording)
-        .hint(scene_->file == scene_->recording ? "`rate_hz` RATE says it" : "recording: {file: …, rate_hz: …}");
+        .hint(scene_->file == scene_->recording ? "give `rate_hz` RATE" : "recording: {file: …, rate_hz: …}");
   note_copies(first.copies);
   info_.logs.push_back(std::move(log));
   if (first.keeps) kept_ = std::move(first.kept);

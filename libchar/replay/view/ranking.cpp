@@ -141,14 +141,14 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
       return a.ran && !a.bound && !std::isfinite(a.rmse);
     });
     if (others == 0) return "No other method has a score.";
-    return fmt::format(
-        "Every other method{} is worse, by more than one per cent, and the record is long enough to tell.",
-        unscored ? " with a score" : "");
+    return fmt::format("Every other method{} is worse by more than 1 %, and the recording is long enough to show it.",
+                       unscored ? " with a score" : "");
   }
   const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
   equals.resize(equals.size() - more);
   if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out = fmt::format("Within 1 % of it, or not distinguished from it by this record: {}.", list_of(equals));
+  std::string out =
+      fmt::format("Within 1 % of it, or not distinguished from it by this recording: {}.", list_of(equals));
   const AlgorithmResult* cheap = cheapest_equal(r);
   if (costs && cheap != nullptr && cheap->label != best.label && cheap->ns_per_sample < 0.8 * best.ns_per_sample)
     out += fmt::format(" Of these {} is the cheapest, {} per sample.", cheap->label,
@@ -198,13 +198,13 @@ std::string taught_sentence(const ReplayResult& r) {
     else
       idle.push_back(trial.term);
   }
-  std::string out =
-      fmt::format("{} taught ({} to {}). One half of it judged by the other: the mean {}, learnt weights {}",
-                  r.scene.learning ? "The learning window" : "The first half of the recording",
-                  duration_text(r.learning->from_s), duration_text(r.learning->to_s),
-                  error_text(trials[0].of_mean, r.inputs[0].unit), error_text(trials[0].rmse, r.inputs[0].unit));
-  if (!kept.empty()) out += fmt::format("; taken out of the sensors in turn: {}", list_of(kept));
-  if (!idle.empty()) out += fmt::format("; not worth it: {}", list_of(idle));
+  std::string out = fmt::format(
+      "{} ({} to {}) was used for learning. RMSE there, each half judged by the other: mean {}, learnt weights {}",
+      r.scene.learning ? "The learning window" : "The first half of the recording", duration_text(r.learning->from_s),
+      duration_text(r.learning->to_s), error_text(trials[0].of_mean, r.inputs[0].unit),
+      error_text(trials[0].rmse, r.inputs[0].unit));
+  if (!kept.empty()) out += fmt::format("; after correcting the sensors, in turn: {}", list_of(kept));
+  if (!idle.empty()) out += fmt::format("; without benefit: {}", list_of(idle));
   return out + "." + largest_parts(r);
 }
 
@@ -212,7 +212,7 @@ std::string bounds_sentence(const ReplayResult& r) {
   std::vector<std::string> bounds;
   for (const AlgorithmResult* a : ranked(r))
     if (a->bound && std::isfinite(a->rmse)) bounds.push_back(a->label + " " + error_text(a->rmse, r.inputs[0].unit));
-  return bounds.empty() ? "" : "For comparison, bounds that look at the reference of the run: " + list_of(bounds) + ".";
+  return bounds.empty() ? "" : "For comparison, bounds that use the reference of the run: " + list_of(bounds) + ".";
 }
 
 /// Whether the array is worth more than its best sensor.
@@ -265,9 +265,8 @@ std::string offsets_sentence(const ReplayResult& r) {
 // Why no score decides, and what does.
 std::vector<std::string> robust_sentences(const ReplayResult& r, bool costs) {
   const AlgorithmResult& best = r.algorithms[*r.best];
-  std::vector<std::string> out = {
-      fmt::format("Use {}: a sensor that fails or reads otherwise does not lead it astray{}.", best.label,
-                  costs ? costs_of(best) : "")};
+  std::vector<std::string> out = {fmt::format("Use {}: a failing or deviating sensor does not mislead it{}.",
+                                              best.label, costs ? costs_of(best) : "")};
   if (r.offsets_decide) {
     out.push_back("Scores do not decide: " + offsets_sentence(r));
     return out;
@@ -287,7 +286,8 @@ std::string level_sentence(const ReplayResult& r) {
   if (!r.level_sd) return "";
   const std::string reach = error_text(kNormal95 * *r.level_sd, r.inputs[0].unit);
   if (std::all_of(r.sensors.begin(), r.sensors.end(), [](const SensorResult& s) { return s.offset == 0; }))
-    return fmt::format("The level is known to ± {} (95 %), by what the means of the sensors differ.", reach);
+    return fmt::format("The level is known to ± {} (95 %), from the differences between the means of the sensors.",
+                       reach);
   std::vector<std::string> apart;
   const SensorResult* furthest = &r.sensors[0];
   for (const SensorResult& sensor : r.sensors) {
@@ -384,7 +384,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
     if (!sentence.empty()) out.push_back(sentence);
   };
   if (const auto bad = worst_finding(r); bad && bad->severity == Severity::bad)
-    out.insert(out.begin(), fmt::format("Mend the samples first ({}): these figures are of them as they are.",
+    out.insert(out.begin(), fmt::format("Repair the samples first ({}): these figures describe them as they are.",
                                         find_finding_kind(bad->code)->title));
   SensorSentence single = sensor_sentence(r);
   if (single.against_fusion)
@@ -403,7 +403,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   if (r.has_reference)
     add(bounds_sentence(r));
   else
-    add("Without a reference nobody sees the errors that all sensors share.");
+    add("Without a reference, errors that all sensors share are invisible.");
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A replay as its reports show it, computed once: the first, the fronts, who was skipped and why, which sentences say
-// it, tracks short enough for a page. HTML, JSON, Markdown and terminal only print it.
+// A replay as its reports show it, computed once: the first, the fronts, who was skipped and why, and in which
+// sentences, tracks short enough for a page. HTML, JSON, Markdown and terminal only print it.
 
 #include <cstdint>
 #include <optional>

@@ -6,9 +6,10 @@
 #include <cctype>
 #include <cmath>
 
-#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/replay/detail/plan/preparation.hpp"
 
 namespace libchar {
@@ -53,9 +54,7 @@ constexpr std::string_view kPartNames[] = {"offset", "gain", "cross", "delay", "
 // "0.31 ± 0.02": the digits that the error leaves.
 Cell with_error(double value, double error, double scale = 1) {
   if (!std::isfinite(error)) return Cell::shown(value == 0 ? "–" : brief_text(scale * value, 3), value);
-  const double size = scale * error;
-  const int decimals = size > 0 ? 1 - clamped_whole(std::floor(std::log10(size)), -8, 1) : 3;
-  return Cell::shown(fmt::format("{:.{}f} ± {:.{}f}", scale * value, decimals, size, decimals), value);
+  return Cell::shown(detail::plus_minus_text(scale * value, scale * error), value);
 }
 
 std::string share_text(const fusion::PartShare& part) {
@@ -65,7 +64,8 @@ std::string share_text(const fusion::PartShare& part) {
 }
 
 std::string with_unit_of(const ReplayResult& r, const char* head) {
-  return r.inputs[0].unit.empty() ? head : fmt::format("{}, {}", head, r.inputs[0].unit);
+  const std::string unit = detail::usual_unit(r.inputs[0].unit);
+  return unit.empty() ? head : fmt::format("{}, {}", head, unit);
 }
 
 Table learnt_table(const ReplayResult& r, const AlignmentResult& a) {
@@ -95,9 +95,9 @@ Table budget_table(const ReplayResult& r, const AlignmentResult& a) {
     out.add(std::move(row));
   }
   if (a.budget.instants < 1) return out;
-  std::vector<Cell> all = {"fused, were it gone", ""};
+  std::vector<Cell> all = {"fused, without this part", ""};
   for (const double saving : a.budget.savings)
-    all.push_back(Cell::shown(fmt::format("{:+.1f} %", -100 * saving), saving));
+    all.push_back(Cell::shown(std::abs(saving) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", -100 * saving), saving));
   out.add(std::move(all));
   return out;
 }
@@ -111,8 +111,9 @@ std::string how(const AlignmentResult& a) {
 }
 
 std::string effect(const ReplayResult& r, const AlignmentResult& a) {
-  if (!(a.budget.before > 0)) return "Too few instants of the evaluation have samples of all sensors: no error budget.";
-  const std::string unit = r.inputs[0].unit.empty() ? "" : " " + r.inputs[0].unit;
+  if (!(a.budget.before > 0))
+    return "Too few instants of the evaluation have samples of all sensors for an error budget.";
+  const std::string usual = detail::usual_unit(r.inputs[0].unit), unit = usual.empty() ? "" : " " + usual;
   return fmt::format(
       "{}: {}{} as recorded, {}{} aligned (× {:.3f}), on {} instants with samples of all sensors below their limits.",
       a.by_reference ? "RMSE of the mean" : "Leave-one-out RMS of the mean", brief_text(a.budget.before, 4), unit,
@@ -127,7 +128,7 @@ AlignmentWords alignment_words(const ReplayResult& r, const AlignmentResult& a) 
   AlignmentWords out;
   out.sentences = {how(a), effect(r, a)};
   if (a.overlaps)
-    out.sentences.emplace_back("It is learnt and judged on the same stretch: it looks better than it is.");
+    out.sentences.emplace_back("It was learnt and judged on the same stretch: it looks better than it is.");
   for (const std::string& note : a.learnt.notes) {
     std::string sentence = note + ".";
     sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
@@ -141,7 +142,7 @@ AlignmentWords alignment_words(const ReplayResult& r, const AlignmentResult& a) 
 namespace {
 
 std::string with_unit(double value, int digits, const std::string& unit) {
-  return brief_text(value, digits) + (unit.empty() ? "" : " " + unit);
+  return brief_text(value, digits) + (unit.empty() ? "" : " " + detail::usual_unit(unit));
 }
 
 std::string window_words(const TimeWindow& w) {
@@ -155,11 +156,11 @@ std::string offset_words(const ReplayResult& r, const FoundOffset& offset) {
           ? fmt::format(" (95 %: {} to {})", brief_text(offset.ci95.low, 4), with_unit(offset.ci95.high, 4, unit))
           : "";
   std::string out = fmt::format(
-      "The reference reads {}{} more than the sensors: found {}, {}, and subtracted from it. Errors do not hold this "
-      "offset any more.",
+      "The reference reads {}{} more than the sensors: found {}, {}, and subtracted from it. Errors no longer contain "
+      "this offset.",
       with_unit(offset.value, 4, unit), interval,
       offset.in_learning ? "in the learning window" : "on the evaluation itself", window_words(offset.window));
-  if (offset.drifts) out += " The difference drifts: elsewhere it may be another.";
+  if (offset.drifts) out += " The difference drifts: it may differ elsewhere.";
   return out;
 }
 
@@ -172,14 +173,14 @@ std::vector<std::string> preparation_words(const Scene& scene) {
   const char* reference = scene.reference ? " and the reference" : "";
   std::vector<std::string> out;
   if (p.detrend != "none")
-    out.push_back(fmt::format("From each sensor{} its own {} over the whole recording is subtracted.", reference,
+    out.push_back(fmt::format("The {1} of each sensor{0} over the whole recording is subtracted from it.", reference,
                               p.detrend == "mean" ? "mean" : "line of least squares"));
   if (!p.filters()) return out;
-  const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {} Hz", brief_text(p.to_hz, 6)) : "";
+  const std::string band = p.to_hz > 0 ? fmt::format(" and a low-pass at {}", detail::frequency_text(p.to_hz, 6)) : "";
   out.push_back(fmt::format(
-      "All sensors{} go through one filter: a Butterworth high-pass of second order at {} Hz{}, causal. Its first {} "
-      "are not learnt from and not scored; noise levels are those behind it, and noise models are not used.",
-      reference, brief_text(p.from_hz, 6), band, duration_text(settling_s(p))));
+      "All sensors{} go through one filter: a Butterworth high-pass of second order at {}{}, causal. Its first {} are "
+      "neither learnt from nor scored; noise levels are those after it, and noise models are not used.",
+      reference, detail::frequency_text(p.from_hz, 6), band, duration_text(settling_s(p))));
   return out;
 }
 

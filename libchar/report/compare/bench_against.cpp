@@ -107,7 +107,7 @@ std::string changes_text(const BenchChanges& changes, double tolerance) {
   out += fmt::format("  {} of {} figures: no difference resolved\n", changes.figures.size() - table.rows.size(),
                      changes.figures.size());
   if (!changes.missing.empty()) out += fmt::format("  {} figures are in the older run only\n", changes.missing.size());
-  if (!changes.same_machine) out += "  another machine: times are shown and judge nothing\n";
+  if (!changes.same_machine) out += "  another machine: times are shown but not judged\n";
   return out + fmt::format("  worse by more than {} %: {}\n\n", 100 * tolerance, changes.worse(tolerance).size());
 }
 

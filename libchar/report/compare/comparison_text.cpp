@@ -179,9 +179,8 @@ Table differences_table(const FleetComparison& c) {
 /// Why a change whose interval leaves zero out need not differ.
 std::string corrected_note(const FleetComparison& c) {
   return fmt::format(
-      "In brackets the 95 % interval of that change alone. Of {} some leave out zero by chance: what differs is "
-      "decided "
-      "by all of them together (Holm).",
+      "In brackets: 95 % interval of each change alone. Some of {} exclude zero by chance; significance is decided "
+      "over all of them together (Holm).",
       plural(c.tests, "test"));
 }
 

@@ -16,7 +16,7 @@
 
 namespace libchar {
 
-/// The keys behind the head of {"format":"replay-comparison","version":1,…} (docs/replay.md).
+/// The keys after the head of {"format":"replay-comparison","version":1,…} (docs/replay.md).
 Json comparison_json(const Comparison& comparison);
 
 /// A table of the algorithms that ran, with what is unlike above it and the verdict below.
@@ -37,7 +37,7 @@ std::string fleet_comparison_text(const FleetComparison& comparison, std::size_t
 
 // Characterizations, models and curves side by side: for scripts, papers, a terminal, and as a page.
 
-/// The keys behind the head of {"format":"characterization-comparison","version":1,…} (docs/recordings.md).
+/// The keys after the head of {"format":"characterization-comparison","version":1,…} (docs/recordings.md).
 Json comparison_json(const CharacterizationComparison& comparison);
 
 std::string comparison_text(const CharacterizationComparison& comparison, std::size_t width = 0);

@@ -118,7 +118,7 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
   out.whole_numbers = true;
   out.note = fmt::format(
       "* lowest; = not distinguished from it (by the intervals, {} % over the whole comparison); σ: Allan deviation; "
-      "in brackets: 95 % intervals; ≤: not detected, upper 95 % limit; ?: not to be relied on.",
+      "in brackets: 95 % intervals; ≤: not detected, upper 95 % limit; ?: do not rely on it.",
       brief_text(100 * c.probability));
   return out;
 }
@@ -244,7 +244,7 @@ std::string comparison_markdown(const CharacterizationComparison& c) {
   out += "\n" + table_text(detail::comparison_table(c)) + "\n";
   for (const ReportedCharacterization& side : c.sides)
     out += fmt::format("- {}: {}\n", markdown_text(side.name), markdown_text(side.file));
-  const std::pair<const char*, const std::vector<std::string>*> lists[] = {{"What differs otherwise:", &c.remarks},
+  const std::pair<const char*, const std::vector<std::string>*> lists[] = {{"Other differences:", &c.remarks},
                                                                            {"What is known of them:", &c.known}};
   for (const auto& [head, lines] : lists) {
     if (lines->empty()) continue;
@@ -294,8 +294,8 @@ std::string detail::comparison_html(const CharacterizationComparison& c, const J
                                                   rest)) +
           "</section>\n";
   if (!c.remarks.empty())
-    body += "<section class=\"channel\">\n<h2>What differs otherwise</h2>\n" + bullet_list(c.remarks, "plain") +
-            "</section>\n";
+    body +=
+        "<section class=\"channel\">\n<h2>Other differences</h2>\n" + bullet_list(c.remarks, "plain") + "</section>\n";
   std::string names;
   for (const ReportedCharacterization& side : c.sides) names += (names.empty() ? "" : ", ") + side.name;
   return html_page({"Sensors compared", names, "reportPage.start({}, () => 320);\n",

@@ -155,9 +155,9 @@ std::string points_figure(const BenchChart& bench, const std::string& about) {
   chart.series = {front_line(bench, false), front_line(bench, true)};
   return drawn_figure(
       chart, kWide,
-      "Lower and further left is better. Dashed: the front, on which nobody is better in both; large: on it. "
-      "Lines: 95 % intervals. Blue: this program; orange: recipes of others. Open: given the terms, "
-      "with a front of their own.");
+      "Lower and further left is better. Dashed: the front, where no other is better in both; large: on the front. "
+      "Lines: 95 % intervals. Blue: this program; orange: recipes of others. Open: the terms are given; "
+      "these have a separate front.");
 }
 
 namespace {
@@ -207,9 +207,9 @@ std::string zones_text(const ControlChart& chart, std::size_t values) {
   }
   const std::string end =
       alarms.empty()
-          ? fmt::format("No alarm: {} % of charts of as many values show some signal though nothing changed.",
+          ? fmt::format("No alarm: {} % of charts with as many values show a signal although nothing changed.",
                         number_text(100 * chart.zones.any_by_chance, 2))
-          : "Alarm, more than chance brings: " + alarms + ".";
+          : "Alarm, more than chance explains: " + alarms + ".";
   return fmt::format("{} values, mean and σ of the moving range. Signals (expected by chance): {}. {}",
                      count_text(values), list, end);
 }
@@ -279,7 +279,7 @@ std::string histogram_figure(const Histogram& h, const LotAxis& axis, const std:
   };
   upright(axis.mean, Ink::green, "mean");
   upright(axis.limit, Ink::vermilion, "limit");
-  std::string caption = beyond_text(axis, chart.x) + "How many devices have which value";
+  std::string caption = beyond_text(axis, chart.x) + "Histogram of the devices' values";
   if (h.below + h.above > 0) caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
   return drawn_figure(chart, kHalf, caption + ".");
 }

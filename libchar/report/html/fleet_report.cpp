@@ -75,8 +75,8 @@ std::string worst_part(const FleetReport& report) {
   std::string out = "<section class=\"channel\">\n<h2>The worst first</h2>\n" + worst_table(report, 0, open);
   if (count > open) out += folded(fmt::format("The next {}", count - open), worst_table(report, open, count));
   return out +
-         "<p class=\"note\">By how improbable the reason is: so large a deviation from the others, of any device of "
-         "the fleet; or so high a value of a device that is at its limit.</p>\n</section>\n";
+         "<p class=\"note\">Sorted by the probability of the reason: of such a deviation from the others in any device "
+         "of the fleet, or of such a high value in a device that is exactly at its limit.</p>\n</section>\n";
 }
 
 std::string quantities_part(const FleetLot& lot) {
@@ -89,10 +89,11 @@ std::string quantities_part(const FleetLot& lot) {
   return out +
          "<p class=\"note\">Means of coefficients are geometric. In brackets: 95 % intervals. Spread between devices, "
          "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \"of\" "
-         "more devices than are counted includes undetected or doubtful ones, by the square that their records show. "
+         "more devices than are counted includes undetected or doubtful ones, by the squares measured in their "
+         "recordings. "
          "Otherwise only detected values count: no mean is given if fewer than two thirds of the devices were "
          "detected, "
-         "and “too large by up to” is the bias if all others are smaller.</p>\n";
+         "and “too large by up to” is the bias if all other devices are smaller.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {
@@ -137,12 +138,14 @@ bool anything_is_the_matter(const FleetLot& lot) {
   return any(lot.stands_out) || any(lot.fails) || !lot.failed.empty() || !lot.awaited.empty();
 }
 
-std::string devices_part(const FleetLot& lot) {
+/// Where the table of coefficients has every device, a list that only names them again is left out.
+std::string devices_part(const FleetLot& lot, bool in_table) {
   Table devices("device");
   for (const auto& [head, shown] :
        {std::pair("recording", has_several_recordings(lot)), std::pair("type", says_anything(lot.types)),
         std::pair("batch", says_anything(lot.batches)), std::pair("what is the matter", anything_is_the_matter(lot))})
     if (shown) devices.columns.push_back({head});
+  if (in_table && devices.columns.size() == 1) return "";
   return "<section class=\"channel\">\n<h2>All devices</h2>\n<div class=\"controls\" hidden>\n"
          "<label>Find <input type=\"search\" id=\"device-search\" placeholder=\"device, log, type, batch\"></label>\n"
          "<label>Show <select id=\"device-state\"><option value=\"0\">all</option><option value=\"1\">"
@@ -287,7 +290,7 @@ std::string fleet_html(const FleetReport& report) {
   const FleetLot& lot = *report.lot;
   const std::string body = "<section id=\"overview\">\n" + facts(report) + failed_part(report) + quantities_part(lot) +
                            "</section>\n" + worst_part(report) + channels_part(report) + curves_part(report) +
-                           figures_part(report) + devices_part(*report.lot) +
+                           figures_part(report) + devices_part(*report.lot, !all_channels(report).rows.empty()) +
                            many_provenance(report.recordings, report.command);
   PageParts parts;
   parts.title = "A lot of sensors";

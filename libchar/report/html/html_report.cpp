@@ -13,6 +13,7 @@
 #include "libchar/characterize/compare/verification.hpp"
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/report/detail/assets.hpp"
@@ -43,13 +44,12 @@ void add_derived_rows(Table& table, const ChannelView& view, double rate_hz) {
   const Coefficient& white = (*c.fit)[Term::white];
   if (white.value)
     add("Noise of a single sample", value_text(white, std::sqrt(rate_hz)), view.shown_unit,
-        fmt::format("N·√f: what white noise alone gives at f = {} Hz; the samples of this recording have a standard "
-                    "deviation of {} {}",
-                    brief_text(rate_hz, 6), number_text(c.quality.standard_deviation, 4), view.shown_unit));
+        fmt::format("N·√f: the standard deviation from white noise alone at f = {}; that of the samples of this "
+                    "recording is {} {}",
+                    detail::frequency_text(rate_hz, 6), number_text(c.quality.standard_deviation, 4), view.shown_unit));
   if (const AllanPoint* lowest = view.allan_minimum)
     add("Minimum of the Allan curve", Cell::number(lowest->deviation), view.shown_unit,
-        fmt::format("at τ = {}: the best an average over a constant time can do; it is not B",
-                    duration_text(lowest->tau_s)));
+        fmt::format("at τ = {}: the best that averaging can reach; it is not B", duration_text(lowest->tau_s)));
   if (c.fit->bandwidth_hz) {
     const double corner = *c.fit->bandwidth_hz;
     const auto& ci = c.fit->bandwidth_ci95;
@@ -66,7 +66,7 @@ std::string numbers_table(const ChannelView& view, double rate_hz) {
   std::string html = html_table(out, {.css = "numbers cards", .cards = true});
   if (const Table laws = power_laws_table(fit, view.unit); !laws.rows.empty()) html += html_table(laws);
   html +=
-      "<p class=\"note\">Letters are those of IEEE 952. N and K are roots of two-sided densities; a data sheet's noise "
+      "<p class=\"note\">Letters as in IEEE 952. N and K are roots of two-sided densities; a data sheet's noise "
       "density is one-sided, √2·N. <i>Best possible</i> is the Cramér–Rao bound for this record length";
   if (!fit.band.whole) html += ", were its whole spectrum described by the noise terms";
   return html + ".</p>\n";
@@ -96,8 +96,8 @@ std::string trust(const ChannelView& view, std::size_t index) {
     out += plot_figure(
         "residuals", index,
         {"Residuals of the fit", "residual", "sd",
-         "Each point: measured against model in one bin, as a standard normal deviate. They should scatter evenly, 95 "
-         "% within the grey band; triangles on the edge lie beyond it. Bins outside the fitted band are not shown."},
+         "Each point: measured minus model in one bin, in standard deviations. They should scatter evenly, 95 % within "
+         "the grey band; triangles at the edge lie beyond it. Bins outside the fitted band are not shown."},
         c.channel.name);
   }
   out += "</div>\n<div>\n<p>" + html_text(view.goodness) + "</p>\n";
@@ -138,8 +138,8 @@ std::string lines_table(const ChannelView& view) {
   Table out("frequency|amplitude (peak)|above the floor|width");
   out.title = "Spectral lines";
   for (const SpectralLine& line : c.lines)
-    out.add({number_text(line.frequency_hz, 5) + " Hz", number_text(line.amplitude, 3) + " " + view.unit,
-             "×" + number_text(line.excess, 3), number_text(line.width_hz, 2) + " Hz"});
+    out.add({detail::frequency_text(line.frequency_hz, 5), number_text(line.amplitude, 3) + " " + view.unit,
+             "×" + number_text(line.excess, 3), detail::frequency_text(line.width_hz, 2)});
   return html_table(out);
 }
 
@@ -169,7 +169,8 @@ Table quality_table(const ChannelView& view) {
 std::string consumers(const ChannelView& view, double rate_hz) {
   if (view.consumers.empty()) return "";
   Table out("for|name there|formula|value|unit");
-  out.note = "f = " + brief_text(rate_hz, 6) + " Hz. ≤ marks an upper 95 % limit of a term that was not detected.";
+  out.note =
+      "f = " + detail::frequency_text(rate_hz, 6) + ". ≤ marks an upper 95 % limit of a term that was not detected.";
   const std::string* before = nullptr;
   for (const ConsumerNumber& row : view.consumers) {
     const bool repeated = before != nullptr && *before == row.consumer;
@@ -187,7 +188,7 @@ std::string curve_points(const ChannelView& view) {
   if (!unit.empty()) out.columns[1].head += ", " + unit;
   constexpr std::size_t kMostRows = 200;
   const std::size_t stride = (c.allan.points.size() + kMostRows - 1) / kMostRows;
-  if (stride > 1) out.note = fmt::format("Every {}th point; all of them are in curves.csv and report.json.", stride);
+  if (stride > 1) out.note = fmt::format("Every {}th point; all points are in curves.csv and report.json.", stride);
   for (std::size_t i = 0; i < c.allan.points.size(); i += stride) {
     const AllanPoint& p = c.allan.points[i];
     const bool known = p.edf > 0;
@@ -228,7 +229,7 @@ std::string facts(const CharacterizationView& view) {
   out += fmt::format("<b>{}</b> {} · <b>{}</b> samples per channel", result.channels.size(),
                      result.channels.size() == 1 ? "channel" : "channels", count_text(log.samples));
   if (log.time.rate_hz > 0) {
-    out += fmt::format(" at <b>{}</b> Hz{} · <b>{}</b>", brief_text(log.time.rate_hz, 6),
+    out += fmt::format(" at <b>{}</b>{} · <b>{}</b>", detail::frequency_text(log.time.rate_hz, 6),
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
                        html_text(duration_text(view.duration_s)));
   }
@@ -293,8 +294,8 @@ std::string overview_table(const CharacterizationView& view) {
       "channel|N (angle random walk, white noise)|B (bias instability)|K (random walk)|Allan minimum|sample sd "
       "N·√f|goodness of fit|verdict");
   out.note =
-      "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: undetermined, the record cannot tell this "
-      "term from another or contradicts it; or the noise terms do not describe the recording.";
+      "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: undetermined, the recording cannot separate "
+      "this term from another or contradicts it; or the noise terms do not describe the recording.";
   for (std::size_t i = 0; i < view.channels.size(); ++i)
     add_channel(out, view.channels[i], i, view.result->log.rate_hz_of(view.channels[i].result->channel));
   return html_table(out, {.css = "overview cards", .cards = true});
@@ -336,8 +337,8 @@ bool all_in_detail(const CharacterizationView& view) {
 std::string which_in_detail(const CharacterizationView& view) {
   if (all_in_detail(view)) return "";
   return fmt::format(
-      "<p class=\"note\">Shown here and drawn: the {} of {} channels that ask for a look most. Each has its sentence "
-      "and its row of the table above; report.json and curves.csv hold all.</p>\n",
+      "<p class=\"note\">Shown and drawn here: the {} of {} channels with the most findings. All are in the table "
+      "above, in report.json and in curves.csv.</p>\n",
       kMostInDetail, view.channels.size());
 }
 
@@ -365,7 +366,7 @@ Json of_details(const CharacterizationView& view, const Json& document) {
   return out;
 }
 
-constexpr std::size_t kUnfoldedRows = 12;
+constexpr std::size_t kUnfoldedRows = 24;
 
 // First the answer: a headline, the numbers of every channel, their curves. The same in words is folded.
 std::string overview(const CharacterizationView& view) {
@@ -385,7 +386,7 @@ std::string time_base(const LogInfo& log) {
   const TimeBase& t = log.time;
   Table out("|");
   out.title = "Time base";
-  out.add({"Rate", t.rate_hz > 0 ? brief_text(t.rate_hz, 9) + " Hz" : "unknown"});
+  out.add({"Rate", t.rate_hz > 0 ? detail::frequency_text(t.rate_hz, 9) : "unknown"});
   out.add({"Where from", t.from_stamps ? "stamps in " + t.column + " (" + t.unit + (t.unit_guessed ? ", guessed)" : ")")
                                        : "stated by the user or the file"});
   if (t.from_stamps) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/replay/view/replay_view.hpp"
 #include "libchar/report/detail/assets.hpp"
 #include "libchar/report/detail/html/html_tables.hpp"
@@ -38,7 +39,7 @@ std::string marked_text(const ReplayView& view) {
   }
   if (found)
     out = joined_sentences(fmt::format("Pale stretches: what {} found, and nobody declared.", view.run.method), out);
-  return joined_sentences(fault ? "Coloured stretches: faults as the scene tells them." : "", out);
+  return joined_sentences(fault ? "Coloured stretches: faults of the scene." : "", out);
 }
 
 std::string signal_caption(const ReplayView& view) {
@@ -47,17 +48,17 @@ std::string signal_caption(const ReplayView& view) {
   out += view.run.method;
   if (!view.run.sensor.empty()) out += ", and " + view.run.sensor + ", the best single sensor";
   const std::size_t stretches = r.tracks.whole.inputs[0].estimate.time_s.size();
-  out += stretches < r.instants ? fmt::format(
-                                      ": smallest and largest in each of {} stretches of {}; closer in, every instant "
-                                      "where the buttons lead.",
-                                      stretches, duration_text(view.duration_s / static_cast<double>(stretches)))
-                                : ", at every instant.";
+  out += stretches < r.instants
+             ? fmt::format(
+                   ": smallest and largest in each of {} stretches of {}; the buttons show every instant of a stretch.",
+                   stretches, duration_text(view.duration_s / static_cast<double>(stretches)))
+             : ", at every instant.";
   return joined_sentences(out, marked_text(view));
 }
 
 std::string run_plots_of(const ReplayView& view, std::size_t j) {
   const ReplayResult& r = *view.result;
-  const std::string unit = usual_unit(r.inputs[j].unit);
+  const std::string unit = detail::usual_unit(r.inputs[j].unit);
   std::string out = plot_figure(
       "signal", j,
       {r.inputs[j].name + " over the run", r.inputs[j].name, unit, j == 0 ? signal_caption(view) : marked_text(view)},
@@ -65,8 +66,8 @@ std::string run_plots_of(const ReplayView& view, std::size_t j) {
   if (r.has_reference)
     out += plot_figure("error", j,
                        {"Error: estimate − reference" + of_input(r, j), "error", unit,
-                        "The same stretches. What is beyond the frame of the fused estimate's error is cut off where "
-                        "it would hide it."},
+                        "The same stretches. Larger errors of the single sensor are cut off where they would hide the "
+                        "fused estimate's."},
                        view.title);
   return out;
 }
@@ -78,7 +79,7 @@ std::string window_plots(const ReplayView& view) {
     if (view.inputs[j].has_window_rms)
       out += plot_figure(
           "window", j,
-          {"RMS of the error in a window" + of_input(r, j), "window RMS", usual_unit(r.inputs[j].unit),
+          {"RMS of the error in a window" + of_input(r, j), "window RMS", detail::usual_unit(r.inputs[j].unit),
            fmt::format(
                "Window of {} centred on each instant. Band: smallest and largest value in each bin of the plot.",
                duration_text(r.window_s))},
@@ -91,11 +92,11 @@ std::string allan_plots(const ReplayView& view) {
   std::string out;
   for (std::size_t j = 0; j < view.inputs.size(); ++j)
     if (view.inputs[j].has_allan)
-      out += plot_figure(
-          "error-allan", j,
-          {"Allan deviation of the error" + of_input(r, j), "overlapping Allan deviation", usual_unit(r.inputs[j].unit),
-           "What averaging would remove falls with τ; what stays level or rises is drift."},
-          view.title);
+      out += plot_figure("error-allan", j,
+                         {"Allan deviation of the error" + of_input(r, j), "overlapping Allan deviation",
+                          detail::usual_unit(r.inputs[j].unit),
+                          "Noise that averaging removes falls with τ; a level or rising curve is drift."},
+                         view.title);
   return out;
 }
 
@@ -103,17 +104,17 @@ std::string allan_plots(const ReplayView& view) {
 constexpr std::size_t kMostLines = 24;
 
 std::string lines_drawn(const ReplayResult& r, const char* which) {
-  return r.sensors.size() <= kMostLines ? "One line per sensor; shading: range in each bin."
-                                        : fmt::format(
-                                              "One line per sensor, of {} sensors the {} with the {} at the end; "
-                                              "shading: range in each bin.",
-                                              r.sensors.size(), kMostLines, which);
+  return r.sensors.size() <= kMostLines
+             ? "One line per sensor; shading: range in each bin."
+             : fmt::format(
+                   "One line per sensor, of {} sensors the {} with the {} at the end; shading: range within each bin.",
+                   r.sensors.size(), kMostLines, which);
 }
 
 std::string track_plots(const ReplayView& view) {
   const ReplayResult& r = *view.result;
   const std::string& name = view.title;
-  const std::string unit = r.sensors.empty() ? "" : usual_unit(r.sensors[0].unit);
+  const std::string unit = r.sensors.empty() ? "" : detail::usual_unit(r.sensors[0].unit);
   std::string out;
   if (view.figures.weights)
     out += plot_figure("weights", 0, {"Weights", "weight", "", lines_drawn(r, "largest weights")}, name);
@@ -155,14 +156,15 @@ std::string run_section(const ReplayView& view) {
   for (std::size_t j = 0; j < std::min(r.inputs.size(), r.tracks.whole.inputs.size()); ++j)
     plots += run_plots_of(view, j);
   if (view.figures.deviations)
-    plots += plot_figure(
-        "deviations", 0,
-        {"Each sensor, from the median of all", "sensor − median", usual_unit(r.sensors[0].unit),
-         "No reference tells an error; this shows which sensors go their own way. What all share is not seen."},
-        view.title);
+    plots +=
+        plot_figure("deviations", 0,
+                    {"Each sensor, from the median of all", "sensor − median", detail::usual_unit(r.sensors[0].unit),
+                     "Without a reference no error is known; this shows which sensors differ from the others. "
+                     "Errors that all share are invisible."},
+                    view.title);
   return "<section class=\"part\" id=\"run\">\n<h2>The run</h2>\n" + std::string(kStretchPlace) +
          "<div class=\"over-time run\">\n" + plots +
-         "</div>\n<p class=\"note\">Drag across a plot to look at a stretch; a double click shows the whole "
+         "</div>\n<p class=\"note\">Drag across a plot to zoom in; double-click to show the whole "
          "run.</p>\n</section>\n";
 }
 
@@ -174,8 +176,8 @@ std::string ranking_figure(const ReplayView& view) {
          plot_figure("ranking", 0,
                      {score_name(r) + " of each method", score_name(r), score_unit(r),
                       "Whiskers: 95 % interval, none where the error walks or drifts. Shaded: as good as the best, by "
-                      "a difference below 1 % or not resolved by this record. Hollow: bounds, which look at the "
-                      "reference of the run itself."},
+                      "a difference below 1 % or not resolved by this record. Hollow: bounds, which use the reference "
+                      "of the run itself."},
                      view.title) +
          "</div>\n";
 }
@@ -185,8 +187,8 @@ std::string detection_figure(const ReplayView& view) {
   return "<div class=\"plots\">\n" +
          plot_figure("detection", 0,
                      {"Delay against false alarms", "delay", "s",
-                      "How long each known fault lasts until the detector finds it, when the array may raise one false "
-                      "alarm in the time on the axis (false_alarm_s). No point: not found while it lasted."},
+                      "Delay from each known fault to its detection, for one false alarm of the array in the time on "
+                      "the axis (false_alarm_s). No point: not found while it lasted."},
                      view.title) +
          "</div>\n";
 }
@@ -197,9 +199,9 @@ std::string faults_figure(const ReplayView& view) {
   return std::string(kChoicePlace) + "<div class=\"over-time faults\">\n" +
          plot_figure("faults", 0,
                      {"Faults and findings", "sensor", "",
-                      "Broad grey bars: faults as the scene tells them, with the delay until they were found. Narrow "
-                      "bars: the sensor was out, and which finding put it there; hollow ones: re-weighted for its "
-                      "noise, still in use. Row leads: a network leads instead of the baseline, and why it stopped."},
+                      "Broad grey bars: faults of the scene, with the delay until they were found. Narrow bars: the "
+                      "sensor was not used, and the finding that caused it; hollow bars: re-weighted for its noise, "
+                      "still in use. Row leads: a network leads instead of the baseline, and why it stopped."},
                      view.title) +
          "</div>\n" + detection_figure(view);
 }
@@ -220,7 +222,7 @@ std::string time_section(const ReplayView& view) {
 /// Each sensor beside what fusing them gives.
 std::string sensors_figure(const ReplayView& view) {
   if (!view.figures.sensors) return "";
-  const std::string unit = usual_unit(view.result->sensors[0].unit);
+  const std::string unit = detail::usual_unit(view.result->sensors[0].unit);
   return "<div class=\"plots\">\n" +
          plot_figure("sensors", 0,
                      {"Error of each sensor", "RMSE", unit,
@@ -238,8 +240,8 @@ std::string cost_section(const ReplayView& view) {
   std::string out = "<section class=\"part\" id=\"cost\">\n<h2>Error against cost</h2>\n";
   if (view.figures.time_matters) return out + all + "</section>\n";
   return out +
-         fmt::format("<p>At {} Hz every method takes less than {} of one core: run time decides nothing here.</p>\n",
-                     brief_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
+         fmt::format("<p>At {} every method takes less than {} of one core: run time decides nothing here.</p>\n",
+                     detail::frequency_text(view.result->rate_hz, 6), percent_text(kCoreThatMatters)) +
          folded("Error against run time and memory", all) + "</section>\n";
 }
 
@@ -248,16 +250,16 @@ std::string scores_note(const ReplayView& view) {
   if (!view.result->has_reference)
     return "<p class=\"note\">Without a reference no true error is known. Leave-one-out RMS: of (the estimate from all "
            "other sensors) − (the sensor left out), geometric mean over the sensors, so that a bad one counts no more "
-           "than a good one; it holds that sensor's own noise. Split-array RMS: of half the difference between the "
-           "estimates from two halves of the array. Neither sees an error that all sensors share.</p>\n";
-  return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or drifts. Regret: how "
-         "much RMSE is above that of the optimum of " +
+           "than a good one; it includes that sensor's own noise. Split-array RMS: of half the difference between the "
+           "estimates from two halves of the array. Neither shows an error that all sensors share.</p>\n";
+  return "<p class=\"note\">Below each figure: its 95 % interval; none where the error walks or drifts. Regret: excess "
+         "of the RMSE over the optimum of " +
          view.optimum +
-         " on this run; a method that follows changes may be below it. “× best method”: interval of the ratio of "
-         "RMSEs, from what both saw at the same time; when it holds 1 the difference is not resolved, unless the error "
+         " on this run; a method that follows changes may be better than that. “× best method”: interval of the ratio "
+         "of RMSEs over the same instants; if it contains 1, the difference is not resolved, unless the error "
          "is larger in every stretch of the run. Converged: from here on the window RMS stays within a tenth of its "
-         "final level. Bounds look at the reference of the run itself: they are for comparison. A click on a column's "
-         "head sorts by it.</p>\n";
+         "final level. Bounds use the reference of the run itself: they are for comparison only. Click a column's head "
+         "to sort by it.</p>\n";
 }
 
 // Costs are worth a word only where they could decide.

@@ -9,6 +9,7 @@
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/figure/draw_figure.hpp"
 #include "libchar/figure/make_figure.hpp"
@@ -49,8 +50,8 @@ Table conditions(const Json& document, const ReportedCharacterization& report) {
   const double rate_hz = number_at(document, "/recording/rate_hz"), samples = number_at(document, "/recording/samples");
   if (rate_hz > 0)
     out.add({"Duration",
-             fmt::format("{}: {} samples at {} Hz, {} missing", duration_text(samples / rate_hz),
-                         count_text(clamped_whole<std::uint64_t>(samples)), brief_text(rate_hz, 9),
+             fmt::format("{}: {} samples at {}, {} missing", duration_text(samples / rate_hz),
+                         count_text(clamped_whole<std::uint64_t>(samples)), detail::frequency_text(rate_hz, 9),
                          count_text(clamped_whole<std::uint64_t>(number_at(document, "/recording/missing_samples"))))});
   for (const ReportedChannel& c : report.channels)
     if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});
@@ -68,7 +69,7 @@ Table method(const Json& document) {
   for (const Json& word : found(document, "/command")) words.push_back(text_at(word, ""));
   Table out("|");
   out.add({"Coefficients", fmt::format("{}", fmt::join(fits, "; "))});
-  if (!terms.empty()) out.add({"Offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
+  if (!terms.empty()) out.add({"Terms offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
   out.add({"Allan curve", text_at(document, "/allan/type") + ", 95 % intervals"});
   add_program(out, words);
   return out;
@@ -147,7 +148,7 @@ std::string detail::test_form_html(const ReportedCharacterization& report, const
       part(1, "Object", facts(object)) + part(2, "Conditions", facts(conditions(document, report))) +
       part(3, "Method", facts(method(document))) +
       part(4, "Results", html_table(detail::coefficient_rows(report, channels)) + figures(report, source, channels)) +
-      part(5, "Limits", limits(document)) + part(6, "To be known", known) + part(7, "Signatures", signatures());
+      part(5, "Limits", limits(document)) + part(6, "Remarks", known) + part(7, "Signatures", signatures());
   return html_page({"Test report: sensor noise", text_at(document, "/recording/file"),
                     "reportPage.start({}, () => 320);\n", std::string(page_css()) + kStyle, false},
                    body, "{}");

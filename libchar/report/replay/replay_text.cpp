@@ -8,6 +8,7 @@
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/fusion/registry.hpp"
 #include "libchar/log/recording_json.hpp"
@@ -140,8 +141,8 @@ std::vector<ReplayReport::Fault> faults_of(const FuseResult& result) {
 }  // namespace
 
 std::string fuse_text(const FuseResult& result, const std::vector<std::string>& files) {
-  std::string out = fmt::format("{}: {} instants at {} Hz fused by {}, {} with an estimate", printable(result.log.file),
-                                result.instants, brief_text(result.rate_hz, 6), result.algorithm.label,
+  std::string out = fmt::format("{}: {} instants at {} fused by {}, {} with an estimate", printable(result.log.file),
+                                result.instants, detail::frequency_text(result.rate_hz, 6), result.algorithm.label,
                                 percent(result.estimates, result.instants));
   out += result.deviations == 0
              ? fmt::format("; {} states no standard deviation\n", result.algorithm.label)

@@ -9,6 +9,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/table/table.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
@@ -20,9 +21,10 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
   const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
-  const std::string length =
-      rate > 0 ? fmt::format("{} Hz, {}", brief_text(rate, 6), duration_text(static_cast<double>(log.samples) / rate))
-               : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
+  const std::string length = rate > 0
+                                 ? fmt::format("{}, {}", detail::frequency_text(rate, 6),
+                                               duration_text(static_cast<double>(log.samples) / rate))
+                                 : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
   std::string text =
       fmt::format("{}: {} channel{}, {}, {} gap{}\n", printable(log.file), log.channels.size(),
                   log.channels.size() == 1 ? "" : "s", length, log.time.gaps, log.time.gaps == 1 ? "" : "s");
@@ -52,7 +54,8 @@ std::string fit_text(const Channel& channel, const NoiseFit& fit, const TextLook
   text += terminal_table(coefficients_table(fit, channel.unit), look);
   if (!fit.band.whole)
     text +=
-        "  best possible, record for 10 %: of a record whose whole spectrum the terms describe, not this band alone\n";
+        "  best possible, record for 10 %: for a recording whose whole spectrum the terms describe, not only this "
+        "band\n";
   if (const Table laws = power_laws_table(fit, channel.unit); !laws.rows.empty())
     text += "  " + terminal_table(laws, look);
   if (fit.bandwidth_hz) {
@@ -131,7 +134,7 @@ std::string some_fields(const LogTopic& topic) {
 
 std::vector<Cell> topic_row(const LogTopic& topic) {
   return {printable(topic.name, 60), topic.type.empty() ? "-" : printable(topic.type, 40), std::to_string(topic.rows),
-          topic.rate_hz > 0 ? brief_text(topic.rate_hz, 4) + " Hz" : "-", some_fields(topic)};
+          topic.rate_hz > 0 ? detail::frequency_text(topic.rate_hz, 4) : "-", some_fields(topic)};
 }
 
 // What sensors write first, what cannot be read last.

@@ -38,7 +38,7 @@ std::string inspection_text(const Inspection& inspection, std::size_t width = 0)
 /// The log in a line, what each device drew, and the other files.
 std::string simulation_text(const ArraySimulation& simulation, const SimulatedLog& written);
 
-/// The keys behind the head of {"format":"simulation","version":1,…} (docs/json.md).
+/// The keys after the head of {"format":"simulation","version":1,…} (docs/json.md).
 Json simulation_json(const ArraySimulation& simulation, const SimulatedLog& written);
 
 /// A sensor model in text, for a terminal: its terms with intervals, and the same in the units of data sheets.

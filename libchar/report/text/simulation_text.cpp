@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/report/detail/tables/coefficients.hpp"
 #include "libchar/report/text/characterization_text.hpp"
@@ -11,8 +12,8 @@ namespace libchar {
 
 std::string simulation_text(const ArraySimulation& s, const SimulatedLog& written) {
   std::string text =
-      fmt::format("{}: {} samples of {} channel{} at {} Hz, {}, seed {}\n", printable(written.files.at(0)), s.samples,
-                  written.channels, written.channels == 1 ? "" : "s", brief_text(s.rate_hz, 6),
+      fmt::format("{}: {} samples of {} channel{} at {}, {}, seed {}\n", printable(written.files.at(0)), s.samples,
+                  written.channels, written.channels == 1 ? "" : "s", detail::frequency_text(s.rate_hz, 6),
                   duration_text(static_cast<double>(s.samples) / s.rate_hz), s.seed);
   for (std::size_t i = 0; i < s.sensors.size(); ++i) {
     const SensorModel& m = s.sensors[i].model;
@@ -42,7 +43,7 @@ std::string model_text(const SensorModel& m, const TextLook& look) {
   std::string text = fmt::format(
       "{}{}: {}{}, {}, {}\n", printable(m.channel), m.unit.empty() ? "" : fmt::format(" [{}]", printable(m.unit)),
       printable(kind_of(m)), axis.empty() ? "" : " " + axis,
-      m.rate_hz > 0 ? brief_text(m.rate_hz, 6) + " Hz" : "rate unknown", printable(m.obtained));
+      m.rate_hz > 0 ? detail::frequency_text(m.rate_hz, 6) : "rate unknown", printable(m.obtained));
   std::vector<Coefficient> process;
   if (m.gauss_markov.sigma > 0) {
     process.resize(2);
@@ -52,7 +53,7 @@ std::string model_text(const SensorModel& m, const TextLook& look) {
   const Table noise = coefficients_table(m.noise, m.unit, process);
   text += noise.rows.empty() ? "  no noise\n" : terminal_table(noise, look);
   text += "  coefficients are roots of two-sided densities; one-sided is √2 times as large\n";
-  if (m.bandwidth_hz) text += fmt::format("  low-pass corner {} Hz\n", brief_text(*m.bandwidth_hz, 4));
+  if (m.bandwidth_hz) text += fmt::format("  low-pass corner {}\n", detail::frequency_text(*m.bandwidth_hz, 4));
   if (m.resolution) text += fmt::format("  resolution {}\n", brief_text(*m.resolution, 4));
   if (m.tau_max_s > 0)
     text +=

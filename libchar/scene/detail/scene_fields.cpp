@@ -93,7 +93,7 @@ Row<Scene> warm_up_row() {
   return field<&Scene::warm_up_s>(
       "warm_up_s", {.unit = "s",
                     .range = kPositive,
-                    .meaning = "so long from the start of the evaluation algorithms run, but are not scored",
+                    .meaning = "time from the start of the evaluation in which algorithms run, but are not scored",
                     .otherwise = "0"});
 }
 
@@ -121,7 +121,7 @@ Row<Scene> fault_free_row() {
   return field<&Scene::fault_free_s>("fault_free_s",
                                      {.unit = "s",
                                       .range = kPositive,
-                                      .meaning = "so long no sensor fails, from the start of the evaluation",
+                                      .meaning = "time from the start of the evaluation in which no sensor fails",
                                       .otherwise = "up to the first fault that the scene knows"});
 }
 
@@ -200,7 +200,7 @@ const Fields<SceneSensor>& sensor_fields() {
           {.meaning =
                "channels of the same device's other axes, for the alignment; the sensors name them in one order"}),
       elsewhere<SceneSensor>("count", "whole number",
-                             {.meaning = "of a simulation: so many devices of one model, called NAME1, NAME2…, each "
+                             {.meaning = "of a simulation: number of devices of one model, called NAME1, NAME2…, each "
                                          "with its own draws and noise"}),
   };
   return rows;
@@ -216,19 +216,19 @@ const Fields<SceneReference>& reference_fields() {
           "recording", "path, or a map",
           {.meaning = "a log of its own, as the scene's `recording`", .otherwise = "the scene's"}),
       custom<SceneReference, read_lag, lag_written>(
-          "lag_s", "s, or estimate", {.meaning = "the sensors lag the reference by so much", .otherwise = "0"}),
+          "lag_s", "s, or estimate", {.meaning = "lag of the sensors relative to the reference", .otherwise = "0"}),
       custom<SceneReference, read_lag, written_elsewhere<SceneReference>>("delay", "s, or estimate",
                                                                           {.meaning = "another word for lag_s"}),
       custom<SceneReference, read_offset, offset_written>(
           "offset", "number, or estimate",
-          {.meaning =
-               "the reference reads so much more than the sensors, in its own unit; it is subtracted from it (below)",
+          {.meaning = "offset of the reference relative to the sensors, in the reference's unit; it is subtracted from "
+                      "the reference (below)",
            .otherwise = "0"}),
       field<&SceneReference::samples>(
           "samples",
           {.words = kReadings,
-           .meaning = "what each value stands for where there are less than half as many as samples: the instant of "
-                      "its stamp, or the mean over the interval in front of it, behind it or around it",
+           .meaning = "what each value represents if the reference has less than half as many values as samples: the "
+                      "instant of its stamp, or the mean over the interval before, after or around it",
            .otherwise = "estimate: the most likely of the four"}),
       field<&SceneReference::teach>(
           "teach", {.meaning = "false: without a learning window nothing is learnt",

@@ -8,6 +8,7 @@
 
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/scene/detail/scene_fields.hpp"
 #include "libchar/scene/detail/scene_values.hpp"
 
@@ -147,8 +148,8 @@ void read_samples(SignalSpec& spec, const MapReader& at, const ArraySimulation& 
   const double rate = log.info.time.rate_hz;
   if (rate > 0 && std::abs(rate / simulation.rate_hz - 1) > 1e-4)
     throw scene_refusal("E0742", at, "file")
-        .says("is a recording at {} Hz, and the simulation runs at {} Hz", brief_text(rate, 6),
-              brief_text(simulation.rate_hz, 6))
+        .says("is a recording at {}, and the simulation runs at {}", detail::frequency_text(rate, 6),
+              detail::frequency_text(simulation.rate_hz, 6))
         .hint("give the simulation the rate of the recording");
   spec.samples = std::move(log.samples[0]);
   if (spec.samples.empty()) throw scene_refusal("E0742", at, "file").says("holds no sample");

@@ -20,7 +20,7 @@ function control(option, values, changed) {
   }
   const simple = option.kind === "words" && !option.comma_list && option.words.length > 0;
   const made = simple
-    ? element("select", {}, element("option", { value: "" }, "as it is by default"), ...option.words.map(word => element("option", { value: word }, word)))
+    ? element("select", {}, element("option", { value: "" }, "default"), ...option.words.map(word => element("option", { value: word }, word)))
     : element("input", { type: "text", placeholder: option.value, autocomplete: "off", spellcheck: "false" });
   made.value = values.get(flag) || "";
   made.addEventListener(simple ? "change" : "input", () => {

@@ -103,7 +103,7 @@ function card(item) {
     return element("article", {}, head, box, chosen(item, changed), item.kind === "log" ? readingOptions(item, changed) : null);
   }
   if (item.recording) return element("article", {}, head, ...inspectionView(item, changed).filter(Boolean));
-  const about = { model: "sensor model", report: "report", scene: "scene", fusion: "result of a replay", beside: "read with what stands beside it", log: "" }[item.kind];
+  const about = { model: "sensor model", report: "report", scene: "scene", fusion: "result of a replay", beside: "read with the files next to it", log: "" }[item.kind];
   return element("article", {}, head, element("p", { class: "facts" }, about));
 }
 

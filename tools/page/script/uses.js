@@ -110,7 +110,7 @@ const USES = [
     },
   },
   {
-    ...base, id: "fuse", label: "Fuse by a replay", verb: "fuse", made: true, main: [["--algorithm", "Method"], ["--fault-free", "No fault so long"]],
+    ...base, id: "fuse", label: "Fuse by a replay", verb: "fuse", made: true, main: [["--algorithm", "Method"], ["--fault-free", "Time without a fault"]],
     hidden: ["--with", "--unit"],
     fits: bench => bench.logs.length > 0 && bench.fusions.length > 0,
     choices: (bench, use, changed) => {
@@ -203,7 +203,7 @@ const USES = [
     words: (bench, use) => ["simulate", use.source, ...optionWords(use.values), "-o", bench.free(`${stem(use.source.replace(".sensor", ""))}-simulated.csv`)],
   },
   {
-    ...base, id: "fit", label: "Curve of a data sheet", verb: "fit", main: [["--curve", "The table is"], ["--duration", "Length of the record behind it"]],
+    ...base, id: "fit", label: "Curve of a data sheet", verb: "fit", main: [["--curve", "The table is"], ["--duration", "Length of its recording"]],
     hidden: ["--models", "--unit"],
     fits: bench => bench.tables.length > 0,
     choices: (bench, use, changed) => {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/detail/band/goodness.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
@@ -179,11 +180,11 @@ namespace {
 Finding resonance_finding(const std::vector<Resonance>& resonances) {
   const bool one = resonances.size() == 1;
   std::vector<std::string> frequencies;
-  for (const Resonance& resonance : resonances) frequencies.push_back(brief_text(resonance.top_hz, 2));
+  for (const Resonance& resonance : resonances) frequencies.push_back(detail::frequency_text(resonance.top_hz, 2));
   Finding found = finding(
       "resonance",
       fmt::format(
-          "{} at about {} Hz {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
+          "{} at about {} {} above the noise (a vibration, or a structure that swings): {} left out of the fit, "
           "and {} in the Allan curve.",
           one ? "A resonance" : "Resonances", fmt::join(frequencies, ", "), one ? "rises" : "rise",
           one ? "it was" : "they were", one ? "is" : "are"),
@@ -200,8 +201,8 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
   if (band.quantized) fit.remedies.push_back({"quantization", alarm, "quantization noise added to the model", 1});
   if (band.low_pass)
     fit.remedies.push_back({"bandwidth", alarm,
-                            fmt::format("first-order low-pass with corner {} Hz added to the model",
-                                        brief_text(band.low_pass->corner_hz, 4)),
+                            fmt::format("first-order low-pass with corner {} added to the model",
+                                        detail::frequency_text(band.low_pass->corner_hz, 4)),
                             1});
   if (band.filter.kind != NoiseShape::Kind::none)
     fit.remedies.push_back(
@@ -225,8 +226,9 @@ void report_band(const Band& band, const std::vector<PowerBin>& bins, NoiseFit& 
   if (left_out > 0 && band.filter.kind == NoiseShape::Kind::none)
     fit.remedies.push_back(
         {"band", alarm,
-         fmt::format("coefficients from {} {} Hz, {} of {} bins left out", band.bottom_hz > 0 ? "above" : "below",
-                     brief_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4), left_out, bins.size()),
+         fmt::format("coefficients from {} {}, {} of {} bins left out", band.bottom_hz > 0 ? "above" : "below",
+                     detail::frequency_text(band.bottom_hz > 0 ? band.bottom_hz : band.top_hz, 4), left_out,
+                     bins.size()),
          left_out});
 }
 
@@ -297,9 +299,9 @@ void report_corner(const Band& band, NoiseFit& fit) {
   if (band.named.family != NamedShape::Family::high_pass) return;
   fit.findings.push_back(finding("high_passed",
                                  fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an "
-                                             "output with its mean taken out. B and K are those in front of it.",
+                                             "output without its mean. B and K are those before the high-pass.",
                                              named_shape_text(band.named)),
-                                 "the slow end of the spectrum falls like behind a high-pass"));
+                                 "the slow end of the spectrum falls as after a high-pass"));
 }
 
 void report_doubtful_end(NoiseFit& fit) {

@@ -86,7 +86,7 @@ void answer_contradictions(NoiseFit& fit, const AllanCurve& allan) {
     if (of_process) fit.gauss_markov->sigma.status = fit.gauss_markov->tau_s.status = Status::undetermined;
     doubt(fit, of_process ? kTerms : worst->term, 0,
           fmt::format("At an averaging time of {} the fitted curve is at {}, the measured Allan deviation within "
-                      "{} … {} (99.7 %): {} is not borne out there and is marked undetermined.",
+                      "{} … {} (99.7 %): the data do not support {} there, and it is marked undetermined.",
                       duration_text(worst->tau_s), brief_text(worst->model), brief_text(worst->measured.low),
                       brief_text(worst->measured.high),
                       of_process ? "the Gauss-Markov process" : long_name(static_cast<Term>(worst->term))));

@@ -15,6 +15,7 @@
 
 #include "libchar/core/numeric/dense.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 
 namespace libchar {
@@ -285,17 +286,17 @@ std::vector<NamedShape> high_pass_starts(double rate_hz, double duration_s) {
 
 std::string named_shape_text(const NamedShape& shape) {
   if (shape.family == NamedShape::Family::high_pass)
-    return fmt::format("a high-pass at {} Hz", brief_text(shape.pole_hz, 3));
+    return fmt::format("a high-pass at {}", detail::frequency_text(shape.pole_hz, 3));
   if (shape.family == NamedShape::Family::shelf)
-    return fmt::format("a shelf, {} times between {} Hz and {} Hz", brief_text(shape.pole_hz / shape.zero_hz, 3),
-                       brief_text(std::min(shape.pole_hz, shape.zero_hz), 3),
-                       brief_text(std::max(shape.pole_hz, shape.zero_hz), 3));
+    return fmt::format("a shelf, {} times between {} and {}", brief_text(shape.pole_hz / shape.zero_hz, 3),
+                       detail::frequency_text(std::min(shape.pole_hz, shape.zero_hz), 3),
+                       detail::frequency_text(std::max(shape.pole_hz, shape.zero_hz), 3));
   const bool third = shape.family == NamedShape::Family::third_order;
-  std::string text = fmt::format("a {}-order low-pass at {} Hz, damping {}", third ? "third" : "second",
-                                 brief_text(shape.pole_hz, 3), brief_text(shape.damping, 2));
-  if (third) text += fmt::format(", and at {} Hz", brief_text(shape.real_pole_hz, 3));
+  std::string text = fmt::format("a {}-order low-pass at {}, damping {}", third ? "third" : "second",
+                                 detail::frequency_text(shape.pole_hz, 3), brief_text(shape.damping, 2));
+  if (third) text += fmt::format(", and at {}", detail::frequency_text(shape.real_pole_hz, 3));
   if (shape.family == NamedShape::Family::loop)
-    text += fmt::format(", with a zero at {} Hz", brief_text(shape.zero_hz, 3));
+    text += fmt::format(", with a zero at {}", detail::frequency_text(shape.zero_hz, 3));
   return text;
 }
 

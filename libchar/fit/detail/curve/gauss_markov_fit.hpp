@@ -31,7 +31,7 @@ double likeliest_tau(const std::vector<PowerBin>& bins, const Band& band, double
 /// of the terms for the correlation time that was fitted with them.
 void settle_gauss_markov(const std::vector<PowerBin>& bins, const GaussMarkovChoice& choice, NoiseFit& fit);
 
-/// Says of a process that is not needed how far it is from that, and what it would be where it is as good as the terms.
+/// Says of a process that is not needed its progress from that, and what it would be where it is as good as the terms.
 void report_not_needed(const GaussMarkovChoice& choice, NoiseFit& fit);
 
 }  // namespace libchar

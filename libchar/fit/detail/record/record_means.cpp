@@ -129,7 +129,7 @@ void report_bursts(const detail::Bursts& bursts, NoiseFit& fit) {
       "heavy_tails",
       fmt::format(
           "At an averaging time of {} the record has heavier tails than Gaussian noise (kurtosis of differences "
-          "{} instead of 3), as bursts make them: N of the undisturbed part may be {} times as large.",
+          "{} instead of 3), as bursts cause: N of the undisturbed part may be {} times as large.",
           duration_text(bursts.tau_s), brief_text(bursts.kurtosis, 3), brief_text(bursts.core, 2)),
       "the noise comes in bursts"));
   fit.findings.back().severity = Severity::caution;

@@ -99,9 +99,9 @@ void find_lead(Study& study) {
                  ((lead == "=" || lead == "]" || lead == ")") && read_cell(field->text, '.').kind == Cell::value);
     if (found * 4 < study.sample.size() * 3) continue;
     study.dialect.lead = lead;
-    study.info.dialect.push_back(fmt::format("stamps in front of the lines, up to {}", lead == "="  ? "the first name"
-                                                                                       : one == " " ? "the first cell"
-                                                                                                    : lead));
+    study.info.dialect.push_back(fmt::format("stamps before the lines, up to {}", lead == "="  ? "the first name"
+                                                                                  : one == " " ? "the first cell"
+                                                                                               : lead));
     return;
   }
 }
@@ -212,7 +212,7 @@ void choose_header(Study& study) {
   const auto place = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   study.preamble.assign(lines.begin(), lines.begin() + place(first));
   study.sample.erase(study.sample.begin(), study.sample.begin() + place(first));
-  if (first > 0) study.info.dialect.push_back(fmt::format("{} in front of the table left out", plural(first, "line")));
+  if (first > 0) study.info.dialect.push_back(fmt::format("{} before the table left out", plural(first, "line")));
   const Line& above = lines[start.data - (start.names ? 1 : 0)];
   study.dialect.data_offset = start.names ? above.after : above.offset;
   study.dialect.first_data_line = above.number + (start.names ? above.lines : 0);
@@ -387,7 +387,7 @@ void refuse_curve(const Study& study) {
         return abscissa(column.name) || abscissa(column.text);
       }))
     throw refusal(study, study.sample[0], 0, "E0326")
-        .says("a table of curves, not of samples: words in front of averaging times or frequencies")
+        .says("a table of curves, not of samples: words before averaging times or frequencies")
         .got(std::string(study.sample[0].text))
         .hint("`channels` reads only the columns named there");
 }
@@ -399,7 +399,7 @@ void say_facts_of_time(Study& study) {
     for (const Line& line : *lines)
       if (speaks_of_time(line.text)) said.push_back(fmt::format("\"{}\"", printable(line.text, 80)));
   if (!said.empty() && !study.options.rate_hz)
-    study.info.guesses.push_back("no rate in what the lines in front of the table say: " + first_names(said));
+    study.info.guesses.push_back("no rate in what the lines before the table say: " + first_names(said));
 }
 
 void choose_time(Study& study) {

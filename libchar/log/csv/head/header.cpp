@@ -204,7 +204,7 @@ bool named_by_labels(Study& study, const Cells& first) {
     study.dialect.columns[c].text = decoded(study, std::string(trimmed(name))).value_or("");
     any = true;
   }
-  if (any) study.info.dialect.emplace_back("names in front of the values");
+  if (any) study.info.dialect.emplace_back("names before the values");
   return any;
 }
 
@@ -352,7 +352,7 @@ void find_units_of_phone(Study& study) {
 
 void find_other_units(Study& study) {
   find_units_of_phone(study);
-  if (find_cell_units(study)) study.info.dialect.emplace_back("units behind the numbers");
+  if (find_cell_units(study)) study.info.dialect.emplace_back("units after the numbers");
   // Gyroflow's .gcsv holds counts: gx, gy, gz and ax, ay, az.
   for (const Line& line : study.preamble)
     for (const auto& [key, axes, unit] : {std::tuple("gscale", 'g', "rad/s"), std::tuple("ascale", 'a', "g")})
@@ -397,7 +397,7 @@ void name_columns(Dialect& dialect, LogInfo& info) {
     if (seen.insert(column.name).second) continue;
     // "X[s],EMG,X[s],ACC" of Delsys: its names are clear in pairs.
     if (unit_behind({column.text, column.unit_below}) == 0 && !called_time(column.text))
-      info.warnings.add("doubled_name", "columns with the name of an earlier one: a number was put behind it",
+      info.warnings.add("doubled_name", "columns repeat the name of an earlier one: a number was appended",
                         place_name(column.line, column.position));
     const std::string name = column.name;
     while (!seen.insert(column.name).second) column.name = fmt::format("{}_{}", name, ++numbers[name] + 1);

@@ -561,7 +561,7 @@ class CarefulLines {
     const std::size_t count = to_.plan.target.size();
     if (to_.dialect.lines.trailing_delimiter && fields == count + 1)
       return fmt::format(
-          "the lines before end with '{}' and nothing behind it, which makes no column: name the columns in a header "
+          "the lines before end with '{}' and nothing after it, which makes no column: name the columns in a header "
           "line{}",
           to_.dialect.delimiter, to_.dialect.has_header ? ", this one too" : "");
     if (fields == 2 * count && to_.dialect.delimiter == ',')

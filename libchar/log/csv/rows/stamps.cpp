@@ -312,7 +312,7 @@ bool rises_with_units(const StampStudy& study, std::size_t column) {
 void say_calendar(const StampStudy& study, Dialect& dialect, LogInfo& info) {
   const auto main = static_cast<std::size_t>(dialect.time.column);
   if (dialect.time.elapsed) {
-    info.dialect.emplace_back("stamps have their units behind them");
+    info.dialect.emplace_back("stamps have their units after them");
     dialect.columns[main].cell_unit.clear();
     info.time.unit = "ns";
     info.time.unit_ns = 1;
@@ -389,7 +389,7 @@ void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info
   part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
   if (fractions_of(study, dialect, part).rise)
     info.guesses.push_back(
-        fmt::format("stamps: the digits behind the mark are {} without leading zeros", word_of(part.fraction_ns)));
+        fmt::format("stamps: the digits after the mark are {} without leading zeros", word_of(part.fraction_ns)));
   else
     part.fraction_ns = 0;
 }

@@ -18,6 +18,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/replay/detail/align/reference_track.hpp"
 #include "libchar/replay/detail/plan/common_unit.hpp"
@@ -274,8 +275,8 @@ void Instants::prepare(Progress& progress) {
   const double most_hz = info_.rate_hz / 2, highest_hz = std::max(asked.from_hz, asked.to_hz);
   if (highest_hz >= most_hz)
     throw input_error("E0912", scene_->file)
-        .says("{}: instants at {} Hz have nothing above {} Hz", asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
-              brief_text(info_.rate_hz, 6), brief_text(most_hz, 6))
+        .says("{}: instants at {} have nothing above {}", asked.to_hz > 0 ? "`band_hz`" : "`high_pass_hz`",
+              detail::frequency_text(info_.rate_hz, 6), detail::frequency_text(most_hz, 6))
         .got(brief_text(highest_hz, 6))
         .hint("corners are below half the rate");
   preparation_.filter = band_filter(asked.from_hz, asked.to_hz, info_.rate_hz);
@@ -324,8 +325,9 @@ void Instants::read_slow_reference(Progress& progress) {
   else
     take_means_over_intervals(track_->start_s + interval_start(reading.samples) / track_->rate_hz);
   if (reading.margin > 0)
-    info_.reference_use += fmt::format(" (its values are {} by the sensors; log-likelihood {} above the next reading)",
-                                       info_.slow_samples ? "samples" : reading.samples, brief_text(reading.margin, 3));
+    info_.reference_use +=
+        fmt::format(" (the sensors show that its values are {}; log-likelihood {} above the next reading)",
+                    info_.slow_samples ? "samples" : reading.samples, brief_text(reading.margin, 3));
 }
 
 // One instant for each interval of the reference that lies within the recording; `start_s`: of its first.
@@ -372,8 +374,9 @@ void Instants::note_partial_intervals(double length_s) {
   if (ended_s > length_s && length_s - end_s > least_s)
     parts.push_back(fmt::format("the last {} s", brief_text(length_s - end_s, 6)));
   if (!parts.empty())
-    info_.reference_use += fmt::format("; {} of the recording, only a part of an interval{}, not used",
-                                       fmt::join(parts, " and "), parts.size() > 1 ? " each, are" : ", are");
+    info_.reference_use +=
+        fmt::format("; {} of the recording, {} part of an interval, {} not used", fmt::join(parts, " and "),
+                    parts.size() > 1 ? "each only" : "only", parts.size() > 1 ? "are" : "is");
 }
 
 // Filters work in radians; scores speak the reference's unit.

@@ -263,7 +263,7 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
       if (const std::string name(entry.description->name); !times.contains(name))
         out.push_back({name, &entry, fusion::Settings(entry.options),
                        asked.empty() && entry.description->as_published && !options.published
-                           ? name + " is the form as published: it runs by name, or with `published`"
+                           ? name + " is the form as published: runs by name or with `published`"
                            : "",
                        asked.empty()});
   return out;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
 #include "libchar/replay/view/words.hpp"
@@ -26,11 +27,11 @@ std::string names_of(const std::vector<PlannedAlgorithm>& algorithms, auto&& wan
 std::string reading(const Scene& scene, const Instants& instants) {
   const SourceInfo& source = instants.source().info();
   if (scene.simulate)
-    return fmt::format("simulates {} sensors, {} samples at {} Hz, seed {}, anew for each pass", scene.sensors.size(),
-                       source.samples, brief_text(source.rate_hz, 6), scene.simulate->seed);
-  return fmt::format("reads {} of {}: {} samples at {} Hz, {}",
+    return fmt::format("simulates {} sensors, {} samples at {}, seed {}, again for each pass", scene.sensors.size(),
+                       source.samples, detail::frequency_text(source.rate_hz, 6), scene.simulate->seed);
+  return fmt::format("reads {} of {}: {} samples at {}, {}",
                      plural(source.units.size() + source.reference_units.size(), "channel"), source.logs[0].file,
-                     source.samples, brief_text(source.rate_hz, 6),
+                     source.samples, detail::frequency_text(source.rate_hz, 6),
                      source.kept ? "once, and keeps them" : "again for each pass");
 }
 
@@ -125,8 +126,8 @@ std::vector<std::string> sentences(const ReplayPlan& plan, const Scene& scene, c
                               plan.learn_to > plan.learn_from ? "in the learning window" : "on the evaluation itself"));
   if (scene.align) out.push_back(align(*scene.align));
   if (scene.reference) out.push_back(learning(plan, scene.learning || !scene.align || !scene.align->choose));
-  out.push_back(fmt::format("evaluation: {} instants at {} Hz from {} to {}", plan.run_to - plan.run_from,
-                            brief_text(instants.info().rate_hz, 6), seconds(plan.evaluation.from_s),
+  out.push_back(fmt::format("evaluation: {} instants at {} from {} to {}", plan.run_to - plan.run_from,
+                            detail::frequency_text(instants.info().rate_hz, 6), seconds(plan.evaluation.from_s),
                             seconds(plan.evaluation.to_s)));
   if (plan.warm_up > 0)
     out.push_back(fmt::format("warm-up: the first {} of it are run and not scored",

@@ -149,7 +149,7 @@ void warn_of_apart(const Throughout& all, const Sensors& of, Findings& warnings)
     if (!words.empty())
       (sure[i].empty() ? unlike : apart).push_back({of.name(i), fmt::format("{}", fmt::join(words, ", "))});
   }
-  add(warnings, "sensor_apart", "sensors read otherwise than all others, throughout", apart);
+  add(warnings, "sensor_apart", "sensors read differently from all others, throughout", apart);
   add(warnings, "sensor_unlike",
       "sensors differ from the others throughout, by no more than sound ones may: a fault cannot be distinguished from "
       "their kind",

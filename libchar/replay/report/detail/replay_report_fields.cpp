@@ -386,7 +386,7 @@ const Fields<ReplayReport::Reference> kReferenceFields = always(Fields<ReplayRep
     field<&ReplayReport::Reference::mean>("mean"),
     field<&ReplayReport::Reference::lag_s>("lag_s", {.meaning = "the sensors are so late"}),
     field<&ReplayReport::Reference::lag_estimated>("lag_estimated"),
-    field<&ReplayReport::Reference::offset>("offset", {.meaning = "the reference reads so much more than the sensors"}),
+    field<&ReplayReport::Reference::offset>("offset", {.meaning = "offset of the reference relative to the sensors"}),
     field<&ReplayReport::Reference::offset_estimated>("offset_estimated"),
     field<&ReplayReport::Reference::offset_ci95>("offset_ci95", kReferenceOfEstimate),
     part<&ReplayReport::Reference::offset_window>("offset_window", kWindowFields, kReferenceOfEstimate),

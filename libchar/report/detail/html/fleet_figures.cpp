@@ -170,17 +170,17 @@ std::string range_text(const Interval& range_c) {
 
 /// How a temperature coefficient was found.
 std::string coefficient_sentence(const QuantityLot& q) {
-  if (!q.temperatures)
-    return "Found inside single recordings that have a thermometer, at the mean temperature of each.";
+  if (!q.temperatures) return "Found within single recordings with a thermometer, at the mean temperature of each.";
   const TemperatureRuns& t = *q.temperatures;
   std::string out = fmt::format(
-      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error is what the bias differs by each time a "
-      "device is switched on, {} (sd, {} degrees of freedom), not the noise of one recording.",
+      "Slope of the turn-on bias over temperature: {} with {} at {}. Its error comes from the change of the bias at "
+      "each switch-on, {} (sd, {} degrees of freedom), not from the noise of one recording.",
       plural(t.devices, "device"), plural(t.recordings, "recording"), range_text(t.range_c),
       spread_text(t.repeatability, t.repeatability_ci95, false, channel_unit_text(q.channel_unit)), t.dof);
   if (t.in_one_recording > 0)
-    out += fmt::format(" Of {} it was found inside a recording as well: fewer than have a slope, and not mixed in.",
-                       plural(t.in_one_recording, "device"));
+    out +=
+        fmt::format(" For {} it was also found within a recording: fewer than have a slope, and not combined with it.",
+                    plural(t.in_one_recording, "device"));
   return out;
 }
 
@@ -188,17 +188,17 @@ std::string coefficient_sentence(const QuantityLot& q) {
 std::string reference_sentence(const QuantityLot& q) {
   const TemperatureRuns& t = *q.temperatures;
   std::string out = fmt::format(
-      "{} recorded at {}: their bias is given at {} °C by a line over temperature of each, which is taken out of how "
-      "it repeats.",
+      "{} recorded at {}: their bias is given at {} °C by a line over temperature for each, which is removed from its "
+      "repeatability.",
       t.devices == 1 ? "1 device was" : count_text(t.devices) + " devices were", range_text(t.range_c),
       celsius(t.reference_c));
   if (t.elsewhere > 0)
-    out += fmt::format(" {} recorded at one temperature far from that only: theirs is the bias there.",
+    out += fmt::format(" {} recorded only at one temperature far from that: their bias is the one there.",
                        t.elsewhere == 1 ? "1 device was" : count_text(t.elsewhere) + " devices were");
   if (t.dof < 1)
     out +=
-        " No device shows how its bias repeats (three recordings, or two at one temperature), so that no temperature "
-        "coefficient can be given with an error.";
+        " The repeatability of the bias is unknown for every device (it takes three recordings, or two at one "
+        "temperature), so a temperature coefficient cannot have an error.";
   return out;
 }
 
@@ -216,12 +216,12 @@ std::string slope_table(const QuantityLot& q, std::span<const DeviceRecord> reco
 std::string left_out_sentence(const QuantityLot& q) {
   const LeftOut& left = *q.left_out;
   const std::size_t missing = q.counts.not_detected + q.counts.doubtful;
-  const std::string what = fmt::format("Mean and spread are of the {} devices that count; {} are not in it ({}). ",
+  const std::string what = fmt::format("Mean and spread are those of {} devices; {} are excluded ({}). ",
                                        count_text(q.counts.counted), count_text(missing), not_counted(q.counts));
   const std::string of_all =
       fmt::format("[{}, {}] {}", number_text(left.mean_ci95.low), number_text(left.mean_ci95.high), q.unit);
   if (!in_logarithm(q.quantity))
-    return what + fmt::format("They are about zero: the mean of all may be up to {} % nearer to zero, in {}.",
+    return what + fmt::format("They are near zero: the mean of all may be up to {} % closer to zero, in {}.",
                               number_text(100 * left.share, 2), of_all);
   return what +
          fmt::format(
@@ -233,9 +233,9 @@ std::string left_out_sentence(const QuantityLot& q) {
 /// Whom the mean is of where not all have a value.
 std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
-      "Mean and spread are of {} of {} devices: undetected or doubtful ones too, by what their records "
-      "show of the square, as values of a lognormal distribution. Not counted: {}. Histogram, comparison of batches, "
-      "chart and outliers use the {} that count.",
+      "Mean and spread are those of {} of {} devices, undetected or doubtful ones included by the squares measured in "
+      "their recordings, as values of a lognormal distribution. Not counted: {}. Histogram, comparison of batches, "
+      "chart and outliers use the {} detected ones.",
       count_text(q.effects->count), count_text(q.counts.members), not_counted(q.counts), count_text(q.counts.counted));
 }
 
@@ -254,12 +254,12 @@ std::string sentences(const QuantityLot& q) {
     out.push_back(reference_sentence(q));
   if (q.batch_difference) {
     const BatchDifference& d = *q.batch_difference;
-    out.push_back(fmt::format("From batch to batch: {}, {} that batches alike differ as much; within a batch: {}.",
+    out.push_back(fmt::format("Between batches: {}, {} that equal batches differ as much; within a batch: {}.",
                               spread_text(d.between, d.between_ci95, logarithm, q.unit), probability_text(d.p),
                               number_text((logarithm ? 100 : 1) * d.within, 3) + (logarithm ? " %" : " " + q.unit)));
   }
   if (q.repeats)
-    out.push_back(fmt::format("From recording to recording of one device: {} ({} devices, {} recordings).",
+    out.push_back(fmt::format("Between recordings of one device: {} ({} devices, {} recordings).",
                               spread_text(q.repeats->within, q.repeats->within_ci95, logarithm, q.unit),
                               count_text(q.repeats->devices), count_text(q.repeats->recordings)));
   if (q.capability) {
@@ -366,7 +366,7 @@ std::string allan_figures(const FleetReport& report) {
     if (drawing.empty()) continue;
     out += "<h3>" + html_text(f.measures) + "</h3>\n" + drawing;
     if (f.channels.size() > 1)
-      out += "<p class=\"note\">A colour for each device, solid and dashed for its channels: " +
+      out += "<p class=\"note\">One colour per device, solid and dashed for its channels: " +
              html_text(fmt::format("{}", fmt::join(f.channels, ", "))) + ".</p>\n";
   }
   return out;

@@ -61,8 +61,8 @@ std::string window_title(Window window) {
 std::string spectrum_caption(const Spectrum& s) {
   return fmt::format(
       "Blue: Welch's method, {} segment{} of {} samples ({}), {}, averaged in bins of equal width on the logarithmic "
-      "axis, with the 95 % interval; the lowest bins are low where each segment's mean was removed. Line: fitted "
-      "model. Dashed: its terms. Grey: left out of the fit, described only.",
+      "axis, with the 95 % interval; the lowest bins are low because each segment's mean was removed. Line: fitted "
+      "model. Dashed: its terms. Grey: left out of the fit, only shown.",
       count_text(s.segments), s.segments == 1 ? "" : "s", count_text(s.segment),
       duration_text(static_cast<double>(s.segment) / s.rate_hz), window_title(s.window));
 }
@@ -92,7 +92,7 @@ std::string trace_plot(const ChannelView& view, std::size_t index, const LogInfo
   const std::string what =
       c.trace.block == 1
           ? "Every sample; the line is their running mean."
-          : fmt::format("Least and largest value of every {} samples{}; the line is the running mean of their middle.",
+          : fmt::format("Range of every {} samples{}; the line is the running mean of its middle.",
                         count_text(c.trace.block),
                         log.rate_hz_of(c.channel) > 0
                             ? " (" + duration_text(static_cast<double>(c.trace.block) / log.rate_hz_of(c.channel)) + ")"
@@ -120,12 +120,12 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
                             ? "Points: measured, hollow where unreliable; shaded: 95 % intervals; lines: fitted models."
                             : "Lines: measured. A click on a name hides its curve.";
   if (!taken_out.empty())
-    caption += fmt::format(" Taken out before the fit, and so in what was measured but not in the models: {}.",
+    caption += fmt::format(" Removed before the fit, so contained in the points but not in the models: {}.",
                            fmt::join(taken_out, "; "));
   if (shaped)
     caption +=
-        " Grey on the left, a shade for each channel: averaging times at which a filter or what lies outside the band "
-        "shapes its curve too.";
+        " Grey on the left, one shade per channel: averaging times at which a filter or noise outside the band also "
+        "shapes the curve.";
   return plot_figure(
       "group", drawn,
       {std::string(deviation_row(type).title), std::string(name_of(type)), shown_unit(group.unit), caption},

@@ -86,9 +86,9 @@ std::string limits_section(const LimitReport& report) {
          (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
          html_prose(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
          html_text(report.file) +
-         ". A term passes or fails when its whole 95 % interval is within or above the limit; one that is at the "
-         "limit does either by chance in at most 2.5 % of recordings, and passes in 5 % where only an upper limit is "
-         "known.</p>\n</section>\n";
+         ". A term passes or fails if its whole 95 % interval is within or above the limit; a term exactly at the "
+         "limit passes or fails by chance in at most 2.5 % of recordings each, and passes in 5 % if only an upper "
+         "limit is known.</p>\n</section>\n";
 }
 
 std::string limits_text(const LimitReport& report, const TextLook& look) {
@@ -130,8 +130,8 @@ std::string alignment_html(const ReplayView& view) {
   return out + "<div class=\"copy-place\" data-copy=\"alignment\"></div>\n" + html_table(words.learnt) +
          html_table(words.budget) +
          "<p class=\"note\">Shares are of each sensor’s mean square error over the evaluation, with 95 % intervals; "
-         "last row: what the fused error would lose. Jitter: the part of what alignment leaves that follows the square "
-         "of the input’s slope.</p>\n</section>\n";
+         "last row: change of the fused error without that part. Jitter: the part of the aligned error that grows with "
+         "the square of the input’s slope.</p>\n</section>\n";
 }
 
 }  // namespace libchar

@@ -24,7 +24,7 @@ Cell headline_cell(const Coefficient& coefficient, Term term, const std::string&
 std::vector<Cell> headline_cells(const Channel& channel, const NoiseFit& fit);
 std::vector<Cell> headline_cells(const RecordedChannel& channel);
 inline constexpr const char* kHeadlineNote =
-    "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: not to be relied on, the recording's own "
-    "report says why.";
+    "In brackets: 95 % intervals. ≤: not detected, upper 95 % limit. ?: do not rely on it; the recording's own report "
+    "gives the reason.";
 
 }  // namespace libchar

@@ -7,6 +7,7 @@
 
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/replay/view/words.hpp"
 
@@ -112,9 +113,9 @@ Table algorithms_table(const ReplayView& view) {
     if (v->result->bound) add_algorithm(out, *v, reference);
   if (out.rows.size() == methods) return out;
   // Their own body, so that sorting keeps them apart from what one could use.
-  out.rows.insert(out.rows.begin() + static_cast<std::ptrdiff_t>(methods),
-                  Table::Row{{"Bounds: they look at the reference of the run itself, and nobody could use them"},
-                             Table::Kind::part});
+  out.rows.insert(
+      out.rows.begin() + static_cast<std::ptrdiff_t>(methods),
+      Table::Row{{"Bounds: they use the reference of the run itself and cannot be deployed"}, Table::Kind::part});
   return out;
 }
 
@@ -137,7 +138,8 @@ Table input_table(const ReplayView& view, std::size_t j) {
   const InputResult& input = *view.inputs[j].result;
   Table out("algorithm||regret|bias|maximum|converged|available");
   out.title = "Input " + input.name;
-  out.note = "Optimum of " + view.optimum + ": RMSE " + with_unit(input.optimum_rmse, 4, usual_unit(input.unit));
+  out.note =
+      "Optimum of " + view.optimum + ": RMSE " + with_unit(input.optimum_rmse, 4, detail::usual_unit(input.unit));
   out.columns[1] = score_column(true, input.unit);
   for (const AlgorithmView* v : view.inputs[j].ranked) {
     const AlgorithmResult& a = *v->result;
@@ -177,7 +179,7 @@ Table sensors_table(const ReplayView& view) {
     for (const double v : s.h) h += (h.empty() ? "" : ", ") + brief_text(v, 4);
     const auto scored = [&](Cell cell) { return r.has_reference ? std::move(cell) : Cell(); };
     out.add({s.name, scored(Cell::number(s.error.rmse, s.error.rmse_ci95)), scored(Cell::number(s.error.bias, 3)),
-             scored(Cell::number(s.error.maximum, 3)), usual_unit(s.unit),
+             scored(Cell::number(s.error.maximum, 3)), detail::usual_unit(s.unit),
              view.noise_sd[i] ? Cell::number(*view.noise_sd[i]) : Cell("not known"), s.noise_source,
              s.offset == 0 ? Cell() : Cell::number(s.offset),
              Cell::shown(s.missing > 0 ? percent_text(s.missing) : "none", s.missing), r.scene.tilt ? "" : h,
@@ -298,7 +300,7 @@ Table out_share_table(const ReplayView& view) {
 
 Table::Column score_column(bool has_reference, const std::string& unit) {
   const std::string name = has_reference ? "RMSE" : "leave-one-out RMS";
-  const std::string usual = usual_unit(unit);
+  const std::string usual = detail::usual_unit(unit);
   return {usual.empty() ? name : name + ", " + usual, "rmse,low95,high95"};
 }
 
@@ -313,13 +315,8 @@ Cell memory_cell(double bytes) {
 
 std::string score_name(const ReplayResult& result) { return result.has_reference ? "RMSE" : "Leave-one-out RMS"; }
 
-std::string usual_unit(const std::string& unit) {
-  const auto known = find_unit(unit);
-  return known && known->symbol != "1" ? std::string(known->symbol) : unit;
-}
-
 std::string score_unit(const ReplayResult& result) {
-  return result.inputs.empty() ? "" : usual_unit(result.inputs[0].unit);
+  return result.inputs.empty() ? "" : detail::usual_unit(result.inputs[0].unit);
 }
 
 std::string with_unit(double value, int digits, const std::string& unit) {
@@ -335,15 +332,15 @@ std::string stretch_text(double from_s, double to_s) {
 
 std::vector<std::string> run_facts(const ReplayView& view) {
   const ReplayResult& r = *view.result;
-  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {} Hz, {} from {} on.", r.sensors.size(),
-                                              r.instants, brief_text(r.rate_hz, 6), duration_text(view.duration_s),
-                                              instant_text(r.start_s))};
+  std::vector<std::string> out = {fmt::format("{} sensors, {} instants at {}, {} from {} on.", r.sensors.size(),
+                                              r.instants, detail::frequency_text(r.rate_hz, 6),
+                                              duration_text(view.duration_s), instant_text(r.start_s))};
   out.push_back(r.has_reference ? "Reference: " + r.reference_use + "." : "No reference.");
   for (const InputResult& input : r.inputs)
     if (r.has_reference && std::isfinite(input.optimum_rmse))
       out.push_back(fmt::format("Optimum of {}{}: RMSE {}.", view.optimum,
                                 r.inputs.size() > 1 ? " for " + input.name : "",
-                                with_unit(input.optimum_rmse, 4, usual_unit(input.unit))));
+                                with_unit(input.optimum_rmse, 4, detail::usual_unit(input.unit))));
   if (r.lag_estimated)
     out.push_back(fmt::format("The sensors lag the reference by {} (estimated).", duration_text(r.lag_s)));
   for (std::string& sentence : preparation_words(r)) out.push_back(std::move(sentence));

@@ -13,7 +13,7 @@ namespace libchar {
 Table algorithms_table(const ReplayView& view);
 /// What stands behind names in a text.
 inline constexpr const char* kStarNote =
-    "* the best method, and those whose difference from it is not resolved; bounds look at the reference of the run "
+    "* the best method, and those whose difference from it is not resolved; bounds use the reference of the run "
     "itself.";
 /// Facts of every algorithm, with the sentence of those that did not run.
 Table needs_table(const ReplayView& view);
@@ -49,7 +49,6 @@ std::string score_name(const ReplayResult& result);
 std::string with_unit(double value, int digits, const std::string& unit);
 /// Unit of the first input in its usual spelling, "" where none is stated.
 std::string score_unit(const ReplayResult& result);
-std::string usual_unit(const std::string& unit);
 /// A point in time, in seconds without trailing zeros: "400 s".
 std::string instant_text(double seconds);
 /// "400 s … 500 s", "600 s … the end".
