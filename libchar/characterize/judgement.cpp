@@ -50,8 +50,8 @@ std::string events_taken_out(const NoiseFit& fit) {
 
 /// So few spikes are repaired without a trace in the coefficients.
 constexpr double kManySpikes = 0.001;
-/// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out.
-constexpr double kMostMissing = 0.01;
+/// Fewer missing samples cost nothing worth mentioning: terms that touch them are left out, and N keeps its interval.
+constexpr double kMostMissing = 0.1;
 
 double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -203,6 +203,9 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
     if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   if (channel.fit && has_step(*channel.fit))
     std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
+  // The zeros of a held value's spectrum lie between humps.
+  if (has(found.out, "held_values"))
+    std::erase_if(found.out, [](const Finding& one) { return one.code == "resonance"; });
   // Marks are far from all samples: they look like movement, and what moves is seen without them.
   if (has(found.out, "missing_mark"))
     std::erase_if(found.out, [](const Finding& one) {
@@ -219,12 +222,15 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
 }
 
 std::vector<Finding> detail::findings_of_curve(ChannelResult channel) {
-  std::vector<Finding> of_fit;
-  if (channel.fit) of_fit = std::move(channel.fit->findings);
+  Judge of_fit{channel, {}};
+  if (channel.fit) of_fit.look_at_fit(*channel.fit);
   channel.fit.reset();
   std::vector<Finding> out = findings_of(channel);
-  for (const Finding& one : of_fit)
-    if (one.code == "not_stationary") out.push_back(one);
+  constexpr std::string_view kInCurve[] = {"not_stationary", "event",     "events_left_in", "cycle",
+                                           "hump",           "resonance", "lines_left_out"};
+  for (Finding& one : of_fit.out)
+    if (std::find(std::begin(kInCurve), std::end(kInCurve), one.code) != std::end(kInCurve))
+      out.push_back(std::move(one));
   return worst_first(std::move(out));
 }
 

@@ -51,8 +51,8 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
 
 namespace detail {
-/// What is known of the samples behind a curve, and that the noise is not the same throughout: the fit that makes the
-/// intervals takes steps and terms apart, which the curve does not.
+/// What is known of the samples behind a curve, and what the fit that makes the intervals found and took apart, which
+/// the curve does not: steps, cycles, lines, noise that is not the same throughout.
 std::vector<Finding> findings_of_curve(ChannelResult channel);
 
 /// A channel in one sentence: what its noise is, how far that can be used, and what spoils it. The terms, then what

@@ -79,9 +79,9 @@ void add_result(const PlannedDevice& planned, const DeviceRecord& found, DeviceR
     record.problem = found.problem;
     record.awaited = false;
   }
-  for (const std::string& warning : found.warnings)
-    if (std::find(record.warnings.begin(), record.warnings.end(), warning) == record.warnings.end())
-      record.warnings.push_back(warning);
+  for (const Finding& one : found.findings)
+    if (std::find(record.findings.begin(), record.findings.end(), one) == record.findings.end())
+      record.findings.push_back(one);
   record.channels.insert(record.channels.end(), found.channels.begin(), found.channels.end());
 }
 

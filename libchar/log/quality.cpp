@@ -79,17 +79,25 @@ class DistinctValues {
 // range when three and more stand in a row, and it has more than twice as many as its neighbour, which the tail of a
 // coarsely rounded signal has not: then all of them are saturated.
 struct Extreme {
+  static constexpr double kNines[] = {9, 99, 999, 9999, 99999, 999.9, 9999.9};
   double sign = 1, value = -__builtin_inf(), next = -__builtin_inf(), third = -__builtin_inf();
   std::uint64_t run = 0, count = 0, at_next = 0;
   bool runs = false;
 
   std::uint64_t saturated() const { return runs && count > 2 * at_next ? count : 0; }
+  /// -1 and numbers of nines alone: what loggers write for no reading.
+  bool is_usual_mark() const {
+    const double written = sign * value;
+    return written == -1 ||
+           std::any_of(std::begin(kNines), std::end(kNines), [&](double nines) { return std::fabs(written) == nines; });
+  }
   /// Stands often, and further from the next value than all others are apart (`others`: their range): no tail of a
-  /// noise gives one value again and again out there, nor does a range that ends.
+  /// noise gives one value again and again out there, nor does a range that ends. Half as far for a usual mark.
   bool is_mark(double others) const {
-    constexpr std::uint64_t kFewest = 3;
-    constexpr double kApart = 3;
-    return count >= kFewest && others > 0 && value - next > kApart * others;
+    constexpr std::uint64_t kFewest = 3, kOfUsual = 10;
+    constexpr double kApart = 3, kUsual = 0.5;
+    if (count < kFewest || !(others > 0)) return false;
+    return value - next > (count >= kOfUsual && is_usual_mark() ? kUsual : kApart) * others;
   }
   /// Values of the last two steps lie on the way to it, again and again.
   bool is_reached(double step) const {

@@ -178,7 +178,7 @@ DeviceRecord record_of(const Characterization& result, SampleKind data) {
   out.sha256 = result.log.sha256;
   out.program = version();
   if (result.limits) out.limits = result.limits->verdict;
-  for (const Finding& warning : result.log.warnings.list()) out.warnings.push_back(sentence_of(warning));
+  out.findings = result.log.warnings.list();
   for (const ChannelResult& channel : result.channels) {
     out.channels.push_back(channel_record(channel, data));
     if (result.temperature && channel.channel.name == result.temperature->name) drop_own_effects(out.channels.back());

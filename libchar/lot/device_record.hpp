@@ -83,14 +83,14 @@ struct DeviceRecord {
   std::string settings;                 ///< what it was characterized with, by a name of the caller's
   /// What of the settings can make results differ; "": all of them. Not in the text: who has the settings knows it.
   std::string analysis;
-  std::string program;                ///< version that characterized it
-  std::string report;                 ///< folder of its own report, relative to the page of the lot; "": none
-  std::string limits;                 ///< verdict on its data sheet; "": none was held against it
-  std::string problem;                ///< why its log could not be characterized; "": it was
-  std::vector<std::string> warnings;  ///< what was dirty in its log and what was done, in sentences
-  bool awaited = false;               ///< `problem` is that the result is not there yet; not in the text
+  std::string program;  ///< version that characterized it
+  std::string report;   ///< folder of its own report, relative to the page of the lot; "": none
+  std::string limits;   ///< verdict on its data sheet; "": none was held against it
+  std::string problem;  ///< why its log could not be characterized; "": it was
+  /// What was dirty in its log and what was done; and what is known of the channels, where none could be fitted.
+  std::vector<Finding> findings;
+  bool awaited = false;  ///< `problem` is that the result is not there yet; not in the text
   std::vector<RecordedChannel> channels;
-  std::vector<Finding> findings;  ///< of the channels, where none could be fitted; not in the text
   bool operator==(const DeviceRecord&) const = default;
 };
 

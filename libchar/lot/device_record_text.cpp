@@ -133,7 +133,7 @@ const Fields<DeviceRecord>& device_record_fields() {
       field<&T::report>("report", {.meaning = "folder of its own report"}),
       field<&T::limits>("limits", {.meaning = "verdict on its data sheet"}),
       field<&T::problem>("problem", {.meaning = "why its log could not be characterized"}),
-      field<&T::warnings>("warnings", {.meaning = "what was dirty in its log and what was done, in sentences"}),
+      list_of<&T::findings>("findings", finding_fields()),
       list_of<&T::channels>("channels", channel_fields(), {.written = Written::always, .required = true}),
   };
   return rows;

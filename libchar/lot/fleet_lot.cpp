@@ -333,19 +333,6 @@ std::string fleet_verdict(const FleetLot& lot, const Fleet& fleet) {
   return out + batch_sentence(lot) + chart_sentence(lot);
 }
 
-/// What was mended in the logs does not get lost in the number of them.
-std::vector<std::string> warnings_note(std::span<const DeviceRecord> records, std::span<const std::size_t> order) {
-  const DeviceRecord* first = nullptr;
-  std::size_t count = 0;
-  for (const std::size_t r : order) {
-    if (records[r].warnings.empty()) continue;
-    if (++count == 1) first = &records[r];
-  }
-  if (count == 0) return {};
-  return {fmt::format("{} of {} read with warnings, which their pages say; the first, of {}: {}", count,
-                      plural(records.size(), "recording"), first->device, first->warnings[0])};
-}
-
 /// One for each code, with the devices that have it, the worst first.
 std::vector<Finding> known_of(std::span<const DeviceRecord> records, std::span<const std::size_t> order) {
   std::map<std::string, std::pair<Finding, std::vector<std::string>>> kinds;
@@ -400,7 +387,6 @@ FleetLot fleet_lot(std::span<const DeviceRecord> records, const FleetLotOptions&
   for (Statistic& s : statistics) out.quantities.push_back(std::move(s.lot));
   out.notes = fleet.sorted.notes;
   for (std::string& note : unlike_records(records, fleet.sorted, fleet.groups)) out.notes.push_back(std::move(note));
-  for (std::string& note : warnings_note(records, out.order)) out.notes.push_back(std::move(note));
   out.findings = known_of(records, out.order);
   out.verdict = fleet_verdict(out, fleet);
   return out;

@@ -2,10 +2,13 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 
 #include "libchar/core/document/json.hpp"
+#include "tests/support/noise.hpp"
 #include "tests/support/run.hpp"
+#include "tests/support/shared.hpp"
 
 using Catch::Contains;
 
@@ -188,6 +191,18 @@ TEST_CASE("inspect: a pipe has as many bytes as the file it comes from, comments
   };
   CHECK(bytes(test::run({"inspect", "-", "--json"}, piped)) == std::filesystem::file_size(path));
   CHECK(bytes(test::run({"inspect", path, "--json"})) == std::filesystem::file_size(path));
+}
+
+TEST_CASE("what mends a command replaces an option that it has") {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder / "periods.txt").string(), out = (folder / "r").string();
+  std::ofstream periods(log);
+  test::Gaussian draw(4);
+  for (int i = 0; i < 3000; ++i) periods << std::setprecision(15) << 1.0000001 + 3e-9 * draw() << '\n';
+  periods.close();
+  const auto ran = test::run({"characterize", log, "--rate", "1Hz", "--data", "phase", "-o", out});
+  CHECK_THAT(ran.out,
+             Contains("--data=frequency") && Contains("--nominal-frequency 1.0000001") && !Contains("--data phase -o"));
 }
 
 TEST_CASE("a log that cannot be read does not hide those behind it") {

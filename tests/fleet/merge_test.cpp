@@ -188,12 +188,11 @@ TEST_CASE("what was mended in a log is told by the worker, in the record, and in
   for (const FleetUnit& unit : plan.units) warned += !run_unit(unit, folder / "F").warnings.empty();
   CHECK(warned == 1);
   const auto records = merged_records(plan, folder / "F");
-  CHECK(records[0].warnings.empty());
-  REQUIRE(records[1].warnings.size() == 1);
+  CHECK(records[0].findings.empty());
+  REQUIRE(has(records[1].findings, "duplicate_timestamp"));
   const FleetLot lot = fleet_lot(records);
-  REQUIRE(!lot.notes.empty());
-  CHECK_THAT(lot.notes.back(),
-             Contains("1 of 3 recordings read with warnings") && Contains("of d1: " + records[1].warnings[0]));
+  REQUIRE(has(lot.findings, "duplicate_timestamp"));
+  CHECK_THAT(lot.findings[0].sentence, Contains("1 device (d1)"));
 }
 
 TEST_CASE("what a log's channels are called is no way to characterize it, what is fitted is one") {

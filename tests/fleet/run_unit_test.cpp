@@ -90,7 +90,7 @@ TEST_CASE("channels that are units of their own are what the whole log says of t
       CHECK(found[d].channels == expected[d].channels);
       CHECK(found[d].temperature_c == expected[d].temperature_c);
       CHECK(found[d].settings == expected[d].settings);
-      CHECK(found[d].warnings == expected[d].warnings);
+      CHECK(found[d].findings == expected[d].findings);
     }
   };
   // Lists, an entry a channel: a unit has its own, and chooses by what the log says.

@@ -51,5 +51,6 @@ QUESTIONS = [
     # No code searches a sentence that the program itself made: what it means is data.
     Question("what a sentence means", "",
              r'\brfind\("[a-z]+ ", 0\)|\bstarts_with\("[A-Z][a-z]+ [^"]*"\)|\.find\("published"\)'
-             r"|substr\((\w+)\.find\('\['\)\)"),
+             r"|substr\((\w+)\.find\('\['\)\)"
+             r"|\.(?:sentence|phrase|why|verdict)\.(?:find|rfind|starts_with|ends_with|contains)\("),
 ]

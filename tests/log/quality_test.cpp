@@ -501,6 +501,19 @@ TEST_CASE("quality: parts joined are the record, wherever it is cut") {
       }
 }
 
+TEST_CASE("what loggers write for no reading is a mark nearer to the values than other numbers are") {
+  const std::vector<double> x = gaussian(20000, 0.5, 9);
+  const auto with = [&](double mark, std::size_t every) {
+    std::vector<double> y = x;
+    for (std::size_t i = 500; i < y.size(); i += every) y[i] = mark;
+    return meter(y).signs.marks;
+  };
+  CHECK(with(-1, 50) == std::vector<double>{-1});
+  CHECK(with(-1, 5000).empty());  // too few
+  CHECK(with(-1.37, 50).empty());
+  CHECK(with(16, 50).empty());
+}
+
 TEST_CASE("a value that stands often and far from all others is a mark for missing values") {
   std::vector<double> x = gaussian(20000, 1);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(x[i] * 1000) / 1000 + 15;

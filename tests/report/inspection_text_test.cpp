@@ -55,6 +55,19 @@ TEST_CASE("one line for each kind of finding: what the first channel says, and w
   CHECK_THAT(squeezed(text), Contains("n 0 "));  // the unit of numbers without one is not printed
 }
 
+TEST_CASE("the worst kinds of finding come first, and of more than five the others are counted") {
+  Inspection inspection;
+  inspection.info.file = "log.csv";
+  inspection.info.channels = {{"gx", "deg/s", false}};
+  inspection.quality.resize(1);
+  for (const char* code : {"spiky", "saturated", "held_values", "coarse_resolution", "float_step", "constant"})
+    inspection.quality[0].findings.push_back(finding(code, std::string("that is ") + code));
+  inspection.quality[0].findings.push_back(finding("dead_band", "that is the worst"));
+  const std::string text = inspection_text(inspection);
+  CHECK_THAT(text, Contains("  gx: that is the worst\n  gx: that is spiky\n") && Contains("  and 2 findings more\n"));
+  CHECK_THAT(text, !Contains("float_step") && !Contains("constant"));
+}
+
 TEST_CASE("of very many channels or topics the first thousand have a line, the others are counted") {
   Inspection inspection;
   inspection.info.file = "log.csv";

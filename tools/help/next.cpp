@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "help/flag_names.hpp"
@@ -47,50 +48,95 @@ Settings settings_of(const std::vector<Finding>& findings, Severity severity) {
   return out;
 }
 
-/// " --missing=-99,-999": what mends the worst findings, by options of these (all where null). Marks and wraps
+/// What says how the samples of one channel are to be understood says it of all that are read: of that channel alone
+/// then, and not in one command with what mends another.
+void keep_kinds_apart(Settings& settings, const std::vector<Finding>& findings) {
+  constexpr const char* kOfKind[] = {"data", "unwrap", "nominal_frequency"};
+  const auto is_of_kind = [&](const std::string& option) {
+    return std::find(std::begin(kOfKind), std::end(kOfKind), option) != std::end(kOfKind);
+  };
+  const bool mixed = std::any_of(settings.begin(), settings.end(),
+                                 [&](const auto& one) { return one.first != "channels" && !is_of_kind(one.first); });
+  for (const char* option : kOfKind)
+    if (mixed) settings.erase(option);
+  if (mixed) settings.erase("channels");
+  for (const Finding& one : findings)
+    for (const Finding::Help& help : one.help)
+      for (const Finding::Setting& setting : help.options)
+        if (is_of_kind(setting.option) && settings.contains(setting.option) && !one.subject.empty())
+          settings["channels"].insert(one.subject);
+}
+
+/// Options of a command that mend: those to add, and those given already that get another value.
+struct Mending {
+  std::string added;
+  std::map<std::string, std::string> replaced;
+  bool none() const { return added.empty() && replaced.empty(); }
+};
+
+/// What was given behind an option; nothing: it was not.
+std::optional<std::string> given_value(const std::vector<std::string>& command, const std::string& flag) {
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    if (command[i] == flag) return i + 1 < command.size() ? command[i + 1] : "";
+    if (command[i].starts_with(flag + "=")) return command[i].substr(flag.size() + 1);
+  }
+  return std::nullopt;
+}
+
+/// "--missing=-99,-999": what mends the worst findings, by options of `flags` (all where null). Marks and wraps
 /// move a sensor that does not move: whether it does is seen without them.
-std::string mending_flags(const std::set<std::string>* free, const std::vector<Finding>& findings) {
+Mending mending(const std::set<std::string>* flags, const std::vector<std::string>& command,
+                const std::vector<Finding>& findings) {
   Settings settings = settings_of(findings, Severity::bad);
   if (settings.empty()) settings = settings_of(findings, Severity::caution);
   if (settings.size() > 1 || has(findings, "moves_throughout")) settings.erase("still");
-  std::string flags;
+  keep_kinds_apart(settings, findings);
+  Mending out;
   for (const auto& [option, values] : settings) {
     const std::string words = with_flags("`" + option + "`");
     const std::string flag = words.substr(words.rfind(' ') + 1);  // "characterize --frozen" elsewhere
-    if (free != nullptr && !free->contains(flag)) continue;
-    if (option == "missing") {
-      flags += fmt::format(" {}={}", flag, fmt::join(values, ","));
-      continue;
+    if (flags != nullptr && !flags->contains(flag)) continue;
+    const bool list = option == "missing", again = option == "channel_scale" || option == "channel_unit";
+    const std::string joined = fmt::format("{}", fmt::join(values, ","));
+    if (const auto given = given_value(command, flag); given && !again) {
+      const std::string now = list ? *given + "," + joined : *values.begin();
+      if (*given != now) out.replaced[flag] = now;
+    } else if (list) {
+      out.added += fmt::format(" {}={}", flag, joined);
+    } else {
+      for (const std::string& value : values) out.added += " " + flag + " " + shell_word(value);
     }
-    for (const std::string& value : values) flags += " " + flag + " " + shell_word(value);
   }
-  return flags;
+  return out;
 }
 
 std::vector<Finding> findings_of(const Characterization& result) {
   std::vector<Finding> out;
   for (const ChannelResult& channel : result.channels)
-    for (const Finding& one : judge(channel).findings) out.push_back(one);
+    for (Finding one : judge(channel).findings) {
+      if (result.channels.size() > 1) one.subject = channel.channel.name;
+      out.push_back(std::move(one));
+    }
   return out;
 }
 
-/// An option that was given already cannot be given twice.
-bool was_given(const Session& session, const std::string& flag) {
-  return std::any_of(session.command.begin(), session.command.end(),
-                     [&](const std::string& word) { return word == flag || word.starts_with(flag + "="); });
-}
-
 /// The command as it was given, its results replaced.
-std::string command_again(const Session& session, const std::string& flags, const std::string& folder) {
+std::string command_again(const Session& session, const Mending& mend, const std::string& folder) {
   std::string out = "sensorchar";
   bool forced = false, placed = false;
   for (std::size_t i = 1; i < session.command.size(); ++i) {
     const std::string& word = session.command[i];
     forced |= word == "--force";
     placed |= word.starts_with("-o") || word.starts_with("--output");
-    out += " " + shell_word(word);
+    const std::string flag = word.substr(0, word.find('='));
+    if (const auto other = mend.replaced.find(flag); other != mend.replaced.end()) {
+      out += " " + flag + "=" + shell_word(other->second);
+      if (flag == word) ++i;
+    } else {
+      out += " " + shell_word(word);
+    }
   }
-  out += flags;
+  out += mend.added;
   if (!placed) out += " -o " + shell_word(folder);
   return forced ? out : out + " --force";
 }
@@ -132,21 +178,19 @@ std::string default_folder(const std::string& input, const std::string& kind) {
   return (stem.empty() || stem == "-" || stem == "." || stem == ".." ? "log" : stem) + "-" + kind;
 }
 
-std::string mending_flags(const std::vector<Finding>& findings) { return mending_flags(nullptr, findings); }
+std::string mending_flags(const std::vector<Finding>& findings) { return mending(nullptr, {}, findings).added; }
 
 std::string mended_command(const Session& session, const std::vector<Finding>& findings, const std::string& folder) {
-  std::set<std::string> free;
-  for (const std::string& flag : session.flags)
-    if (!was_given(session, flag)) free.insert(flag);
-  const std::string flags = mending_flags(&free, findings);
-  return flags.empty() ? "" : command_again(session, flags, folder);
+  const Mending mend = mending(&session.flags, session.command, findings);
+  return mend.none() ? "" : command_again(session, mend, folder);
 }
 
 std::vector<std::string> next_steps(const Session& session, const Characterization& result, const std::string& folder) {
   const TimeBase& time = result.log.time;
   if (!(time.rate_hz > 0))
     return {command_again(
-        session, time.candidate.empty() ? " --rate RATE" : " --time-column " + libchar::shell_word(time.candidate),
+        session,
+        {time.candidate.empty() ? " --rate RATE" : " --time-column " + libchar::shell_word(time.candidate), {}},
         folder)};
   const std::vector<Finding> findings = findings_of(result);
   std::vector<std::string> out;

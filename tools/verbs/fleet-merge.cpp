@@ -87,7 +87,8 @@ std::string name_of_fleets(const MergeVerb& verb) {
   return names.size() > kNamed ? plural(names.size(), "fleet") : fmt::format("{}", fmt::join(names, ", "));
 }
 
-void run_merge(Session& session, const MergeVerb& verb) {
+void run_merge(Session& session, MergeVerb& verb) {
+  if (verb.folder.empty()) verb.folder = default_folder(verb.fleets.front());
   refuse_standard_output("--output", verb.folder);
   foresee_outputs(fleet_report_files(verb.folder), verb.folder, verb.fleets, verb.force);
   const Merged fleet = merged(session, verb);
@@ -111,9 +112,8 @@ void run_merge(Session& session, const MergeVerb& verb) {
 std::function<void()> merge_options(VerbOptions& options, Session& session) {
   auto verb = std::make_shared<MergeVerb>();
   options.add_texts("DIR", verb->fleets, "folder of a fleet; several make one report").required();
-  options.add_text("-o,--output", verb->folder, "folder for the report (made when absent)")
-      .value_name("REPORT")
-      .required();
+  options.add_text("-o,--output", verb->folder, "folder for the report, made when absent (default: DIR-report)")
+      .value_name("REPORT");
   options.add_text("--name", verb->name, "title of the fleet (default: the names of the folders)").value_name("TEXT");
   options.add_flag("--partial", verb->partial, "merge the existing results; devices without a result are listed");
   options.add_flag("--force", verb->force, "overwrite the report of an earlier merge");

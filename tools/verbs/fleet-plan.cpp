@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis_options.hpp"
+#include "help/next.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
@@ -76,6 +77,7 @@ std::string replaced_text(const ReplacedPlan& replaced, std::size_t others) {
 }
 
 void run_plan(Session& session, PlanVerb verb) {
+  if (verb.folder.empty()) verb.folder = default_folder(verb.inputs.front(), "fleet");
   refuse_standard_output("--output", verb.folder);
   const CharacterizeOptions options = finish(verb.analysis);
   verb.plan.reports = !verb.no_reports;
@@ -128,9 +130,8 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
                  "a manifest of devices and their logs (YAML, JSON or CSV, docs/fleet.md), or logs, each one device "
                  "named after its file; a quoted pattern stands for its files")
       .required();
-  options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results")
-      .value_name("DIR")
-      .required();
+  options.add_text("-o,--output", verb->folder, "folder of the fleet: plan, tasks, results (default: MANIFEST-fleet)")
+      .value_name("DIR");
   options
       .add_texts(
           "--sums", verb->sums,

@@ -32,9 +32,10 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
   std::vector<libchar::Finding> found;
   libchar::ReadOptions reading = verb.reading;
   std::string mark;
-  for (const libchar::ChannelQuality& quality : inspection.quality)
-    for (const libchar::Finding& one : quality.findings) {
+  for (std::size_t c = 0; c < inspection.quality.size(); ++c)
+    for (const libchar::Finding& one : inspection.quality[c].findings) {
       found.push_back(one);
+      if (inspection.quality.size() > 1) found.back().subject = info.channels[c].name;
       for (const libchar::Finding::Help& help : one.help)
         for (const libchar::Finding::Setting& setting : help.options)
           if (setting.option == "missing")

@@ -10,6 +10,7 @@
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/allan_pyramid.hpp"
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/detail/rest_doubt.hpp"
 #include "libchar/core/axis_name.hpp"
 #include "libchar/core/error.hpp"
 #include "libchar/core/numeric/present.hpp"
@@ -96,6 +97,7 @@ class Finish {
   void doubt_unit(ChannelResult& result, double rate_hz) const;
   void doubt_frequency(ChannelResult& result) const;
   void doubt_rate(ChannelResult& result, double rate_hz) const;
+  void doubt_rest(ChannelResult& result, double rate_hz) const;
   std::optional<double> white_limit(const Coefficient& walk, double rate_hz) const;
   std::optional<EventSeries> series(double rate_hz) const;
   void find_motion(ChannelResult& result, double rate_hz);
@@ -482,6 +484,14 @@ void Finish::doubt_rate(ChannelResult& result, double rate_hz) const {
   result.findings.push_back(std::move(integral));
 }
 
+// Where it moves for a part of the record, the rest of it may be used.
+void Finish::doubt_rest(ChannelResult& result, double rate_hz) const {
+  if (options_.data != SampleKind::rate || !result.fit || has(result.findings, "motion")) return;
+  const double step = found_.resolution.value_or(0);
+  if (auto moves = detail::doubt_rest(*result.fit, result.channel.unit, step * step / (12 * rate_hz)))
+    result.findings.push_back(*std::move(moves));
+}
+
 // Differenced phase and fractional frequency have other units than the samples in the log.
 std::string Finish::unit_of_rate(const std::string& unit) const {
   if (options_.data == SampleKind::phase) return detail::differenced_unit(unit).unit;
@@ -534,6 +544,7 @@ ChannelResult Finish::result(const Channel& channel, const TimeBase& time) {
   make_rate(rate_hz);
   finish(result, rate_hz);
   doubt_rate(result, rate_hz);
+  doubt_rest(result, rate_hz);
   result.noise_types = noise_types_;
   if (result.fit && !noise_types_.empty())
     result.fit->findings.push_back(finding(

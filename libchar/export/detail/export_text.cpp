@@ -69,10 +69,10 @@ namespace {
 /// What readings of a number or a unit hold besides ASCII, in ASCII.
 std::string in_ascii(std::string text) {
   constexpr std::pair<std::string_view, std::string_view> kSpelt[] = {
-      {"×10", "e"}, {"×", "x"},     {"±", "+/-"},  {"⁻", "-"},   {"⁰", "0"},    {"¹", "1"},  {"²", "2"},
-      {"³", "3"},   {"⁴", "4"},     {"⁵", "5"},    {"⁶", "6"},   {"⁷", "7"},    {"⁸", "8"},  {"⁹", "9"},
-      {"µ", "u"},   {"√", "sqrt "}, {"°", "deg "}, {"·", "*"},   {"≤", "<="},   {"≥", ">="}, {"…", ".."},
-      {"–", "-"},   {"−", "-"},     {"χ", "chi"},  {"τ", "tau"}, {"σ", "sigma"}};
+      {"×10", "e"}, {"×", "x"},     {"±", "+/-"},  {"⁻", "-"},   {"⁰", "0"},     {"¹", "1"},     {"²", "2"},
+      {"³", "3"},   {"⁴", "4"},     {"⁵", "5"},    {"⁶", "6"},   {"⁷", "7"},     {"⁸", "8"},     {"⁹", "9"},
+      {"µ", "u"},   {"√", "sqrt "}, {"°", "deg "}, {"·", "*"},   {"≤", "<="},    {"≥", ">="},    {"…", ".."},
+      {"–", "-"},   {"−", "-"},     {"χ", "chi"},  {"τ", "tau"}, {"σ", "sigma"}, {"\u202F", " "}};
   for (const auto& [from, to] : kSpelt)
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);

@@ -147,7 +147,7 @@ Table topic_table(const LogInfo& info) {
                     [&](std::size_t row) { return topic_row(*topics[row]); });
 }
 
-// One line for each kind of finding, not one for each channel: what the first says, and who is alike.
+// One line for each kind of finding, not one for each channel: what the first says, and who is alike. The worst first.
 std::string remarks(const Inspection& inspection) {
   struct Alike {
     const Finding* first;
@@ -162,13 +162,18 @@ std::string remarks(const Inspection& inspection) {
       kind->same = kind->same && kind->first->sentence == one.sentence;
       kind->channels.push_back(printable(inspection.info.channels[c].name, 40));
     }
+  constexpr std::size_t kOnScreen = 5;
+  std::stable_sort(kinds.begin(), kinds.end(),
+                   [](const Alike& a, const Alike& b) { return a.first->severity > b.first->severity; });
   std::string text;
-  for (const Alike& kind : kinds) {
+  for (std::size_t i = 0; i < std::min(kOnScreen, kinds.size()); ++i) {
+    const Alike& kind = kinds[i];
     const std::vector<std::string> others(kind.channels.begin() + 1, kind.channels.end());
     const std::string who = kind.same ? first_names(kind.channels) : kind.channels[0];
     text += "  " + who + ": " + with_help(*kind.first);
     text += kind.same ? "\n" : " (alike: " + first_names(others) + ")\n";
   }
+  if (kinds.size() > kOnScreen) text += "  and " + plural(kinds.size() - kOnScreen, "finding") + " more\n";
   return text;
 }
 

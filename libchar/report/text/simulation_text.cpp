@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "libchar/core/document/coefficient_fields.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
@@ -30,11 +31,15 @@ Json simulation_json(const ArraySimulation& s, const SimulatedLog& written) {
   Json out = {{"samples", s.samples},    {"rate_hz", s.rate_hz},     {"seed", s.seed},
               {"output", Json::array()}, {"sensors", Json::array()}, {"truth", s.truth_names}};
   for (const std::string& file : written.files) out["output"].push_back(printable(file));
-  for (std::size_t i = 0; i < s.sensors.size(); ++i)
+  for (std::size_t i = 0; i < s.sensors.size(); ++i) {
+    Json findings = Json::array();
+    for (const Finding& one : s.sensors[i].model.findings) findings.push_back(document_of(finding_fields(), one));
     out["sensors"].push_back({{"name", printable(s.sensors[i].name)},
                               {"unit", printable(output_unit(s.sensors[i].model))},
                               {"scale_factor", written.draws[i].scale_factor},
-                              {"bias", written.draws[i].bias}});
+                              {"bias", written.draws[i].bias},
+                              {"findings", std::move(findings)}});
+  }
   return out;
 }
 

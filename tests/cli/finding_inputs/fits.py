@@ -170,8 +170,9 @@ def integral():
 
 ONLY_VERIFY = dict.fromkeys(("allan", "psd", "fit"), "only --verify of characterize simulates")
 INPUTS = {
-    "event": fitted("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))]),
-    "events_left_in": fitted("steps", lambda: steps(60000, 3000, 4)),
+    "event": fitted("event", lambda: [v + (0.6 if i > 12000 else 0) for i, v in enumerate(noise(30000))],
+                    made_by="curve"),
+    "events_left_in": fitted("steps", lambda: steps(60000, 3000, 4), made_by="curve"),
     "motion": fitted("motion", motion, made_by="characterize", truth=N),
     "moves_throughout": fitted("resonance", band_hump, made_by="characterize"),
     "heavy_tails": fitted("laplace", laplace),
@@ -183,12 +184,12 @@ INPUTS = {
     "rounding_in_n": fitted("coarse", lambda: [round(v / 0.15) * 0.15 for v in noise(30000)], truth=N),
     "staircase": fitted("staircase", lambda: [round(v / 0.35) * 0.35 for v in noise(30000)]),
     "digital_misfit": fitted("rounding", lambda: [float(round(v)) for v in noise(20000, 0.3)]),
-    "lines_left_out": fitted("lines", with_line),
-    "resonance": fitted("swinging", swinging, truth=N),
+    "lines_left_out": fitted("lines", with_line, made_by="curve"),
+    "resonance": fitted("swinging", swinging, made_by="curve", truth=N),
     "strength_change": fitted("louder", louder),
     "not_stationary": fitted("swelling", swelling),
-    "cycle": fitted("cycle", lambda: heating(100000, 97, 1.2)),
-    "hump": fitted("hump", lambda: heating(60000, 60, 0.5, uneven=4.0)),
+    "cycle": fitted("cycle", lambda: heating(100000, 97, 1.2), made_by="curve"),
+    "hump": fitted("hump", lambda: heating(60000, 60, 0.5, uneven=4.0), made_by="curve"),
     "gauss_markov": fitted("process", lambda: with_process(60000, 0.3, 3.0)),
     "gauss_markov_or_terms": fitted("either", lambda: with_process(20000, 0.1, 10.0)),
     "power_law": fitted("law", lambda: power_law(60000, 0.02), never=("misfit",)),

@@ -41,6 +41,8 @@ OTHER_SEVERITIES = {
     "spikes_left_out": {"caution"},  # more than a thousandth of the samples
     "spikes_kept": {"caution"},  # too many
     "lines_left_out": {"caution"},  # in the Allan curve
+    "moves_throughout": {"caution"},  # or a low-pass with other noise behind it
+    "staircase": {"note"},  # rounding that N is without
     "undetermined": {"caution"},  # of N
     "not_stationary": {"note"},  # less than is noticeable
     "simulation_disagrees": {"bad"},  # by more than a few per cent
@@ -59,9 +61,13 @@ def why_not(made, verb, severity, effects):
         return ""  # all that is known
     if verb == "convert":
         return "convert copies the samples and computes nothing from them"
+    if verb == "allan" and made.made_by == "curve":
+        return ""
+    if verb == "psd" and made.made_by == "curve":
+        return "the spectrum shows it"
     if verb in ("allan", "psd") and made.made_by == "fit":
         return "it is found by the fit, which a curve does not make"
-    if verb == "fit" and made.made_by == "fit":
+    if verb == "fit" and made.made_by in ("fit", "curve"):
         return ""
     if verb in WEIGHS and severity == "note":
         return "the numbers hold"

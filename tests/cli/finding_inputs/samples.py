@@ -73,7 +73,7 @@ def bumped():
 
 
 def with_holes():
-    return [math.nan if i % 40 == 0 else v for i, v in enumerate(noise(30000))]
+    return [math.nan if i % 200 < 30 else v for i, v in enumerate(noise(6000))]
 
 
 INPUTS = {

@@ -1,0 +1,78 @@
+// An even motion is told from the noise of a sensor that rests: by its own noise below the motion, or by N itself.
+#include "libchar/characterize/detail/rest_doubt.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "libchar/fit/noise_fit.hpp"
+#include "tests/support/noise.hpp"
+
+using namespace libchar;
+using detail::doubt_rest;
+
+namespace {
+
+constexpr double kRestRate = 100, kOwnNoise = 1e-3;
+
+std::vector<double> rest_white(std::size_t n, std::uint64_t seed, double sd) {
+  test::Gaussian draw(seed);
+  std::vector<double> y(n);
+  for (double& v : y) v = sd * draw();
+  return y;
+}
+
+/// Two poles at about `hz`, of this standard deviation.
+std::vector<double> slow_motion(std::size_t n, double hz, double sd) {
+  const std::vector<double> u = rest_white(n, 77, 1);
+  const double pole = std::exp(-2 * std::acos(-1.0) * hz / kRestRate);
+  std::vector<double> y(n);
+  double first = 0, second = 0, squares = 0;
+  for (std::size_t t = 0; t < n; ++t) {
+    first = pole * first + u[t];
+    second = pole * second + first;
+    y[t] = second;
+    squares += second * second;
+  }
+  for (double& v : y) v *= sd / std::sqrt(squares / static_cast<double>(n));
+  return y;
+}
+
+NoiseFit fit_of_motion(double sd, double hz, double own = kOwnNoise) {
+  std::vector<double> y = slow_motion(40000, hz, sd);
+  const std::vector<double> noise = rest_white(y.size(), 5, own);
+  for (std::size_t t = 0; t < y.size(); ++t) y[t] += noise[t];
+  return fit_record(y, kRestRate, nullptr);
+}
+
+}  // namespace
+
+TEST_CASE("an even motion above the noise of an inertial sensor is no rest") {
+  for (const double hz : {0.3, 3.0}) {
+    CAPTURE(hz);
+    const auto moves = doubt_rest(fit_of_motion(0.1, hz), "rad/s", 0);
+    REQUIRE(moves);
+    CHECK(moves->code == "moves_throughout");
+    CHECK(moves->severity == Severity::bad);
+    CHECK(doubt_rest(fit_of_motion(0.1, hz), "degC", 0) == std::nullopt);
+  }
+  const auto perhaps = doubt_rest(fit_of_motion(0.004, 3), "rad/s", 0);
+  REQUIRE(perhaps);
+  CHECK(perhaps->severity == Severity::caution);
+}
+
+TEST_CASE("noise of a sensor at rest, behind a low-pass too, is rest") {
+  CHECK(doubt_rest(fit_of_motion(0, 3), "rad/s", 0) == std::nullopt);
+  CHECK(doubt_rest(fit_of_motion(0.1, 3, 0), "deg/s", 0) == std::nullopt);
+  // The level that is left is that of the converter.
+  CHECK(doubt_rest(fit_of_motion(0.1, 3), "deg/s", kOwnNoise * kOwnNoise / kRestRate) == std::nullopt);
+}
+
+TEST_CASE("white noise beyond that of any gyroscope or accelerometer is no rest") {
+  const NoiseFit fit = fit_record(rest_white(20000, 6, 0.1), kRestRate, nullptr);  // N 0.01
+  CHECK(doubt_rest(fit, "rad/s", 0));
+  CHECK(doubt_rest(fit, "deg/s", 0) == std::nullopt);
+  CHECK(doubt_rest(fit, "m/s^2", 0) == std::nullopt);
+  CHECK(doubt_rest(fit, "g", 0) == std::nullopt);
+  CHECK(doubt_rest(fit_record(rest_white(20000, 6, 2), kRestRate, nullptr), "m/s^2", 0));
+}
