@@ -22,7 +22,7 @@ struct UnitRow {
 };
 
 const std::array kUnits = {
-    UnitRow{"rad/s", Quantity::angular_rate, 1, "rad/s|rads-1|rad/sec|radps|rads^-1"},
+    UnitRow{"rad/s", Quantity::angular_rate, 1, "rad/s|radians/s|radian/s|rads-1|rad/sec|radps|rads^-1"},
     UnitRow{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
     UnitRow{"deg/s", Quantity::angular_rate, kDegree,
             "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},

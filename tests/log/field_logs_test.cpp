@@ -6,10 +6,14 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
+#include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/calendar.hpp"
+#include "libchar/log/time/time_column.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;
+using Catch::Contains;
+using test::count;
 using test::failure;
 using test::read_text;
 
@@ -389,4 +393,288 @@ TEST_CASE("a line of sources or of processing between units and rows has no name
     CHECK(log.info.channels[0].unit == "m/s^2");
     CHECK(log.info.channels[1].name == "lean");
   }
+}
+
+// What data loggers, analysers and clouds put beside the rows: titles, events, zones, counters, clocks of their own.
+
+namespace {
+
+constexpr int kLoggerRows = 300;
+
+double logged(int k, int channel) { return 10.0 * channel + 0.01 * ((k * 7919) % 97); }
+
+std::string logger_text(const std::string& front, const std::function<std::string(int)>& line, int rows = kLoggerRows) {
+  std::string out = front;
+  for (int k = 0; k < rows; ++k) out += line(k) + "\n";
+  return out;
+}
+
+std::string clock_at(int seconds) {
+  return fmt::format("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
+}
+
+std::vector<std::string> names_in(const Recording& log) {
+  std::vector<std::string> out;
+  for (const Channel& channel : log.info.channels) out.push_back(channel.name);
+  return out;
+}
+
+void check_columns(const Recording& log, double rate_hz, int rows = kLoggerRows) {
+  CHECK(log.info.time.rate_hz == Approx(rate_hz).epsilon(1e-3));
+  CHECK(log.info.time.missing_samples == 0);
+  REQUIRE(log.samples.size() >= 2);
+  const std::size_t last = log.samples.size() - 1;
+  REQUIRE(log.samples[last].size() == static_cast<std::size_t>(rows));
+  for (const int k : {0, 1, rows - 1}) {
+    CHECK(log.samples[last - 1][static_cast<std::size_t>(k)] == Approx(logged(k, 1)));
+    CHECK(log.samples[last][static_cast<std::size_t>(k)] == Approx(logged(k, 2)));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a first value with its unit stands behind the stamp, and is a channel") {
+  const Recording log = read_text(logger_text("", [](int k) {
+    return fmt::format("12/25/2023 {} {:.2f}C, {:.2f}C", clock_at(3600 + 3 * k), logged(k, 1), logged(k, 2));
+  }));
+  REQUIRE(log.info.channels.size() == 2);
+  CHECK(log.info.channels[0].unit == "C");
+  check_columns(log, 1 / 3.0);
+}
+
+TEST_CASE("letters of a time zone behind a stamp, and line ends at the end of quoted cells") {
+  const auto row = [](const char* zone) {
+    return logger_text("created_at,entry_id,field1,field2\n", [zone](int k) {
+      return fmt::format("2020-11-19 {} {},{},{:.2f},\"{:.2f}\r\n\r\n\"", clock_at(36000 + 15 * k), zone, k + 1,
+                         logged(k, 1), logged(k, 2));
+    });
+  };
+  for (const char* zone : {"CAT", "AEST", "UTC"}) {
+    INFO(zone);
+    const Recording log = read_text(row(zone));
+    CHECK(names_in(log) == std::vector<std::string>{"entry_id", "field1", "field2"});
+    check_columns(log, 1 / 15.0);
+  }
+  CHECK(read_text("state,a\n12:00:00 ERROR,1\n12:00:01 FAULT,2\n12:00:02 none,3\n").info.time.column.empty());
+}
+
+TEST_CASE("events of a logger between its samples have no place among them") {
+  const auto hobo = [](int event_after) {
+    std::string text = "\"#\",\"Date Time, GMT-08:00\",\"Abs Pres, kPa\",\"Temp, °C\",\"Coupler\"\n";
+    int row = 0;
+    const auto stamp = [&](int s) {
+      return fmt::format("{},05/{:02}/19 {}", ++row, 1 + s / 86400, clock_at(s % 86400));
+    };
+    for (int k = 0, s = 45000; k < kLoggerRows; ++k, s += 900) {
+      text += stamp(s) + fmt::format(",{:.2f},{:.2f},\n", logged(k, 1), logged(k, 2));
+      if (k == 1) text += stamp(s + event_after) + ",,,Logged\n";
+    }
+    return text;
+  };
+  for (const int after : {25, 450, 840}) {
+    INFO(after);
+    const Recording log = read_text(hobo(after));
+    CHECK(count(log, "own_rows") == 1);
+    check_columns(log, 1 / 900.0);
+  }
+  // A sample that is missing keeps its place, late or early.
+  std::string text = "t,x\n";
+  for (int k = 0; k < kLoggerRows; ++k)
+    text += k % 50 == 7 ? fmt::format("{:.3f},\n", k + 0.1)
+                        : fmt::format("{:.3f},{:.2f}\n", k + 0.02 * (k % 3), logged(k, 1));
+  const Recording jittery = read_text(text);
+  REQUIRE(jittery.samples[0].size() == static_cast<std::size_t>(kLoggerRows));
+  CHECK(jittery.samples[0].back() == Approx(logged(kLoggerRows - 1, 1)));
+}
+
+TEST_CASE("dates in columns behind the number of a row, lines that end in CR") {
+  for (const char* end : {"\n", "\r"}) {
+    std::string text = *end == '\r' ? "\r" : "";
+    for (int k = 0; k < kLoggerRows; ++k)
+      text += fmt::format("{} 2017 05 17 {:02} {:02} {:02} {:.2f} {:.2f}{}", 2932924 + 3 * k, 10 + k / 60, k % 60,
+                          25 + k / 80, logged(k, 1), logged(k, 2), end);
+    const Recording log = read_text(text);
+    CHECK(log.info.channels.size() == 3);
+    check_columns(log, 1 / 60.0);
+  }
+  // Whole values below 60 are no seconds.
+  const Recording log = read_text(logger_text("", [](int k) {
+    return fmt::format("2024,05,01,{:02},{:02},{},{:.2f}", 10 + k / 60, k % 60, 20 + k % 3, logged(k, 1));
+  }));
+  CHECK(log.info.channels.size() == 2);
+}
+
+TEST_CASE("year, day of year and hours with a fraction") {
+  const Recording log = read_text(logger_text("Year\tDoY\tHour\tA\tB\n-\t-\t-\tm/s\tW/m^2\n", [](int k) {
+    return fmt::format("1998\t{}\t{}\t{:.2f}\t{:.2f}", 1 + k / 48, 0.5 * (k % 48), logged(k, 1), logged(k, 2));
+  }));
+  CHECK(names_in(log) == std::vector<std::string>{"A", "B"});
+  CHECK(log.info.channels[0].unit == "m/s");
+  check_columns(log, 1 / 1800.0);
+}
+
+TEST_CASE("speeds and other units without a quantity make a line of units") {
+  const Recording log = read_text(logger_text("time,wind,power\ns,m/s,kW\n", [](int k) {
+    return fmt::format("{},{:.2f},{:.2f}", k, logged(k, 1), logged(k, 2));
+  }));
+  CHECK(log.info.channels[0].unit == "m/s");
+  CHECK(log.info.channels[1].unit == "kW");
+}
+
+TEST_CASE("eight numbers of columns and more are their names, whatever is below them") {
+  const auto table = [](int columns, int first) {
+    std::string out;
+    for (int row = -1; row < 40; ++row) {
+      for (int c = 0; c < columns; ++c)
+        out += fmt::format("{}{}", c > 0 ? "," : "", row < 0 ? first + c : (row * 31 + c * 17) % 90);
+      out += "\n";
+    }
+    return out;
+  };
+  CHECK(read_text(table(16, 0)).info.channels[3].name == "3");
+  CHECK(read_text(table(16, 0)).info.rows == 40);
+  CHECK(read_text(table(5, 0)).info.rows == 41);
+  CHECK(read_text(table(16, 4)).info.rows == 41);
+}
+
+TEST_CASE("names of nets and parts, empty brackets, units behind a word") {
+  const auto split = [](const char* text) { return name_and_unit(text); };
+  CHECK(split("V(V_tia)") == std::pair<std::string, std::string>("V(V_tia)", "V"));
+  CHECK(split("I(R1)") == std::pair<std::string, std::string>("I(R1)", "A"));
+  CHECK(split("V(mV)") == std::pair<std::string, std::string>("V", "mV"));
+  CHECK(split("I(A)") == std::pair<std::string, std::string>("I", "A"));
+  CHECK(split("Q ()") == std::pair<std::string, std::string>("Q", ""));
+  CHECK(split("x (in radians/s)") == std::pair<std::string, std::string>("x", "radians/s"));
+  CHECK(called_time("millis()"));
+}
+
+TEST_CASE("an analyser's preamble says rate, names and units, and names once more above the rows") {
+  std::string front =
+      "\"Header Size\"  ,16  \n\"TraceName\"  ,\"U1  \",\"I1  \"\n\"VUnit\"  ,\"V  \",\"A  \"\n"
+      "\"SampleRate\"  ,32000.0  ,32000.0  \n\"Frequency Filter\",\"1kHz\"\n\"Update "
+      "Rate\",\"500ms\"\n\n,\"U1\",\"I1\",\n\"$WaveData\"\n";
+  const Recording log = read_text(
+      logger_text(front, [](int k) { return fmt::format(",{:.2f}E+00,{:.2f}E+00,", logged(k, 1), logged(k, 2)); }));
+  CHECK(names_in(log) == std::vector<std::string>{"U1", "I1"});
+  CHECK(log.info.channels[1].unit == "A");
+  check_columns(log, 32000);
+}
+
+TEST_CASE("a long table of a dashboard, one series behind the other") {
+  std::string text = "\"Series\";\"Time\";\"Value\"\n";
+  for (const char* series : {"Probe-1", "Probe-2"})
+    for (int k = 0; k < kLoggerRows; ++k)
+      text += fmt::format("\"{}\";\"2020-05-04T15:{:02}:{:02}+02:00\";{:.2f}\n", series, k / 60, k % 60, logged(k, 1));
+  CHECK_THAT(failure(text), Contains("E0327") && Contains("`where` Series=Probe-1") && !Contains("group_by"));
+  ReadOptions one;
+  one.kinds.where = {"Series=Probe-1"};
+  CHECK(read_text(text, one).info.time.rate_hz == Approx(1));
+}
+
+TEST_CASE("numbers of many sources that share their stamps") {
+  const auto traffic = [](const char* id, bool sorted) {
+    return logger_text(fmt::format("{},time,speed\n", id), [sorted](int k) {
+      return fmt::format("{},{:.2f},{:.2f}", sorted ? k : (k * 7919) % 357, 0.01 * (k / 3), logged(k, 1));
+    });
+  };
+  CHECK_THAT(failure(traffic("ID", false)), Contains("E0327"));
+  CHECK(failure(traffic("ID", true)).empty());
+  CHECK(failure(traffic("speed_2", false)).empty());
+}
+
+TEST_CASE("OpenSignals names columns and rate in a comment of JSON") {
+  const Recording log = read_text(logger_text(
+      "# OpenSignals Text File Format\n# {\"20:16:12\": {\"sensor\": [\"ECG\"], \"column\": [\"nSeq\", \"I1\", "
+      "\"A2\"], "
+      "\"sync interval\": 2, \"time\": \"16:16:11.455\", \"sampling rate\": 100, \"resolution\": [4, 1, 10]}}\n"
+      "# EndOfHeader\n",
+      [](int k) { return fmt::format("{}\t{:.2f}\t{:.2f}\t", k % 16, logged(k, 1), logged(k, 2)); }));
+  CHECK(names_in(log) == std::vector<std::string>{"nSeq", "I1", "A2"});
+  check_columns(log, 100);
+}
+
+TEST_CASE("titles in front of a table without names, padded by a spreadsheet, and an epoch of so many seconds") {
+  const Recording log = read_text(logger_text(
+      "------ Data File Created By X date format M/d/yyyy ------,,,\nSerial Number: CLE2,,,\nStart Time 09:00:00,,,\n"
+      "Epoch Period (hh:mm:ss) 00:00:15,,,\nBattery Voltage: 4.03     Mode = 13,,,\n"
+      "----------------------------,,,\n",
+      [](int k) { return fmt::format("{},{},{:.2f},{:.2f}", k % 5, k % 7, logged(k, 1), logged(k, 2)); }));
+  CHECK(names_in(log) == std::vector<std::string>{"c0", "c1", "c2", "c3"});
+  check_columns(log, 1 / 15.0);
+  CHECK(read_text(logger_text("Logging interval: 5 min\na,b\n", [](int k) {
+          return fmt::format("{:.2f},{:.2f}", logged(k, 1), logged(k, 2));
+        })).info.time.rate_hz == Approx(1 / 300.0));
+}
+
+TEST_CASE("keys with as many values as the table has columns are no rows where dates begin them") {
+  const Recording log = read_text(logger_text(
+      "Serial number:,a,b\nName:,Acceleration,Light\nBinning mode:,Sum,Average\nRunning average bins:,0,0\n\n",
+      [](int k) {
+        return fmt::format("2000-01-27 {},{:.2f},{:.2f}", clock_at(3600 + k), logged(k, 1), logged(k, 2));
+      }));
+  CHECK(log.info.channels.size() == 2);
+  check_columns(log, 1);
+}
+
+TEST_CASE("rows whose clock stands at no time are not named by the first of them") {
+  const std::string text = logger_text(
+      "", [](int k) { return fmt::format("45/25/2165 45:85:85 {:.2f} {:.2f}", logged(k, 1), logged(k, 2)); });
+  CHECK_THAT(failure(text), Contains("log.csv:1:") && Contains("'!c0'"));
+  ReadOptions but;
+  but.channels = {"!c0"};
+  but.rate_hz = 1;
+  check_columns(read_text(text, but), 1);
+}
+
+TEST_CASE("stamps that begin again every few rows are refused") {
+  CHECK_THAT(failure(logger_text("Time (s),a\n",
+                                 [](int k) { return fmt::format("{},{:.2f}", 1e-5 * (k % 2), logged(k, 1)); })),
+             Contains("E0317") && Contains("`time_column` none"));
+}
+
+TEST_CASE("a rate that the file states decides what packets that are missing leave open") {
+  std::int64_t us = 3343444552, k = 0;
+  std::string text = "OutputRate:,60Hz\nPacketCounter,SampleTimeFine,a,b\n";
+  for (int row = 0; row < kLoggerRows; ++row) {
+    text += fmt::format("{},{},{:.2f},{:.2f}\n", k, us + k * 16667, logged(row, 1), logged(row, 2));
+    k += row % 3 == 0 ? 1 : row % 17 == 0 ? 4 : 2;
+  }
+  const Recording log = read_text(text);
+  CHECK(log.info.time.rate_hz == Approx(60).epsilon(1e-3));
+  CHECK(log.info.time.unit == "us");
+  CHECK(log.info.samples == static_cast<std::uint64_t>(k) - (kLoggerRows % 3 == 1 ? 0 : 1));
+}
+
+TEST_CASE("numbered clocks are those of the channels behind them") {
+  const Recording log = read_text(logger_text("Tiempo1,A1,Tiempo2,A2\n", [](int k) {
+    return fmt::format("{:.9f},{:.2f},{:.9f},{:.2f}", 0.00467 * k, logged(k, 1), 0.004673 * k, logged(k, 2));
+  }));
+  CHECK(names_in(log) == std::vector<std::string>{"A1", "A2"});
+  CHECK(log.info.channels[1].own_clock == "Tiempo2");
+}
+
+TEST_CASE("one name for date and clock leaves the others with their columns") {
+  const Recording log =
+      read_text(logger_text("Site,FRCH,,,\nScan No,Date and Time,RAW VALUE,CALIBRATED VALUE,\n", [](int k) {
+        return fmt::format("{},{}/6/2020, {},{:.2f},{:.2f}", k + 1, 11 + k / 96, clock_at(k % 96 * 900), logged(k, 1),
+                           logged(k, 2));
+      }));
+  CHECK(names_in(log).back() == "CALIBRATED VALUE");
+  CHECK(names_in(log)[names_in(log).size() - 2] == "RAW VALUE");
+  check_columns(log, 1 / 900.0);
+}
+
+TEST_CASE("a table behind more lines of words and figures than are looked at first") {
+  std::string front = "\"Export (5.0)\"\n";
+  for (int k = 0; k < 130; ++k)
+    front += k % 3 == 0   ? fmt::format("\"REST\",\"{}\",\"4/02/2015\",\"wed.\",\"{}.00\",\n", k, k)
+             : k % 3 == 1 ? fmt::format("\"Threshold {}:\",\"40.00\",\"counts\"\n", k)
+                          : fmt::format("\"Name {}:\",\"\"\n", k);
+  front += "\n\"Line\",\"Date\",\"Hour\",\"A\",\"B\",\"State\",\n\n";
+  const Recording log = read_text(logger_text(front, [](int k) {
+    return fmt::format("\"{}\",\"4/02/2015\",\"{}\",\"{:.2f}\",\"{:.2f}\",\"ACTIVE\",", k + 1, clock_at(60 * k),
+                       logged(k, 1), logged(k, 2));
+  }));
+  CHECK(names_in(log).back() == "B");
+  check_columns(log, 1 / 60.0);
 }

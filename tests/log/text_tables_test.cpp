@@ -122,6 +122,9 @@ TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments 
   const std::string multi = segment("12:00:00,5", "0", "X_Value\tA\tX_Value\tB");
   const Recording each = read(lvm("Multi", multi + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n0,02\t3\t0,02\t4\n"));
   CHECK(each.samples[1] == std::vector<double>{2, 3, 4});
+  std::string apart = multi;  // LabVIEW writes what is said of a channel below its column of values
+  apart.replace(apart.find("Volts\tVolts"), 11, "Volts\t\tg");
+  CHECK(names(read(lvm("Multi", apart + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n"))) == "A[Volts] B[g] ");
   CHECK_THAT(outcome(StoredTable("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
              Catch::Contains("E0340") && Catch::Contains("clocks of their own"));
   CHECK_THAT(outcome(StoredTable("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));

@@ -137,6 +137,8 @@ std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote
       }
       i = std::min(i + 1, line.size());
       field.text = std::string(trimmed(field.text));
+      while (field.text.ends_with('\n') || field.text.ends_with('\r'))
+        field.text.pop_back();  // println() of the sender
       while (i < line.size() && pad(line[i]) && !is_end(line[i])) ++i;
       for (; i < line.size() && !is_end(line[i]); ++i) field.text += line[i];
     } else {
@@ -195,7 +197,7 @@ std::optional<Field> lead_of_names(std::string_view line, std::size_t& after) {
   return Field{std::string(line.substr(0, to)), 0, false};
 }
 
-bool is_number(std::string_view text) { return read_cell(trimmed(text), '.').kind == Cell::value; }
+bool is_number(std::string_view text) { return read_sampled(trimmed(text), {}).kind == Cell::value; }
 
 /// Where the cells begin: behind words in front of the first one, "[info] 0.1, 0.2" and "imu - INFO - 0.1 0.2". What
 /// one comma divides may be one number: "INFO 1,5".

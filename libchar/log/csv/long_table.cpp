@@ -22,10 +22,11 @@ namespace {
 constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
 
 bool names_kinds(std::string_view name) {
-  static constexpr std::array<std::string_view, 22> kNames = {
-      "sensor",    "sensorname",  "sensor_name",  "sensortype", "sensor_type", "source",  "channel",  "signal",
-      "topic",     "device",      "field",        "_field",     "type",        "name",    "variable", "quantity",
-      "parameter", "measurement", "_measurement", "tag",        "id",          "instance"};
+  static constexpr std::array<std::string_view, 25> kNames = {
+      "series",       "metric", "entity_id", "sensor",   "sensorname", "sensor_name", "sensortype",
+      "sensor_type",  "source", "channel",   "signal",   "topic",      "device",      "field",
+      "_field",       "type",   "name",      "variable", "quantity",   "parameter",   "measurement",
+      "_measurement", "tag",    "id",        "instance"};
   const std::string lower = ascii_lower(name);
   return std::find(kNames.begin(), kNames.end(), lower) != kNames.end();
 }
@@ -136,6 +137,23 @@ bool told_apart(const std::vector<Cells>& rows, std::size_t column, bool named, 
   if (whole.steady()) return false;
   if (named) return true;
   return 10 * whole.standing >= whole.all && 10 * standing < whole.standing && 3 * kinds.size() <= rows.size();
+}
+
+/// Whole numbers in no order, and rows of several at one stamp: the vehicles of a simulation, the nodes of a network.
+bool many_numbered(const std::vector<Cells>& rows, std::size_t column, const Dialect& dialect) {
+  std::vector<double> numbers;
+  std::vector<std::int64_t> stamps;
+  for (const Cells& row : rows) {
+    if (column >= row.size()) continue;
+    const Cell cell = read_cell(row[column].text, '.');
+    const auto stamp = stamp_of(row, dialect);
+    if (cell.kind != Cell::value || !cell.integer || !stamp) return false;
+    numbers.push_back(cell.number);
+    stamps.push_back(*stamp);
+  }
+  const Steps whole = steps_of(stamps);
+  return numbers.size() > kMostNumbers && 3 * whole.standing >= whole.all &&
+         !std::is_sorted(numbers.begin(), numbers.end());
 }
 
 bool whole_numbers(const std::vector<std::string>& values) {
@@ -249,6 +267,9 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
     if (values.size() == 1) {
       if (words && names_kinds(column.name)) dialect.filters.push_back({static_cast<int>(c), values[0], true});
     } else if (words && names_kinds(column.name) && !timed) {
+      refuse(name, values, info);
+    } else if (timed && !words && dialect.filters.empty() && values.size() > kMostNumbers &&
+               numbers_kinds(column.name) && many_numbered(rows, c, dialect)) {
       refuse(name, values, info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                (told_apart(rows, c, words && names_kinds(column.name), dialect) ||

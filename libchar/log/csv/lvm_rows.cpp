@@ -98,7 +98,8 @@ class LvmRows final : public MadeText {
     text += "X_Value";
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       text += ',';
-      const std::string unit = c < units.size() ? units[c] : "";
+      const std::size_t at = time_ == TimeIn::a_column_each ? 2 * c : c;
+      const std::string unit = at < units.size() ? units[at] : "";
       add_quoted(text, unit.empty() || channels_[c].ends_with(']') ? channels_[c] : channels_[c] + " [" + unit + "]");
     }
     text += '\n';

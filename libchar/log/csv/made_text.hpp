@@ -19,6 +19,7 @@ struct Feed {
   std::string raw = {};
   std::size_t at = 0;
   bool ended = false;
+  char line_end = '\n';
   /// Forgets what is used up and reads on; false at the end.
   bool more() {
     constexpr std::size_t kPiece = std::size_t{1} << 16U;
@@ -34,8 +35,8 @@ struct Feed {
   }
   /// The next line without its end, at most about `most` bytes of it; false at the end.
   bool line(std::string& text, std::size_t most) {
-    std::size_t end = raw.find('\n', at);
-    while (end == std::string::npos && raw.size() - at <= most && more()) end = raw.find('\n', at);
+    std::size_t end = raw.find(line_end, at);
+    while (end == std::string::npos && raw.size() - at <= most && more()) end = raw.find(line_end, at);
     if (at == raw.size()) return false;
     text = raw.substr(at, std::min(end, raw.size()) - at);
     at = std::min(end, raw.size() - 1) + 1;
@@ -55,7 +56,11 @@ class CleanedLines : public DecodedText {
 
  private:
   void decode() final {
-    if (!known_ && feed_.more()) begin(std::string_view(feed_.raw).substr(0, kPackingBytes));
+    if (!known_ && feed_.more()) {
+      const std::string_view front = std::string_view(feed_.raw).substr(0, kPackingBytes);
+      feed_.line_end = front.find('\n') == std::string_view::npos ? '\r' : '\n';
+      begin(front);
+    }
     known_ = true;
     std::string line;
     constexpr std::size_t kMost = std::size_t{1} << 20U, kPiece = std::size_t{1} << 16U;
@@ -64,7 +69,7 @@ class CleanedLines : public DecodedText {
       if (done_) break;
       clean(line);
       text_ += line;
-      if (feed_.raw[feed_.at - 1] == '\n') text_ += '\n';
+      if (feed_.raw[feed_.at - 1] == feed_.line_end) text_ += feed_.line_end;
     }
   }
 

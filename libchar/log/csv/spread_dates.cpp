@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/made_text.hpp"
@@ -164,12 +166,23 @@ std::optional<std::string> date_text(const SpreadStamp& where, const std::vector
   return month && day ? std::optional(fmt::format("{:04}-{:02}-{:02}T", *year, *month, *day)) : std::nullopt;
 }
 
+/// "13.5" of an hour without minutes.
+std::optional<std::string> hours_and_fraction(const SpreadStamp& where, const std::vector<std::string_view>& cells) {
+  constexpr double kDay = 24, kMsInHour = 3600e3;
+  if (!where.has(DatePart::hour) || where.has(DatePart::minute)) return std::nullopt;
+  const auto hour = parse_double(bare(cells[where.at[static_cast<std::size_t>(DatePart::hour)] - 1]));
+  if (!hour || *hour == std::floor(*hour) || *hour < 0 || *hour >= kDay) return std::nullopt;
+  const auto ms = clamped_whole<int>(std::round(*hour * kMsInHour));
+  return fmt::format("{:02}:{:02}:{:02}.{:03}", ms / 3600000, ms / 60000 % 60, ms / 1000 % 60, ms % 1000);
+}
+
 std::optional<std::string> clock_text(const SpreadStamp& where, const std::vector<std::string_view>& cells) {
   if (where.has(DatePart::hhmm)) {
     const auto both = whole_part(where, cells, DatePart::hhmm, 0, 2400);
     return both && *both % 100 < 60 ? std::optional(fmt::format("{:02}:{:02}:00", *both / 100, *both % 100))
                                     : std::nullopt;
   }
+  if (const auto clock = hours_and_fraction(where, cells)) return clock;
   const auto hour = whole_part(where, cells, DatePart::hour, 0, 24),
              minute = whole_part(where, cells, DatePart::minute, 0, 59);
   if (!hour || !minute) return std::nullopt;
@@ -201,32 +214,44 @@ std::optional<std::string> stamp_text(const SpreadStamp& where, const std::vecto
   return date && clock ? std::optional(*date + *clock) : std::nullopt;
 }
 
-/// Without names: year, month, day, hour (minute, second) in front, whose stamps step evenly in all rows.
+/// Without names: year, month, day, hour (minute, second) in front, or behind a number of the row, whose stamps step
+/// evenly in all rows.
 SpreadStamp spread_by_numbers(const std::vector<std::string_view>& lines) {
   constexpr std::size_t kFewest = 8, kMost = 100;
   constexpr DatePart kOrder[] = {DatePart::year, DatePart::month,  DatePart::day,
                                  DatePart::hour, DatePart::minute, DatePart::second};
-  if (lines.size() < kFewest || !(lines[0].starts_with("19") || lines[0].starts_with("20"))) return {};
-  const char delimiter = lines[0].size() > 4 ? lines[0][4] : '\0';
+  if (lines.size() < kFewest) return {};
+  const std::size_t row = lines[0].find_first_not_of("0123456789");
+  const bool numbered = row != std::string_view::npos && row != 4;
+  const std::size_t year = numbered ? lines[0].find_first_not_of(lines[0][row], row) : 0;
+  if (year >= lines[0].size() || (!lines[0].substr(year).starts_with("19") && !lines[0].substr(year).starts_with("20")))
+    return {};
+  const char delimiter = lines[0].size() > year + 4 ? lines[0][year + 4] : '\0';
   if (delimiter == '\0' || std::string_view(",;\t ").find(delimiter) == std::string_view::npos) return {};
   SpreadStamp best;
-  double least = 0.1;  // mean deviation of the steps; a value may look like seconds
+  constexpr double kEven = 0.1;  // mean deviation of the steps; a value may look like seconds
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t parts = std::size(kOrder); parts > 3; --parts) {
-    SpreadStamp found{delimiter, false, 0, parts};
-    for (std::size_t c = 0; c < parts; ++c) found.of(kOrder[c]) = c + 1;
+    SpreadStamp found{delimiter, false, numbered ? std::size_t{1} : 0, parts};
+    for (std::size_t c = 0; c < parts; ++c) found.of(kOrder[c]) = found.first + c + 1;
     std::vector<double> stamps;
     for (std::size_t i = 0; i < std::min(lines.size(), kMost); ++i) {
       const std::vector<std::string_view> cells = cells_of(lines[i], delimiter);
-      const auto text = cells.size() > parts ? stamp_text(found, cells) : std::nullopt;
+      const auto text = cells.size() > found.first + parts ? stamp_text(found, cells) : std::nullopt;
       const auto stamp = text ? read_calendar(*text) : std::nullopt;
       if (!stamp) break;
       stamps.push_back(static_cast<double>(stamp->ns) * 1e-9);
     }
     const double step = usual_step(stamps);
     double off = 0;
-    for (std::size_t i = 1; i < stamps.size(); ++i) off += std::fabs(stamps[i] - stamps[i - 1] - step);
+    bool rises = true;
+    for (std::size_t i = 1; i < stamps.size(); ++i) {
+      off += std::fabs(stamps[i] - stamps[i - 1] - step);
+      rises = rises && stamps[i] > stamps[i - 1];
+    }
     off /= step * static_cast<double>(stamps.size());
-    if (stamps.size() < std::min(lines.size(), kMost) || !(step > 0) || off >= least) continue;
+    if (stamps.size() < std::min(lines.size(), kMost) || !(step > 0) || (off >= kEven && !rises)) continue;
+    if (off < kEven ? off >= least : off + kEven > least) continue;
     least = off;
     best = found;
   }
@@ -237,7 +262,12 @@ SpreadStamp spread_by_numbers(const std::vector<std::string_view>& lines) {
 SpreadStamp spread_of(std::string_view front) {
   constexpr std::size_t kFewest = 2, kMostHeader = 2;
   std::vector<std::string_view> lines;
-  for (std::size_t end = front.find('\n'); end != std::string_view::npos; end = front.find('\n')) {
+  const char sign = front.find('\n') == std::string_view::npos ? '\r' : '\n';
+  for (std::size_t end = front.find(sign); end != std::string_view::npos; end = front.find(sign)) {
+    if (end == 0 && sign == '\r' && lines.empty()) {
+      front.remove_prefix(1);
+      continue;
+    }
     lines.push_back(front.substr(0, end));
     if (lines.back().ends_with('\r')) lines.back().remove_suffix(1);
     front.remove_prefix(end + 1);

@@ -51,6 +51,17 @@ std::size_t opening_bracket(std::string_view cell, char open, char close) {
   return std::string_view::npos;
 }
 
+// "V(out)", "I(R1)" of SPICE: a voltage of a net, a current of a part; "V(mV)", "I(A)" have their unit in brackets.
+std::string_view quantity_of_a_net(std::string_view cell) {
+  constexpr std::size_t kLongest = 2;  // "mV"
+  const bool voltage = cell.starts_with("V("), current = cell.starts_with("I(");
+  if (!voltage && !current) return {};
+  const std::string_view inside = cell.substr(2, cell.size() - 3);
+  const bool unit = inside.size() <= kLongest && (inside.ends_with('V') || inside.ends_with('A'));
+  if (unit || find_unit(inside) || inside.find_first_of("0123456789") == 0) return {};
+  return voltage ? "V" : "A";
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -66,7 +77,10 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     const std::size_t at = opening_bracket(cell, open, close);
     if (at == std::string_view::npos || at == 0) continue;
     const std::string_view name = trimmed(cell.substr(0, at));
-    const std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
+    std::string_view unit = trimmed(cell.substr(at + 1, cell.size() - at - 2));
+    if (unit.empty() && !name.empty()) return {std::string(name), ""};
+    if (unit.starts_with("in ") && find_unit(unit.substr(3))) unit = trimmed(unit.substr(3));
+    if (const std::string_view of = quantity_of_a_net(cell); !of.empty()) return {std::string(cell), std::string(of)};
     // gyro(1), gyro(2): an index, not a unit
     const bool index = unit.find_first_not_of("0123456789") == std::string_view::npos;
     // "Temp, °C (serial 10012345)" has its unit in front of a remark.

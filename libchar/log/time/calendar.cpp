@@ -375,7 +375,12 @@ bool take_zone(DateScanner& at, CalendarStamp& out) {
     out.zone = true;
   }
   at.blanks();
-  return at.rest.empty();
+  // "CAT", "AEST": of a zone's letters nobody knows the hours, and all stamps of a log have them.
+  constexpr std::size_t kFewestLetters = 3, kMostLetters = 4;
+  const bool letters = !named && out.seconds && at.rest.ends_with('T') && at.rest.size() >= kFewestLetters &&
+                       at.rest.size() <= kMostLetters &&
+                       std::all_of(at.rest.begin(), at.rest.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  return at.rest.empty() || (apart && letters);
 }
 
 // "0 days 00:00:01.5", "1 day, 2:03:04", "1d 02:03:04", "1 02:03:04", "1.02:03:04": what pandas, Python and .NET write.

@@ -172,6 +172,12 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
       return i;
     }
     const std::int64_t step = last_.any ? whole_step(last_.stamp, stamp) : 0;
+    if (last_.any && step > 0 && step_.steady && between_samples(front, i, stamp)) {
+      output_.rows(front.block, run, i);
+      run = i + 1;
+      ++counts_.dropped;
+      continue;
+    }
     if (step <= 0 || step > step_.longest) {
       output_.rows(front.block, run, i);
       run = i;
@@ -200,6 +206,25 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
     return i;
   }
   return to;
+}
+
+/// A row without a value, where the next one follows the last as it should: a logger's event, which has no place.
+bool TimeGrid::between_samples(const Pending& front, std::size_t row, std::int64_t stamp) {
+  std::size_t item = 0, next = row;
+  const Pending* at = &front;
+  if (!blank_row(front.block, row)) return false;
+  std::int64_t t = 0;
+  const bool any = next_row(at, item, next);
+  if (any && __builtin_add_overflow(at->block.time_ns[next], last_.wrap, &t)) return false;
+  constexpr double kLongest = 1.1;  // steps
+  const std::int64_t step = any ? whole_step(last_.stamp, t) : step_.shortest;
+  if (step < step_.shortest || static_cast<double>(step) > kLongest * step_.ns ||
+      (!any && stamp - last_.stamp >= step_.shortest))
+    return false;
+  warnings_.add("own_rows",
+                "rows without a value of the channels that are read are left out: these have a clock of their own",
+                place(front, row));
+  return true;
 }
 
 /// Steps that are none of the grid's may be another rate.
@@ -298,7 +323,10 @@ void TimeGrid::judge_rate_change() {
     throw input_error("E0334", source_.info().file)
         .says("the sampling rate changes {} s after the first stamp, from {} to {} Hz: no grid holds both", at,
               brief_text(before, 5), brief_text(after, 5))
-        .hint("`to_s` {} reads what is before it, `from_s` {} what follows", at, at);
+        .hint(
+            "`to_s` {} reads what is before it, `from_s` {} what follows, `time_column` none and `rate_hz` HZ the rows "
+            "one after the other",
+            at, at);
   }
   if (odd.rows > 0)
     warnings_.add("rate_change",
@@ -337,6 +365,7 @@ void TimeGrid::finish(LogInfo& info) {
   time.start_ns = start_ns_;
   time.gaps = counts_.gaps;
   time.missing_samples = counts_.missing;
+  refuse_many_backward();
   judge_rate_change();
   const double interval = even_interval();
   time.rate_hz = interval > 0 ? 1e9 / interval : 0;

@@ -67,6 +67,8 @@ class ChannelClocks {
   std::size_t rows_ = 0;
 };
 
+bool blank_row(const RowBlock& rows, std::size_t row);
+
 /// Takes the rows without a value out of the block, and says how many there were.
 std::size_t leave_out_blank_rows(RowBlock& rows);
 
@@ -128,6 +130,7 @@ class TimeGrid {
   bool take_regular(const std::int64_t* time, std::size_t n);
   std::size_t take_one_by_one(Pending& front, std::size_t from, std::size_t to, std::size_t ahead, std::size_t& run);
   bool place_in_window(std::int64_t stamp);
+  bool between_samples(const Pending& front, std::size_t row, std::int64_t stamp);
   void watch_step(const Pending& front, std::size_t row, std::int64_t step);
   void without_stamps(Pending& front);
   /// The stamp, when it and its distance from the first leave room for every sum and difference in
@@ -140,6 +143,7 @@ class TimeGrid {
   Verdict drop_wild(const Pending& front, std::size_t row);
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
   [[noreturn]] void refuse_backward() const;
+  void refuse_many_backward() const;
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
   bool next_row(const Pending*& at, std::size_t& item, std::size_t& row) const;
   bool next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const;
@@ -170,6 +174,7 @@ class TimeGrid {
     double ns = 0;
     std::int64_t longest = 0, shortest = 1;  ///< regular ones
     bool coarse = false;                     ///< stamps do not tell rows apart, one by one
+    bool steady = false;                     ///< nearly all steps are alike: what stands between two is no sample
   };
   struct Window {
     std::int64_t from_ns = 0, to_ns = 0;  ///< after the first stamp

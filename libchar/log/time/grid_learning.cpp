@@ -19,6 +19,14 @@ constexpr std::size_t kEnough = 64;           // rows of a window that may say a
 constexpr std::size_t kLearn = 1025;          // rows whose stamps decide on dt
 constexpr std::size_t kLearnSeconds = 16385;  // where those are whole seconds, with which other clocks beat slowly
 
+bool steps_are_alike(const std::vector<std::int64_t>& stamps, double ns) {
+  constexpr double kOff = 0.05, kMost = 0.8;
+  double alike = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    alike += std::fabs(step_between(stamps[i - 1], stamps[i]) - ns) <= kOff * ns ? 1 : 0;
+  return alike >= kMost * static_cast<double>(stamps.size() - 1);
+}
+
 }  // namespace
 
 void TimeGrid::leave_out_blank(Pending& item) {
@@ -131,10 +139,13 @@ void TimeGrid::learn() {
   if (!last_.any) drop_wild_start(first_stamps());
   const std::vector<std::int64_t> stamps = caught_up(first_stamps());
   if (!last_.any) leave_out_first_rate(stamps);
-  const StampModel found = model_of_stamps(stamps, options_.rate_hz);
+  const double stated = source_.info().time.rate_hz;
+  const StampModel found =
+      model_of_stamps(stamps, options_.rate_hz || stated == 0 ? options_.rate_hz : std::optional(stated));
   const bool begins = window_.from_ns <= 0 || last_.any;
   const bool other = stamps.size() >= kEnough && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns;
   if (!last_.any || other) step_ = Step(found);
+  step_.steady = steps_are_alike(stamps, step_.ns);
   if (other || window_.other_rate || watch_.longest().rows > 0 || sketch_.rate_change()) {  // of another rate
     sketch_ = {};
     recent_.rows.clear();

@@ -15,12 +15,12 @@ constexpr double kLeastBlank = 20;                                      // one r
 constexpr std::size_t kFewBlank = 3;                                    // steps over blanks that are none
 constexpr std::size_t kRowsForFew = 8192;                               // looked at for these
 
-bool blank(const RowBlock& rows, std::size_t row) {
+}  // namespace
+
+bool blank_row(const RowBlock& rows, std::size_t row) {
   return std::all_of(rows.columns.begin(), rows.columns.end(),
                      [&](const auto& column) { return std::isnan(column[row]); });
 }
-
-}  // namespace
 
 bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks, double blank_share) {
   constexpr std::size_t kFew = 10;  // of so few steps all have to be alike
@@ -39,7 +39,7 @@ bool keeps_own_clock(std::vector<double> steps, std::vector<double> over_blanks,
 
 bool OwnRows::decide(const RowBlock& rows) {
   for (std::size_t i = 0; i < rows.rows && !decided_; ++i) {
-    const bool is_blank = blank(rows, i);
+    const bool is_blank = blank_row(rows, i);
     if (!is_blank) {
       if (kept_ > 0) {
         const double step = step_between(last_, rows.time_ns[i]);
@@ -116,7 +116,7 @@ double ChannelClocks::every(std::size_t channel) const {
 std::size_t leave_out_blank_rows(RowBlock& rows) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < rows.rows; ++i)
-    if (!blank(rows, i)) kept.push_back(i);
+    if (!blank_row(rows, i)) kept.push_back(i);
   const std::size_t left_out = rows.rows - kept.size();
   if (left_out == 0) return 0;
   if (rows.line_offset.empty() && rows.first_line > 0)

@@ -482,6 +482,36 @@ StampModel evenly(const FirstSteps& steps, const CommonStep& common, StampPatter
   return out;
 }
 
+/// Rows that come late together, in groups of any size, and keep the rate that is told: no room for missing ones.
+std::optional<StampModel> as_told(const std::vector<std::int64_t>& stamps, const FirstSteps& steps, double rate_hz) {
+  constexpr double kAsTold = 3e-3, kLate = 0.5;
+  const bool equal_at_times = steps.equal * 50 > stamps.size();
+  if (!equal_at_times || stamps.size() <= kLeastOdd) return std::nullopt;
+  std::int64_t longest_step = 0;  // pauses too
+  for (std::size_t i = 1; i < stamps.size(); ++i) longest_step = std::max(longest_step, stamps[i] - stamps[i - 1]);
+  const auto span = static_cast<double>(stamps.back() - stamps.front()), longest = static_cast<double>(longest_step),
+             rows = static_cast<double>(stamps.size() - 1);
+  if (std::fabs(span - rows * 1e9 / rate_hz) > kAsTold * span + kLate * longest) return std::nullopt;
+  const double mean = span / rows;
+  return StampModel{mean, std::max(1.5 * mean, 2 * longest), StampPattern::equal, mean, mean};
+}
+
+/// Steps that are multiples of a told interval, and often it alone: rows are missing, in whatever order.
+std::optional<StampModel> on_told_lattice(const FirstSteps& steps, double told_ns) {
+  constexpr double kOff = 0.1, kMost = 20, kAlone = 0.1;
+  double time = 0, multiples = 0, alone = 0;
+  for (const double step : steps.rising) {
+    const double multiple = std::round(step / told_ns);
+    if (multiple < 1 || multiple > kMost || std::fabs(step / told_ns - multiple) > kOff) return std::nullopt;
+    time += step;
+    multiples += multiple;
+    alone += multiple == 1 ? 1 : 0;
+  }
+  if (steps.equal > 0 || alone < kAlone * static_cast<double>(steps.rising.size())) return std::nullopt;
+  const double ns = time / multiples;
+  return StampModel{ns, 1.5 * ns, StampPattern::steps, ns, ns};
+}
+
 StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const FirstSteps& steps,
                              std::optional<double> rate_hz) {
   const CommonStep common = common_step(steps, equal_are_samples(steps));
@@ -496,6 +526,8 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
     if (std::fabs(out.ns - before) <= 1e-9 * before) break;
   }
   if (stamps.size() <= kLeastOdd) return out;
+  if (rate_hz && !same_rate(1e9 / *rate_hz, out.ns))
+    if (const auto told = on_told_lattice(steps, 1e9 / *rate_hz)) return *told;
   const StampLine line = line_through(steps.line);
   const double lattice = lattice_of(steps);
   if (lattice > 0 && (!rate_hz || same_rate(1e9 / *rate_hz, lattice)) && !on_one_line(line, steps, lattice))
@@ -522,6 +554,7 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
 StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
   const FirstSteps steps = steps_of(stamps);
   if (steps.rising.empty()) return {};
+  if (auto told = rate_hz ? as_told(stamps, steps, *rate_hz) : std::nullopt) return *told;
   if (auto packets = long_packets(stamps, rate_hz)) return *packets;
   const auto change = find_rate_change(stamps);
   if (!change) return model_of_one_rate(stamps, steps, rate_hz);

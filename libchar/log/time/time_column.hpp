@@ -77,6 +77,9 @@ std::int64_t unit_said(const ColumnLabel& column);
 /// side by side.
 std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t chosen);
 
+/// "Tiempo1" and "Tiempo2".
+bool numbered_alike(const std::string& a, const std::string& b);
+
 /// The usual distance of two values, 0 for fewer.
 double usual_step(const std::vector<double>& values);
 

@@ -268,6 +268,16 @@ void TimeGrid::refuse_backward() const {
       .hint(hint);
 }
 
+// Of stamps that begin again and again those that are left are no axis.
+void TimeGrid::refuse_many_backward() const {
+  constexpr double kShare = 0.4;
+  const Finding* const dropped = warnings_.find("backward_timestamp");
+  if (dropped == nullptr || static_cast<double>(dropped->count) <= kShare * static_cast<double>(counts_.rows)) return;
+  throw input_error("E0317", source_.info().file)
+      .says("the time steps back in {} of {} rows: the stamps begin again and again", dropped->count, counts_.rows)
+      .hint("`time_column` none and `rate_hz` HZ take the rows one after the other");
+}
+
 void TimeGrid::unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp) {
   last_.wrap += wrap.range_ns;
   stamp = checked(front, row, stamp + wrap.range_ns);

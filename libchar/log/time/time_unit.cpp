@@ -173,7 +173,7 @@ bool counts_of_a_timer(const FirstValues& first) {
 bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
-  if (uneven_ones(first)) units = {kStampUnits[0], kStampUnits[1]};
+  if (uneven_ones(first) || (!first.integers && unit == kStampUnits[1])) units = {kStampUnits[0], kStampUnits[1]};
   if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
   constexpr double kSlowest = 200;  // of sensors in ms
   if (units.size() == 1 && unit == kStampUnits[0]) {
@@ -204,11 +204,21 @@ std::int64_t guess_fine(const FirstValues& first) { return usual_step(first.valu
 
 bool rates_agree(double rate_hz, double stated_hz) { return rate_hz > 0.8 * stated_hz && rate_hz < 1.25 * stated_hz; }
 
-// The unit in which the stamps run at the rate that the file states.
-std::int64_t unit_of_rate(std::int64_t guess, double step, double stated_hz, const LogInfo& info) {
-  if (rates_agree(rate_in(step, guess), stated_hz)) return guess;
-  for (const NamedUnit& unit : kNamedUnits)
-    if (rates_agree(rate_in(step, unit.ns), stated_hz)) return unit.ns;
+// The unit in which the stamps run at the rate that the file states: by their usual step, or by the mean one where they
+// come in bursts, or by the shortest ones where many rows are missing.
+std::int64_t unit_of_rate(std::int64_t guess, const std::vector<double>& values, double stated_hz,
+                          const LogInfo& info) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+  std::sort(steps.begin(), steps.end());
+  const double step = steps[(steps.size() - 1) / 2];
+  const double mean = (values.back() - values.front()) / static_cast<double>(steps.size());
+  for (const double one : {step, mean, steps[steps.size() / 10]}) {
+    if (!(one > 0)) continue;
+    if (rates_agree(rate_in(one, guess), stated_hz)) return guess;
+    for (const NamedUnit& unit : kNamedUnits)
+      if (rates_agree(rate_in(one, unit.ns), stated_hz)) return unit.ns;
+  }
   throw input_error("E0325", info.file)
       .says("the file states {} Hz, and its stamps step by {}, which is {} Hz in {} and fits in no unit",
             shortest(stated_hz), brief_text(step, 6), brief_text(rate_in(step, guess), 6), unit_name(guess))
@@ -247,7 +257,7 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     constexpr double kSlow = 5;  // s
     if (guess == kStampUnits[0] && first.integers && step > kSlow && !says_a_date(first) && inertial(table))
       guess = kStampUnits[1];
-    unit.ns = comparable ? unit_of_rate(guess, step, *table.stated_rate_hz, info) : guess;
+    unit.ns = comparable ? unit_of_rate(guess, first.values, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;
     if (!by_step || !say_guess_by_step(first, unit.ns, info))

@@ -416,6 +416,7 @@ void choose_time(Study& study) {
                 study.dialect, info);
   choose_groups(study.rows, study.options, study.dialect, info);
   refuse_long_table(study.rows, study.kinds, study.options, study.dialect, info);
+  if (study.dialect.time.column >= 0 && rate) info.time.rate_hz = *rate;  // decides what the stamps leave open
   if (study.dialect.time.column >= 0 || info.time.rate_hz > 0) return;
   if (!rate) return say_facts_of_time(study);
   info.time.rate_hz = *rate;

@@ -12,6 +12,7 @@
 #include "libchar/core/units.hpp"
 #include "libchar/log/csv/line.hpp"
 #include "libchar/log/reading_fields.hpp"
+#include "libchar/log/time/calendar.hpp"
 #include "libchar/log/time/time_column.hpp"
 
 namespace libchar::csv {
@@ -53,7 +54,9 @@ Statement statement_in(std::string_view lower) {
   }
   out.number = parse_double(text);
   const std::size_t unit = lower.find_first_not_of(kBetween, end);
-  if (unit != std::string_view::npos && (lower[unit] < '0' || lower[unit] > '9')) {  // else of the next column
+  const bool next_key = lower.find('{') != std::string_view::npos && end < lower.size() && lower[end] == ',';  // JSON
+  if (unit != std::string_view::npos && !next_key &&
+      (lower[unit] < '0' || lower[unit] > '9')) {  // else of the next column
     const std::size_t stop = std::min(lower.find_first_of(kBetween, unit), lower.size());
     out.unit = lower.substr(unit, stop - unit);
   }
@@ -76,7 +79,10 @@ double hertz_of(const Statement& said) {
   bool hertz = said.unit.starts_with("hz") || said.unit.starts_with("khz") || said.unit.starts_with("mhz") ||
                said.unit.starts_with("sps") || said.unit.starts_with("samples/s");
   const bool rate = key.find("rate") != std::string_view::npos || key.find("frequency") != std::string_view::npos;
-  if (rate && hertz && key.find("baud") == std::string_view::npos) return *said.number * factor;
+  static constexpr std::array<std::string_view, 5> kOthers = {"baud", "filter", "cutoff", "pass", "band"};
+  const bool other = std::any_of(kOthers.begin(), kOthers.end(),
+                                 [&](std::string_view word) { return key.find(word) != std::string_view::npos; });
+  if (rate && hertz && !other) return *said.number * factor;
   if (key.ends_with("hz")) {  // "Sample Rate (Hz)": 100, "Sampling Freq(Hz) 100Hz"
     hertz = true;
     key.remove_suffix(2);
@@ -99,13 +105,22 @@ double interval_of(const Statement& said) {
       key.remove_suffix(known.size());
       unit = known;
     }
-  double factor = 1;
-  if (unit == "ms") factor = 1e-3;
-  if (unit == "us" || unit == "µs") factor = 1e-6;
-  if (unit == "ns") factor = 1e-9;
+  const auto known = find_unit(unit);
+  const double factor = known && known->quantity == Quantity::time ? known->to_si : 1;
   const bool clock = key == "clock" && (factor < 1 || unit == "s");  // "#CLOCK=400.000uS" of Hantek
   const bool step = (key == "dt" || key == "tau") && !said.of_a_name;
   return ends_with_any(key, kKeys) || step || clock ? *said.number * factor : 0;
+}
+
+/// "Epoch Period (hh:mm:ss) 00:00:15" of ActiGraph: seconds.
+std::optional<double> interval_of_clock(std::string_view lower) {
+  if (lower.find("period") == std::string_view::npos && lower.find("interval") == std::string_view::npos)
+    return std::nullopt;
+  std::string_view text = trimmed(lower.substr(0, lower.find_last_not_of(",; \t\"") + 1));  // npos + 1 is 0
+  text = text.substr(text.find_last_of(" \t,;=\"") + 1);
+  const auto clock = read_calendar(text);
+  const bool seconds = clock && clock->clock && clock->seconds && !clock->date && clock->ns > 0;
+  return seconds ? std::optional(static_cast<double>(clock->ns) * 1e-9) : std::nullopt;
 }
 
 }  // namespace
@@ -131,6 +146,7 @@ std::optional<double> stated_rate_hz(std::string_view line) {
     if (const Statement rate = statement_in(std::string_view(lower).substr(at)); rate.number && rate.key == "at")
       for (const std::string_view taken : {"sampl", "record", "created"})
         if (rate.unit.starts_with("hz") && *rate.number > 0 && lower.find(taken) < at) return rate.number;
+  if (const auto interval = interval_of_clock(lower)) return 1 / *interval;
   const Statement said = statement_in(lower);
   if (!said.number || said.key.empty()) return std::nullopt;
   double rate = hertz_of(said);
@@ -158,7 +174,8 @@ std::optional<double> stated_count(std::string_view line, std::string_view key) 
 namespace {
 
 struct LineCensus {
-  bool fits = false;              // as many cells as the table has columns
+  bool fits = false;              // as many cells as the table has columns, and more than a title in the first
+  bool undated = false;           // a word where the rows have dates
   std::size_t good = 0, bad = 0;  // cells that are what their column holds, and those that are not
   bool row() const { return fits && bad == 0; }
   bool words() const { return fits && good == 0 && bad > 0; }
@@ -166,7 +183,11 @@ struct LineCensus {
 
 LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, NumberStyle style, bool labels) {
   LineCensus out;
-  out.fits = line.size() == kinds.size();
+  const bool title = line.size() > 2 && std::all_of(line.begin() + 1, line.end(), [](const Field& field) {
+                       return field.text.empty() && !field.quoted;
+                     });
+  out.fits = line.size() == kinds.size() &&
+             !(title && (is_ruler(line[0].text) || cell_kind(line[0], style) >= CellKind::word));
   for (std::size_t c = 0; c < std::min(line.size(), kinds.size()); ++c) {
     if (kinds[c] == ColumnKind::text || kinds[c] == ColumnKind::empty) continue;
     const CellKind kind = cell_kind(line[c], style);
@@ -175,13 +196,16 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
     const bool good = !labelled && (kinds[c] == ColumnKind::number ? kind == CellKind::number
                                                                    : kind > CellKind::number && kind < CellKind::word);
     ++(good ? out.good : out.bad);
+    out.undated = out.undated || (kinds[c] != ColumnKind::number && kind == CellKind::word);
   }
   return out;
 }
 
 // "(ms)", "V", "second", and what stands there for columns without a unit.
 bool unit_cell(std::string_view text) {
-  static constexpr std::array<std::string_view, 6> kNone = {"ts", "rn", "sequence", "-", "n/a", "none"};
+  static constexpr std::array<std::string_view, 23> kNone = {
+      "ts", "rn", "sequence", "-",  "n/a", "none", "m/s", "km/h", "knots", "a",     "ma",        "w",
+      "kw", "wh", "m",        "mm", "ohm", "lux",  "n",   "kg",   "mg/l",  "w/m^2", "umol/s/m^2"};
   if (text.size() > 2 && ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']')))
     return true;
   const std::string lower = ascii_lower(text);
@@ -257,15 +281,23 @@ bool damaged(const Cells& line, NumberStyle style) {
   return fractions && !named;
 }
 
-// "0,1,2,3" above numbers with fractions: pandas numbers columns that have no names.
+// "0,1,2,3" above numbers with fractions, or eight columns and more: pandas numbers columns that have no names.
 bool numbers_columns(const std::vector<Cells>& lines, NumberStyle style) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kFewest = 3, kSure = 8;
   if (lines.size() < kFewest || lines[0].size() < kFewest) return false;
   for (std::size_t c = 0; c < lines[0].size(); ++c)
     if (lines[0][c].text != std::to_string(c)) return false;
+  if (lines[0].size() >= kSure && lines[1].back().text != std::to_string(lines[0].size())) return true;
   return std::all_of(lines.begin() + 1, lines.end(), [&](const Cells& line) {
     return std::all_of(line.begin() + 1, line.end(),
                        [&](const Field& field) { return field.text.find(style.decimal) != std::string::npos; });
+  });
+}
+
+// Cell by cell of one kind: neither names the other.
+bool alike(const Cells& a, const Cells& b, NumberStyle style) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Field& one, const Field& other) {
+    return cell_kind(one, style) == cell_kind(other, style) && one.text.size() == other.text.size();
   });
 }
 
@@ -296,7 +328,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   for (const Cells& line : lines) census.push_back(census_of(line, kinds, style, labels));
   const auto first_row =
       std::find_if(census.begin(), census.end(), [](const LineCensus& line) { return line.row() && line.good > 0; });
-  if (first_row == census.end() && census[0].fits && census[0].bad > 0) {  // a header, then damage
+  if (first_row == census.end() && census[0].fits && census[0].bad > 0 &&
+      !(lines.size() > 1 && alike(lines[0], lines[1], style))) {  // a header, then damage
     out.names = 0;
     out.data = 1;
     return out;
@@ -306,7 +339,9 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   out.data = rows_at;
   // Back over rows that are damaged to the last line of words alone.
   std::size_t last = rows_at;
-  while (last > 0 && !census[last - 1].words() && (census[last - 1].fits || census[last - 1].good > 0)) --last;
+  while (last > 0 && !census[last - 1].words() && !(census[last - 1].undated && census[last - 1].good > 0) &&
+         (census[last - 1].fits || census[last - 1].good > 0))
+    --last;
   if (last > 0 && census[last - 1].words()) {
     out.data = last;
     out.names = last - 1;

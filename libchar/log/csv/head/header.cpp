@@ -68,6 +68,45 @@ std::string_view announced_names(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(",:= "), text.size()));
 }
 
+// A delimiter at the end of the first line, or of the first row, that has nothing behind it.
+void find_trailing(Study& study) {
+  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.lines.trailing_delimiter; ++i) {
+    const Line& line = study.sample[i];
+    const std::size_t last = line.text.find_last_not_of(' ');
+    if (last == std::string_view::npos || line.text[last] != study.dialect.delimiter) continue;
+    const Cells fields = cells_in(study.dialect, line.text);
+    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
+        fields.back().quoted)
+      continue;
+    study.dialect.lines.trailing_delimiter = true;
+    study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
+                            place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
+  }
+}
+
+// OpenSignals of PLUX and BITalino: "# {…"column": ["nSeq", "I1", "A1"],…}" in front of "# EndOfHeader".
+bool named_by_open_signals(Study& study) {
+  constexpr std::string_view kKey = "\"column\": [";
+  const auto& lines = study.comments;
+  const auto line = std::find_if(lines.begin(), lines.end(),
+                                 [&](const Line& one) { return one.text.find(kKey) != std::string_view::npos; });
+  if (study.options.header != "auto" || line == lines.end()) return false;
+  const std::size_t from = line->text.find(kKey) + kKey.size(), to = line->text.find(']', from);
+  if (to == std::string_view::npos) return false;
+  Cells names = split(line->text.substr(from, to - from), ',');
+  if (names.size() != study.columns) return false;
+  for (const Field& name : names) {
+    Column& added = study.dialect.columns.emplace_back();
+    added.text = header_text(study, name, *line, from);
+    added.line = line->number;
+    added.position = from + name.offset + 1;
+  }
+  study.dialect.has_header = true;
+  study.info.dialect.push_back(fmt::format("names in line {}", line->number));
+  find_trailing(study);
+  return true;
+}
+
 // EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
 // time,Ax,Ay": the last comment before the data, when it has as many cells.
 bool named_by_comment(Study& study) {
@@ -119,22 +158,6 @@ bool named_one_by_one(Study& study) {
   study.dialect.has_header = true;
   study.info.dialect.push_back(fmt::format("names in lines {} to {}", lines.front()->number, lines.back()->number));
   return true;
-}
-
-// A delimiter at the end of the first line, or of the first row, that has nothing behind it.
-void find_trailing(Study& study) {
-  for (std::size_t i = 0; i < study.sample.size() && !study.dialect.lines.trailing_delimiter; ++i) {
-    const Line& line = study.sample[i];
-    const std::size_t last = line.text.find_last_not_of(' ');
-    if (last == std::string_view::npos || line.text[last] != study.dialect.delimiter) continue;
-    const Cells fields = cells_in(study.dialect, line.text);
-    if (study.dialect.delimiter == ' ' || fields.size() != study.columns + 1 || !fields.back().text.empty() ||
-        fields.back().quoted)
-      continue;
-    study.dialect.lines.trailing_delimiter = true;
-    study.info.warnings.add("trailing_delimiter", "lines end with a delimiter: the empty last column is dropped",
-                            place_name(line.number, line.lines > 1 ? 1 : fields.back().offset + 1));
-  }
 }
 
 // The last line in front of the rows has a name for each column, between other signs than the rows have.
@@ -219,6 +242,22 @@ bool find_cell_units(Study& study) {
 
 }  // namespace
 
+// "Date and Time,Light," above "1/5/2024,12:00:00,17": one name for the two, and the last column is left without.
+void leave_clock_unnamed(const Study& study, Cells& names) {
+  const auto row = std::find_if(study.sample.begin(), study.sample.end(),
+                                [&](const Line& line) { return line.offset >= study.dialect.data_offset; });
+  if (row == study.sample.end() || names.size() < 3 || !names.back().text.empty()) return;
+  const Cells cells = cells_in(study.dialect, row->text);
+  for (std::size_t c = 0; c + 2 < std::min(cells.size(), names.size()); ++c)
+    if (cell_kind(cells[c], study.style()) == CellKind::date &&
+        cell_kind(cells[c + 1], study.style()) == CellKind::clock && !names[c + 1].text.empty() &&
+        !called_time(names[c + 1].text)) {
+      names.insert(names.begin() + static_cast<std::ptrdiff_t>(c) + 1, Field{"", names[c + 1].offset, false});
+      names.pop_back();
+      return;
+    }
+}
+
 void read_names(Study& study, const Line& line, std::string_view text) {
   Dialect& dialect = study.dialect;
   dialect.has_header = true;
@@ -230,7 +269,8 @@ void read_names(Study& study, const Line& line, std::string_view text) {
   if (const Cells all = cells_in(dialect, text, &open); open)
     throw refusal(study, line, all.back().offset + indent, "E0306")
         .says("a quote is opened here and never closed in the header");
-  const Cells fields = table_cells(study, text);
+  Cells fields = table_cells(study, text);
+  leave_clock_unnamed(study, fields);
   if (fields.size() > kMaxColumns)
     throw refusal(study, line, 0, "E0305").says("{} columns, the limit is {}", fields.size(), kMaxColumns);
   dialect.lines.few_names = fields.size() < study.columns;
@@ -270,7 +310,9 @@ void read_units(Study& study, const Line& line) {
 }
 
 void do_without_names(Study& study) {
-  if (named_one_by_one(study) || named_by_comment(study) || named_between_other_signs(study)) return;
+  if (named_one_by_one(study) || named_by_open_signals(study) || named_by_comment(study) ||
+      named_between_other_signs(study))
+    return;
   const Line& first = study.sample[0];
   // What looks like the end of the first rows may be a column that is filled further on.
   const Cells all = cells_in(study.dialect, first.text);

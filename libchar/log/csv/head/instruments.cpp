@@ -80,13 +80,20 @@ bool named_by_yokogawa(Study& study) {
                      [&](const Line& line) { return split(line.text, ',')[0].text == key; }) -
         lines.begin());
   };
-  const std::size_t names = at("TraceName"), units = at("VUnit"), data = at("");
+  const std::size_t names = at("TraceName"), units = at("VUnit");
+  const auto is_row = [](const Line& line) {  // names stand there again, with a line of their own between
+    const Cells cells = split(line.text, ',');
+    return cells.size() > 1 && cells[0].text.empty() && read_cell(cells[1].text, '.').kind == Cell::value;
+  };
+  const auto data = static_cast<std::size_t>(std::find_if(lines.begin(), lines.end(), is_row) - lines.begin());
   if (at("Header Size") != 0 || names >= data || data >= lines.size()) return false;
   study.preamble.assign(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(data));
   study.sample.erase(study.sample.begin(), study.sample.begin() + static_cast<std::ptrdiff_t>(data));
   study.dialect.data_offset = lines[data].offset;
   study.dialect.first_data_line = lines[data].number;
   const std::string_view text = lines[names].text;
+  const Cells row = cells_in(study.dialect, lines[data].text);
+  study.columns -= row.size() == study.columns && row.back().text.empty() ? 1 : 0;
   read_names(study, lines[names], text.substr(text.find(',')));
   if (units >= data) return true;
   read_units(study, lines[units]);

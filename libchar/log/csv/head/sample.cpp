@@ -1,7 +1,12 @@
 #include "libchar/log/csv/head/sample.hpp"
 
+#include <algorithm>
+
 #include "libchar/core/refusal.hpp"
+#include "libchar/log/csv/head/columns.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
+#include "libchar/log/csv/rows/number.hpp"
+#include "libchar/log/time/calendar.hpp"
 
 namespace libchar::csv {
 namespace {
@@ -18,13 +23,40 @@ bool semicolons_comment(std::string_view head, std::size_t offset) {
   return false;
 }
 
+// The last lines have as many cells as each other, with a number in each, by one of the usual signs.
+bool rows_alike(const std::vector<Line>& lines) {
+  constexpr std::size_t kLast = 8;
+  if (lines.size() < kLast) return true;
+  const auto from = lines.end() - static_cast<std::ptrdiff_t>(kLast);
+  for (const char sign : {',', ';', '\t', ' ', '|'}) {
+    const std::size_t cells = split(from->text, sign).size();
+    if (std::all_of(from, lines.end(), [&](const Line& line) {
+          const auto row = split(line.text, sign);
+          return row.size() == cells && std::any_of(row.begin(), row.end(), [](const Field& field) {
+                   return read_sampled(field.text, {}).kind == Cell::value || read_calendar(field.text);
+                 });
+        }))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::uint64_t number,
                     const std::string& file) {
   Sample sample;
   sample.semicolon_comments = semicolons_comment(head, offset);
-  while (offset < head.size() && sample.lines.size() < kSample) {
+  constexpr std::size_t kMost = 8 * kSample;
+  std::size_t wanted = kSample;
+  bool found = false;
+  while (offset < head.size()) {
+    if (sample.lines.size() == wanted) {  // behind a long preamble as many lines again are those of a table
+      const bool rows = rows_alike(sample.lines);
+      if (found || (rows && wanted == kSample) || wanted >= kMost) break;
+      found = rows;
+      wanted = rows ? 2 * wanted : wanted + kSample;
+    }
     const Line line = line_at(head, offset, number);
     if (line.end == LineEnd::none && !whole) {
       if (sample.lines.empty())  // else the row parser tells
@@ -43,6 +75,7 @@ Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::
     offset = line.after;
     number += line.lines;
   }
+  if (sample.lines.size() > kSample && !found && !rows_alike(sample.lines)) sample.lines.resize(kSample);
   return sample;
 }
 

@@ -385,7 +385,8 @@ class CarefulLines {
       span.to = i;
     }
     while (span.from < span.to && blank(line[span.from])) ++span.from;
-    while (span.to > span.from && blank(line[span.to - 1])) --span.to;
+    while (span.to > span.from && (blank(line[span.to - 1]) || line[span.to - 1] == '\n' || line[span.to - 1] == '\r'))
+      --span.to;
     if (to_.dialect.delimiter == ' ')
       while (i + 1 < line.size() && blank(line[i + 1])) ++i;
     span.last = i >= line.size() || (to_.dialect.delimiter == ' ' && i + 1 >= line.size());
@@ -509,12 +510,9 @@ class CarefulLines {
 
   void refuse_kind(std::string_view text, const Span& span, const RowFilter& filter) {
     const std::string& name = to_.dialect.columns[static_cast<std::size_t>(filter.column)].name;
-    fail(
-        "E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
-        fmt::format("`where` {}={} reads the rows before, `group_by` {} makes channels of each, `channels` '!{}' reads "
-                    "all rows",
-                    name, filter.value, name, name),
-        span.start);
+    fail("E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
+         fmt::format("`where` {}={} reads the rows before, `channels` '!{}' reads all rows", name, filter.value, name),
+         span.start);
   }
 
   bool note_group(std::string_view text, const Span& span) {

@@ -433,7 +433,9 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const ColumnLabel& column = table.columns[c];
     const auto name = time_name(name_and_unit(column.name).first);
-    const bool named = name ? !name->letter && !name->date : column.name == table.columns[index].name;
+    const std::string& chosen = table.columns[index].name;
+    const bool named =
+        name ? !name->letter && !name->date : column.name == chosen || numbered_alike(column.name, chosen);
     if (c == index || column.text || column.calendar || !named) continue;
     const std::vector<double> values = table.first_values(c).values;
     if (values.size() != stamps.size() || values.size() < 3) continue;
