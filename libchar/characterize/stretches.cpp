@@ -68,7 +68,7 @@ void check_cover(const std::vector<OrderedState>& states) {
     before = &one;
   }
   const std::uint64_t leaves = leaves_of(before->head.samples);
-  if (next < leaves) refuse_hole(*before, next, leaves - 1, "behind");
+  if (next < leaves) refuse_hole(*before, next, leaves - 1, "after");
 }
 
 /// Of each channel, in the order of their leaves. Throws Error(input) by name unless they are of one log and of these

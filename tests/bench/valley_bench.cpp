@@ -74,9 +74,10 @@ Departure shelf(double corner_hz, double gain) {
   const double w = std::tan(std::numbers::pi * corner_hz / kRate), norm = 1 / (1 + w);
   return filter({(gain + w) * norm, (w - gain) * norm, 0, (w - 1) * norm, 0});
 }
+/// Of gain 1 at half the rate.
 Departure high_pass(double corner_hz) {
   const double a = std::exp(-2 * std::numbers::pi * corner_hz / kRate);
-  return filter({1, -1, 0, -a, 0});
+  return filter({(1 + a) / 2, -(1 + a) / 2, 0, -a, 0});
 }
 Departure alpha_beta(double alpha, double beta) {
   return [=](Samples& y, const Scene&, test::Gaussian&) {

@@ -314,9 +314,9 @@ TEST_CASE("states that are missing, double, foreign, or of other settings are re
   const std::vector<NamedState>& states = two.states;
   REQUIRE_THAT(refusal_of_states({}), Catch::Contains("E0725"));
   REQUIRE_THAT(refusal_of_states({states.data(), 1}),
-               Catch::Contains("state0: error E0725: no state has the leaves 1 to 1 behind it"));
+               Catch::Contains("state0: error E0725: no state has the leaves 1 to 1 after it"));
   REQUIRE_THAT(refusal_of_states({states.data() + 1, 1}),
-               Catch::Contains("state1: error E0725: no state has the leaves 0 to 0 in front"));
+               Catch::Contains("state1: error E0725: no state has the leaves 0 to 0 before it"));
   const std::vector<NamedState> twice = {states[0], states[1], {"copy", states[0].bytes}};
   REQUIRE_THAT(refusal_of_states(twice), Catch::Contains("copy: error E0725: covers leaf 0, which state0 does too"));
   const std::vector<NamedState> foreign = {states[0], states_in(two.log.path(), {}, {1, 2}, "log 2", "other")[0]};

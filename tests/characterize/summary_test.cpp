@@ -54,10 +54,10 @@ TEST_CASE("judge: headline, badge and sentence agree on a log with spikes") {
   CHECK_THAT(view.channels[0].summary, Contains(" But: spikes were left out"));
 }
 
-TEST_CASE("judge: headline, badge and sentence agree on a log with 3 % of its rows missing") {
+TEST_CASE("judge: headline, badge and sentence agree on a log with 12 % of its rows missing") {
   const Characterization result = white_noise(40000, 6, [](std::vector<double>& y, std::mt19937_64& generator) {
     for (double& value : y)
-      if (generator() % 100 < 3) value = std::nan("");
+      if (generator() % 100 < 12) value = std::nan("");
   });
   const CharacterizationView view = characterization_view(result);
   CHECK(view.rating == Rating::caution);

@@ -78,7 +78,7 @@ TEST_CASE("stationarity: a louder stretch is found, placed and sized") {
     CHECK(found.largest_s.high == Approx(200));
     // Over the root mean square of all: sqrt((15 + 1.5²) / 16) is 1.038.
     CHECK(found.largest == Approx(1.5 / 1.038).epsilon(0.05));
-    CHECK(found.sentence.find("at 160 to 200 s") != std::string::npos);
+    CHECK(found.sentence.find("(160 to 200 s)") != std::string::npos);
   }
 }
 

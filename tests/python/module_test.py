@@ -247,6 +247,8 @@ class TakesWhatPeopleHave(unittest.TestCase):
                          (curve.tau_s.tolist(), curve.deviation.tolist(), curve.terms.tolist()))
         self.assertLess(abs(errs[0] / (devs[0] / np.sqrt(2 * curve.edf[0])) - 1), 1e-12)
         self.assertEqual(libchar.fit(x, 100, units="deg/s").unit, "deg/s")
+        self.assertEqual(libchar.fit(x, 100, terms=["N", "B"]).to_dict(),
+                         libchar.fit(x, 100, terms=["white_noise", "bias_instability"]).to_dict())
         self.assertEqual(libchar.psd(x, 100).segments, libchar.psd({"x": x}, 100)[0].segments)
 
     def test_a_rate_has_two_names(self):
@@ -520,7 +522,7 @@ class Refuses(unittest.TestCase):
                      lambda: libchar.fit(x, 1, units=["a", "b"])):
             self.refused(libchar.UsageError, call, "E0208")
         for call in (lambda: libchar.allan(x, 1, type="odev"), lambda: libchar.psd(x, 1, window="hamm"),
-                     lambda: libchar.fit(x, 1, terms=["N"]),
+                     lambda: libchar.fit(x, 1, terms=["X"]),
                      lambda: libchar.allan(x, 1, taus="eighth")):
             self.refused(libchar.UsageError, call, "E0202")
         self.assertRaises(ValueError, lambda: libchar.allan(x, 1, type="odev"))

@@ -159,7 +159,7 @@ void read_terms(const Given& given, FitOptions& fit) {
     bool found = false;
     for (std::size_t t = 0; t < kTerms; ++t) {
       known.emplace_back(kTermNames[t].key);
-      if (word == kTermNames[t].key) found = fit.terms[t] = true;
+      if (word == kTermNames[t].key || word == kTermNames[t].letter) found = fit.terms[t] = true;
     }
     if (!found) Given::refuse("terms", word, known);
   }

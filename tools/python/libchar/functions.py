@@ -396,7 +396,7 @@ def fit(source: Source, rate_hz: Optional[float] = None, *, terms: Names = None,
     `source` is one array.
 
     terms           offered to the fit from the start: white_noise, bias_instability, random_walk, rate_ramp,
-                    quantization
+                    quantization, or N, B, K, R, Q
     threshold       likelihood ratio above which a term counts as present (5.41: 1 % false)
     remedies        clean spikes, clip lines, add ramp, bandwidth or quantization terms where an alarm asks for it
     second_opinion  fit the Allan curve as well
