@@ -352,7 +352,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     if (!now.band.law) answer_low_frequencies(now);
     report_corner(now.band, now.fit);
     if (law) answer_power_law(*law, now.fit);
-    if (band_options.small_shapes && !law) reach_to_neighbours(bins, now.band, options.terms, now.fit);
+    if (band_options.small_shapes && !law) reach_to_neighbours(bins, now.band, now.best, options.terms, now.fit);
     if (now.band.doubtful_end && !law && !(process && process->needed)) report_doubtful_end(now.fit);
     if (band_options.small_shapes && now.band.passes) average_over_shapes(now);
     if (band_options.small_shapes && possible) reach_to_law(*possible, now.fit);

@@ -103,7 +103,7 @@ void judge_band(const std::vector<PowerBin>& bins, std::size_t fitted, const Ban
 }
 
 std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, TermSet terms, const Band& band,
-                           const BandOptions& options, const ModelPoint* start = nullptr) {
+                           const BandOptions& options) {
   Trial trial;
   trial.band = band;
   trial.index = members(bins, band);
@@ -113,7 +113,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
   if (band.faster_s) terms[kQuantizationTerm] = true;
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
   const BinProblem problem = band_problem(bins, band, rate_hz);
-  const ScoringResult best = score(problem, terms, start, 1e-6);
+  const ScoringResult best = score(problem, terms, nullptr, 1e-6);
   if (!std::isfinite(best.half_deviance)) return std::nullopt;
   const Eigen::ArrayXd model = model_of(problem, best.at);
   for (std::size_t i = 0; i < inside.size(); ++i) {

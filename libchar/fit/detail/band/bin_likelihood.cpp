@@ -286,13 +286,15 @@ class Scoring {
     for (std::size_t i = 0; i < kTerms; ++i) fixed_[i] = free[i] ? 0 : start->theta[i];
   }
 
-  ModelPoint first_guess() const {
+  /// The likelier first. A named shape is a straight line about its maximum: it begins without a change, a polynomial
+  /// by what is left.
+  std::vector<ModelPoint> first_guesses() const {
     const Eigen::ArrayXd weight = problem_.dof / (2 * problem_.energy * problem_.energy);
-    const ModelPoint plain{solved(weight), {}};
-    if (problem_.shapes() == 0) return plain;
-    // A named shape is a straight line about its maximum: it begins without a change, a polynomial by what is left.
-    const ModelPoint shaped = slow_start(problem_, free_, fixed_);
-    return half_deviance(problem_, plain) < half_deviance(problem_, shaped) ? plain : shaped;
+    std::vector<ModelPoint> guesses = {{solved(weight), {}}};
+    if (problem_.shapes() == 0) return guesses;
+    guesses.push_back(slow_start(problem_, free_, fixed_));
+    if (!(half_deviance(problem_, guesses[0]) < half_deviance(problem_, guesses[1]))) std::swap(guesses[0], guesses[1]);
+    return guesses;
   }
 
   ModelPoint goal(const ModelPoint& now) const {
@@ -314,19 +316,11 @@ class Scoring {
   Mixture fixed_{};
 };
 
-}  // namespace
-
-ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start, double tolerance) {
+ScoringResult climb(const BinProblem& problem, const Scoring& scoring, const ModelPoint& start, double tolerance) {
   constexpr double kFarthest = 64;  // steps
-  const Scoring scoring(problem, free, start);
   ScoringResult result;
-  result.at = start != nullptr ? *start : scoring.first_guess();
+  result.at = start;
   result.half_deviance = half_deviance(problem, result.at);
-  if (!std::isfinite(result.half_deviance)) {
-    // A warm start with a vanishing model: some bin would have no expected power at all.
-    result.at = scoring.first_guess();
-    result.half_deviance = half_deviance(problem, result.at);
-  }
   if (!std::isfinite(result.half_deviance)) return result;
   for (; result.iterations < 200; ++result.iterations) {
     const ModelPoint goal = scoring.goal(result.at);
@@ -369,6 +363,23 @@ ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelP
     }
   }
   return result;
+}
+
+}  // namespace
+
+ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start, double tolerance) {
+  constexpr double kHopeless = 2;  ///< of half deviance per bin: where the model is right it is a half
+  const Scoring scoring(problem, free, start);
+  // A warm start with a vanishing model: some bin would have no expected power at all.
+  const bool warm = start != nullptr && std::isfinite(half_deviance(problem, *start));
+  if (warm) return climb(problem, scoring, *start, tolerance);
+  const std::vector<ModelPoint> guesses = scoring.first_guesses();
+  ScoringResult result = climb(problem, scoring, guesses[0], tolerance);
+  const double hopeless = kHopeless * static_cast<double>(problem.size());
+  if (guesses.size() < 2 || result.half_deviance < hopeless) return result;
+  // With many unknowns one of the starts may end far from the maximum.
+  const ScoringResult other = climb(problem, scoring, guesses[1], tolerance);
+  return other.half_deviance < result.half_deviance || !std::isfinite(result.half_deviance) ? other : result;
 }
 
 }  // namespace libchar

@@ -6,8 +6,9 @@
 // and with that of the average over the shapes, L: sum_s w_s Phi((L - m_s) / sd_s) = .025, and likewise above, with
 // m = ln theta / 2 and Akaike's weights (D. Turek, D. Fletcher, Comput. Stat. Data Anal. 56 (2012) 2809): a shift is
 // known no better than the richer shape.
-// Neighbours: a polynomial, or a filter of equal weights, with one and two orders more; of a filter or loop those with
-// one root more, where they are as likely; of a polynomial of many coefficients the filters with corners.
+// Neighbours: of a polynomial one and two orders more, and from three on the filters with corners; of a filter of
+// equal weights one to four orders; of a filter with corners those with one root more. A shift counts where they are
+// as likely.
 #include "libchar/fit/detail/band/neighbours.hpp"
 
 #include <algorithm>
@@ -113,8 +114,9 @@ void reach_by(double shift, Coefficient& term) {
 }
 
 /// A term that was dropped is not known to be zero, nor that it stays dropped behind another shape.
-ScoringResult likeliest(const BinProblem& problem, const TermSet& kept, const TermSet& offered) {
-  const ScoringResult first = score(problem, kept);
+ScoringResult likeliest(const BinProblem& problem, const ModelPoint& start, const TermSet& kept,
+                        const TermSet& offered) {
+  const ScoringResult first = score(problem, kept, &start);
   return score(problem, offered, &first.at);
 }
 
@@ -134,23 +136,28 @@ void extend(const NeighbourReach& by, Coefficient& term) {
 
 }  // namespace
 
-void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const TermSet& offered, NoiseFit& fit) {
-  constexpr double kAsLikely = 0.5;  ///< of ln L
+void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
+                         const TermSet& offered, NoiseFit& fit) {
+  constexpr double kAsLikely = 0.5, kMostLikelier = 300;  ///< of ln L
   const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
   const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
   if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
   const TermSet kept = only_positive(fit.theta);
   TermSet terms = kept;
   for (std::size_t i = 0; i < kTerms; ++i) terms[i] = terms[i] || offered[i];
-  const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), kept, terms).half_deviance;
+  const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), best, kept, terms).half_deviance;
   std::array<NeighbourReach, kTerms> reach;
   for (std::size_t i = 0; i < kTerms; ++i)
     if (fit.term[i].value && kept[i] && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
       reach[i].opinions = {opinion_of(fit, i)};
   for (const Band& other : neighbours_of(bins, band, kept, fit.rate_hz)) {
     const BinProblem problem = band_problem(bins, other, fit.rate_hz);
-    const ScoringResult there = likeliest(problem, kept, terms);
-    const double weight = std::exp(chosen - there.half_deviance - price * (other.orders - band.orders));
+    // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
+    const bool goes_on = other.named.family == Family::none;
+    const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
+    // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
+    const double likelier = chosen - there.half_deviance - price * (other.orders - band.orders);
+    const double weight = std::exp(std::min(likelier, kMostLikelier));
     if (!(weight > 0)) continue;
     const bool shifts = there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
     const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);

@@ -8,7 +8,8 @@
 
 namespace libchar {
 
-/// Intervals of the terms of a band with a free shape reach to where its neighbours have them.
-void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const TermSet& offered, NoiseFit& fit);
+/// Intervals of the terms of a band with a free shape reach to where its neighbours have them; `best` is its maximum.
+void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
+                         const TermSet& offered, NoiseFit& fit);
 
 }  // namespace libchar
