@@ -11,6 +11,8 @@
 // as likely.
 #include "libchar/fit/detail/band/neighbours.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,7 @@
 #include <optional>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {
 namespace {
@@ -134,11 +137,24 @@ void extend(const NeighbourReach& by, Coefficient& term) {
   term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
 }
 
+/// What the shapes put decades apart was not seen.
+void say_if_unknown(Term of, NoiseFit& fit) {
+  constexpr double kFar = 10;
+  Coefficient& term = fit.term[static_cast<std::size_t>(of)];
+  if (!(term.ci95.high > kFar * *term.value)) return;
+  if (term.status == Status::detected) term.status = Status::undetermined;
+  fit.findings.push_back(
+      finding("undetermined", fmt::format("Other filters describe the spectrum as well, and put {} elsewhere by "
+                                          "more than a decade.",
+                                          long_name(of))));
+}
+
 }  // namespace
 
 void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                          const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5, kMostLikelier = 300;  ///< of ln L
+  constexpr double kUnknown = std::numbers::ln10;         ///< standard deviation of what a shape hardly knows
   const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
   const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
   if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
@@ -168,12 +184,15 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
       if (shifts) reach[i].least = std::min(reach[i].least, shift);
       if (shifts) reach[i].most = std::max(reach[i].most, shift);
       const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
-      if (!reach[i].opinions.empty() && sd > 0 && std::isfinite(sd))
-        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), sd, sd});
+      if (!reach[i].opinions.empty() && sd > 0)
+        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), std::min(sd, kUnknown), std::min(sd, kUnknown)});
     }
   }
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (fit.term[i].value) extend(reach[i], fit.term[i]);
+    if (fit.term[i].value) {
+      extend(reach[i], fit.term[i]);
+      say_if_unknown(static_cast<Term>(i), fit);
+    }
 }
 
 }  // namespace libchar
