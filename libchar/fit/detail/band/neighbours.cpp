@@ -75,8 +75,9 @@ bool is_plain(const Band& band) {
 /// What is white above a low corner has another level below it, and slow terms may make up for it.
 std::vector<Band> with_step(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                             const TermSet& terms, double rate_hz) {
+  if (band.low_pass || band.tau_s) return {};  // a process has the spectrum of a step
   const auto start = clearest_step(bins, band, best, rate_hz);
-  if (!start || band.low_pass) return {};
+  if (!start) return {};
   const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, terms, Family::shelf, start);
   if (!shape) return {};
   Band with = band;
@@ -88,6 +89,7 @@ std::vector<Band> with_step(const std::vector<PowerBin>& bins, const Band& band,
 std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                                 const TermSet& terms, double rate_hz) {
   if (is_plain(band)) return with_step(bins, band, best, terms, rate_hz);
+  if (band.orders == 0 && band.filter.kind == NoiseShape::Kind::none) return {};
   if (band.named.family != Family::none) return with_roots(bins, band, terms, richer(band.named.family), rate_hz);
   std::vector<Band> out = richer_polynomials(band);
   if (band.orders < kMany || !band.resonances.empty()) return out;
