@@ -8,7 +8,8 @@
 // known no better than the richer shape.
 // Neighbours: of the terms alone a step of the level (a shelf), where its score is clear; of a polynomial one and two
 // orders more, and from three on the filters with corners; of a filter of equal weights one to four orders; of a filter
-// with corners those with one root more. A shift counts where they are as likely, that of a step by its weight alone.
+// with corners those with one root more, and itself in half an octave and in an octave less of the band, for what bends
+// its flank is another shape's. A shift counts where they are as likely, that of a step by its weight alone.
 #include "libchar/fit/detail/band/neighbours.hpp"
 
 #include <fmt/format.h>
@@ -161,6 +162,36 @@ void extend(const NeighbourReach& by, Coefficient& term) {
   term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
 }
 
+void shift_to(const Mixture& theta, const NoiseFit& fit, std::array<NeighbourReach, kTerms>& reach) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (!(theta[i] > 0 && fit.theta[i] > 0)) continue;
+    const double shift = 0.5 * std::log(theta[i] / fit.theta[i]);
+    reach[i].least = std::min(reach[i].least, shift);
+    reach[i].most = std::max(reach[i].most, shift);
+  }
+}
+
+/// The same family in `less` of the band, where it has to describe less of its flank.
+void shift_to_narrower(const std::vector<PowerBin>& bins, const Band& band, double less, const TermSet& kept,
+                       const NoiseFit& fit, std::array<NeighbourReach, kTerms>& reach) {
+  constexpr double kAbove = 1.2;  ///< of the corner
+  if (band.named.family == Family::none || band.named.family == Family::shelf) return;
+  Band narrow = band;
+  narrow.top_hz = less * std::min(band.top_hz, fit.rate_hz / 2);
+  if (!(narrow.top_hz > kAbove * band.named.pole_hz)) return;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (bins[j].high_hz > narrow.top_hz * (1 + 1e-9)) narrow.inside[j] = 0;
+  Band plain = narrow;
+  plain.named = {};
+  plain.orders = 0;
+  const auto shape =
+      fit_named_shape(bins_of(bins, plain, fit.rate_hz), fit.rate_hz, kept, band.named.family, band.named);
+  if (!shape) return;
+  narrow.named = *shape;
+  const ModelPoint start{fit.theta, {}};
+  shift_to(score(band_problem(bins, narrow, fit.rate_hz), kept, &start).at.theta, fit, reach);
+}
+
 /// What the shapes put decades apart was not seen.
 void say_if_unknown(Term of, NoiseFit& fit) {
   constexpr double kFar = 10;
@@ -206,20 +237,19 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     if (!(weight > 0)) continue;
     const bool shifts =
         !is_plain(band) && there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    if (shifts) shift_to(there.at.theta, fit, reach);
     const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
     for (std::size_t i = 0; i < kTerms; ++i) {
       const double theta = there.at.theta[i];
       if (!kept[i]) continue;
       if (!(theta > 0)) reach[i].without += weight;
       if (!(theta > 0)) continue;
-      const double shift = 0.5 * std::log(theta / fit.theta[i]);
-      if (shifts) reach[i].least = std::min(reach[i].least, shift);
-      if (shifts) reach[i].most = std::max(reach[i].most, shift);
       const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
       if (!reach[i].opinions.empty() && sd > 0 && !(is_plain(band) && sd > kUnseen))
         reach[i].opinions.push_back({weight, 0.5 * std::log(theta), std::min(sd, kUnknown), std::min(sd, kUnknown)});
     }
   }
+  for (const double less : {std::numbers::sqrt2 / 2, 0.5}) shift_to_narrower(bins, band, less, kept, fit, reach);
   for (std::size_t i = 0; i < kTerms; ++i)
     if (fit.term[i].value) {
       extend(reach[i], fit.term[i]);
