@@ -414,6 +414,23 @@ TEST_CASE("white noise behind shapes that have no name here, or another: its int
   }
 }
 
+TEST_CASE("the limit of a walk knows of a high-pass that is likelier than none") {
+  // At .01 Hz in 2,000 s, before white noise and flicker: half of the records are called high-passed, or doubtful.
+  constexpr double kWalk = 0.0015, kPole = 0.99937188;
+  int silent = 0;
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    test::NoiseSource source(200000, kRate, 900 + seed);
+    const std::vector<double> u = source.record(0.005, 0.005, kWalk);
+    std::vector<double> y(u.size(), 0.0);
+    for (std::size_t t = 1; t < u.size(); ++t) y[t] = u[t] - u[t - 1] + kPole * y[t - 1];
+    const NoiseFit fit = fit_record(y, kRate, nullptr, {});
+    const Coefficient& walk = fit[Term::walk];
+    const bool said = says(fit, "undetermined") || says(fit, "high_passed");
+    silent += walk.status == Status::not_detected && walk.upper95 < kWalk && !said ? 1 : 0;
+  }
+  CHECK(silent <= 5);
+}
+
 TEST_CASE("what a low-pass of another family has on its flank is not in N") {
   // Elliptic's three at .07: a pair of poles describes it up to a quarter of the rate, .85 times too low.
   test::Gaussian normal(24);
