@@ -6,10 +6,12 @@
 // and with that of the average over the shapes, L: sum_s w_s Phi((L - m_s) / sd_s) = .025, and likewise above, with
 // m = ln theta / 2 and Akaike's weights (D. Turek, D. Fletcher, Comput. Stat. Data Anal. 56 (2012) 2809): a shift is
 // known no better than the richer shape.
-// Neighbours: of a polynomial one and two orders more, and from three on the filters with corners; of a filter of
-// equal weights one to four orders; of a filter with corners those with one root more. A shift counts where they are
-// as likely.
+// Neighbours: of the terms alone a step of the level (a shelf), where its score is clear; of a polynomial one and two
+// orders more, and from three on the filters with corners; of a filter of equal weights one to four orders; of a filter
+// with corners those with one root more. A shift counts where they are as likely, that of a step by its weight alone.
 #include "libchar/fit/detail/band/neighbours.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +21,7 @@
 #include <optional>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {
 namespace {
@@ -64,8 +67,27 @@ std::vector<Band> with_roots(const std::vector<PowerBin>& bins, const Band& band
   return out;
 }
 
-std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const TermSet& terms,
-                                double rate_hz) {
+bool is_plain(const Band& band) {
+  return band.orders == 0 && band.filter.kind == NoiseShape::Kind::none && band.named.family == Family::none &&
+         band.resonances.empty();
+}
+
+/// What is white above a low corner has another level below it, and slow terms may make up for it.
+std::vector<Band> with_step(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
+                            const TermSet& terms, double rate_hz) {
+  const auto start = clearest_step(bins, band, best, rate_hz);
+  if (!start || band.low_pass) return {};
+  const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, terms, Family::shelf, start);
+  if (!shape) return {};
+  Band with = band;
+  with.named = *shape;
+  with.orders = static_cast<int>(unknowns_of(Family::shelf));
+  return {with};
+}
+
+std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
+                                const TermSet& terms, double rate_hz) {
+  if (is_plain(band)) return with_step(bins, band, best, terms, rate_hz);
   if (band.named.family != Family::none) return with_roots(bins, band, terms, richer(band.named.family), rate_hz);
   std::vector<Band> out = richer_polynomials(band);
   if (band.orders < kMany || !band.resonances.empty()) return out;
@@ -79,9 +101,10 @@ struct Opinion {
   double weight = 0, mean = 0, below = 0, above = 0;
 };
 
+constexpr double kTail = 0.025;
+
 /// Where the average over the opinions has less than 2.5 % beyond: below them for a side of -1, above for 1.
 double end_of(const std::vector<Opinion>& opinions, int side) {
-  constexpr double kTail = 0.025;
   constexpr int kHalvings = 40;
   double sum = 0, inner = std::numeric_limits<double>::infinity(), outer = -inner;
   const auto deviation = [side](const Opinion& of) { return side < 0 ? of.below : of.above; };
@@ -124,14 +147,28 @@ ScoringResult likeliest(const BinProblem& problem, const ModelPoint& start, cons
 struct NeighbourReach {
   double least = 0, most = 0;
   std::vector<Opinion> opinions;
+  double without = 0;  ///< weight of the shapes that need no such term
 };
 
 void extend(const NeighbourReach& by, Coefficient& term) {
   reach_by(by.least, term);
   reach_by(by.most, term);
+  if (by.without > kTail) term.ci95.low = 0;  // beside the weight 1 of the shape that was chosen
   if (by.opinions.size() < 2) return;
   term.ci95.low = std::min(term.ci95.low, std::exp(end_of(by.opinions, -1)));
   term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
+}
+
+/// What the shapes put decades apart was not seen.
+void say_if_unknown(Term of, NoiseFit& fit) {
+  constexpr double kFar = 10;
+  Coefficient& term = fit.term[static_cast<std::size_t>(of)];
+  if (!(term.ci95.high > kFar * *term.value)) return;
+  if (term.status == Status::detected) term.status = Status::undetermined;
+  fit.findings.push_back(
+      finding("undetermined", fmt::format("Other filters describe the spectrum as well, and put {} elsewhere by "
+                                          "more than a decade.",
+                                          long_name(of))));
 }
 
 }  // namespace
@@ -139,10 +176,16 @@ void extend(const NeighbourReach& by, Coefficient& term) {
 void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                          const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5, kMostLikelier = 300;  ///< of ln L
+  constexpr double kUnknown = std::numbers::ln10;         ///< standard deviation of what a shape hardly knows
   const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
-  const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
-  if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
+  // Of an order, in ln L: equal weights are what many sensors have, a step what few have.
+  constexpr double kOfStep = 2.5, kOfWeights = 2;
+  constexpr double kUnseen = 0.5;  ///< standard deviation of the level below a step that hardly has coefficients
+  const double price = is_plain(band) ? kOfStep : taps ? kOfWeights : 1;
+  if (band.named.family == Family::high_pass) return;
   const TermSet kept = only_positive(fit.theta);
+  const std::vector<Band> others = neighbours_of(bins, band, best, kept, fit.rate_hz);
+  if (others.empty()) return;
   TermSet terms = kept;
   for (std::size_t i = 0; i < kTerms; ++i) terms[i] = terms[i] || offered[i];
   const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), best, kept, terms).half_deviance;
@@ -150,7 +193,7 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
   for (std::size_t i = 0; i < kTerms; ++i)
     if (fit.term[i].value && kept[i] && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
       reach[i].opinions = {opinion_of(fit, i)};
-  for (const Band& other : neighbours_of(bins, band, kept, fit.rate_hz)) {
+  for (const Band& other : others) {
     const BinProblem problem = band_problem(bins, other, fit.rate_hz);
     // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
     const bool goes_on = other.named.family == Family::none;
@@ -159,21 +202,27 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     const double likelier = chosen - there.half_deviance - price * (other.orders - band.orders);
     const double weight = std::exp(std::min(likelier, kMostLikelier));
     if (!(weight > 0)) continue;
-    const bool shifts = there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    const bool shifts =
+        !is_plain(band) && there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
     const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
     for (std::size_t i = 0; i < kTerms; ++i) {
       const double theta = there.at.theta[i];
-      if (!kept[i] || !(theta > 0)) continue;
+      if (!kept[i]) continue;
+      if (!(theta > 0)) reach[i].without += weight;
+      if (!(theta > 0)) continue;
       const double shift = 0.5 * std::log(theta / fit.theta[i]);
       if (shifts) reach[i].least = std::min(reach[i].least, shift);
       if (shifts) reach[i].most = std::max(reach[i].most, shift);
       const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
-      if (!reach[i].opinions.empty() && sd > 0 && std::isfinite(sd))
-        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), sd, sd});
+      if (!reach[i].opinions.empty() && sd > 0 && !(is_plain(band) && sd > kUnseen))
+        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), std::min(sd, kUnknown), std::min(sd, kUnknown)});
     }
   }
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (fit.term[i].value) extend(reach[i], fit.term[i]);
+    if (fit.term[i].value) {
+      extend(reach[i], fit.term[i]);
+      say_if_unknown(static_cast<Term>(i), fit);
+    }
 }
 
 }  // namespace libchar
