@@ -86,12 +86,6 @@ std::vector<PowerBin> inside_bins(const std::vector<PowerBin>& bins, const Band&
   return inside;
 }
 
-Eigen::ArrayXd frequencies_of(const std::vector<PowerBin>& bins) {
-  Eigen::ArrayXd out(static_cast<Eigen::Index>(bins.size()));
-  for (std::size_t j = 0; j < bins.size(); ++j) out[static_cast<Eigen::Index>(j)] = bins[j].frequency_hz;
-  return out;
-}
-
 /// Weighted log slopes of the terms and of the corner of a low-pass, and the residuals that would
 /// be there without the small shape.
 struct Slopes {
@@ -264,28 +258,6 @@ void move_term(double shift, double variance, Coefficient& term) {
 
 }  // namespace
 
-std::optional<NamedShape> clearest_step(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
-                                        double rate_hz) {
-  constexpr double kFewest = 8, kHighest = 1.0 / 16;  ///< of the lowest frequency, of the rate
-  constexpr double kLargest = 2, kClear = 2.1;        ///< of the logarithm of the step; standard deviations
-  const std::vector<PowerBin> inside = inside_bins(bins, band);
-  const Slopes slopes = slopes_of(inside, band, bin_problem(bins_of(bins, band, rate_hz)), best.theta, {}, rate_hz);
-  const Eigen::ArrayXd frequency = frequencies_of(inside);
-  const Eigen::MatrixXd basis = column_basis(slopes.columns);
-  double clearest = kClear;
-  std::optional<NamedShape> out;
-  for (double corner = kHighest * rate_hz; corner > kFewest * frequency.minCoeff(); corner /= 2) {
-    const Eigen::ArrayXd square = (frequency / corner).square();
-    const Eigen::VectorXd apart = without_columns_of(basis, (slopes.root * square / (1 + square)).matrix());
-    const double score = apart.dot(slopes.residual) / apart.norm();
-    if (!(std::abs(score) > clearest)) continue;
-    clearest = std::abs(score);
-    const double half = std::exp(std::clamp(score / apart.norm(), -kLargest, kLargest) / 4);
-    out = NamedShape{NamedShape::Family::shelf, corner * half, corner / half};
-  }
-  return out;
-}
-
 double small_shape_log_gain(const SmallShape& shape, const PowerBin& bin, double rate_hz) {
   return shape.amplitude == 0 ? 0 : shape.amplitude * mean_sine_power(bin, rate_hz, shape.power);
 }
@@ -340,7 +312,8 @@ void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& ba
   Reach reach{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (const Answer& answer : answers)
     if (answer.weight > kLeastWeight) reach_to(answer, mean, reach);
-  const Eigen::ArrayXd frequency = frequencies_of(inside);
+  Eigen::ArrayXd frequency(slopes.root.size());
+  for (Eigen::Index j = 0; j < frequency.size(); ++j) frequency[j] = inside[static_cast<std::size_t>(j)].frequency_hz;
   for (const Answer& slow : slow_answers(slopes, frequency)) reach_to(slow, mean, reach);
   reach_to(hump_answer(slopes, frequency, fit.rate_hz), mean, reach);
   shift += mean;

@@ -1,11 +1,9 @@
 #pragma once
 // A shape of the top of the spectrum that is too small to be seen and large enough to matter.
 
-#include <optional>
 #include <vector>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
-#include "libchar/fit/detail/band/named_shape.hpp"
 #include "libchar/fit/fit_result.hpp"
 
 namespace libchar {
@@ -31,10 +29,5 @@ double take_small_shape(const std::vector<PowerBin>& bins, double rate_hz, const
 /// band's own small shape in it, and its maximum.
 void average_over_small_shapes(const std::vector<PowerBin>& bins, const Band& band, const BinProblem& problem,
                                const ModelPoint& best, NoiseFit& fit);
-
-/// Where the score of a step of the level, as a shelf or a loop of a low corner has it, is clearest beside the terms of
-/// a band without a shape: a shelf to begin with; none below 2.1 standard deviations, of ten that are looked for.
-std::optional<NamedShape> clearest_step(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
-                                        double rate_hz);
 
 }  // namespace libchar
