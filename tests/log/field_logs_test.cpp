@@ -692,3 +692,11 @@ TEST_CASE("names below a row of numbers, below a colon, and behind the sign of c
   CHECK(names_in(rows("#,ax,ay\n,(mV),(uT)\n", "{0},{2}.5,{3}.25\n")) == Names{"ax", "ay"});
   CHECK(rows("", "{0}.000,{2}.5,{3},x{0}\n").info.time.rate_hz == Approx(1));
 }
+
+TEST_CASE("a byte-order mark in front of each line") {
+  std::string text = "\xEF\xBB\xBF\"Time\",\"Flow, ml/min\"\n";
+  for (int k = 0; k < 60; ++k) text += fmt::format("\xEF\xBB\xBF\"2021-09-17 11:{:02}:14.045\",{}.5\n", k, k % 7);
+  const Recording log = read_text(text);
+  CHECK(log.info.time.rate_hz == Approx(1 / 60.0));
+  CHECK(log.info.channels.size() == 1);
+}

@@ -441,7 +441,7 @@ TEST_CASE("parts of a second without leading zeros, behind clock times and dates
 TEST_CASE("clocks of a day and a week, totals beside the time of a step, minutes in days, units at the end of a word") {
   const auto rate_of = [](const std::string& names, const auto& row) {
     std::string text = names + ",x\n";
-    for (int i = 0; i < 900; ++i) text += row(i) + fmt::format(",{}\n", (i * 7919) % 100);
+    for (int i = 0; i < 700; ++i) text += row(i) + fmt::format(",{}\n", (i * 7919) % 100);
     return read_text(text).info.time.rate_hz;
   };
   CHECK(rate_of("sec_of_day", [](int i) { return fmt::format("{:.2f}", std::fmod(86396 + 0.02 * i, 86400)); }) ==
@@ -453,5 +453,13 @@ TEST_CASE("clocks of a day and a week, totals beside the time of a step, minutes
         }) == Approx(1));
   CHECK(rate_of("time", [](int i) { return fmt::format("{:.6f}", 45000.25 + i / 1440.0); }) ==
         Approx(1 / 60.0).epsilon(1e-3));
+  CHECK(rate_of("Test_Time,DateTime", [](int i) {
+          return fmt::format("{:.4f},{:.4f}", 10.0024 * (i + 1), 1494645233.4691 + 10.0024 * (i + 1));
+        }) == Approx(1 / 10.0024));
+  CHECK(rate_of("time(UTC)", [](int i) { return fmt::format("201801{:02}:{:02}00", 1 + i / 24, i % 24); }) ==
+        Approx(1 / 3600.0));
+  CHECK(rate_of("Observation period", [](int i) {
+          return fmt::format("2020-06-01T{0:02}:{1:02}:00.0/2020-06-01T{0:02}:{1:02}:30.0", i / 60, i % 60);
+        }) == Approx(1 / 60.0));
   CHECK(rate_of("epochMs", [](int i) { return fmt::format("{:.3f}", 12.5 + 10.0 * i); }) == Approx(100));
 }

@@ -219,9 +219,11 @@ bool worded_date(DateScanner& at, CalendarStamp& out) {
   return true;
 }
 
-// "20240501T…": without a clock it would be any number.
+// "20240501T…", "20240501:0010": without a clock it would be any number.
 bool compact_date(DateScanner& at, CalendarStamp& out) {
-  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_') || !decimal_digit(at.peek(9))) return false;
+  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_' && at.peek(8) != ':') ||
+      !decimal_digit(at.peek(9)))
+    return false;
   const int year = at.fixed(4), month = at.fixed(2);
   return take_days(out, year, month, at.fixed(2));
 }
@@ -492,6 +494,11 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
     return out;
   }
   if (const auto plain = with_signs(text)) return read_calendar(*plain, order);
+  // "2024-05-01T12:00:00/2024-05-01T12:01:00" of ISO 8601: an interval, by its beginning
+  if (const std::size_t slash = text.find('/'); slash != text.npos && text.substr(0, slash).find('T') != text.npos) {
+    const auto from = read_calendar(text.substr(0, slash), order), to = read_calendar(text.substr(slash + 1), order);
+    return from && to && from->date && to->date && from->ns <= to->ns ? from : std::nullopt;
+  }
   DateScanner at{text};
   at.blanks();
   CalendarStamp out;

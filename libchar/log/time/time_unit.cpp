@@ -176,6 +176,25 @@ bool counts_of_a_timer(const FirstValues& first) {
   return even;
 }
 
+/// Seconds or milliseconds by another clock of the table whose unit is known: dates, or the time since 1970.
+std::int64_t unit_by_another_clock(const TableFront& table, std::size_t column, double step) {
+  constexpr double kAlike = 0.1, kFirst = 1e9, kLast = 4.1e9;  // s
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (c == column || table.columns[c].text) continue;
+    const std::vector<double> values = table.first_values(c).values;
+    double seconds = values.size() < 3 ? 0 : usual_step(values);
+    if (!(seconds > 0) || !std::is_sorted(values.begin(), values.end())) continue;
+    const bool since_1970 = values[0] > kFirst && values[0] < kLast;
+    if (values[0] > 1e3 * kFirst && values[0] < 1e3 * kLast)
+      seconds /= 1e3;
+    else if (!since_1970 && !table.columns[c].calendar)
+      continue;
+    for (const std::int64_t unit : {kStampUnits[0], kStampUnits[1]})
+      if (std::fabs(step * 1e-9 * static_cast<double>(unit) - seconds) < kAlike * seconds) return unit;
+  }
+  return 0;
+}
+
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
@@ -271,12 +290,15 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
       guess = kStampUnits[1];
     unit.ns = comparable ? unit_of_rate(guess, first.values, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
-    const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;
+    const std::int64_t other = comparable || first.integers ? 0 : unit_by_another_clock(table, column, step);
+    if (other > 0) unit.ns = other;
+    const bool by_step = !comparable && other == 0 && !says_a_date(first) && first.values.size() > 1;
     if (!by_step || !say_guess_by_step(table, first, unit.ns, info))
       info.guesses.push_back(fmt::format(
           "time unit: {}, from {} (`time_unit` says otherwise)", unit_name(unit.ns),
-          comparable ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
-                     : "the size and step of the stamps"));
+          comparable  ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
+          : other > 0 ? "the steps of another clock in the table"
+                      : "the size and step of the stamps"));
   } else if (comparable) {
     warn_of_stated_rate(table, step, unit.ns, info);
   }
