@@ -93,7 +93,7 @@ struct Judge {
       if (fit[Term::white].status == Status::undetermined) out.back().severity = Severity::caution;
     }
     for (std::size_t t = 0; t < kTerms; ++t)
-      if (fit.term[t].status == Status::detected && !(fit.term[t].ci95.low > 0))
+      if (detail::reaches_zero(fit.term[t]))
         add("reaches_zero", fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
   }
 

@@ -11,14 +11,16 @@ using Catch::Contains;
 
 namespace {
 
+Cell status(Status known) { return Cell::status({.status = known, .ci95 = {0.2, 0.3}}); }
+
 Table measured() {
   Table out("term|value|status|in other words", "term|value,low95,high95|status");
   Cell name("N white noise");
   name.data = "white_noise";
   Cell value = Cell::number(0.25, {0.2, 0.3}, 2);
   value.unit = "deg/s";
-  out.add({name, value, Cell::of(Status::detected), "15 deg/min"});
-  out.add({"B", Cell::number(kNone), Cell::of(Status::not_detected)});
+  out.add({name, value, status(Status::detected), "15 deg/min"});
+  out.add({"B", Cell::number(kNone), status(Status::not_detected)});
   return out;
 }
 

@@ -91,9 +91,9 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
   const std::string format = format_of(document);
   if (!is_known(format) && format != "allan")
     throw input_error("E0771", file)
-        .says("expected the report of a characterization (format characterization, pooled-runs or noise-fit)")
+        .says("expected a log, the report of a characterization, a sensor model, or the YAML of Kalibr or imu_utils")
         .got(format)
-        .hint("the report.json of a characterization is one");
+        .hint("of a file for another program, compare the report or the sensor model that it was exported from");
   check_format(document, file, format, 1);
   ReportedCharacterization out;
   out.file = file;

@@ -126,9 +126,10 @@ Cell Cell::of(const ShownValue& shown, const Coefficient& coefficient) {
   return out;
 }
 
-Cell Cell::of(Status status) {
-  Cell out = Cell::word(status_words(status), tint_of(status));
-  out.data = name_of(status);
+Cell Cell::status(const Coefficient& coefficient) {
+  Cell out = Cell::word(status_words(coefficient),
+                        detail::reaches_zero(coefficient) ? Tint::doubtful : tint_of(coefficient.status));
+  out.data = name_of(coefficient.status);
   return out;
 }
 
@@ -193,7 +194,7 @@ std::string terminal_table(const Table& table, const TextLook& look, std::string
   const bool words_last = !flat.numbers.empty() && !flat.numbers.back();
   std::string out = table.title.empty() ? "" : printable(table.title) + "\n";
   out += text_table(rows, indent, words_last, look.width);
-  return table.note.empty() ? out : out + std::string(indent) + printable(table.note) + "\n";
+  return table.note.empty() ? out : out + std::string(indent) + printable(table.signs + table.note) + "\n";
 }
 
 namespace {
@@ -206,7 +207,7 @@ std::string in_markdown(const Table& table) {
   out += "| " + line_of(flat.heads, " | ", markdown_text) + " |\n|";
   out += line_of(flat.numbers, "|", rule) + "|\n";
   for (const auto& row : flat.rows) out += "| " + line_of(row, " | ", plain) + " |\n";
-  return table.note.empty() ? out : out + "\n" + markdown_text(table.note) + "\n";
+  return table.note.empty() ? out : out + "\n" + markdown_text(table.signs + table.note) + "\n";
 }
 
 std::string in_latex(const Table& table) {

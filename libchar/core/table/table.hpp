@@ -45,7 +45,8 @@ struct Cell {
   /// Any text of a number.
   static Cell shown(std::string text, double value);
   static Cell of(const ShownValue& shown, const Coefficient& coefficient);
-  static Cell of(Status status);
+  /// How the coefficient is known.
+  static Cell status(const Coefficient& coefficient);
   static Cell word(std::string_view word, Tint tint);
 };
 
@@ -74,6 +75,7 @@ struct Table {
   std::string title;
   std::vector<Column> columns;
   std::vector<Row> rows;
+  std::string signs;           ///< those of its cells, in texts: a page has words for them
   std::string note;            ///< below it
   bool whole_numbers = false;  ///< intervals and units follow their numbers in texts as well
 

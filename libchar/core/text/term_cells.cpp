@@ -90,6 +90,12 @@ std::string status_words(Status status) {
   return out;
 }
 
+bool detail::reaches_zero(const Coefficient& c) { return c.status == Status::detected && !(c.ci95.low > 0); }
+
+std::string status_words(const Coefficient& c) {
+  return detail::reaches_zero(c) ? "uncertain" : status_words(c.status);
+}
+
 Tint tint_of(Status status) {
   if (status == Status::misfit) return Tint::bad;
   if (status == Status::undetermined) return Tint::doubtful;

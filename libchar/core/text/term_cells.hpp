@@ -57,8 +57,12 @@ std::string said(const std::vector<ShownValue>& shown);
 /// "[0.0121, 0.0125]"; "" without an interval.
 std::string interval_brackets(const ShownValue& shown);
 
-/// "not detected": without the underlines of files.
+/// "not detected": without the underlines of files. A detected term whose interval includes 0 is "uncertain".
 std::string status_words(Status status);
+std::string status_words(const Coefficient& coefficient);
+namespace detail {
+bool reaches_zero(const Coefficient& coefficient);
+}
 Tint tint_of(Status status);
 
 /// "White noise"; of a channel in `unit`: "Angle random walk" of an angular rate, "Velocity random

@@ -400,6 +400,10 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
   if (chosen.empty()) throw kind_refusal(sources[0], "trace").says("it holds no recording");
   Chart out;
   Extent x(false), y(false);
+  double end_s = 0;
+  for (const auto& [trace, name] : chosen)
+    end_s = std::max(end_s, static_cast<double>(trace->low.size()) * trace->block_s);
+  const auto [unit_s, unit] = time_unit_for(end_s);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const auto& [trace, name] = chosen[k];
     if (trace->unit != chosen[0].first->unit)
@@ -410,20 +414,20 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     FigureSeries series;
     series.name = chosen.size() > 1 ? name : "";
     for (std::size_t i = 0; i < trace->low.size(); ++i)
-      add_extremes(series, (static_cast<double>(i) + 0.5) * trace->block_s, trace->low[i], trace->high[i]);
+      add_extremes(series, (static_cast<double>(i) + 0.5) * trace->block_s / unit_s, trace->low[i], trace->high[i]);
     series.look = series_look(k);
     series.look.marker = FigureMarker::none;
     series.look.width = 0.5;
     y.take(series.y);
-    x.take(static_cast<double>(trace->low.size()) * trace->block_s);
     if (chosen.size() == 1)
       for (const SourceTrace::Mark& mark : trace->marks)
-        out.stretches.push_back({mark.from_s, mark.to_s, marks_name(trace->marks), Ink::orange});
+        out.stretches.push_back({mark.from_s / unit_s, mark.to_s / unit_s, marks_name(trace->marks), Ink::orange});
     out.series.push_back(std::move(series));
   }
   x.take(0.0);
+  x.take(end_s / unit_s);
   y.pad(0.05);
-  out.x = {.title = "Time [s]", .rows = {}};
+  out.x = {.title = fmt::format("Time [{}]", unit), .rows = {}};
   out.y = {.title = axis_title(chosen.size() > 1 ? "Record" : chosen[0].second, chosen[0].first->unit), .rows = {}};
   set_ends(out.x, x, options.x_range);
   set_ends(out.y, y, options.y_range);

@@ -41,6 +41,13 @@ void Extent::take_near(double value, const Extent& inner, double factor) {
   take(std::clamp(value, inner.low() / factor, inner.high() * factor));
 }
 
+std::pair<double, std::string> time_unit_for(double end_s) {
+  constexpr double kHour = 3600, kDay = 86400;
+  if (end_s > 4e5) return {kDay, "d"};
+  if (end_s > 2e4) return {kHour, "h"};
+  return {1, "s"};
+}
+
 void set_ends(FigureAxis& axis, const Extent& extent, const std::optional<Interval>& range) {
   // An open end is where the data end.
   axis.low = range && std::isfinite(range->low) ? range->low : extent.empty() ? 0.1 : extent.low();

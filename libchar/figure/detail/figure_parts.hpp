@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "libchar/core/document/schema.hpp"
@@ -39,6 +40,9 @@ class Extent {
 
 /// Sets the ends: the user's range, else the extent, else 0.1 to 10.
 void set_ends(FigureAxis& axis, const Extent& extent, const std::optional<Interval>& range);
+
+/// In which one says when something was in a record that ends there.
+std::pair<double, std::string> time_unit_for(double end_s);
 
 /// Colour, dash and marker of the k-th of many: no two of the first 35 alike.
 FigureLook series_look(std::size_t k);

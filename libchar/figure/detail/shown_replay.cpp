@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
@@ -12,8 +13,6 @@
 
 namespace libchar {
 namespace {
-
-constexpr double kHour = 3600, kDay = 86400;
 
 std::vector<std::string> labels_of(const ShownReplay& replay) {
   std::vector<std::string> out;
@@ -29,16 +28,6 @@ std::size_t input_asked_for(const ReplayReport& report, const FigureOptions& opt
   const auto found =
       std::find_if(names.begin(), names.end(), [&](const std::string& name) { return matches(options.input, name); });
   return static_cast<std::size_t>(found - names.begin());
-}
-
-void set_time_unit(ShownReplay& out) {
-  if (out.end_s > 4e5) {
-    out.time_unit_s = kDay;
-    out.time_unit = "d";
-  } else if (out.end_s > 2e4) {
-    out.time_unit_s = kHour;
-    out.time_unit = "h";
-  }
 }
 
 }  // namespace
@@ -60,7 +49,7 @@ ShownReplay shown_replay(const FigureSource& source, const FigureOptions& option
   for (const SensorResult& sensor : report.sensors) out.sensors.push_back(sensor.name);
   if (!report.sensors.empty()) out.sensor_unit = usual_figure_unit(report.sensors[0].unit);
   out.end_s = report.end_s();
-  set_time_unit(out);
+  std::tie(out.time_unit_s, out.time_unit) = time_unit_for(out.end_s);
   for (const std::string& label : report.ranked)
     if (const ReplayReport::Algorithm* one = report.find(label); one != nullptr && one->ran) out.ranked.push_back(one);
   return out;

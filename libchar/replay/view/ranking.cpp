@@ -128,12 +128,21 @@ std::string costs_of(const AlgorithmResult& a) {
   return out;
 }
 
+/// The first of them in words, and how many more there are.
+std::string first_of(std::vector<std::string> names) {
+  const std::size_t more = names.size() > kMostEquals ? names.size() - kMostEquals : 0;
+  names.resize(names.size() - more);
+  if (more > 0) names.push_back(fmt::format("{} more", more));
+  return list_of(names);
+}
+
 std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, bool costs) {
-  std::vector<std::string> equals;
+  std::vector<std::string> near, open;
   for (const AlgorithmResult* a : ranked(r))
     if (!a->bound && a->as_good_as_best && a->label != best.label)
-      equals.push_back(a->label + (detail::learns(r, *a) ? " (learns from a reference)" : ""));
-  if (equals.empty()) {
+      (a->rmse <= (1 + kPracticalTolerance) * best.rmse ? near : open)
+          .push_back(a->label + (detail::learns(r, *a) ? " (learns from a reference)" : ""));
+  if (near.empty() && open.empty()) {
     const auto others = std::count_if(r.algorithms.begin(), r.algorithms.end(), [&](const AlgorithmResult& a) {
       return a.ran && !a.bound && std::isfinite(a.rmse) && a.label != best.label;
     });
@@ -144,11 +153,10 @@ std::string equals_sentence(const ReplayResult& r, const AlgorithmResult& best, 
     return fmt::format("Every other method{} is worse by more than 1 %, and the recording is long enough to show it.",
                        unscored ? " with a score" : "");
   }
-  const std::size_t more = equals.size() > kMostEquals ? equals.size() - kMostEquals : 0;
-  equals.resize(equals.size() - more);
-  if (more > 0) equals.push_back(fmt::format("{} more", more));
-  std::string out =
-      fmt::format("Within 1 % of it, or not distinguished from it by this recording: {}.", list_of(equals));
+  std::string out = near.empty() ? "" : fmt::format("Within 1 % of it: {}.", first_of(std::move(near)));
+  if (!open.empty())
+    out += fmt::format("{}Worse by more than 1 %, but not distinguished from it by this recording: {}.",
+                       out.empty() ? "" : " ", first_of(std::move(open)));
   const AlgorithmResult* cheap = cheapest_equal(r);
   if (costs && cheap != nullptr && cheap->label != best.label && cheap->ns_per_sample < 0.8 * best.ns_per_sample)
     out += fmt::format(" Of these {} is the cheapest, {} per sample.", cheap->label,

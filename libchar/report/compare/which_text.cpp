@@ -116,9 +116,10 @@ Table detail::comparison_table(const CharacterizationComparison& c, TableGroups 
     out.add(std::move(row), Table::Kind::aside);
   }
   out.whole_numbers = true;
+  out.signs = "* lowest; = not distinguished from it. ";
   out.note = fmt::format(
-      "* lowest; = not distinguished from it (by the intervals, {} % over the whole comparison); σ: Allan deviation; "
-      "in brackets: 95 % intervals; ≤: not detected, upper 95 % limit; ?: do not rely on it.",
+      "Compared by the intervals, {} % over the whole comparison; σ: Allan deviation; in brackets: 95 % intervals; "
+      "≤: not detected, upper 95 % limit; ?: do not rely on it.",
       brief_text(100 * c.probability));
   return out;
 }

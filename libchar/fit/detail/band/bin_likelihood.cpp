@@ -318,14 +318,18 @@ class Scoring {
 
 ScoringResult climb(const BinProblem& problem, const Scoring& scoring, const ModelPoint& start, double tolerance) {
   constexpr double kFarthest = 64;  // steps
+  constexpr double kGrowth = 8;     // of a part of a step, from one to the next
   ScoringResult result;
   result.at = start;
   result.half_deviance = half_deviance(problem, result.at);
   if (!std::isfinite(result.half_deviance)) return result;
+  double share = 1;
   for (; result.iterations < 200; ++result.iterations) {
     const ModelPoint goal = scoring.goal(result.at);
-    double share = 1;
-    ModelPoint next = goal;
+    // Far from the maximum full steps go too far again and again.
+    const double longest = std::min(1.0, kGrowth * share);
+    share = longest;
+    ModelPoint next = share == 1 ? goal : between(result.at, goal, share);
     double value = half_deviance(problem, next);
     while (!(value <= result.half_deviance) && share > 1e-9) {
       share /= 2;
@@ -357,10 +361,10 @@ ScoringResult climb(const BinProblem& problem, const Scoring& scoring, const Mod
       result.half_deviance = value;
     }
     // Rounding of the sum itself is of order 1e-16 times its terms; a gain below that is noise.
-    if (!(gain > tolerance + 1e-15 * result.half_deviance)) {
-      result.converged = true;
-      break;
-    }
+    if (gain > tolerance + 1e-15 * result.half_deviance) continue;
+    result.converged = longest == 1;
+    if (result.converged) break;
+    share = 1;
   }
   return result;
 }

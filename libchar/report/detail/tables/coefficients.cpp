@@ -31,13 +31,13 @@ void add_term(Table& table, const Coefficient& c, Term term, const std::string& 
   Cell name(letter_and_title(cells));
   name.data = key;
   table.add({name, Cell::of(cells.own, c), Cell::shown("", c.upper95.value_or(kNone)), term_unit(key, unit),
-             Cell::of(c.status), cells.known_to, cells.best_possible, cells.length_for_10_percent,
+             Cell::status(c), cells.known_to, cells.best_possible, cells.length_for_10_percent,
              field_cell(cells.field)});
 }
 
 void add_process(Table& table, const char* name, const Coefficient& c, const std::string& unit) {
   const bool judged = c.status != Status::not_fitted;
-  table.add({name, Cell::of(shown_value(c, 1, unit), c), "", unit, judged ? Cell::of(c.status) : Cell(), known_to(c),
+  table.add({name, Cell::of(shown_value(c, 1, unit), c), "", unit, judged ? Cell::status(c) : Cell(), known_to(c),
              c.bound ? "±" + percent_text(*c.bound) : ""});
 }
 
@@ -71,8 +71,7 @@ Table power_laws_table(const NoiseFit& fit, const std::string& unit) {
   out.title = "As a clock: one-sided S_y(f) = Σ h_α f^α";
   for (const PowerLaw& law : power_laws(fit))
     out.add({law.name, law.abbreviation, Cell::shown(std::to_string(law.alpha), law.alpha),
-             Cell::of(shown_value(law.h, 1, ""), law.h), detail::power_law_unit(law.alpha, unit),
-             Cell::of(law.h.status)});
+             Cell::of(shown_value(law.h, 1, ""), law.h), detail::power_law_unit(law.alpha, unit), Cell::status(law.h)});
   return out;
 }
 
