@@ -11,7 +11,12 @@ using Catch::Contains;
 
 namespace {
 
-Cell status(Status known) { return Cell::status({.status = known, .ci95 = {0.2, 0.3}}); }
+Cell status(Status known, double low = 0.2) {
+  Coefficient c;
+  c.status = known;
+  c.ci95 = {low, 0.3};
+  return Cell::status(c);
+}
 
 Table measured() {
   Table out("term|value|status|in other words", "term|value,low95,high95|status");
@@ -25,6 +30,12 @@ Table measured() {
 }
 
 }  // namespace
+
+TEST_CASE("a detected term whose interval includes 0 is uncertain in words, detected as data") {
+  CHECK(status(Status::detected, 0).text == "uncertain");
+  CHECK(status(Status::detected, 0).data == "detected");
+  CHECK(status(Status::undetermined, 0).text == "undetermined");
+}
 
 TEST_CASE("a table in texts: intervals and units have columns of their own") {
   CHECK(terminal_table(measured()) ==
