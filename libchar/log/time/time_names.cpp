@@ -171,6 +171,10 @@ std::optional<TimeName> name_with_unit(std::string words) {
     out.unit_ns = unit_of_word(all.substr(0, since));
     return out.unit_ns != 0 ? std::optional(out) : std::nullopt;
   }
+  if (const std::size_t of = all.find(" of "); of != std::string_view::npos && unit_of_word(all.substr(0, of)) != 0) {
+    out.unit_ns = unit_of_word(all.substr(0, of));
+    return out;
+  }
   const std::string_view word = all.substr(last);
   std::string_view before = trimmed(all.substr(0, last));
   for (const std::string_view link : {" in", ","})
@@ -226,6 +230,8 @@ std::optional<TimeName> time_name(std::string_view stem) {
 
 std::int64_t unit_behind(const ColumnLabel& column) {
   const auto [stem, unit] = name_and_unit(column.name);
+  if (stem.ends_with("_of") || stem.ends_with(" of"))  // "seconds_of_day" counts seconds
+    return unit_of_word(std::string_view(stem).substr(0, stem.size() - 3));
   for (const std::string& text : {column.unit, unit}) {
     if (const std::int64_t ns = unit_of_word(text); ns != 0) return ns;
     if ((text == "d" || text == "m") && time_name(stem)) return text == "d" ? 86400000000000 : 60000000000;
