@@ -135,7 +135,7 @@ bool LineWatch::has_chance_lines(std::uint64_t repeats) const {
 
 // What moves smoothly is nearly straight nearly everywhere, and more often nearly than exactly.
 bool LineWatch::are_apart(std::uint64_t repeats) const {
-  constexpr double kLeast = 0.1, kTimes = 10;
+  constexpr double kLeast = 0.1, kTimes = 4;  // close to a knot, a line bends by little
   const auto n = static_cast<double>(looked_), straight = static_cast<double>(runs_.set());
   const double exact = static_cast<double>(exact_.set()) - kOfRepeats * static_cast<double>(repeats);
   return exact > kLeast * n && n - straight > kLeast * n &&

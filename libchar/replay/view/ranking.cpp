@@ -393,7 +393,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   add(doubtful_sensors(r));
   add(detected_faults(r, best));
   for (const Finding& one : best.remarks.list())
-    if (one.severity != Severity::note) add("Caution: " + one.sentence + ".");
+    if (one.severity != Severity::note) add("Caution: " + best.label + ": " + one.sentence + ".");
   add(without_reference_sentence(r, best, costs));
   add(taught_sentence(r));
   if (!r.chosen_as_robust) add(equals_sentence(r, best, costs));

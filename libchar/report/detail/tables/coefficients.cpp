@@ -76,7 +76,7 @@ Table power_laws_table(const NoiseFit& fit, const std::string& unit) {
   return out;
 }
 
-Cell headline_cell(const Coefficient& c, Term term, const std::string& unit, bool spoilt = false) {
+Cell headline_cell(const Coefficient& c, Term term, const std::string& unit, bool spoilt) {
   if (!c.value && !c.upper95) return "–";
   const TermCells cells = term_cells(c, term, unit);
   Cell out = Cell::of(headline(cells), c);
