@@ -133,13 +133,16 @@ bool LineWatch::has_chance_lines(std::uint64_t repeats) const {
   return 40 * (closed[1] + closed[2] - filled) > static_cast<double>(n_);
 }
 
-// What moves smoothly is nearly straight nearly everywhere, and more often nearly than exactly.
+// What moves smoothly is nearly straight nearly everywhere, and more often nearly than exactly; gaps that were filled
+// are few and long.
 bool LineWatch::are_apart(std::uint64_t repeats) const {
-  constexpr double kLeast = 0.1, kTimes = 4;  // close to a knot, a line bends by little
-  const auto n = static_cast<double>(looked_), straight = static_cast<double>(runs_.set());
+  constexpr double kLeast = 0.1, kBent = 0.05, kTimes = 4;  // close to a knot, a line bends by little
+  constexpr double kLongest = 40;                           // ratio of the rates
+  const auto n = static_cast<double>(n_), straight = static_cast<double>(runs_.set());
   const double exact = static_cast<double>(exact_.set()) - kOfRepeats * static_cast<double>(repeats);
-  return exact > kLeast * n && n - straight > kLeast * n &&
-         exact > kTimes * (straight - static_cast<double>(exact_.set()));
+  return exact > kLeast * n && n - straight > kBent * n &&
+         exact > kTimes * (straight - static_cast<double>(exact_.set())) &&
+         kLongest * static_cast<double>(exact_.from_length(1).first) > n;
 }
 
 // Runs of two and three say how chance goes on.
