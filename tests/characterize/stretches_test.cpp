@@ -252,7 +252,7 @@ TEST_CASE("states of a channel that are missing or double are refused by name") 
   REQUIRE_THAT(without(1),
                Catch::Contains("state1.2: error E0725: no state has the leaves 0 to 0 of channel 2 before it"));
   REQUIRE_THAT(without(5),
-               Catch::Contains("state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 behind it"));
+               Catch::Contains("state0.3: error E0725: no state has the leaves 1 to 1 of channel 3 after it"));
   const std::vector<NamedState> no_third = {all[0], all[1], all[3], all[4]};
   REQUIRE_THAT(refusal_of_states(no_third), Catch::Contains("no state is of channel 3 of 3"));
   std::vector<NamedState> twice = all;

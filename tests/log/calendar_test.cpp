@@ -146,6 +146,9 @@ TEST_CASE("the order of day and month comes from the data, else it is a guess") 
   CHECK(date_style({"99/12/31", "00/01/01"}, false).order == DateOrder::year_first);
   CHECK_FALSE(date_style({"99/12/31", "00/01/01"}, false).ambiguous);  // the second alone would be a day's
   CHECK_FALSE(date_style({"14.03.24", "15.03.24"}, false).ambiguous);
+  CHECK(date_style({"24/03/01", "24/03/02", "24/03/12"}, false).order == DateOrder::year_first);  // by the steps
+  CHECK(date_style({"24/03/12", "24/03/12"}, false).order == DateOrder::day_first);
+  CHECK(date_style({"24/03/12", "25/03/12"}, false).order == DateOrder::day_first);
 }
 
 TEST_CASE("durations of ISO 8601 are stamps") {

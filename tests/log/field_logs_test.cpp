@@ -692,3 +692,25 @@ TEST_CASE("a table behind more lines of words and figures than are looked at fir
   CHECK(names_in(log).back() == "B");
   check_columns(log, 1 / 60.0);
 }
+
+TEST_CASE("names below a row of numbers, below a colon, and behind the sign of comments") {
+  const auto rows = [](const std::string& front, const char* form) {
+    std::string text = front;
+    for (int k = 0; k < 40; ++k) text += fmt::format(fmt::runtime(form), k, 0.01 * k, (k * 37) % 11, (k * 53) % 7);
+    return read_text(text);
+  };
+  using Names = std::vector<std::string>;
+  CHECK(names_in(rows("0,1,2,3\nt,a,b,c\n", "{1:.2f},{2},{3},{0}.5\n")) == Names{"a", "b", "c"});
+  CHECK(names_in(rows("100,3,40\n1,2,3\nt,ax,ay\n", "{1:.2f},{2},{3}\n")) == Names{"ax", "ay"});
+  CHECK(names_in(rows("Logger X\nSerial: 42\nFirmware: 1.2.3\n\nus voltage\n", "{0}0000 {2},5\n")) == Names{"voltage"});
+  CHECK(names_in(rows("#,ax,ay\n,(mV),(uT)\n", "{0},{2}.5,{3}.25\n")) == Names{"ax", "ay"});
+  CHECK(rows("", "{0}.000,{2}.5,{3},x{0}\n").info.time.rate_hz == Approx(1));
+}
+
+TEST_CASE("a byte-order mark in front of each line") {
+  std::string text = "\xEF\xBB\xBF\"Time\",\"Flow, ml/min\"\n";
+  for (int k = 0; k < 60; ++k) text += fmt::format("\xEF\xBB\xBF\"2021-09-17 11:{:02}:14.045\",{}.5\n", k, k % 7);
+  const Recording log = read_text(text);
+  CHECK(log.info.time.rate_hz == Approx(1 / 60.0));
+  CHECK(log.info.channels.size() == 1);
+}

@@ -402,3 +402,64 @@ TEST_CASE("a rate that is told and kept by all rows leaves no room for gaps wher
   }
   CHECK(without_gap >= 4);  // packets that are held back may still look like a gap
 }
+
+TEST_CASE("two messages by turns whose steps are whole multiples of the shorter: no row is missing") {
+  for (const double share : {1 / 3.0, 0.25, 0.4}) {
+    std::string text = "t[s],x\n";
+    for (int i = 0; i < 1500; ++i)
+      text += fmt::format("{:.6f},{}\n", (i / 2 * 2 + (i % 2) * 2 * share + 0.004 * ((i * 7919) % 5)) / 20, i % 17);
+    INFO(share);
+    const Recording r = read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(20).epsilon(1e-3));
+    CHECK(r.info.time.missing_samples == 0);
+  }
+}
+
+TEST_CASE("most rows at half the first rate: the rate has changed") {
+  std::string text = "t[s],x\n";
+  for (int i = 0; i < 3000; ++i) text += fmt::format("{:.4f},{}\n", (i < 1100 ? i : 2 * i - 1100) / 100.0, i % 17);
+  CHECK(test::failure(text).find("E0334") != std::string::npos);
+  ReadOptions later;
+  later.from_s = 11;
+  CHECK(read_text(text, later).info.time.rate_hz == Approx(50));
+}
+
+TEST_CASE("parts of a second without leading zeros, behind clock times and dates") {
+  for (const std::string form : {"{}:{}:{}.{}", "{:02}:{:02}:{:02}:{}", "2024-5-7 {}:{}:{}.{}"}) {
+    std::string text = "time,x\n";
+    for (int i = 0; i < 2000; ++i) {
+      const int ms = 50000321 + 37 * i;
+      text += fmt::format(fmt::runtime(form), ms / 3600000, ms / 60000 % 60, ms / 1000 % 60, ms % 1000) + ",1\n";
+    }
+    INFO(form);
+    const Recording r = read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(1000 / 37.0).epsilon(1e-3));
+    CHECK(r.info.time.missing_samples == 0);
+  }
+}
+
+TEST_CASE("clocks of a day and a week, totals beside the time of a step, minutes in days, units at the end of a word") {
+  const auto rate_of = [](const std::string& names, const auto& row) {
+    std::string text = names + ",x\n";
+    for (int i = 0; i < 700; ++i) text += row(i) + fmt::format(",{}\n", (i * 7919) % 100);
+    return read_text(text).info.time.rate_hz;
+  };
+  CHECK(rate_of("sec_of_day", [](int i) { return fmt::format("{:.2f}", std::fmod(86396 + 0.02 * i, 86400)); }) ==
+        Approx(50));
+  CHECK(rate_of("SOW", [](int i) { return fmt::format("{:.2f}", std::fmod(604796 + 0.02 * i, 604800)); }) ==
+        Approx(50));
+  CHECK(rate_of("Time,Total Time", [](int i) {
+          return fmt::format("{}:{:02},0:{:02}:{:02}", i % 400 / 60, i % 60, i / 60, i % 60);
+        }) == Approx(1));
+  CHECK(rate_of("time", [](int i) { return fmt::format("{:.6f}", 45000.25 + i / 1440.0); }) ==
+        Approx(1 / 60.0).epsilon(1e-3));
+  CHECK(rate_of("Test_Time,DateTime", [](int i) {
+          return fmt::format("{:.4f},{:.4f}", 10.0024 * (i + 1), 1494645233.4691 + 10.0024 * (i + 1));
+        }) == Approx(1 / 10.0024));
+  CHECK(rate_of("time(UTC)", [](int i) { return fmt::format("201801{:02}:{:02}00", 1 + i / 24, i % 24); }) ==
+        Approx(1 / 3600.0));
+  CHECK(rate_of("Observation period", [](int i) {
+          return fmt::format("2020-06-01T{0:02}:{1:02}:00.0/2020-06-01T{0:02}:{1:02}:30.0", i / 60, i % 60);
+        }) == Approx(1 / 60.0));
+  CHECK(rate_of("epochMs", [](int i) { return fmt::format("{:.3f}", 12.5 + 10.0 * i); }) == Approx(100));
+}

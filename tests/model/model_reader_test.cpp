@@ -55,6 +55,13 @@ TEST_CASE("model reader: what the writer wrote reads back to the same file") {
   }
 }
 
+TEST_CASE("model reader: an interval without an upper end reads back") {
+  SensorModel m = parse("density: two-sided\nwhite_noise: {value: 2, ci95: [1, null], status: detected}\n");
+  CHECK(std::isinf(m.noise[0].ci95.high));
+  const SensorModel again = parse_sensor_model(model_yaml(m), "m.yaml");
+  CHECK(again.noise[0].ci95 == m.noise[0].ci95);
+}
+
 TEST_CASE("model reader: units of data sheets become the two-sided density of the channel") {
   const double degree = std::numbers::pi / 180, root2 = std::numbers::sqrt2;
   CHECK(white_of("deg/√h", "one-sided") == Approx(degree / 60).epsilon(1e-14));

@@ -180,6 +180,31 @@ TEST_CASE("reading meter: of a log of more blocks than are kept every second one
   CHECK(changes[0].to_end);
 }
 
+TEST_CASE("reading meter: bursts of noise, short pulses and an offset that comes and goes are of the one sensor") {
+  constexpr Eigen::Index kInstants = 12000;
+  using Fault = double (*)(Eigen::Index k, double noise);
+  const std::pair<const char*, Fault> kinds[] = {
+      {"none", [](Eigen::Index, double) { return 0.; }},
+      {"bursts", [](Eigen::Index k, double noise) { return k / 500 % 4 == 1 ? 8 * noise : 0.; }},
+      {"pulses", [](Eigen::Index k, double) { return k > 9000 && k % 1500 < 200 ? 1.5 : 0.; }},
+      {"offset", [](Eigen::Index k, double) { return k > 3600 && k / 700 % 3 == 1 ? 1. : 0.; }}};
+  for (const auto& [kind, fault] : kinds)
+    for (const Eigen::Index n : {3, 4, 6})
+      for (std::uint64_t seed = 1; seed < 4; ++seed) {
+        INFO(kind << " of " << n << ", " << seed);
+        test::Gaussian gauss(10 * seed + static_cast<std::uint64_t>(n));
+        Eigen::MatrixXd y(n, kInstants);
+        for (Eigen::Index k = 0; k < kInstants; ++k)
+          for (Eigen::Index i = 0; i < n; ++i)
+            y(i, k) = honest_truth(static_cast<int>(k)) + 0.1 * gauss() + (i == 1 ? fault(k, 0.1 * gauss()) : 0);
+        detail::ReadingMeter meter(n, kInstants);
+        meter.push(y);
+        const auto changes = meter.changes(meter.steady(), true);
+        REQUIRE(changes.size() == (fault == kinds[0].second ? 0 : 1));
+        if (!changes.empty()) CHECK(changes[0].sensor == 1);
+      }
+}
+
 TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log is silent") {
   HonestBench bench;
   const auto told = [&](const std::string& log) -> std::string {
@@ -300,6 +325,27 @@ TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does
   CHECK(variances[2999].least == Approx(usual * usual / 2));
   detail::SensorDoubt sound({reading, reading, reading});
   CHECK(sound.push(Eigen::MatrixXd::Zero(3, 3000), estimates)[2999].more == 0);
+}
+
+TEST_CASE(
+    "fuse: where fewer than two sensors read as they were learnt to, any may be right in the standard deviation") {
+  const LearntSensor::Reading reading{0, 0, 0.005, 0.05};
+  const Eigen::VectorXd estimates = Eigen::VectorXd::Zero(3000);
+  Eigen::MatrixXd moved(4, 3000), scattered(4, 3000);
+  test::Gaussian gauss(6);
+  for (Eigen::Index k = 0; k < 3000; ++k)
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      moved(i, k) = 0.05 * gauss() + (i >= 2 ? 1 : 0);  // the median lies between them
+      scattered(i, k) = 0.3 * gauss();
+    }
+  detail::SensorDoubt two({reading, reading, reading, reading});
+  CHECK(two.push(moved, estimates)[2999].more == Approx(1).epsilon(0.3));
+  // What scatters only leaves the median right.
+  detail::SensorDoubt all({reading, reading, reading, reading});
+  const auto& variances = all.push(scattered, estimates);
+  double more = 0;
+  for (std::size_t k = 1000; k < 3000; ++k) more += variances[k].more / 2000;
+  CHECK(std::sqrt(more) == Approx(0.3 * 0.546).epsilon(0.1));  // median of four normal values
 }
 
 TEST_CASE(

@@ -84,3 +84,13 @@ TEST_CASE("slow reference: its lag is estimated with the reading") {
   CHECK(sampled.lag_s == Approx(-0.03).margin(0.006));
   CHECK(best_of(sampled) < 0.05);
 }
+
+TEST_CASE("slow reference: the lag of one that samples is not one of whole samples of the sensors") {
+  for (const double late : {-2.4, 1.5, 2.6}) {
+    INFO(late);
+    test::SceneBench bench;
+    put_slow(bench, "instant", late);
+    const ReplayResult found = run_slow(bench, ", lag_s: estimate");
+    CHECK(found.lag_s == Approx(0.01 * late).margin(0.0002));
+  }
+}

@@ -195,12 +195,12 @@ std::pair<double, double> MapReader::interval(std::string_view key) const {
 }
 
 Interval MapReader::interval_in(std::string_view key, const Document& value) const {
-  constexpr double kFarthest[] = {-INFINITY, INFINITY};
+  constexpr double kFarthest[] = {-INFINITY, INFINITY};  ///< of an end that is null: the record gives none
   double ends[2] = {};
   bool right = value.kind == Document::Kind::list && value.list.size() == 2;
   for (std::size_t i = 0; i < 2 && right; ++i) {
     const Document& end = value.list[i];
-    const bool none = any_keys_ && end.kind == Document::Kind::null;
+    const bool none = end.kind == Document::Kind::null && (any_keys_ || i == 1);
     ends[i] = none ? kFarthest[i] : end.number;
     right = none || end.kind == Document::Kind::number;
   }

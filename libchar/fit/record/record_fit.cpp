@@ -17,6 +17,7 @@
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/band/bridge.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 #include "libchar/fit/detail/record/dct_means.hpp"
 #include "libchar/fit/detail/record/ends.hpp"
 #include "libchar/fit/detail/record/record_means.hpp"
@@ -34,14 +35,6 @@ namespace {
 // (D. R. Brillinger, "Time Series: Data Analysis and Theory", 1981, theorem 5.10.1: covariance of
 // spectral averages = Gaussian part + fourth cumulant / n). Differences of white noise have half
 // its excess kurtosis. Slower terms have weights that do not see white noise, so that theirs stays.
-
-/// `wider` times as wide, on the logarithm.
-void widen(double wider, Coefficient& term) {
-  const double value = *term.value;
-  term.relative_sd *= wider;
-  term.ci95 = {value * std::pow(std::max(term.ci95.low, 0.0) / value, wider),
-               value * std::pow(term.ci95.high / value, wider)};
-}
 
 /// Outliers that cannot be taken out of N: a share p of them, of s standard deviations, makes the excess kurtosis of
 /// the differences p s^4 / 2 and N too large by p s^2 / 2. Larger ones that make the same kurtosis move N less,
@@ -65,9 +58,10 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
   double& variance = fit.covariance[kWhite][kWhite];
   if (!white.value || !(variance > 0)) return;
   const double more = 2 * (difference_kurtosis - 3) / static_cast<double>(samples);
-  const double wider = std::sqrt((variance + more) / variance);
   variance += more;
-  widen(wider, white);
+  const double before = std::log(white.ci95.high / *white.value);
+  widen_by(std::sqrt(more) / 2, white);
+  const double wider = std::log(white.ci95.high / *white.value) / before;
   if (wider > 1.05)
     fit.findings.push_back(finding(
         "heavy_tails", fmt::format("The samples have heavier tails than Gaussian noise (kurtosis of differences {} "
@@ -85,7 +79,7 @@ void take_out_outliers(const std::optional<OutlierVariance>& outliers, double ra
   if (!(theirs < square)) return;
   const double core = std::sqrt(square - theirs), share = core / *white.value;
   const double more = outliers->sd / rate_hz / (2 * core * core);
-  widen(std::hypot(1.0, more / white.relative_sd), white);
+  widen_by(more, white);
   white.ci95 = {share * white.ci95.low, share * white.ci95.high};
   fit.covariance[kWhite][kWhite] += 4 * more * more;
   fit.theta[kWhite] *= share * share;
@@ -184,9 +178,9 @@ StretchSpread spread_of(Term term, const NoiseFit& fit) {
 void widen_by_stretches(NoiseFit& fit) {
   for (std::size_t t = 0; t < kTerms; ++t) {
     Coefficient& term = fit.term[t];
-    if (!term.value || !(fit.theta[t] > 0) || !(term.relative_sd > 0)) continue;
+    if (!term.value || !(fit.theta[t] > 0)) continue;
     const StretchSpread spread = spread_of(static_cast<Term>(t), fit);
-    widen(std::hypot(1.0, spread.relative_sd / std::sqrt(spread.independent) / term.relative_sd), term);
+    widen_by(spread.relative_sd / std::sqrt(spread.independent), term);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "libchar/core/text/readable.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {
 namespace {
@@ -34,10 +35,7 @@ void take_out_of_value(double density, double density_sd, Coefficient& white) {
   white.value = std::sqrt(rest);
   white.relative_sd *= more;
   white.ci95 = {root_beside(white.ci95.low, density), root_beside(white.ci95.high, density)};
-  const double wider = std::hypot(1.0, density_sd / (2 * rest) / white.relative_sd);
-  white.relative_sd *= wider;
-  white.ci95 = {*white.value * std::pow(white.ci95.low / *white.value, wider),
-                *white.value * std::pow(white.ci95.high / *white.value, wider)};
+  widen_by(density_sd / (2 * rest), white);
   if (white.bound) *white.bound *= more;
   if (white.seconds_for_10_percent) *white.seconds_for_10_percent *= more * more;
 }

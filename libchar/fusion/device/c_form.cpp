@@ -152,7 +152,7 @@ CForm Maker::least_squares() {
 constexpr const char* kMinqueState =
     R"(  fusion_real v[N], inverse[N], r[N], p[N], shown[N], gathered[N], moment[N], work[N];
   fusion_real first[16 * N];
-  fusion_real fused, x, rounding, gathered_gain, last_gain, gathered_rounding;
+  fusion_real fused, stated, x, rounding, gathered_gain, last_gain, gathered_rounding;
   uint32_t index[N], present[N], calm[N];
   uint32_t m, use, instants, gathered_instants, first_instants, started, count_out, not_begun, now;
   unsigned char out[N];
@@ -171,6 +171,7 @@ constexpr const char* kMinqueStart = R"(  {
     s->use = N;
     s->not_begun = N;
     s->fused = 1;
+    s->stated = 1;
     s->started = STARTED;
     s->last_gain = LASTING;
   }
@@ -196,6 +197,7 @@ CForm Maker::minque() {
                                       {"LASTING", number(1 - s["gamma"])}});
   out.functions = step(minque_in_c(), {{"FORGETS", start > 0 ? "1" : "0"},
                                        {"LASTING", number(1 - s["gamma"])},
+                                       {"MEMORY", number(std::sqrt(1 - s["gamma"]))},
                                        {"DAMPING", number(s["damping"])},
                                        {"NOISE_OF_ROUNDING", number(1e4)},
                                        {"LEAST_RATIO", number(1e-26)},
@@ -209,12 +211,12 @@ CForm Maker::minque() {
                                        {"THRESHOLD", number(s["fault_threshold"])},
                                        {"RECOVERY", fmt::format("{:.0f}u", std::min(s["recovery_samples"], 4e9))},
                                        {"ARMED", fmt::format("{:.0f}u", std::min(armed, 4e9))}});
-  out.reals = 8 * n_ + 16 * n_ + 6;
+  out.reals = 8 * n_ + 16 * n_ + 7;
   out.words = 3 * n_ + 9;
   out.bytes = n_;
   // Weighing, residuals, moments; the renewal of the variances once in 16 instants or sooner.
-  out.cost.sums = 12 * n + (26 * n + 20);
-  out.cost.divisions = n + 3 * n + 4;
+  out.cost.sums = 12 * n + (27 * n + 22);
+  out.cost.divisions = n + 3 * n + 6;
   return out;
 }
 

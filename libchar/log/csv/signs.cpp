@@ -52,8 +52,9 @@ class FromApostrophes final : public DecodedText {
   bool open_ = false, closing_ = false, begins_ = true;
 };
 
-constexpr std::string_view kBar = "\xE2\x94\x82";  // of "│ 0.1 │ 0.2 │"
-constexpr std::size_t kWeekday = 5;                // bytes of "Sun, "
+constexpr std::string_view kBar = "\xE2\x94\x82";   // of "│ 0.1 │ 0.2 │"
+constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of a file that was opened anew for each line
+constexpr std::size_t kWeekday = 5;                 // bytes of "Sun, "
 constexpr std::string_view kOpen = "[({", kClose = "])}";
 constexpr std::array<std::string_view, 3> kBlanks = {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
 
@@ -145,6 +146,7 @@ class FromSigns final : public CleanedLines {
            : signs_.boxes     ? "tables drawn in boxes"
            : signs_.exponents ? "exponents of Fortran"
            : signs_.weekdays  ? "days of the week before dates"
+           : signs_.marks     ? "byte-order marks in the lines"
            : signs_.listed    ? "samples that follow each other in a line"
                               : "blanks of typesetting";
   }
@@ -154,6 +156,7 @@ class FromSigns final : public CleanedLines {
 
   void clean(std::string& line) override {
     if (signs_.listed) return one_below_the_other(line);
+    if (signs_.marks && line.starts_with(kMark)) line.erase(0, kMark.size());
     for (std::size_t at = signs_.boxes ? line.find(kBar) : line.npos; at != line.npos; at = line.find(kBar, at))
       line.replace(at, kBar.size(), "|");
     if (signs_.colours) line = without_colours(std::move(line));
@@ -199,7 +202,7 @@ std::unique_ptr<Unpacker> open_apostrophes(std::function<std::size_t(char*, std:
 
 Signs signs_of(std::string_view front) {
   constexpr std::size_t kFewest = 3;
-  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0, boxes = 0;
+  std::size_t lines = 0, brackets = 0, checksums = 0, exponents = 0, colours = 0, weekdays = 0, boxes = 0, marks = 0;
   Signs out;
   out.listed = lists_samples(front);
   for (std::size_t end = front.find('\n'); end != std::string_view::npos; end = front.find('\n')) {
@@ -210,6 +213,7 @@ Signs signs_of(std::string_view front) {
     colours += line.find("\x1B[") != std::string_view::npos ? 1 : 0;
     brackets += inside(line).second > 0 ? 1 : 0;
     boxes += line.starts_with(kBar) ? 1 : 0;
+    marks += line.starts_with(kMark) ? 1 : 0;
     weekdays += weekday_at(line) != std::string_view::npos ? 1 : 0;
     checksums += checksum_at(line) != std::string_view::npos && !line.starts_with("$G") ? 1 : 0;
     for (std::size_t at = 0; at < line.size(); ++at) {
@@ -222,6 +226,7 @@ Signs signs_of(std::string_view front) {
   out.checksums = most(checksums);
   out.weekdays = most(weekdays);
   out.boxes = boxes >= kFewest;
+  out.marks = marks >= kFewest;
   out.exponents = exponents >= kFewest;
   out.colours = colours >= kFewest;
   return out;

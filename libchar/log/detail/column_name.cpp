@@ -105,7 +105,7 @@ std::pair<std::string, std::string> name_and_unit(std::string_view column) {
     if (!unit.empty()) return {name + std::string(cell.substr(index)), unit};
   }
   for (std::size_t low = cell.find('_'); low != std::string_view::npos; low = cell.find('_', low + 1)) {
-    if (low == 0 || cell.substr(0, low).ends_with("_per")) continue;
+    if (low == 0 || cell.substr(0, low).ends_with("_per") || cell.substr(0, low).ends_with("_of")) continue;
     if (const auto unit = unit_suffix(cell.substr(0, low), cell.substr(low + 1)))
       return {std::string(cell.substr(0, low)), *unit};
   }

@@ -219,9 +219,11 @@ bool worded_date(DateScanner& at, CalendarStamp& out) {
   return true;
 }
 
-// "20240501T…": without a clock it would be any number.
+// "20240501T…", "20240501:0010": without a clock it would be any number.
 bool compact_date(DateScanner& at, CalendarStamp& out) {
-  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_') || !decimal_digit(at.peek(9))) return false;
+  if (at.digits_ahead() != 8 || (at.peek(8) != 'T' && at.peek(8) != '_' && at.peek(8) != ':') ||
+      !decimal_digit(at.peek(9)))
+    return false;
   const int year = at.fixed(4), month = at.fixed(2);
   return take_days(out, year, month, at.fixed(2));
 }
@@ -324,7 +326,10 @@ bool clock_time(DateScanner& at, CalendarStamp& out) {
     const std::size_t n = s.digits_ahead();
     if (n == 0 || (!compact && n > 2)) return false;
     second = s.fixed(std::min<std::size_t>(n, 2));
+    const std::size_t before = s.rest.size();
     part = compact && fraction ? second_fraction(s) : behind_seconds(s);
+    out.fraction_digits = compact || s.rest.size() == before ? 0 : before - s.rest.size() - 1;
+    out.fraction_ns = part;
   }
   int hours = *hour;
   DateScanner half = s;
@@ -489,6 +494,11 @@ std::optional<CalendarStamp> read_calendar(std::string_view text, DateOrder orde
     return out;
   }
   if (const auto plain = with_signs(text)) return read_calendar(*plain, order);
+  // "2024-05-01T12:00:00/2024-05-01T12:01:00" of ISO 8601: an interval, by its beginning
+  if (const std::size_t slash = text.find('/'); slash != text.npos && text.substr(0, slash).find('T') != text.npos) {
+    const auto from = read_calendar(text.substr(0, slash), order), to = read_calendar(text.substr(slash + 1), order);
+    return from && to && from->date && to->date && from->ns <= to->ns ? from : std::nullopt;
+  }
   DateScanner at{text};
   at.blanks();
   CalendarStamp out;
@@ -555,14 +565,15 @@ std::int64_t longest_step(const std::vector<std::string_view>& texts, DateOrder 
 }  // namespace
 
 DateStyle date_style(const std::vector<std::string_view>& texts, bool european) {
-  bool point = false, american = false, seen = false;
+  bool point = false, american = false, seen = false, rare = false;  // "24/05/01" with the year first
   std::vector<DateOrder> could_be = {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first};
   const auto not_so = [&](DateOrder order) { std::erase(could_be, order); };
   for (const std::string_view text : texts) {
     const auto stamp = read_calendar(text);
     if (!stamp || !stamp->date || stamp->order_said) continue;
-    const bool no_year = !stamp->short_year || (stamp->separator != '-' && stamp->first <= 31);
-    if (no_year && could_be.size() > 1) not_so(DateOrder::year_first);  // unless another text had a year there
+    const bool could = stamp->short_year && (stamp->separator != '.' || stamp->first > 31);
+    if (!could && could_be.size() > 1) not_so(DateOrder::year_first);  // unless another text had a year there
+    rare = rare || (stamp->separator == '/' && stamp->first <= 31);
     for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
       if (could_be.size() > 1 && !read_calendar(text, order)) not_so(order);
     seen = true;
@@ -577,6 +588,8 @@ DateStyle date_style(const std::vector<std::string_view>& texts, bool european) 
   const auto longer = std::count_if(steps.begin(), steps.end(), [&](std::int64_t step) { return *least < step / 4; });
   if (static_cast<std::size_t>(longer) + 1 == steps.size())
     return {could_be[static_cast<std::size_t>(least - steps.begin())], true};
+  if (rare && could_be.back() == DateOrder::year_first) could_be.pop_back();
+  if (could_be.size() == 1) return {could_be.front(), true};
   const bool day = could_be.front() == DateOrder::day_first;
   if (day && point) return {DateOrder::day_first, false};
   const bool month = day && american && !european && could_be[1] == DateOrder::month_first;

@@ -15,13 +15,15 @@ enum class DateOrder : std::uint8_t { day_first, month_first, year_first };
 struct CalendarStamp {
   std::int64_t ns = 0;  ///< since 1970, or since midnight where there is no date; in UTC where a zone is written
   bool date = false, clock = false, zone = false;
-  bool order_said = true;     ///< the year stands first, or the month is a word
-  bool half_days = false;     ///< AM or PM is written
-  bool of_hour = false;       ///< minutes and seconds alone, "59:58.0", "35:10"
-  bool seconds = false;       ///< behind hours and minutes
-  char separator = 0;         ///< between the numbers of the date, 0 for none
-  int first = 0, second = 0;  ///< of a date whose order is not said
-  bool short_year = false;    ///< and whose year has two digits
+  bool order_said = true;           ///< the year stands first, or the month is a word
+  bool half_days = false;           ///< AM or PM is written
+  bool of_hour = false;             ///< minutes and seconds alone, "59:58.0", "35:10"
+  bool seconds = false;             ///< behind hours and minutes
+  char separator = 0;               ///< between the numbers of the date, 0 for none
+  int first = 0, second = 0;        ///< of a date whose order is not said
+  bool short_year = false;          ///< and whose year has two digits
+  std::size_t fraction_digits = 0;  ///< behind the seconds
+  std::int64_t fraction_ns = 0;     ///< read as a fraction
 };
 
 /// The whole of `text` as "2024-05-01T12:00:00.123456789+02:00", "01.05.2024 12:00:00", "5/1/24 3:04 PM",

@@ -305,7 +305,9 @@ void TimeGrid::judge_rate_change() {
   const OddRun& odd = watch_.longest();
   double before = 1e9 / step_.ns, after = before / odd.intervals;
   auto at_ns = static_cast<double>(odd.began_ns);
-  bool asks = odd.rows >= kRows && !odd.whole() && kShare * odd.rows >= counts_.used;
+  // Of rows of which each second is left out, as many as have the grid's rate are a change.
+  const bool another = !odd.whole() || 2 * odd.rows > counts_.used;
+  bool asks = odd.rows >= kRows && another && kShare * odd.rows >= counts_.used;
   if (asks && at_ns - static_cast<double>(window_.from_ns) < 4 * odd.intervals * step_.ns) {
     std::swap(before, after);  // the first rows are the odd ones
     at_ns = static_cast<double>(odd.ended_ns) + odd.intervals * step_.ns;

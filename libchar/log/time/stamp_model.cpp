@@ -349,6 +349,15 @@ bool rows_are_missing(const FirstSteps& steps, const CommonStep& common) {
   return line_through(steps.line).spread > kFar * longest || lost_at_random(steps, common.ns);
 }
 
+/// Long and short steps by turns from end to end: two messages of one period. No loss is as regular.
+bool takes_turns(const FirstSteps& steps) {
+  constexpr double kMost = 0.98;
+  double turns = 0;
+  for (std::size_t i = 1; i < steps.rising.size(); ++i)
+    turns += (steps.rising[i] > steps.mean) != (steps.rising[i - 1] > steps.mean) ? 1 : 0;
+  return steps.equal == 0 && turns >= kMost * static_cast<double>(steps.rising.size() - 1);
+}
+
 /// What explains that many steps are longer than the common one.
 StampPattern explanation(const FirstSteps& steps, const CommonStep& common, const std::vector<double>& gaps) {
   const auto share = [&](const auto& holds) {
@@ -364,7 +373,8 @@ StampPattern explanation(const FirstSteps& steps, const CommonStep& common, cons
   const double near = 0.02 + 2.5 * common.spread, longest = near <= 0.05 ? 20.5 : 3.5;
   const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
   const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
-  if (!coarse && share(whole) > 0.9) return StampPattern::steps;
+  const bool turns = to_a_line && !coarse && takes_turns(steps);
+  if (!coarse && !turns && share(whole) > 0.9) return StampPattern::steps;
   const double rows_a_gap = static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
   const bool in_packets = rows_a_gap <= kLongestPacket &&
                           (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));

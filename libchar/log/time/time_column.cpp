@@ -237,6 +237,11 @@ bool steadier(const TimeCandidate& a, const TimeCandidate& b) { return a.scatter
 // A device's clock that does not tell its own samples apart.
 bool coarser(const TimeCandidate& a, const TimeCandidate& b) { return a.scatter > 0.1 && steadier(b, a); }
 
+bool of_the_whole(const ColumnLabel& column) {
+  const std::string name = ascii_lower(stem_of(column));
+  return name.starts_with("total") || name.starts_with("cumul") || name.starts_with("test");
+}
+
 std::string names_of(const TableFront& table, const std::vector<TimeCandidate>& which, std::size_t but) {
   std::vector<std::string> names;
   for (const TimeCandidate& other : which)
@@ -251,6 +256,9 @@ std::optional<std::size_t> column_called_time(const TableFront& table, const Rea
   std::vector<TimeCandidate> rising;
   for (const TimeCandidate& one : all)
     if (one.rises) rising.push_back(one);
+  // "Total Time" goes on where "Time" is that of a step and begins again.
+  const auto in_parts = [&](const TimeCandidate& one) { return !of_the_whole(table.columns[one.column]); };
+  if (!std::all_of(rising.begin(), rising.end(), in_parts)) std::erase_if(rising, in_parts);
   const std::vector<TimeCandidate>& among = rising.empty() ? all : rising;
   TimeCandidate best = among.front();
   for (const TimeCandidate& one : among) {
@@ -307,7 +315,7 @@ std::optional<std::size_t> column_that_rises(const TableFront& table, const Read
   if (c > 0) take_one_of_each(values);
   const bool dates = table.text && counts_since_1970(first);
   if (!dates && !near_uniform_and_rising(values) && !(table.text && steady_clock(values))) return std::nullopt;
-  const bool counts = !dates && counts_rows(values);
+  const bool counts = !dates && counts_rows(values) && (first.integers || !table.text);  // "1.000" is a time
   const std::string name = fmt::format("c{}", c);
   if (counts || !table.text) {
     if (!counts) info.time.candidate = name;

@@ -35,6 +35,9 @@ constexpr std::array kTimeNames = {KnownName{"time"},
                                    KnownName{"elapsed time"},
                                    KnownName{"time elapsed"},
                                    KnownName{"time since start"},
+                                   KnownName{"total time"},
+                                   KnownName{"cumulative time"},
+                                   KnownName{"test time"},
                                    KnownName{"relative time"},
                                    KnownName{"uptime"},
                                    KnownName{"sampletime"},
@@ -92,6 +95,8 @@ constexpr std::array kClockNames = {KnownName{"ms", 1000000},
                                     KnownName{"itow", 1000000},
                                     KnownName{"gpst", 1000000000},
                                     KnownName{"mjd"},
+                                    KnownName{"sod", 1000000000},
+                                    KnownName{"sow", 1000000000},
                                     KnownName{"utc"},
                                     KnownName{"tick"},
                                     KnownName{"ticks"}};
@@ -171,9 +176,11 @@ std::optional<TimeName> name_with_unit(std::string words) {
     out.unit_ns = unit_of_word(all.substr(0, since));
     return out.unit_ns != 0 ? std::optional(out) : std::nullopt;
   }
-  if (const std::size_t of = all.find(" of "); of != std::string_view::npos && unit_of_word(all.substr(0, of)) != 0) {
-    out.unit_ns = unit_of_word(all.substr(0, of));
-    return out;
+  // "seconds of day", "gps sec of week": what begins again, where it is a steady clock.
+  if (const std::size_t of = all.find(" of "); of != std::string_view::npos) {
+    out.unit_ns = unit_of_word(all.substr(all.substr(0, of).rfind(' ') + 1, of - all.substr(0, of).rfind(' ') - 1));
+    out.letter = true;
+    return out.unit_ns != 0 && out.unit_ns < kMinute ? std::optional(out) : std::nullopt;
   }
   const std::string_view word = all.substr(last);
   std::string_view before = trimmed(all.substr(0, last));
@@ -195,7 +202,11 @@ std::optional<TimeName> name_with_unit(std::string words) {
 }  // namespace
 
 std::optional<TimeName> time_name(std::string_view stem) {
-  const std::string lower = ascii_lower(stem);
+  std::string spelled(stem);
+  for (const std::string_view unit : {"Ms", "Us", "Ns", "Sec"})  // "epochMs"
+    if (stem.ends_with(unit) && stem.size() > unit.size() && ascii_lower(stem)[stem.size() - unit.size() - 1] >= 'a')
+      spelled.insert(stem.size() - unit.size(), "_");
+  const std::string lower = ascii_lower(spelled);
   std::string_view name = lower;
   while (name.size() > 1 && (name[0] == '_' || name[0] == '%' || name[0] == '#' || name[0] == ' '))
     name.remove_prefix(1);

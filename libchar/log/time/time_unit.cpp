@@ -51,6 +51,12 @@ constexpr std::array kOldCounts = {OldCount{"days since 1858-11-17 (MJD)", "mjd"
 
 bool few_digits(double step) { return std::fabs(step - rounded(step, 3)) <= 1e-6 * step; }
 
+/// Fractions of days that make 20, 30 or 60 s in the mean, whose steps are rounded to few digits.
+bool minutes_in_days(const std::vector<double>& values) {
+  const double seconds = (values.back() - values.front()) / static_cast<double>(values.size() - 1) * 86400;
+  return std::fabs(seconds - 10 * std::round(seconds / 10)) < 1e-3 * seconds && seconds > 19 && seconds < 61;
+}
+
 /// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as seconds.
 const OldCount* old_count(const std::string& stem, const FirstValues& first, std::int64_t unit_ns) {
   constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // days: 1990, 2100
@@ -62,7 +68,8 @@ const OldCount* old_count(const std::string& stem, const FirstValues& first, std
     if ((*count.word != '\0' && !said) || (unit_ns != 0 && unit_ns != count.unit_ns)) continue;
     const double days = (size - count.of_1970) * static_cast<double>(count.unit_ns) / static_cast<double>(kDayNs);
     if (days < kFrom || days > kTo) continue;
-    const bool fractions = !first.integers && step > 0 && step < 1 && (step < kFastest || !few_digits(step));
+    const bool fractions = !first.integers && step > 0 && step < 1 &&
+                           (step < kFastest || !few_digits(step) || minutes_in_days(first.values));
     if (said || (count.unit_ns == kDayNs ? fractions : first.integers)) return &count;
   }
   return nullptr;
@@ -169,9 +176,33 @@ bool counts_of_a_timer(const FirstValues& first) {
   return even;
 }
 
+/// Seconds or milliseconds by another clock of the table whose unit is known: dates, or the time since 1970.
+std::int64_t unit_by_another_clock(const TableFront& table, std::size_t column, double step) {
+  constexpr double kAlike = 0.1, kFirst = 1e9, kLast = 4.1e9;  // s
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (c == column || table.columns[c].text) continue;
+    const std::vector<double> values = table.first_values(c).values;
+    double seconds = values.size() < 3 ? 0 : usual_step(values);
+    if (!(seconds > 0) || !std::is_sorted(values.begin(), values.end())) continue;
+    const bool since_1970 = values[0] > kFirst && values[0] < kLast;
+    if (values[0] > 1e3 * kFirst && values[0] < 1e3 * kLast)
+      seconds /= 1e3;
+    else if (!since_1970 && !table.columns[c].calendar)
+      continue;
+    for (const std::int64_t unit : {kStampUnits[0], kStampUnits[1]})
+      if (std::fabs(step * 1e-9 * static_cast<double>(unit) - seconds) < kAlike * seconds) return unit;
+  }
+  return 0;
+}
+
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
-bool say_guess_by_step(const FirstValues& first, std::int64_t unit, LogInfo& info) {
+bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::int64_t unit, LogInfo& info) {
   const double step = usual_step(first.values);
+  if (!first.integers && unit == kStampUnits[1] && !inertial(table))
+    throw input_error("E0325", info.file)
+        .says("the stamps state no unit: their step of {} is {} Hz in seconds and {} Hz in milliseconds",
+              brief_text(step, 6), brief_text(rate_in(step, kStampUnits[0]), 6), brief_text(rate_in(step, unit), 6))
+        .hint("`time_unit` s or `time_unit` ms decides");
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
   if (uneven_ones(first) || (!first.integers && unit == kStampUnits[1])) units = {kStampUnits[0], kStampUnits[1]};
   if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
@@ -259,12 +290,15 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
       guess = kStampUnits[1];
     unit.ns = comparable ? unit_of_rate(guess, first.values, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
-    const bool by_step = !comparable && !says_a_date(first) && first.values.size() > 1;
-    if (!by_step || !say_guess_by_step(first, unit.ns, info))
+    const std::int64_t other = comparable || first.integers ? 0 : unit_by_another_clock(table, column, step);
+    if (other > 0) unit.ns = other;
+    const bool by_step = !comparable && other == 0 && !says_a_date(first) && first.values.size() > 1;
+    if (!by_step || !say_guess_by_step(table, first, unit.ns, info))
       info.guesses.push_back(fmt::format(
           "time unit: {}, from {} (`time_unit` says otherwise)", unit_name(unit.ns),
-          comparable ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
-                     : "the size and step of the stamps"));
+          comparable  ? fmt::format("the rate of {} Hz that the file states", shortest(*table.stated_rate_hz))
+          : other > 0 ? "the steps of another clock in the table"
+                      : "the size and step of the stamps"));
   } else if (comparable) {
     warn_of_stated_rate(table, step, unit.ns, info);
   }

@@ -98,11 +98,13 @@ void check_status(const MapReader& at, const Coefficient& c) {
 
 void apply(const MapReader& at, std::string_view key, const Conversion& conversion, Coefficient& c,
            SensorModel& model) {
+  const bool open = std::isinf(c.ci95.high);  // the record gives no upper end
   if (c.value) *c.value *= conversion.factor;
   if (c.upper95) *c.upper95 *= conversion.factor;
   c.ci95.low *= conversion.factor;
   c.ci95.high *= conversion.factor;
-  if (!std::isfinite(c.value.value_or(0)) || !std::isfinite(c.upper95.value_or(0)) || !std::isfinite(c.ci95.high))
+  const double highest = open ? 0 : c.ci95.high;
+  if (!std::isfinite(c.value.value_or(0)) || !std::isfinite(c.upper95.value_or(0)) || !std::isfinite(highest))
     at.refuse(key, "is out of range once it is converted to the channel's unit");
   if (!conversion.sentence.empty()) model.remarks.push_back(conversion.sentence);
 }
@@ -150,7 +152,8 @@ const Fields<Coefficient>& term_fields() {
                                    {.range = kNotNegative,
                                     .comment = "one-sided upper 95 % limit",
                                     .meaning = "upper limit of a term that was not detected (simulated as 0)"}),
-      field<&Coefficient::ci95>("ci95", {.range = kNotNegative, .meaning = "95 % interval"}),
+      field<&Coefficient::ci95>(
+          "ci95", {.range = kNotNegative, .meaning = "95 % interval; an upper end of null: no end known"}),
       field<&Coefficient::profile>("ci95_by", {.words = interval_words(), .meaning = "where the interval comes from"}),
       field<&Coefficient::status>("status",
                                   {.words = status_words(), .meaning = "how it is known", .otherwise = "given"}),

@@ -16,11 +16,17 @@ constexpr double kMemory = 1.0 / 32, kMemoryOfDistance = 1.0 / 8;
 constexpr double kDoubtedMean = 1.25;  // of its rms
 constexpr double kDoubtedUsual = 2;    // of its mean
 constexpr double kDoubtedScatter = 2;  // of its rms
+constexpr double kCorrelated = 0.5;    // neighbours, of the mean square: no noise
 
 }  // namespace
 
 SensorDoubt::SensorDoubt(std::vector<std::optional<LearntSensor::Reading>> learnt)
-    : learnt_(std::move(learnt)), held_(learnt_.size()), mean_(learnt_.size()), square_(learnt_.size()) {
+    : learnt_(std::move(learnt)),
+      held_(learnt_.size()),
+      mean_(learnt_.size()),
+      square_(learnt_.size()),
+      product_(learnt_.size()),
+      last_(learnt_.size()) {
   for (std::size_t i = 0; i < learnt_.size(); ++i)
     if (learnt_[i]) square_[i] = learnt_[i]->usual_rms * learnt_[i]->usual_rms;
 }
@@ -41,9 +47,13 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
     const double e = y - u - usual.offset - usual.gain * u;
     mean_[i] += kMemory * (e - mean_[i]);
     square_[i] += kMemory * (e * e - square_[i]);
+    product_[i] += kMemory * (e * last_[i] - product_[i]);
+    last_[i] = e;
     if (std::abs(mean_[i]) > std::max(kDoubtedMean * usual.usual_rms, kDoubtedUsual * usual.usual_mean) ||
-        std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms)
+        std::sqrt(square_[i]) > kDoubtedScatter * usual.usual_rms) {
       held_[i] = kHeld;
+      if (product_[i] > kCorrelated * square_[i]) moved_ = kHeld;
+    }
     if (usual.gain > -1) furthest = std::max(furthest, std::abs(estimate - (y - usual.offset) / (1 + usual.gain)));
     const bool doubted = held_[i] > 0;
     held_[i] -= doubted ? 1 : 0;
@@ -54,7 +64,9 @@ SensorDoubt::Variance SensorDoubt::instant(const Eigen::MatrixXd& samples, Eigen
     weights += weight;
     trusted += 1;
   }
-  const double away = pair ? furthest : estimate - (trusted >= 2 ? sum / weights : u);
+  const double middle = trusted >= 2 ? sum / weights : u;
+  const double away = pair || (trusted < 2 && moved_ > 0) ? furthest : estimate - middle;
+  moved_ -= moved_ > 0 ? 1 : 0;
   if (std::isfinite(away)) away_ += kMemoryOfDistance * (away * away - away_);
   return any ? Variance{trusted >= 2 ? 1 / weights : 0, away_} : Variance{};
 }

@@ -3,8 +3,9 @@
 // beyond its usual offset and gain against the median u of all (reading_meter.hpp), a sensor is in doubt while the
 // running mean of e_i or of e_i^2 over 32 instants is beyond what is usual, and for 4096 more. While one is, that of
 // (estimate - m)^2 over 8 instants is added to the variance, m the mean of what the sensors that are not in doubt say
-// of u, by their usual scatter, and the variance is that of m at least; where fewer than two are left m is the median.
-// Of two sensors m is what that says of u which is further from the estimate: either may be wrong.
+// of u, by their usual scatter, and the variance is that of m at least. Where fewer than two are left m is the median
+// if they only scatter, independently from instant to instant. If not, and of two sensors, m is what that one says of u
+// which is furthest from the estimate: any may be right.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -32,7 +33,8 @@ class SensorDoubt {
 
   std::vector<std::optional<LearntSensor::Reading>> learnt_;
   std::vector<int> held_;
-  std::vector<double> mean_, square_, sorted_;
+  int moved_ = 0;  // the same, of a sensor whose e_i are correlated
+  std::vector<double> mean_, square_, product_, last_, sorted_;
   std::vector<Variance> out_;
   double away_ = 0;  // running mean of (estimate - m)²
 };

@@ -659,9 +659,10 @@ namespace {
 /// samples, ln gain = a (cos(2 pi k f / rate) - 1).
 struct ShelfTest {
   double largest = 0, rising = 0, echo = 0;
+  NamedShape clearest;  ///< the shelf of the largest
 };
 ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest_hz) {
-  constexpr double kTopOctave = 0.25, kSeen = 1e-3;
+  constexpr double kTopOctave = 0.25, kSeen = 1e-3, kLargest = 2;  ///< of ln gain
   constexpr int kLongestEcho = 8;
   const BinProblem problem = band_problem(search.bins, unshaped.band, search.rate_hz);
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, unshaped.theta);
@@ -678,18 +679,22 @@ ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest
   for (Eigen::Index j = 0; j < problem.size(); ++j)
     square[j] = std::pow(search.bins[unshaped.index[static_cast<std::size_t>(j)]].frequency_hz, 2);
   ShelfTest out;
-  const auto deviate_of = [&](const Eigen::ArrayXd& log_gain) {
+  const auto tested = [&](const Eigen::ArrayXd& log_gain) {
     const Eigen::VectorXd shape = (root * log_gain).matrix();
     const Eigen::VectorXd apart = without_columns_of(basis, shape);
-    return apart.norm() > kSeen * shape.norm() ? apart.dot(residual) / apart.norm() : 0;
+    const double deviate = apart.norm() > kSeen * shape.norm() ? apart.dot(residual) / apart.norm() : 0;
+    return std::pair{deviate, 1 / apart.norm()};
   };
   const Eigen::ArrayXd angle = 2 * std::numbers::pi / search.rate_hz * square.sqrt();
   for (int lag = 1; lag <= kLongestEcho; ++lag)
-    out.echo = std::max(out.echo, std::abs(deviate_of((lag * angle).cos() - 1)));
+    out.echo = std::max(out.echo, std::abs(tested((lag * angle).cos() - 1).first));
   for (double corner = kTopOctave * search.rate_hz / 2; corner > 4 * slowest_hz; corner /= 2) {
-    const double deviate = deviate_of(square / (square + corner * corner));
-    out.largest = std::max(out.largest, std::abs(deviate));
+    const auto [deviate, sd] = tested(square / (square + corner * corner));
     out.rising = std::max(out.rising, deviate);
+    if (!(std::abs(deviate) > out.largest)) continue;
+    out.largest = std::abs(deviate);
+    const double root_of_half = std::exp(std::clamp(deviate * sd, -kLargest, kLargest) / 4);
+    out.clearest = {NamedShape::Family::shelf, corner * root_of_half, corner / root_of_half};
   }
   return out;
 }
@@ -758,11 +763,12 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   constexpr double kShelf = 0.15;  ///< the same, of what a shelf may be
   constexpr double kClear = 50;    ///< of ln L
   constexpr double kNeeded = 15;   ///< of 2 lnL; records without a high-pass reach 12.5 in 2 of 1,000
+  constexpr double kDoubted = 7;   ///< the same from which on limits have to know of it
   constexpr double kPeriods = 4;   ///< of the corner in the record: below, a drift looks like that
   const double duration_s = 0.25 / slowest_hz;
   Band band = unshaped.band;
   NamedShape best;
-  double least = unshaped.half_deviance - kNeeded / 2;
+  double least = unshaped.half_deviance - kDoubted / 2;
   const auto take = [&](const NamedShape& shape) {
     band.named = shape;
     const BinProblem problem = bin_problem(bins_of(search.bins, band, search.rate_hz));
@@ -783,6 +789,10 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   const auto shape = fit_named_shape(bins_of(search.bins, unshaped.band, search.rate_hz), search.rate_hz, search.terms,
                                      NamedShape::Family::high_pass, best);
   if (!shape || !(shape->pole_hz * duration_s > kPeriods)) return std::nullopt;
+  if (!(least < unshaped.half_deviance - kNeeded / 2)) {
+    unshaped.band.hidden.push_back(*shape);
+    return std::nullopt;
+  }
   band.named = *shape;
   band.orders = 1;
   // A walk behind a high-pass is a Gauss-Markov process, and quantization noise rises: they have their own searches.
@@ -838,6 +848,7 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
   const bool peaked = options.corners && highest_peak(bins, *unshaped).deviations > options.peak;
   const bool echoes = shelf.echo > options.shelf;
+  if (shelf.largest > options.step) unshaped->band.hidden.push_back(shelf.clearest);
   if (describes && !(shelf.largest > options.shelf) && !echoes && !peaked) return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;

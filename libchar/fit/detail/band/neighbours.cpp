@@ -6,10 +6,13 @@
 // and with that of the average over the shapes, L: sum_s w_s Phi((L - m_s) / sd_s) = .025, and likewise above, with
 // m = ln theta / 2 and Akaike's weights (D. Turek, D. Fletcher, Comput. Stat. Data Anal. 56 (2012) 2809): a shift is
 // known no better than the richer shape.
-// Neighbours: of a polynomial one and two orders more, and from three on the filters with corners; of a filter of
-// equal weights one to four orders; of a filter with corners those with one root more. A shift counts where they are
-// as likely.
+// Neighbours: of the terms alone a step of the level (a shelf), where its score is clear; of a polynomial one and two
+// orders more, and from three on the filters with corners; of a filter of equal weights one to four orders; of a filter
+// with corners those with one root more, and itself in half an octave and in an octave less of the band, for what bends
+// its flank is another shape's. A shift counts where they are as likely, that of a step by its weight alone.
 #include "libchar/fit/detail/band/neighbours.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +22,7 @@
 #include <optional>
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {
 namespace {
@@ -64,13 +68,37 @@ std::vector<Band> with_roots(const std::vector<PowerBin>& bins, const Band& band
   return out;
 }
 
-std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const TermSet& terms,
-                                double rate_hz) {
-  if (band.named.family != Family::none) return with_roots(bins, band, terms, richer(band.named.family), rate_hz);
+bool is_plain(const Band& band) {
+  return band.orders == 0 && band.filter.kind == NoiseShape::Kind::none && band.named.family == Family::none &&
+         band.resonances.empty();
+}
+
+/// What is white above a low corner may have another level below it, and slow terms make up for it; a walk may be
+/// level, or a flicker lower, behind a high-pass.
+std::vector<Band> with_hidden(const std::vector<PowerBin>& bins, const Band& band, const TermSet& kept,
+                              const TermSet& offered, double rate_hz) {
+  std::vector<Band> out;
+  if (band.low_pass || band.tau_s) return out;  // a process has the spectrum of a step
+  for (const NamedShape& hidden : band.hidden) {
+    const TermSet& terms = hidden.family == Family::high_pass ? offered : kept;
+    const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, terms, hidden.family, hidden);
+    if (!shape) continue;
+    out.push_back(band);
+    out.back().named = *shape;
+    out.back().orders = static_cast<int>(unknowns_of(shape->family));
+  }
+  return out;
+}
+
+std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const TermSet& kept,
+                                const TermSet& offered, double rate_hz) {
+  if (is_plain(band)) return with_hidden(bins, band, kept, offered, rate_hz);
+  if (band.orders == 0 && band.filter.kind == NoiseShape::Kind::none) return {};
+  if (band.named.family != Family::none) return with_roots(bins, band, kept, richer(band.named.family), rate_hz);
   std::vector<Band> out = richer_polynomials(band);
   if (band.orders < kMany || !band.resonances.empty()) return out;
   const std::vector<Family> corners = {Family::shelf, Family::second_order, Family::third_order, Family::loop};
-  for (Band& other : with_roots(bins, band, terms, corners, rate_hz)) out.push_back(std::move(other));
+  for (Band& other : with_roots(bins, band, kept, corners, rate_hz)) out.push_back(std::move(other));
   return out;
 }
 
@@ -79,9 +107,10 @@ struct Opinion {
   double weight = 0, mean = 0, below = 0, above = 0;
 };
 
+constexpr double kTail = 0.025;
+
 /// Where the average over the opinions has less than 2.5 % beyond: below them for a side of -1, above for 1.
 double end_of(const std::vector<Opinion>& opinions, int side) {
-  constexpr double kTail = 0.025;
   constexpr int kHalvings = 40;
   double sum = 0, inner = std::numeric_limits<double>::infinity(), outer = -inner;
   const auto deviation = [side](const Opinion& of) { return side < 0 ? of.below : of.above; };
@@ -124,14 +153,66 @@ ScoringResult likeliest(const BinProblem& problem, const ModelPoint& start, cons
 struct NeighbourReach {
   double least = 0, most = 0;
   std::vector<Opinion> opinions;
+  double without = 0;  ///< weight of the shapes that need no such term
 };
 
 void extend(const NeighbourReach& by, Coefficient& term) {
   reach_by(by.least, term);
   reach_by(by.most, term);
+  if (by.without > kTail) term.ci95.low = 0;  // beside the weight 1 of the shape that was chosen
   if (by.opinions.size() < 2) return;
   term.ci95.low = std::min(term.ci95.low, std::exp(end_of(by.opinions, -1)));
   term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
+}
+
+void shift_to(const Mixture& theta, const NoiseFit& fit, std::array<NeighbourReach, kTerms>& reach) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (!(theta[i] > 0 && fit.theta[i] > 0)) continue;
+    const double shift = 0.5 * std::log(theta[i] / fit.theta[i]);
+    reach[i].least = std::min(reach[i].least, shift);
+    reach[i].most = std::max(reach[i].most, shift);
+  }
+}
+
+/// The same family in `less` of the band, where it has to describe less of its flank.
+void shift_to_narrower(const std::vector<PowerBin>& bins, const Band& band, double less, const TermSet& kept,
+                       const NoiseFit& fit, std::array<NeighbourReach, kTerms>& reach) {
+  constexpr double kAbove = 1.2;  ///< of the corner
+  if (band.named.family == Family::none || band.named.family == Family::shelf) return;
+  Band narrow = band;
+  narrow.top_hz = less * std::min(band.top_hz, fit.rate_hz / 2);
+  if (!(narrow.top_hz > kAbove * band.named.pole_hz)) return;
+  for (std::size_t j = 0; j < bins.size(); ++j)
+    if (bins[j].high_hz > narrow.top_hz * (1 + 1e-9)) narrow.inside[j] = 0;
+  Band plain = narrow;
+  plain.named = {};
+  plain.orders = 0;
+  const auto shape =
+      fit_named_shape(bins_of(bins, plain, fit.rate_hz), fit.rate_hz, kept, band.named.family, band.named);
+  if (!shape) return;
+  narrow.named = *shape;
+  const ModelPoint start{fit.theta, {}};
+  shift_to(score(band_problem(bins, narrow, fit.rate_hz), kept, &start).at.theta, fit, reach);
+}
+
+/// Of a term that was not found without the shape.
+void limit_by(double theta, double sd, Coefficient& term) {
+  constexpr double kOneSided95 = 1.645;
+  if (!term.upper95) return;
+  term.upper95 = std::max(*term.upper95, std::sqrt(theta) * std::exp(kOneSided95 * sd));
+  term.ci95.high = std::max(term.ci95.high, std::sqrt(theta) * std::exp(kNormal95 * sd));
+}
+
+/// What the shapes put decades apart was not seen.
+void say_if_unknown(Term of, NoiseFit& fit) {
+  constexpr double kFar = 10;
+  Coefficient& term = fit.term[static_cast<std::size_t>(of)];
+  if (!(term.ci95.high > kFar * *term.value)) return;
+  if (term.status == Status::detected) term.status = Status::undetermined;
+  fit.findings.push_back(
+      finding("undetermined", fmt::format("Other filters describe the spectrum as well, and put {} elsewhere by "
+                                          "more than a decade.",
+                                          long_name(of))));
 }
 
 }  // namespace
@@ -139,41 +220,55 @@ void extend(const NeighbourReach& by, Coefficient& term) {
 void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                          const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5, kMostLikelier = 300;  ///< of ln L
+  constexpr double kUnknown = std::numbers::ln10;         ///< standard deviation of what a shape hardly knows
   const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
-  const double price = taps ? 2 : 1;  ///< of an order, in ln L: equal weights are what many sensors have
-  if ((band.orders == 0 && !taps) || band.named.family == Family::high_pass) return;
+  // Of an order, in ln L: equal weights are what many sensors have. And of what is hidden, which few have.
+  constexpr double kOfWeights = 2, kOfHidden = 7.5;
+  constexpr double kOfLimit = 3;   ///< of ln L, from which on limits know of what is hidden
+  constexpr double kUnseen = 0.5;  ///< standard deviation of the level below a step that hardly has coefficients
+  const auto price_of = [&](const Band& other) {
+    return is_plain(band) ? kOfHidden : (taps ? kOfWeights : 1) * (other.orders - band.orders);
+  };
+  if (band.named.family == Family::high_pass) return;
   const TermSet kept = only_positive(fit.theta);
   TermSet terms = kept;
   for (std::size_t i = 0; i < kTerms; ++i) terms[i] = terms[i] || offered[i];
+  const std::vector<Band> others = neighbours_of(bins, band, kept, terms, fit.rate_hz);
+  if (others.empty()) return;
   const double chosen = likeliest(band_problem(bins, band, fit.rate_hz), best, kept, terms).half_deviance;
   std::array<NeighbourReach, kTerms> reach;
   for (std::size_t i = 0; i < kTerms; ++i)
     if (fit.term[i].value && kept[i] && fit.term[i].ci95.low > 0 && std::isfinite(fit.term[i].ci95.high))
       reach[i].opinions = {opinion_of(fit, i)};
-  for (const Band& other : neighbours_of(bins, band, kept, fit.rate_hz)) {
+  for (const Band& other : others) {
     const BinProblem problem = band_problem(bins, other, fit.rate_hz);
     // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
     const bool goes_on = other.named.family == Family::none;
     const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
     // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
-    const double likelier = chosen - there.half_deviance - price * (other.orders - band.orders);
+    const double likelier = chosen - there.half_deviance - price_of(other);
     const double weight = std::exp(std::min(likelier, kMostLikelier));
     if (!(weight > 0)) continue;
-    const bool shifts = there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    const bool shifts =
+        !is_plain(band) && there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    if (shifts) shift_to(there.at.theta, fit, reach);
     const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
     for (std::size_t i = 0; i < kTerms; ++i) {
       const double theta = there.at.theta[i];
-      if (!kept[i] || !(theta > 0)) continue;
-      const double shift = 0.5 * std::log(theta / fit.theta[i]);
-      if (shifts) reach[i].least = std::min(reach[i].least, shift);
-      if (shifts) reach[i].most = std::max(reach[i].most, shift);
+      if (!(theta > 0)) reach[i].without += weight;
+      if (!(theta > 0)) continue;
       const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
-      if (!reach[i].opinions.empty() && sd > 0 && std::isfinite(sd))
-        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), sd, sd});
+      if (!kept[i] && is_plain(band) && sd > 0 && likelier > kOfLimit - kOfHidden) limit_by(theta, sd, fit.term[i]);
+      if (!reach[i].opinions.empty() && sd > 0 && !(is_plain(band) && sd > kUnseen))
+        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), std::min(sd, kUnknown), std::min(sd, kUnknown)});
     }
   }
+  for (const double less : {std::numbers::sqrt2 / 2, 0.5}) shift_to_narrower(bins, band, less, kept, fit, reach);
   for (std::size_t i = 0; i < kTerms; ++i)
-    if (fit.term[i].value) extend(reach[i], fit.term[i]);
+    if (fit.term[i].value) {
+      extend(reach[i], fit.term[i]);
+      say_if_unknown(static_cast<Term>(i), fit);
+    }
 }
 
 }  // namespace libchar

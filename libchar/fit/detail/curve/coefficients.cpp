@@ -223,6 +223,13 @@ void join_alone(const BinProblem& problem, const Decision& decision, std::size_t
 
 }  // namespace
 
+void widen_by(double relative_sd, Coefficient& term) {
+  const double value = *term.value;
+  const auto wider = [&](double side) { return std::exp(std::hypot(std::log(side), kNormal95 * relative_sd)); };
+  term.relative_sd = std::hypot(term.relative_sd, relative_sd);
+  term.ci95 = {value / wider(value / std::max(term.ci95.low, 0.0)), value * wider(term.ci95.high / value)};
+}
+
 std::string long_name(Term term) {
   static constexpr std::array<std::string_view, kTerms> names = {"white noise", "bias instability", "random walk",
                                                                  "quantization noise", "rate ramp"};

@@ -42,6 +42,9 @@ void report_bounds(const TermSet& fitted, NoiseFit& fit);
 /// Widens sd and intervals for a further parameter that was fitted jointly (the low-pass corner).
 void widen_for_joint_parameter(const Mixture& log_theta_sd, NoiseFit& fit);
 
+/// Adds an independent relative standard deviation to the value's and to both sides of its interval.
+void widen_by(double relative_sd, Coefficient& term);
+
 /// "bias instability B" for sentences.
 std::string long_name(Term term);
 

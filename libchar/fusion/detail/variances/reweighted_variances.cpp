@@ -1,6 +1,7 @@
 #include "libchar/fusion/detail/variances/reweighted_variances.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -107,9 +108,15 @@ void ReweightedVariances::use(const int* index, int m) {
 void ReweightedVariances::weigh() {
   double sum = 0;
   for (int k = 0; k < m_; ++k) sum += inverse_[index_[k]];
-  fused_ = 1 / sum;
-  for (int k = 0; k < m_; ++k) p_[index_[k]] = inverse_[index_[k]] * fused_;
-  for (int k = 0; k < m_; ++k) shown_[index_[k]] = v_[index_[k]] - fused_;
+  fused_.variance = 1 / sum;
+  for (int k = 0; k < m_; ++k) p_[index_[k]] = inverse_[index_[k]] * fused_.variance;
+  for (int k = 0; k < m_; ++k) shown_[index_[k]] = v_[index_[k]] - fused_.variance;
+  int heaviest = index_[0];
+  for (int k = 1; k < m_; ++k) heaviest = p_[index_[k]] > p_[heaviest] ? index_[k] : heaviest;
+  double others = 0;
+  for (int k = 0; k < m_; ++k) others += index_[k] == heaviest ? 0 : inverse_[index_[k]];
+  const double open = m_ > 1 ? p_[heaviest] * p_[heaviest] * std::sqrt(1 - options_.gamma) / others : 0;
+  fused_.stated = fused_.variance + open * open / (fused_.variance + open);
 }
 
 void ReweightedVariances::start(const double* y) {

@@ -20,6 +20,9 @@
 // directions slow instead of noisy: their relative standard deviation stays below sqrt(a / lambda). A channel that is
 // far better than all others has a tenth of it: its weight p nears one, its information is (1 - p)^2, and a full ridge
 // would keep the weights of the others at sqrt(lambda).
+//
+// The variance of x is stated as f + o^2 / (f + o), f = 1 / sum_j 1/v_j, o what the memory leaves open of the heaviest
+// channel h: a standard deviation of its variance, sqrt(1 - gamma) / sum_{j != h} 1/v_j, times p_h^2.
 
 #include <limits>
 #include <vector>
@@ -69,11 +72,11 @@ class ReweightedVariances {
 
   /// Of the last `fuse`.
   Estimate estimate() const {
-    return Estimate::scalar(x_, started_ ? fused_ : std::numeric_limits<double>::quiet_NaN());
+    return Estimate::scalar(x_, started_ ? fused_.stated : std::numeric_limits<double>::quiet_NaN());
   }
   /// Of a channel that was not in use: sample less fused value, and its variance.
   double innovation(std::size_t, double sample) const { return sample - x_; }
-  double innovation_variance(std::size_t i) const { return v_[i] + fused_; }
+  double innovation_variance(std::size_t i) const { return v_[i] + fused_.variance; }
   std::size_t size() const { return v_.size(); }
   double variance(std::size_t i) const { return v_[i]; }
   /// By channel, of those in use in the last `fuse`.
@@ -128,7 +131,10 @@ class ReweightedVariances {
   std::vector<int> usable_;       // as well
   std::vector<double> first_;     // samples of the first instants, NaN where a channel was not in use
   int m_ = 0;
-  double fused_ = 1;  // 1 / sum of the inverse variances in use
+  struct {
+    double variance = 1;  // 1 / sum of the inverse variances in use
+    double stated = 1;    // with what the memory leaves open of it
+  } fused_;
   double x_ = 0, rounding_ = 0;
   double instants_ = 0;
   double gathered_gain_ = 0, last_gain_ = 0, gathered_rounding_ = 0;

@@ -313,6 +313,20 @@ std::optional<std::size_t> behind_record(const std::vector<Cells>& lines) {
   return std::nullopt;
 }
 
+/// A row of numbers, or two, in front of the names of all columns, below which all are rows: how many columns and rows
+/// follow, or the numbers of the columns.
+std::optional<std::size_t> names_below_numbers(const std::vector<Cells>& lines, const std::vector<LineCensus>& census) {
+  constexpr std::size_t kMost = 2, kFewest = 4;
+  std::size_t at = 0;
+  while (at < census.size() && census[at].row()) ++at;
+  if (at == 0 || at > kMost || at + kFewest > lines.size() || !census[at].words() || census[at].good > 0 ||
+      lines[at].size() < 2 || has_doubles(lines[at]) || any_empty(lines[at]))
+    return std::nullopt;
+  const bool rows = std::all_of(census.begin() + static_cast<std::ptrdiff_t>(at) + 1, census.end(),
+                                [](const LineCensus& line) { return line.row() && line.good > 0; });
+  return rows && census[at].bad == lines[at].size() ? std::optional(at) : std::nullopt;
+}
+
 }  // namespace
 
 TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<ColumnKind>& kinds, NumberStyle style) {
@@ -335,6 +349,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
     return out;
   }
   const auto rows_at = static_cast<std::size_t>(first_row - census.begin());
+  if (const auto names = rows_at == 0 ? names_below_numbers(lines, census) : std::nullopt)
+    return {*names + 1, *names, {}};
   if (first_row == census.end() || rows_at == 0) return out;
   out.data = rows_at;
   // Back over rows that are damaged to the last line of words alone.
@@ -345,7 +361,8 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
   if (last > 0 && census[last - 1].words()) {
     out.data = last;
     out.names = last - 1;
-    const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0;
+    const bool named_above = last > 1 && census[last - 2].fits && census[last - 2].bad > 0 &&
+                             !lines[last - 2][0].text.ends_with(':');  // "Firmware: 1.2"
     if (named_above && !line_of_units(lines[last - 2]) &&
         (line_of_units(lines[last - 1]) || unit_of_the_time(lines[last - 2], lines[last - 1]) ||
          (has_doubles(lines[last - 1]) && !has_doubles(lines[last - 2])))) {

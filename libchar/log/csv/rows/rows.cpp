@@ -636,7 +636,7 @@ class CarefulLines {
       }
       case StampDefect::out_of_range:
         fail("E0314", "time stamp does not fit 64-bit nanoseconds (a wild stamp, or the wrong `time_unit`?)",
-             std::string(text), "`time_unit` s|ms|us|ns", span.start);
+             std::string(text), "`drop_bad_rows` leaves such rows out, `time_unit` s|ms|us|ns", span.start);
         break;
     }
     return false;

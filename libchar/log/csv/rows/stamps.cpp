@@ -356,20 +356,19 @@ struct Fractions {
   std::size_t most = 0;  // digits
 };
 
-Fractions fractions_of(const StampStudy& study, const Dialect& dialect, const StampPart& part) {
+Fractions fractions_of(const std::vector<std::string>& texts, const Dialect& dialect, const StampPart& part) {
   Fractions out;
   std::optional<std::int64_t> last;
   std::size_t digits = 0;
-  for (const Cells& row : study.rows) {
-    const auto column = static_cast<std::size_t>(part.column);
+  for (const std::string& text : texts) {
     std::int64_t ns = 0;
     std::size_t offset = 0;
-    if (column >= row.size() || read_part(row[column].text, part, dialect, ns, offset) != StampDefect::none) continue;
-    const std::string& text = row[column].text;
+    if (read_part(text, part, dialect, ns, offset) != StampDefect::none) continue;
     const std::size_t mark = text.find(dialect.decimal);
-    const std::size_t behind = mark == std::string::npos ? 0 : text.size() - mark - 1;
+    std::size_t behind = mark == std::string::npos ? 0 : text.size() - mark - 1;
+    if (part.calendar) behind = read_calendar(text, dialect.date_order).value_or(CalendarStamp{}).fraction_digits;
     out.alike = out.alike && (digits == 0 || behind == digits);
-    out.rise = out.rise && (!last || ns > *last);
+    out.rise = out.rise && (!last || ns >= *last);
     digits = behind;
     out.most = std::max(out.most, behind);
     last = ns;
@@ -381,13 +380,25 @@ const char* word_of(std::int64_t ns) {
   return ns == 1 ? "nanoseconds" : ns == 1000 ? "microseconds" : ns == 1000000 ? "milliseconds" : "seconds";
 }
 
-// printf("%d.%d", seconds, nanoseconds): stamps that step to and fro as fractions, and rise as two numbers.
+// printf("%d.%d", seconds, nanoseconds) and "%d:%d:%d.%d": stamps that step to and fro as fractions, and rise as two
+// numbers.
 void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info) {
-  StampPart& part = dialect.time;
-  const Fractions as_read = fractions_of(study, dialect, part);
-  if (part.unit_ns != 1000000000 || as_read.rise || as_read.alike) return;
+  StampPart& part = dialect.more_time.calendar ? dialect.more_time : dialect.time;
+  const auto column = static_cast<std::size_t>(part.column);
+  if (part.digits || part.elapsed || (!part.calendar && part.unit_ns != 1000000000)) return;
+  std::vector<std::string> texts;
+  for (const Cells& row : study.rows)
+    if (column < row.size()) texts.push_back(row[column].text);
+  Fractions as_read = fractions_of(texts, dialect, part);
+  if (as_read.alike || as_read.most > 9) return;
+  if (as_read.rise && study.whole_head) {
+    texts.clear();
+    for (const Cells& cell : study.whole_head(column)) texts.push_back(cell[0].text);
+    as_read = fractions_of(texts, dialect, part);
+  }
+  if (as_read.rise) return;
   part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
-  if (fractions_of(study, dialect, part).rise)
+  if (fractions_of(texts, dialect, part).rise)
     info.guesses.push_back(
         fmt::format("stamps: the digits after the mark are {} without leading zeros", word_of(part.fraction_ns)));
   else
@@ -490,6 +501,11 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
   if (!stamp || (stamp->of_hour && !part.of_hour))
     return read_cell(text, dialect.decimal).kind == Cell::missing ? StampDefect::missing : StampDefect::malformed;
   out = part.of_hour && !stamp->of_hour && !stamp->seconds ? stamp->ns / 60 : stamp->ns;
+  if (part.fraction_ns > 0) {  // digits that count
+    std::int64_t one = 1000000000;
+    for (std::size_t digit = 0; digit < stamp->fraction_digits; ++digit) one /= 10;
+    out += stamp->fraction_ns / one * part.fraction_ns - stamp->fraction_ns;
+  }
   return StampDefect::none;
 }
 
@@ -536,6 +552,7 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
   info.time.column = name.empty() ? fmt::format("c{}", *index) : name;
   if (dialect.time.calendar) {
     say_calendar(study, dialect, info);
+    find_split_seconds(study, dialect, info);
   } else if (pair && *index == pair->first) {
     info.time.unit = "s";
     info.time.unit_ns = 1;

@@ -152,8 +152,9 @@ class Level {
 };
 
 struct Fit {
-  double likelihood = -std::numeric_limits<double>::infinity();
+  double n = 0, variance = 0;  // of the error, less what the sensors' noise makes
   double lag_s = 0;
+  double likelihood() const { return n > 0 ? -0.5 * n * std::log(variance) : -std::numeric_limits<double>::infinity(); }
 };
 
 class Readings {
@@ -185,7 +186,7 @@ class Readings {
     if (!(vp > 0) || !(vr > 0)) return {};
     const double gain = c / vp, error = std::max(vr - gain * c, 1e-12 * vr);
     const double own = gain * gain * noise_ / (samples == "instant" ? 1 : per_interval_);
-    return {-0.5 * n * std::log(std::max(error - own, (1 - kMostNoise) * error)), lag_s};
+    return {n, std::max(error - own, (1 - kMostNoise) * error), lag_s};
   }
 
   Fit best_lag(const std::string& samples) const {
@@ -194,7 +195,15 @@ class Readings {
     Fit best;
     const auto steps = static_cast<int>(most_s / step_s);
     for (int k = -steps; k <= steps; ++k)
-      if (const Fit one = at(samples, k * step_s); one.likelihood > best.likelihood) best = one;
+      if (const Fit one = at(samples, k * step_s); one.likelihood() > best.likelihood()) best = one;
+    // Lags of whole steps smooth the noise alike; between them the variance is a parabola near its least. A mean is one
+    // of whole samples.
+    const double before = at(samples, best.lag_s - step_s).variance, after = at(samples, best.lag_s + step_s).variance;
+    const double bend = before - 2 * best.variance + after;
+    if (samples != "instant" || !(std::min(before, after) > best.variance)) return best;
+    best.lag_s += step_s * (before - after) / bend / 2;
+    best.variance =
+        std::max(best.variance - (before - after) * (before - after) / bend / 8, (1 - kMostNoise) * best.variance);
     return best;
   }
 
@@ -226,24 +235,24 @@ SlowReading read_slowly(const SlowQuestion& question, const std::vector<double>&
   const Level sums(level, rate_hz);
   const Readings readings(sums, rate_hz, track, reference);
   Fit best;
-  double next = best.likelihood;
+  double next = best.likelihood();
   for (const std::string_view one : SceneReference::kReadings) {
     const std::string samples(one);
     if (!open && samples != question.samples) continue;
     // A mean over another interval is the same mean with another lag.
     if (open && question.estimate_lag && interval_start(samples) != 0) continue;
     const Fit fit = question.estimate_lag ? readings.best_lag(samples) : readings.at(samples, question.lag_s);
-    if (fit.likelihood > best.likelihood + (std::isfinite(best.likelihood) ? kApart : 0)) {
-      next = best.likelihood;
+    if (fit.likelihood() > best.likelihood() + (std::isfinite(best.likelihood()) ? kApart : 0)) {
+      next = best.likelihood();
       best = fit;
       out.samples = samples;
     } else {
-      next = std::max(next, fit.likelihood);
+      next = std::max(next, fit.likelihood());
     }
   }
-  if (!std::isfinite(best.likelihood)) return out;
+  if (!std::isfinite(best.likelihood())) return out;
   out.lag_s = best.lag_s;
-  out.margin = std::isfinite(next) ? best.likelihood - next : 0;
+  out.margin = std::isfinite(next) ? best.likelihood() - next : 0;
   return out;
 }
 

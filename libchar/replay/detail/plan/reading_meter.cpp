@@ -26,6 +26,7 @@ constexpr double kLouder = 2.5;           // times the usual rms of a block
 constexpr double kQuietest = 0.5;         // of the usual rms of the middle sensor: less is no scatter of its own
 
 constexpr double kShifted = 0.5;      // of the mean square of a block
+constexpr double kFarOff = 3;         // times the noise, and what is beyond the usual mean of a block
 constexpr double kOutlier = 5;        // times the rms of the steps of its block, and of the usual rms
 constexpr std::size_t kFewClean = 4;  // of so many blocks one without outliers tells the scatter
 constexpr double kMostOfOutlier = 3;  // times a mean of outliers alone, at least, is the rms
@@ -493,6 +494,20 @@ std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const Learn
   return out;
 }
 
+/// As independent noise is, and no error of the motion.
+bool ReadingMeter::noisy(const Sums& s, const LearntSensor::Reading& usual) {
+  const Fit here = fit(s, usual.offset, usual.gain);
+  const double steps = s.srr - 2 * usual.gain * s.sur + usual.gain * usual.gain * s.suu;
+  return s.steps > 0 && steps / (2 * s.steps) > kShifted * (here.rms * here.rms - here.mean * here.mean);
+}
+
+/// So far off that one block says it.
+bool ReadingMeter::far_off(const Sums& s, const LearntSensor::Reading& usual, const Limits& limits, double motion) {
+  const double more = kFarOff * std::max(1.0, motion);
+  return std::abs(fit(s, usual.offset, usual.gain).mean) >
+         more * std::max({kBeyondUsual * usual.usual_mean, usual.usual_rms, limits.least});
+}
+
 /// Its offset or its gain is another: more than half of the scatter.
 bool ReadingMeter::shifted(const Sums& s, const LearntSensor::Reading& usual) {
   const Fit here = fit(s, usual.offset, usual.gain);
@@ -501,27 +516,57 @@ bool ReadingMeter::shifted(const Sums& s, const LearntSensor::Reading& usual) {
   return here.mean * here.mean + by_gain > kShifted * here.rms * here.rms;
 }
 
+// Of each sensor its blocks that are beyond, but for those where it is one further off that moves the median.
+std::vector<ReadingMeter::Blocks> ReadingMeter::blocks_beyond(const Readings& learnt, const Limits& limits) const {
+  std::vector<Blocks> out(std::min(n_, learnt.size()));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].beyond.assign(blocks_.size(), 0);
+    if (!learnt[i]) continue;
+    out[i].motion = motion_factors(i, *learnt[i]);
+    for (std::size_t k = 0; k < blocks_.size(); ++k)
+      out[i].beyond[k] = beyond(blocks_[k][i], *learnt[i], limits, out[i].motion[k]) ? 1 : 0;
+  }
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    double furthest = 0;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (out[i].beyond[k] != 0)
+        furthest = std::max(furthest, std::abs(fit(blocks_[k][i], learnt[i]->offset, learnt[i]->gain).mean));
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (out[i].beyond[k] == 0) continue;
+      const Fit here = fit(blocks_[k][i], learnt[i]->offset, learnt[i]->gain);
+      if (std::abs(here.mean) < furthest && std::abs(here.mean) <= limits.least &&
+          here.rms <= kLouder * learnt[i]->usual_rms)
+        out[i].beyond[k] = 0;
+    }
+  }
+  return out;
+}
+
 // What all sensors do now and then puts single blocks of any beyond: so many in a row are more than those of the middle
 // sensor do by chance, in all sensors together. A run beside its own usual state has more of its own (other axes that
 // move now and then), but for blocks in which its offset or gain is another. Of independent blocks as many as begin a
-// row, of those behind one that is not beyond, are so by chance.
-std::vector<ReadingMeter::LeastRow> ReadingMeter::least_in_a_row(const Readings& learnt, const Limits& limits) const {
-  constexpr double kByChance = 1e-3;
-  const std::size_t sensors = std::min(n_, learnt.size());
-  std::vector<double> begun, own(sensors, 0.0);
-  for (std::size_t i = 0; i < sensors; ++i) {
-    if (!learnt[i]) continue;
-    double times = 0, free = 0;
+// row, of those behind one that is not beyond, are so by chance: `lasts` where more than that follow one that is
+// (binomial).
+std::vector<ReadingMeter::LeastRow> ReadingMeter::least_in_a_row(const std::vector<Blocks>& sensors,
+                                                                 const Limits& limits) const {
+  constexpr double kByChance = 1e-3, kLasts = 0.01;
+  std::vector<double> begun, own(sensors.size(), 0.0), by_chance(sensors.size(), 1.0);
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (sensors[i].motion.empty()) continue;
+    double times = 0, free = 0, follow = 0, behind = 0;
     bool before = false;
-    const std::vector<double> motion = motion_factors(i, *learnt[i]);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const bool now = beyond(blocks_[k][i], *learnt[i], limits, motion[k]);
+    for (const char one : sensors[i].beyond) {
+      const bool now = one != 0;
       times += now && !before ? 1 : 0;
       free += before ? 0 : 1;
+      behind += before ? 1 : 0;
+      follow += now && before ? 1 : 0;
       before = now;
     }
     begun.push_back(times);
-    if (limits.quieter && free > 0) own[i] = (times - 1) / free;
+    if (!limits.quieter || !(free > 0)) continue;
+    own[i] = (times - 1) / free;
+    if (follow > 0) by_chance[i] = binomial_tail(follow - 1, behind, std::min(times / free, 1.0));
   }
   const double blocks = static_cast<double>(blocks_.size());
   const double common = begun.empty() ? 0 : (median_in_place(begun) - 1) / blocks;
@@ -531,33 +576,35 @@ std::vector<ReadingMeter::LeastRow> ReadingMeter::least_in_a_row(const Readings&
     return std::max<std::int64_t>(2, clamped_whole<std::int64_t>(std::ceil(least)));
   };
   std::vector<LeastRow> out;
-  for (const double one : own) out.push_back({row(std::max(common, one)), row(common)});
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    out.push_back({row(std::max(common, own[i])), row(common), by_chance[i] < kLasts, !(common > 0)});
   return out;
 }
 
 std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, bool quieter) const {
   const Limits limits = ReadingMeter::limits(learnt, quieter);
-  const std::vector<LeastRow> least = least_in_a_row(learnt, limits);
+  const std::vector<Blocks> sensors = blocks_beyond(learnt, limits);
+  const std::vector<LeastRow> least = least_in_a_row(sensors, limits);
   std::vector<Change> out;
-  for (std::size_t i = 0; i < std::min(n_, learnt.size()); ++i) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (!learnt[i]) continue;
     const LearntSensor::Reading& usual = *learnt[i];
-    const std::vector<double> motion = motion_factors(i, usual);
     Change one{i, 0, 1, 0, 0, false}, row = one;  // of those in a row
     std::int64_t in_a_row = 0, shifts = 0, changed = 0, first = -1, last = 0;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Sums& s = blocks_[k][i];
       if (s.n < kLeastInBlock) continue;
-      if (!beyond(s, usual, limits, motion[k])) {
+      if (sensors[i].beyond[k] == 0) {
         in_a_row = shifts = 0;
         continue;
       }
-      shifts = shifted(s, usual) ? shifts + 1 : 0;
+      shifts = shifted(s, usual) || (least[i].lasts && noisy(s, usual)) ? shifts + 1 : 0;
       const Fit here = fit(s, usual.offset, usual.gain);
       if (in_a_row++ == 0) row = {i, 0, 1, static_cast<std::int64_t>(k), 0, false};
       if (std::abs(here.mean) > std::abs(row.offset)) row.offset = here.mean;
       if (usual.usual_rms > 0) row.scatter = less_usual(row.scatter, here.rms / usual.usual_rms);
-      if (in_a_row < least[i].any && shifts < least[i].shifted) continue;
+      const bool alone = least[i].alone && far_off(s, usual, limits, sensors[i].motion[k]);
+      if (in_a_row < least[i].any && shifts < least[i].shifted && !alone) continue;
       if (first < 0) first = row.from;
       last = static_cast<std::int64_t>(k);
       ++changed;

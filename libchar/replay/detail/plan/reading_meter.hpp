@@ -126,9 +126,17 @@ class ReadingMeter {
   std::vector<double> motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const;
   struct LeastRow {
     std::int64_t any = 2, shifted = 2;  // blocks
+    bool lasts = false, alone = false;  // more noise counts as `shifted`; one block far off is enough
   };
   static bool shifted(const Sums& sums, const LearntSensor::Reading& usual);
-  std::vector<LeastRow> least_in_a_row(const Readings& learnt, const Limits& limits) const;
+  static bool noisy(const Sums& sums, const LearntSensor::Reading& usual);
+  static bool far_off(const Sums& sums, const LearntSensor::Reading& usual, const Limits& limits, double motion);
+  struct Blocks {
+    std::vector<char> beyond;
+    std::vector<double> motion;  ///< factors; empty: nothing is known of the sensor
+  };
+  std::vector<Blocks> blocks_beyond(const Readings& learnt, const Limits& limits) const;
+  std::vector<LeastRow> least_in_a_row(const std::vector<Blocks>& sensors, const Limits& limits) const;
   void close();
   Readings readings(double share, double mean_factor, double rms_factor) const;
   bool tells_gains() const;
