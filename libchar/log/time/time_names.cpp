@@ -180,7 +180,7 @@ std::optional<TimeName> name_with_unit(std::string words) {
   if (const std::size_t of = all.find(" of "); of != std::string_view::npos) {
     out.unit_ns = unit_of_word(all.substr(all.substr(0, of).rfind(' ') + 1, of - all.substr(0, of).rfind(' ') - 1));
     out.letter = true;
-    return out.unit_ns != 0 && out.unit_ns < kMinute ? std::optional(out) : std::nullopt;
+    return out.unit_ns != 0 && out.unit_ns <= kMinute ? std::optional(out) : std::nullopt;
   }
   const std::string_view word = all.substr(last);
   std::string_view before = trimmed(all.substr(0, last));
