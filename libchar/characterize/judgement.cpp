@@ -203,8 +203,8 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
     if (has(found.out, cause)) std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
   if (channel.fit && has_step(*channel.fit))
     std::erase_if(found.out, [](const Finding& one) { return one.code == "spiky"; });
-  // The zeros of a held value's spectrum lie between humps.
-  if (has(found.out, "held_values"))
+  // The zeros of a held or interpolated value's spectrum lie between humps.
+  if (has(found.out, "held_values") || has(found.out, "resampled"))
     std::erase_if(found.out, [](const Finding& one) { return one.code == "resonance"; });
   // Marks are far from all samples: they look like movement, and what moves is seen without them.
   if (has(found.out, "missing_mark"))

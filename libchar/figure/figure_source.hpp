@@ -29,8 +29,14 @@ struct SourceMark {
 /// Lists are as long as `x` or empty; NaN: not known.
 struct SourceCurve {
   std::string channel;
-  std::string unit;       ///< of the channel, in its usual spelling
-  std::string statistic;  ///< what the values are: "overlapping Allan deviation", "one-sided PSD"
+  std::string unit;  ///< of the channel, in its usual spelling
+  /// What the values are.
+  struct Statistic {
+    std::string title;          ///< "Overlapping Allan deviation", "One-sided PSD"
+    bool is_allan = false;      ///< an estimate of the Allan deviation: they share an axis
+    bool goes_squared = false;  ///< with the square of the channel's unit
+    bool operator==(const Statistic&) const = default;
+  } statistic;
   std::string value_unit;
   bool is_allan = true;
   bool of_model = false;  ///< all of it is computed

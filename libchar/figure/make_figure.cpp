@@ -77,8 +77,7 @@ void scale(std::vector<double>& values, double factor) {
 /// A density and a power go with the square of the unit.
 void convert(SourceCurve& curve, const std::string& unit, double factor) {
   const std::string before = curve.unit;
-  const bool squared = !curve.is_allan && (curve.statistic.ends_with(" PSD") || curve.statistic.ends_with(" PS"));
-  const double of_value = squared ? factor * factor : factor;
+  const double of_value = curve.statistic.goes_squared ? factor * factor : factor;
   for (auto* values : {&curve.y, &curve.low68, &curve.high68, &curve.low95, &curve.high95, &curve.model,
                        &curve.data_sheet, &curve.simulated_y})
     scale(*values, of_value);

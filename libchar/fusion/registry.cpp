@@ -81,11 +81,9 @@ class WatchedRunner final : public Runner {
   const FaultLog* faults() const override { return detector_ ? &detector_->log() : &none_; }
   void remarks(Findings& warnings) const override {
     watched_->remarks(warnings);
-    const std::string_view name = description().name;
-    if (detector_) return detector_->remarks(name, array_.names, warnings);
+    if (detector_) return detector_->remarks(array_.names, warnings);
     warnings.add("faults_not_watched",
-                 std::string(name) +
-                     " looks for no faults: the search takes more than two sensors per input, and at most " +
+                 "no faults are looked for: the search takes more than two sensors per input, and at most " +
                      std::to_string(kMostPaired));
   }
 
@@ -147,8 +145,8 @@ constexpr auto kOptions = all_options<A>();
 
 template <Algorithm A>
 std::unique_ptr<Runner> make(const Array& array, const Settings& settings) {
-  if (std::string sentence = why_not(A::description, array); !sentence.empty())
-    throw usage_error("E0852").says(std::move(sentence));
+  if (const std::string why = why_not(A::description, array); !why.empty())
+    throw usage_error("E0852").says("{} {}", A::description.name, why);
   auto runner = std::make_unique<RunnerOf<A>>(array, settings);
   if constexpr (kWatchable<A>)
     if (settings["fault_detection"] == 1) return std::make_unique<WatchedRunner>(array, settings, std::move(runner));

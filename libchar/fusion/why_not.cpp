@@ -35,24 +35,21 @@ bool tells_inputs_apart(const Array& array) {
 
 std::string why_not(const Description& description, const Array& array) {
   const Needs& needs = description.needs;
-  const std::string name(description.name);
   if (needs.tilt && !array.tilt)
-    return name + " needs a gyroscope axis and two accelerometer axes; say in the scene which channels they are";
-  if (!needs.tilt && array.tilt)
-    return name + " needs channels that measure one thing; a gyroscope and accelerometers do not";
+    return "needs a gyroscope axis and two accelerometer axes; say in the scene which channels they are";
+  if (!needs.tilt && array.tilt) return "needs channels that measure one thing; a gyroscope and accelerometers do not";
   if (array.inputs() > kMaxStates)
-    return name + " estimates at most " + std::to_string(kMaxStates) + " inputs; this scene has " +
+    return "estimates at most " + std::to_string(kMaxStates) + " inputs; this scene has " +
            std::to_string(array.inputs());
   if (!needs.tilt && !needs.observation_matrix && !array.one_common_input())
     return array.inputs() > 1
-               ? name + " estimates one input; this scene has " + std::to_string(array.inputs())
-               : name +
-                     " needs channels that see the input with gain one; this scene's observation matrix says otherwise";
+               ? "estimates one input; this scene has " + std::to_string(array.inputs())
+               : "needs channels that see the input with gain one; this scene's observation matrix says otherwise";
   if (!needs.tilt && !tells_inputs_apart(array))
-    return name + " needs sensors that tell the inputs apart; by this scene's observation matrix " +
+    return "needs sensors that tell the inputs apart; by this scene's observation matrix " +
            count(array.inputs(), "input leaves", "inputs leave") + " the same in all of them";
   if (array.channels < wanted_channels(needs, array)) {
-    std::string sentence = name + " needs at least " + count(wanted_channels(needs, array), "channel", "channels");
+    std::string sentence = "needs at least " + count(wanted_channels(needs, array), "channel", "channels");
     if (needs.more_than_inputs > 0) sentence += " for " + count(array.inputs(), "input", "inputs");
     sentence += "; this scene has " + std::to_string(array.channels);
     if (needs.more_than_inputs == 2 && array.inputs() == 1 && array.channels == 2)
@@ -60,23 +57,22 @@ std::string why_not(const Description& description, const Array& array) {
     return sentence;
   }
   if (needs.max_channels > 0 && array.channels > needs.max_channels)
-    return name + " takes at most " + std::to_string(needs.max_channels) +
+    return "takes at most " + std::to_string(needs.max_channels) +
            " channels (its memory grows with their square); this scene has " + std::to_string(array.channels);
   if (needs.noise_levels && !known(array.noise_levels, array.channels))
-    return name + " needs the noise level of each sensor: give `models`, noise or a stretch at rest";
+    return "needs the noise level of each sensor: give `models`, noise or a stretch at rest";
   if (needs.noise_models && static_cast<Eigen::Index>(array.noise_models.size()) != array.channels)
-    return name + " needs a noise model of each channel, and its noise level; give each sensor its model";
+    return "needs a noise model of each channel, and its noise level; give each sensor its model";
   if (needs.reference_throughout && !array.reference_throughout)
-    return name + " looks at the reference all along; this scene has none over the run";
+    return "looks at the reference all along; this scene has none over the run";
   if (needs.reference && array.learning_samples == 0)
-    return name + " learns from a reference in a learning window (learning: [from, to]), and there is none";
+    return "learns from a reference in a learning window (learning: [from, to]), and there is none";
   if (array.learning_samples < needs.learning_samples)
-    return name + " learns from at least " +
-           count(static_cast<Eigen::Index>(needs.learning_samples), "instant", "instants") +
+    return "learns from at least " + count(static_cast<Eigen::Index>(needs.learning_samples), "instant", "instants") +
            "; the learning window has " + std::to_string(array.learning_samples);
   if (needs.fault_free_start && array.fault_free_samples <= 0)
-    return name + " needs a stretch at the start that is known to hold no fault; say in the scene how long it is";
-  if (needs.rate && !(array.rate_hz > 0)) return name + " needs the sampling rate; the recording has no time axis";
+    return "needs a stretch at the start that is known to hold no fault; say in the scene how long it is";
+  if (needs.rate && !(array.rate_hz > 0)) return "needs the sampling rate; the recording has no time axis";
   return "";
 }
 

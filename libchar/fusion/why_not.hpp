@@ -7,7 +7,7 @@
 
 namespace libchar::fusion {
 
-/// Empty: the algorithm can run on this. Else the sentence that a report prints.
+/// Empty: the algorithm can run on this. Else what a report prints behind its name: "needs the sampling rate".
 std::string why_not(const Description& description, const Array& array);
 
 }  // namespace libchar::fusion

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -22,7 +21,11 @@ constexpr double kGravity = 9.80665;  // m/s^2
 constexpr double kTolerance = 0.15;   // biases and scale errors of cheap sensors, and where on Earth
 constexpr double kAtRest = 0.05;      // standard deviation of all axes together, in g or of the mean's length
 
-using Triad = std::array<std::size_t, 3>;
+/// Channels that are axes of one accelerometer, at least one.
+struct Axes {
+  std::vector<std::size_t> channels;
+  bool has_z = false;
+};
 
 /// Columns of an array are numbered: acc_0, acc_1, acc_2.
 AxisName axis_or_number(const std::string& channel) {
@@ -34,20 +37,19 @@ AxisName axis_or_number(const std::string& channel) {
   return name;
 }
 
-std::vector<Triad> triads_of(std::span<const Channel> channels) {
-  constexpr std::size_t kAbsent = SIZE_MAX;
-  std::map<std::pair<std::string, std::string>, Triad> found;
+std::vector<Axes> accelerometers(std::span<const Channel> channels) {
+  std::map<std::pair<std::string, std::string>, Axes> found;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto unit = find_unit(channels[c].unit);
     if (!unit || unit->quantity != Quantity::acceleration) continue;
     const AxisName name = axis_or_number(channels[c].name);
     if (name.axis == 0) continue;
-    auto& triad = found.try_emplace({name.front, channels[c].unit}, Triad{kAbsent, kAbsent, kAbsent}).first->second;
-    triad[static_cast<std::size_t>(name.axis - 'x')] = c;
+    Axes& axes = found[{name.front, channels[c].unit}];
+    axes.channels.push_back(c);
+    axes.has_z = axes.has_z || name.axis == 'z';
   }
-  std::vector<Triad> out;
-  for (const auto& [key, triad] : found)
-    if (triad[0] != kAbsent && triad[1] != kAbsent && triad[2] != kAbsent) out.push_back(triad);
+  std::vector<Axes> out;
+  for (auto& [key, axes] : found) out.push_back(std::move(axes));
   return out;
 }
 
@@ -81,33 +83,50 @@ Suspicion suspicion_of(double ratio, const std::string& stated, bool steady) {
   return {"unit or scale are another, or the sensor does not rest", ""};
 }
 
+/// One or two axes of three: more than gravity is never right, and an upright axis rarely reads 1 of another unit.
+bool some_axes_tell(double ratio, const std::string& stated, bool has_z) {
+  constexpr double kExactly = 0.02;
+  const double one_g = find_unit(stated)->to_si / kGravity;
+  return ratio > 1 || (has_z && one_g < 0.5 && std::fabs(ratio / one_g - 1) < kExactly);
+}
+
 void judge_gravity(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
-  for (const Triad& triad : triads_of(channels)) {
-    const std::string unit = shown_unit(channels[triad[0]].unit);
-    const double in_g = find_unit(channels[triad[0]].unit)->to_si / kGravity;
+  for (const Axes& axes : accelerometers(channels)) {
+    const std::vector<std::size_t>& all = axes.channels;
+    const std::string unit = shown_unit(channels[all[0]].unit);
+    const double in_g = find_unit(channels[all[0]].unit)->to_si / kGravity;
     double mean = 0, scatter = 0;
-    for (const std::size_t c : triad) {
+    for (const std::size_t c : all) {
       mean += std::pow(quality(c).mean * in_g, 2);
       scatter += std::pow(quality(c).standard_deviation * in_g, 2);
     }
     const double ratio = std::sqrt(mean);
     const bool steady = std::sqrt(scatter) < kAtRest * ratio;
     if (!(steady || std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
-    const Suspicion suspicion = suspicion_of(ratio, channels[triad[0]].unit, steady);
+    const bool whole = all.size() == 3;
+    if (!whole && !some_axes_tell(ratio, channels[all[0]].unit, axes.has_z)) continue;
+    const Suspicion suspicion = suspicion_of(ratio, channels[all[0]].unit, steady);
     Finding found =
         finding("not_gravity",
-                fmt::format("The mean acceleration of the three axes is {} {}, and a sensor at rest reads {}: {}.",
-                            brief_text(ratio / in_g, 4), unit, brief_text(1 / in_g, 4), suspicion.says),
+                fmt::format("The mean acceleration of {} is {} {}, and a sensor at rest reads {}{}: {}.",
+                            whole             ? "the three axes"
+                            : all.size() == 1 ? "the axis"
+                                              : "the two axes",
+                            brief_text(ratio / in_g, 4), unit,
+                            whole       ? ""
+                            : ratio > 1 ? "at most "
+                                        : "upright ",
+                            brief_text(1 / in_g, 4), suspicion.says),
                 fmt::format("the mean acceleration is {} {}: {}", brief_text(ratio / in_g, 4), unit, suspicion.says));
-    if (ratio < kTolerance && suspicion.factor.empty()) found.severity = Severity::caution;
+    if (ratio < kTolerance && (suspicion.factor.empty() || !whole)) found.severity = Severity::caution;
     if (!suspicion.factor.empty()) {
       Finding::Help help{"Scale the axes."};
-      for (const std::size_t c : triad)
+      for (const std::size_t c : all)
         help.options.push_back({"channel_scale", channels[c].name + "=" + suspicion.factor});
       found.help.push_back(std::move(help));
       found.effects = {{Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
     }
-    for (const std::size_t c : triad) quality(c).findings.push_back(found);
+    for (const std::size_t c : all) quality(c).findings.push_back(found);
   }
 }
 

@@ -38,7 +38,8 @@ class DistinctValues {
   const std::vector<double>& values() const { return values_; }
 
   void add(double value) {
-    value += 0.0;  // -0 and +0 are one value
+    value += 0.0;                                                       // -0 and +0 are one value
+    if (!slots_.empty() && slots_[first_slot(value)] == value) return;  // nearly all of a coarse channel
     if (2 * values_.size() >= slots_.size()) grow();
     double& slot = slot_of(value);
     if (!std::isnan(slot)) return;
@@ -59,8 +60,11 @@ class DistinctValues {
  private:
   static constexpr int kLeastBits = 4;
 
+  std::size_t first_slot(double value) const {
+    return detail::in_memory((std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
+  }
   double& slot_of(double value) {
-    std::size_t slot = detail::in_memory((std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15U) >> (64 - bits_));
+    std::size_t slot = first_slot(value);
     while (slots_[slot] != value && !std::isnan(slots_[slot])) slot = (slot + 1) % slots_.size();
     return slots_[slot];
   }
@@ -179,63 +183,77 @@ struct BlockSums {
   double jump = 0;                        // largest |x - before|
   double s1 = 0, s2 = 0, s3 = 0, s4 = 0;  // sums of powers of x - before
   bool repeats = false;                   // some difference is zero
-  std::uint64_t zeros = 0;
-  double nearest = 0;  // least |x| other than zero
+  double nearest = 0;                     // least |x|
+  double bends = 0;                       // squares of differences of x - before
+  std::uint32_t lines = 0;                // bits of stretches that may have two samples side by side on a line
 };
 
-/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width.
+constexpr std::size_t kStretch = detail::LineWatch::kStretch;
+static_assert(kBlock <= 32 * kStretch);
+
+LIBCHAR_LANES double least_of(Four lane) { return std::min({lane[0], lane[1], lane[2], lane[3]}); }
+LIBCHAR_LANES double largest_of(Four lane) { return std::max({lane[0], lane[1], lane[2], lane[3]}); }
+
+/// Sums over x[0..n) and over the differences x[i] - before[i]. Four lanes: the same bits at every vector width. All
+/// that findings need of every sample is here as well: a second look would cost as much as this one.
 LIBCHAR_LANES BlockSums sums_of_lanes(const double* x, const double* before, std::size_t n, double shift) {
-  Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, top = {};
+  Four sum = {}, squares = {}, a1 = {}, a2 = {}, a3 = {}, a4 = {}, bends = {}, top = {}, last = {};
   Four low = {x[0], x[0], x[0], x[0]}, high = low;
-  auto repeats = low != low;  // none yet
-  auto zeros = repeats;       // counted down
-  Four near = low * 0 + __builtin_inf();
+  Four least = low * 0 + __builtin_inf(), near = least;
+  auto straight = low != low;  // none yet
+  std::uint32_t lines = 0;
   const std::size_t whole = n - n % 4;
-  for (std::size_t i = 0; i < whole; i += 4) {
-    const Four v = LIBCHAR_FOUR(x + i), d = v - LIBCHAR_FOUR(before + i), q = d * d;
-    const Four off = v - shift;
-    sum += off;
-    squares += off * off;
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-    repeats |= d == 0.0;
-    const Four size = v < 0.0 ? -v : v;
-    zeros += v == 0.0;
-    near = ((size < near) & (v != 0.0)) ? size : near;
-    top = q > top ? q : top;
-    a1 += d;
-    a2 += q;
-    a3 += q * d;
-    a4 += q * q;
+  for (std::size_t from = 0; from < whole; from += kStretch) {
+    auto pairs = low != low;
+    for (std::size_t i = from; i < std::min(from + kStretch, whole); i += 4) {
+      const Four v = LIBCHAR_FOUR(x + i), d = v - LIBCHAR_FOUR(before + i), q = d * d;
+      const Four off = v - shift, size = v < 0.0 ? -v : v;
+      sum += off;
+      squares += off * off;
+      low = v < low ? v : low;
+      high = v > high ? v : high;
+      near = size < near ? size : near;
+      least = q < least ? q : least;
+      top = q > top ? q : top;
+      a1 += d;
+      a2 += q;
+      a3 += q * d;
+      a4 += q * q;
+      const Four ahead = __builtin_shufflevector(last, d, 3, 4, 5, 6), bend = d - ahead;
+      const Four bend2 = bend * bend;
+      bends += bend2;
+      const auto flag = bend2 < detail::kAboutStraight * (ahead * ahead);
+      pairs |= flag & __builtin_shufflevector(straight, flag, 3, 4, 5, 6);
+      straight = flag;
+      last = d;
+    }
+    lines |= ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) != 0 ? 1U : 0U) << (from / kStretch);
   }
+  double step = last[3];
+  bool beside = straight[3] != 0;
   for (std::size_t i = whole; i < n; ++i) {
-    const double v = x[i], d = v - before[i], q = d * d;
+    const double v = x[i], d = v - before[i], q = d * d, bend = d - step;
     const std::size_t k = i % 4;
+    const bool flag = bend * bend < detail::kAboutStraight * (step * step);
+    lines |= (flag && beside ? 1U : 0U) << (i / kStretch);
+    beside = flag;
+    bends[k] += bend * bend;
+    step = d;
     sum[k] += v - shift;
     squares[k] += (v - shift) * (v - shift);
-    low[k] = v < low[k] ? v : low[k];
-    high[k] = v > high[k] ? v : high[k];
-    repeats[k] |= d == 0 ? -1 : 0;
-    zeros[k] -= v == 0 ? 1 : 0;
-    if (v != 0) near[k] = std::min(near[k], std::fabs(v));
+    low[k] = std::min(low[k], v);
+    high[k] = std::max(high[k], v);
+    near[k] = std::min(near[k], std::fabs(v));
+    least[k] = std::min(least[k], q);
     top[k] = std::max(top[k], q);
     a1[k] += d;
     a2[k] += q;
     a3[k] += q * d;
     a4[k] += q * q;
   }
-  return {fold(sum),
-          fold(squares),
-          std::min({low[0], low[1], low[2], low[3]}),
-          std::max({high[0], high[1], high[2], high[3]}),
-          std::sqrt(std::max({top[0], top[1], top[2], top[3]})),
-          fold(a1),
-          fold(a2),
-          fold(a3),
-          fold(a4),
-          (repeats[0] | repeats[1] | repeats[2] | repeats[3]) != 0,
-          static_cast<std::uint64_t>(-(zeros[0] + zeros[1] + zeros[2] + zeros[3])),
-          std::min({near[0], near[1], near[2], near[3]})};
+  return {fold(sum),      fold(squares), least_of(low), largest_of(high), std::sqrt(largest_of(top)),
+          fold(a1),       fold(a2),      fold(a3),      fold(a4),         least_of(least) == 0,
+          least_of(near), fold(bends),   lines};
 }
 constexpr InLanes<sums_of_lanes> sums_of;
 
@@ -253,6 +271,60 @@ LIBCHAR_LANES bool any_missing_lanes(const double* x, std::size_t n) {
   return any;
 }
 constexpr InLanes<any_missing_lanes> any_missing;
+
+/// Bits of x[i] that equal before[i], 64 in each word.
+LIBCHAR_LANES void equal_bits_lanes(const double* x, const double* before, std::size_t n, std::uint64_t* words) {
+  const std::size_t whole = n - n % 64;
+  for (std::size_t i = 0; i < whole; i += 64) {
+    auto bit = LIBCHAR_FOUR(x) != LIBCHAR_FOUR(x), all = bit;
+    bit = decltype(bit){1, 2, 4, 8};
+    all = bit ^ bit;
+    for (std::size_t k = 0; k < 64; k += 4) {
+      all |= (LIBCHAR_FOUR(x + i + k) == LIBCHAR_FOUR(before + i + k)) & bit;
+      bit <<= 4;
+    }
+    words[i / 64] = static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
+  }
+  if (whole < n) words[whole / 64] = 0;
+  for (std::size_t i = whole; i < n; ++i) words[i / 64] |= std::uint64_t{x[i] == before[i]} << (i % 64);
+}
+constexpr InLanes<equal_bits_lanes> equal_bits;
+
+struct Zeros {
+  std::uint64_t count;
+  double nearest;  ///< least |x| of the others
+};
+
+LIBCHAR_LANES Zeros zeros_of_lanes(const double* x, std::size_t n) {
+  Four near = Four{} + __builtin_inf();
+  auto zeros = near != near;  // counted down
+  const std::size_t whole = n - n % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i), size = v < 0.0 ? -v : v;
+    zeros += v == 0.0;
+    near = ((size < near) & (v != 0.0)) ? size : near;
+  }
+  for (std::size_t i = whole; i < n; ++i) {
+    zeros[0] -= x[i] == 0 ? 1 : 0;
+    near[0] = x[i] != 0 ? std::min(near[0], std::fabs(x[i])) : near[0];
+  }
+  return {static_cast<std::uint64_t>(-(zeros[0] + zeros[1] + zeros[2] + zeros[3])), least_of(near)};
+}
+constexpr InLanes<zeros_of_lanes> zeros_of;
+
+LIBCHAR_LANES bool any_beyond_float_lanes(const double* x, std::size_t n) {
+  using Singles = float __attribute__((vector_size(16)));
+  auto wide = Four{} != Four{};
+  const std::size_t whole = n - n % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const Four v = LIBCHAR_FOUR(x + i);
+    wide |= __builtin_convertvector(__builtin_convertvector(v, Singles), Four) != v;
+  }
+  bool any = (wide[0] | wide[1] | wide[2] | wide[3]) != 0;
+  for (std::size_t i = whole; i < n; ++i) any |= static_cast<double>(static_cast<float>(x[i])) != x[i];
+  return any;
+}
+constexpr InLanes<any_beyond_float_lanes> any_beyond_float;
 
 // Mean and variance only: sums about the block's first value, blocks merged by Chan's formula (core/moments.hpp has all
 // four moments at three times the cost, which a meter that runs on every sample need not pay).
@@ -280,8 +352,10 @@ struct MeanAndSpread {
 // Raw moments of differences: their mean is next to nothing beside their spread, except for counters.
 struct DifferenceMoments {
   double n = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0;
+  double bends = 0;  // squares of their own differences
 
   void add(const BlockSums& block) {
+    bends += block.bends;
     s1 += block.s1;
     s2 += block.s2;
     s3 += block.s3;
@@ -289,6 +363,7 @@ struct DifferenceMoments {
   }
   void join(const DifferenceMoments& later) {
     n += later.n;
+    bends += later.bends;
     s1 += later.s1;
     s2 += later.s2;
     s3 += later.s3;
@@ -302,6 +377,8 @@ struct DifferenceMoments {
     const double v = n > 1 ? (s2 - s1 * s1 / n) / (n - 1) : 0;
     return v > 0 ? std::sqrt(v) : 0;
   }
+  /// Mean square of the bends over that of the steps: 3 for white noise, 0 for what moves smoothly.
+  double roughness() const { return s2 > 0 ? bends / s2 : 0; }
   double kurtosis() const {
     if (n < 4 || !(s2 > 0)) return 3;
     const double m = s1 / n, v = s2 / n - m * m;
@@ -408,14 +485,10 @@ struct RestingValue {
   double value = 0;
   std::uint64_t count = 0;  // 0: none yet
 
-  void look(double v, std::uint64_t run) {
-    constexpr std::uint64_t kRests = 8;
-    if (count == 0 && run == kRests) {
-      value = v;
-      count = run;
-    } else if (count > 0 && v == value) {
-      ++count;
-    }
+  static constexpr std::uint64_t kRests = 8;
+
+  void look(const double* x, std::size_t from, std::size_t n) {
+    for (std::size_t i = from; i < n; ++i) count += x[i] == value ? 1 : 0;
   }
   void join(const RestingValue& later) {
     if (count > 0 && later.count > 0 && later.value == value)
@@ -601,6 +674,11 @@ struct ZeroWatch {
   std::uint64_t count = 0, repeats = 0;  // repeats: of a zero right before
   double nearest = __builtin_inf();
 
+  void block(const double* x, std::size_t n, double near) {
+    if (near > 0) return join(0, near);
+    const Zeros zeros = zeros_of(x, n);
+    join(zeros.count, zeros.nearest);
+  }
   void join(std::uint64_t more, double near) {
     count += more;
     nearest = std::min(nearest, near);
@@ -644,8 +722,9 @@ struct QualityMeter::State {
   void hold(const double* x, std::size_t n);
   void process_held();
   void process(const double* x, const double* before, const BlockSums& sums, std::size_t n, std::size_t breaks);
-  void runs(const double* x, const double* before, std::size_t n, bool repeats, const unsigned char* begins,
+  void runs(const double* x, const double* before, const BlockSums& sums, std::size_t n, const unsigned char* begins,
             std::uint64_t at);
+  void equal_runs(const double* x, const double* before, std::size_t n, const unsigned char* begins, std::uint64_t at);
   bool may_saturate(std::uint64_t levels) const;
   void judge_exits(ChannelQuality& q) const;
   void join(const State& later);
@@ -658,7 +737,7 @@ void QualityMeter::State::layout(auto& at, auto& s) {
   auto& d = s.differences;
   auto& b = s.beginning;
   at.group(kWhat, s.values.origin, s.values.n, s.values.mean, s.values.m2);
-  at.group(kWhat, d.n, d.s1, d.s2, d.s3, d.s4);
+  at.group(kWhat, d.n, d.s1, d.s2, d.s3, d.s4, d.bends);
   DistinctValues::layout(at, s.distinct);
   WrapWatch::layout(at, s.odd.wraps);
   at(s.odd.resting.value);
@@ -690,7 +769,7 @@ void QualityMeter::State::push(std::span<const double> samples) {
     if (n == kBlock && joined && x != samples.data()) {
       const BlockSums sums = sums_of(x, x - 1, n, x[0]);
       if (!std::isnan(sums.sum) && sums.low >= -kLargestSample && sums.high <= kLargestSample) {
-        runs(x, x - 1, n, sums.repeats, nullptr, place());
+        runs(x, x - 1, sums, n, nullptr, place());
         odd.counter.block(x, x - 1, nullptr, n);
         process(x, x - 1, sums, n, 0);
         x += n;
@@ -754,7 +833,7 @@ void QualityMeter::State::process_held() {
     before = without_breaks;
   }
   const BlockSums sums = sums_of(x, before, n, x[0]);
-  runs(x, held.data(), n, sums.repeats, any_start ? starts.data() : nullptr, held_at);
+  runs(x, held.data(), sums, n, any_start ? starts.data() : nullptr, held_at);
   odd.counter.block(x, held.data(), starts.data(), n);
   process(x, before, sums, n, breaks);
   used = 0;
@@ -768,46 +847,62 @@ void QualityMeter::State::process(const double* x, const double* before, const B
   maximum = std::max(maximum, sums.high);
   if (const double range = maximum - minimum; range > 0 && sums.jump >= WrapWatch::kJump * range)
     odd.wraps.block(x, before, n, range);
-  odd.zero.join(sums.zeros, sums.nearest);
+  odd.zero.block(x, n, sums.nearest);
   differences.add(sums);
   differences.n += static_cast<double>(n - breaks);
   top.block(x, n, sums.high);
   bottom.block(x, n, sums.low);
-  if (float32) {
-    int wide = 0;
-    for (std::size_t i = 0; i < n; ++i) wide |= static_cast<double>(static_cast<float>(x[i])) != x[i];
-    float32 = wide == 0;
-  }
+  float32 = float32 && !any_beyond_float(x, n);
   for (std::size_t i = 0; i < n && !distinct.full(); ++i) distinct.add(x[i]);
   previous = x[n - 1];
 }
 
-// Differences of exactly zero in a row; a missing sample ends a run.
-void QualityMeter::State::runs(const double* x, const double* before, std::size_t n, bool repeats,
-                               const unsigned char* begins, std::uint64_t at) {
-  odd.lines.block({x, n}, begins, at);
-  const std::size_t first = values.n == 0 ? 1 : 0;
-  const auto follows = [&](std::size_t i) { return begins == nullptr || begins[i] == 0; };
-  const auto leave = [&](std::size_t i) {
-    odd.exits.leave(odd.same.now() + 1, follows(i) ? x[i] - before[i] : 0, odd.same.pauses() == 0);
-  };
-  if (!repeats) {
-    if (n > first) leave(first);
-    return odd.same.push_without(n - first);
+/// The first place from `at` on whose bit is `value`; n: there is none.
+static std::size_t next_bit(const std::uint64_t* words, std::size_t at, std::size_t n, bool value) {
+  while (at < n) {
+    const std::uint64_t left = (value ? words[at / 64] : ~words[at / 64]) >> (at % 64);
+    if (left != 0) return std::min(n, at + static_cast<std::size_t>(std::countr_zero(left)));
+    at += 64 - at % 64;
   }
-  if (first == 1) odd.resting.look(x[0], 1);
-  const auto equals = [&](std::size_t i) { return x[i] - before[i] == 0 && follows(i); };
+  return n;
+}
+
+// Differences of exactly zero in a row; a missing sample ends a run.
+void QualityMeter::State::runs(const double* x, const double* before, const BlockSums& sums, std::size_t n,
+                               const unsigned char* begins, std::uint64_t at) {
+  odd.lines.block({x, n}, begins, at, sums.lines, odd.same.set());
+  if (sums.repeats) return equal_runs(x, before, n, begins, at);
+  const std::size_t first = values.n == 0 ? 1 : 0;
+  const bool follows = begins == nullptr || begins[first] == 0;
+  if (n > first) odd.exits.leave(odd.same.now() + 1, follows ? x[first] - before[first] : 0, odd.same.pauses() == 0);
+  odd.same.push_without(n - first);
+}
+
+void QualityMeter::State::equal_runs(const double* x, const double* before, std::size_t n, const unsigned char* begins,
+                                     std::uint64_t at) {
+  std::uint64_t words[kBlock / 64];
+  equal_bits(x, before, n, words);
+  const auto follows = [&](std::size_t i) { return begins == nullptr || begins[i] == 0; };
+  const std::size_t first = values.n == 0 ? 1 : 0;
+  for (std::size_t i = 0; i < n && (begins != nullptr || i < first); ++i)
+    if (i < first || begins[i] != 0) words[i / 64] &= ~(std::uint64_t{1} << (i % 64));
+  std::size_t rests_from = odd.resting.count > 0 ? 0 : n;
   for (std::size_t i = first, from = first; i < n; from = i) {
-    if (!equals(i)) leave(i);
-    for (; i < n && !equals(i); ++i) odd.resting.look(x[i], 1);
+    i = next_bit(words, from, n, true);
+    if (i > from)
+      odd.exits.leave(odd.same.now() + 1, follows(from) ? x[from] - before[from] : 0, odd.same.pauses() == 0);
     odd.same.push_without(i - from);
-    const std::uint64_t run = odd.same.now() + 2;
-    for (from = i; i < n && equals(i); ++i) {
-      odd.resting.look(x[i], run + (i - from));
-      odd.zero.repeats += x[i] == 0 ? 1 : 0;
+    from = i;
+    i = next_bit(words, from, n, false);
+    const std::uint64_t run = odd.same.now() + 1;  // of one value, before these
+    if (odd.resting.count == 0 && run < RestingValue::kRests && run + (i - from) >= RestingValue::kRests) {
+      odd.resting = {x[from], RestingValue::kRests};
+      rests_from = from + (RestingValue::kRests - run);
     }
+    if (i > from && x[from] == 0) odd.zero.repeats += i - from;
     odd.same.push_run(i - from, at + from);
   }
+  odd.resting.look(x, rests_from, n);
 }
 
 /// How often each value is recorded, 1: once. Polled at r times the sensor's rate, runs are floor(r) or ceil(r) long;
@@ -1010,26 +1105,32 @@ void judge_held(const ChannelQuality& q, double rate_hz, std::vector<Finding>& o
                                                 : "is slower than the log")));
 }
 
-/// Gaps that were filled. A signal without noise is full of lines.
+/// Gaps that were filled, or all of it resampled. A signal without noise is full of lines.
 void judge_lines(const ChannelQuality& q, double rate_hz, std::vector<Finding>& out) {
   constexpr double kMuch = 0.01, kAll = 0.5;
   constexpr std::uint64_t kFewestSamples = 1000;
-  if (q.signs.lines.runs == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
-  if (!q.signs.counter.empty() || !is_restless(q)) return;
-  const double share = static_cast<double>(q.signs.lines.samples) / static_cast<double>(q.samples);
-  Finding lines = finding(
-      "interpolated",
-      fmt::format("{}{} lie {}: filled or interpolated", q.signs.lines.least == 1 ? "about " : "",
-                  share < kMuch ? plural(q.signs.lines.samples, "sample") : percent_text(share) + " of the samples",
-                  q.signs.lines.least == 1
-                      ? "half-way between their neighbours"
-                      : "on straight lines between two others, in " + plural(q.signs.lines.runs, "place")));
-  lines.count = q.signs.lines.runs;
-  lines.where.time_s = times_of(q.signs.lines.at, rate_hz);
-  if (share > kMuch) lines.severity = Severity::bad;
-  if (share < kAll)
+  const ChannelQuality::Signs::Lines& found = q.signs.lines;
+  if (found.runs == 0 || q.samples < kFewestSamples || q.distinct_values <= 16) return;
+  if (!q.signs.counter.empty() || !(is_restless(q) || found.throughout)) return;
+  const double share = static_cast<double>(found.samples) / static_cast<double>(q.samples);
+  const std::string samples =
+      (found.least == 1 ? "about " : "") +
+      (share < kMuch ? plural(found.samples, "sample") : percent_text(share) + " of the samples");
+  Finding lines =
+      found.throughout
+          ? finding("resampled", samples +
+                                     " lie on straight lines between two others, throughout: a slower channel, "
+                                     "interpolated to this rate; its noise ends where that of the sensor does")
+          : finding("interpolated", fmt::format("{} lie {}: filled or interpolated", samples,
+                                                found.least == 1 ? "half-way between their neighbours"
+                                                                 : "on straight lines between two others, in " +
+                                                                       plural(found.runs, "place")));
+  lines.count = found.runs;
+  if (!found.throughout) lines.where.time_s = times_of(found.at, rate_hz);
+  if (share > kMuch && !found.throughout) lines.severity = Severity::bad;
+  if (share < kAll && !found.throughout)
     lines.help.push_back(
-        {"Take what lies on lines as missing.", {{"interpolated", fmt::format("{}", q.signs.lines.least + 2)}}});
+        {"Take what lies on lines as missing.", {{"interpolated", fmt::format("{}", found.least + 2)}}});
   out.push_back(std::move(lines));
 }
 
@@ -1273,9 +1374,12 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
     else if (state.top.are_marks(state.top.third + state.bottom.value))
       q.signs.marks.insert(q.signs.marks.end(), {state.top.next, q.maximum});
   }
-  // What rests at zero is no mark, however far the rest is from it.
+  // What rests at zero is no mark, however far the rest is from it. It does for a good part of the record: what reads
+  // zero now and then is off, or has no reading.
   const std::uint64_t resting = state.odd.same.from_length(kFrozenRun - 1).second;
-  const bool rests = state.odd.zero.count > 0 && 2 * resting > state.odd.zero.count;
+  constexpr double kGoodPart = 0.1;
+  const bool rests =
+      static_cast<double>(state.odd.zero.count) > kGoodPart * state.values.n && 2 * resting > state.odd.zero.count;
   if (rests) std::erase(q.signs.marks, 0.0);
   q.signs.marked = 0;
   for (const double mark : q.signs.marks)
@@ -1288,10 +1392,12 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.signs.longest.second = state.odd.same.second_longest() + 1;
   state.judge_exits(q);
   q.signs.held_times = held_times(state.odd.same);
+  q.repeats = state.odd.same.set();
   const detail::LineWatch::Found lines =
-      state.odd.lines.found(q.difference_kurtosis > kMostKurtosis ? 1 : value_step(q) / q.difference_sd);
+      state.odd.lines.found(q.difference_kurtosis > kMostKurtosis ? 1 : value_step(q) / q.difference_sd, q.repeats);
   q.signs.lines.least = lines.least_run;
-  q.signs.roughness = state.odd.lines.roughness();
+  q.signs.roughness = state.differences.roughness();
+  q.signs.lines.throughout = lines.apart;
   if (lines.least_run > 0) {
     std::tie(q.signs.lines.runs, q.signs.lines.samples) = lines.runs->from_length(lines.least_run);
     if (lines.alone > 0)
@@ -1304,7 +1410,6 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.signs.zeros = state.odd.zero.count;
   q.signs.zero_is_end = (q.minimum == 0 && state.bottom.is_reached(value_step(q))) ||
                         (q.maximum == 0 && state.top.is_reached(value_step(q)));
-  q.repeats = state.odd.same.set();
   q.signs.other_repeats = q.repeats - std::min(q.repeats, state.odd.zero.repeats);
   q.signs.nearest_to_zero = state.odd.zero.nearest;
   q.at_minimum = state.bottom.count;

@@ -42,8 +42,9 @@ struct ChannelQuality {
     struct Lines {
       std::uint64_t runs = 0, samples = 0, least = 0;
       std::vector<Place> at;
+      bool throughout = false;  ///< straight lines between samples, and nothing nearly straight
     } lines;
-    double roughness = 0;             ///< mean square of second differences over that of the first, about
+    double roughness = 0;             ///< mean square of second differences over that of the first
     double held_times = 1;            ///< each value is recorded, on average, where a slower sensor was polled
     std::uint64_t marked = 0;         ///< samples at `marks`
     std::uint64_t other_repeats = 0;  ///< samples that equal the one before and are not 0

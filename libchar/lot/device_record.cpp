@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libchar/characterize/compare/runs.hpp"
@@ -170,6 +171,37 @@ const RecordedValue* RecordedChannel::find(DeviceQuantity quantity) const {
   for (const RecordedValue& v : values)
     if (v.quantity == quantity) return &v;
   return nullptr;
+}
+
+bool RecordedChannel::is_spoilt(DeviceQuantity quantity) const {
+  const bool bias = quantity == DeviceQuantity::turn_on_bias;
+  const std::optional<Term> term = term_of(quantity);
+  const auto concerns = [&](const Finding::Effect& effect) {
+    switch (effect.quantity) {
+      case Affected::values:
+      case Affected::scale:
+        return true;
+      case Affected::mean:
+        return bias;
+      case Affected::time:
+      case Affected::rate:
+      case Affected::noise:
+        return !bias;
+      case Affected::white:
+        return term == Term::white;
+      case Affected::flicker:
+        return term == Term::flicker;
+      case Affected::walk:
+        return term == Term::walk;
+      case Affected::weights:
+      case Affected::verdict:
+        break;
+    }
+    return false;
+  };
+  return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) {
+    return one.severity == Severity::bad && std::any_of(one.effects.begin(), one.effects.end(), concerns);
+  });
 }
 
 DeviceRecord record_of(const Characterization& result, SampleKind data) {

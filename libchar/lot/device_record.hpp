@@ -73,6 +73,8 @@ struct RecordedChannel {
   std::vector<RecordedValue> values;  ///< in the order of the enum, none twice; a term that was not fitted has none
   std::vector<Finding> findings;      ///< the worst first
   const RecordedValue* find(DeviceQuantity quantity) const;
+  /// A bad finding concerns the quantity: its value is not that of the sensor.
+  bool is_spoilt(DeviceQuantity quantity) const;
   bool operator==(const RecordedChannel&) const;
 };
 

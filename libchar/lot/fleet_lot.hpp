@@ -70,6 +70,7 @@ struct LotCounts {
   std::size_t counted = 0;       ///< detected
   std::size_t not_detected = 0;  ///< upper limit only
   std::size_t doubtful = 0;      ///< undetermined or misfit
+  std::size_t spoilt = 0;        ///< a bad finding concerns it
   std::size_t no_result = 0;     ///< no fit, or the quantity is not in it
 };
 

@@ -627,7 +627,7 @@ void add_doubts_of_chosen(ReplayResult& out) {
     if (!(out.best && *out.best == i) && a.label != out.best_fusion) continue;
     for (const Finding& one : a.remarks.list())
       if (one.severity != Severity::note) {
-        Finding& added = out.warnings.add(one.code, one.sentence, {}, one.count);
+        Finding& added = out.warnings.add(one.code, a.label + ": " + one.sentence, {}, one.count);
         added.subject = a.label;
         added.help = one.help;
       }

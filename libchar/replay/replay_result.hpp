@@ -145,7 +145,7 @@ struct AlgorithmResult : detail::FaultsFound {
   const fusion::Description* description = nullptr;
   fusion::Settings settings = fusion::Settings();
   bool ran = false;
-  std::string why;     ///< why it did not run, a sentence
+  std::string why;     ///< why it did not run, without its name
   bool bound = false;  ///< it looked at the reference of the run itself
 
   std::vector<InputScore> inputs;  ///< empty without a reference

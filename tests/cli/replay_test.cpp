@@ -165,7 +165,7 @@ TEST_CASE("replay: --explain says what would be done and writes nothing") {
   CHECK_THAT(ran.out, Contains("evaluation: 5000 instants at 100 Hz from 10 s to 60 s"));
   CHECK_THAT(ran.out, Contains("no sensor fails in the first 20 s of it"));
   CHECK_THAT(ran.out, Contains("failed sensors left out"));
-  CHECK_THAT(ran.out, Contains("skips tilt-kalman needs"));
+  CHECK_THAT(ran.out, Contains("skips tilt-kalman: needs"));
   CHECK_FALSE(fs::exists(bench.folder / "out"));
   // Nobody learns: the learning window is not read, and the plan says so.
   const auto mean = bench.replay({"--explain", "--algorithms", "mean"});

@@ -15,7 +15,7 @@ inline SourceCurve figure_curve(const std::string& channel, const std::string& u
   SourceCurve c;
   c.channel = channel;
   c.unit = c.value_unit = unit;
-  c.statistic = "Overlapping Allan deviation";
+  c.statistic = {"Overlapping Allan deviation", true};
   for (int i = 0; i <= 25; ++i) {
     const double tau = 0.01 * std::pow(10.0, i / 5.0);
     const double y = std::sqrt(1e-4 / tau + 1e-6 * tau / 3);

@@ -27,7 +27,7 @@ TEST_CASE("tables of curves are read with their intervals and units") {
                                  "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n"
                                  "x,deg/s,1,0.5,0.4,0.6,0.3,0.7,10,9,mdev\nx,deg/s,2,0.3,,,,,,4,mdev\n"));
   REQUIRE(allan.curves.size() == 1);
-  CHECK(allan.curves[0].statistic == "Modified Allan deviation");
+  CHECK(allan.curves[0].statistic.title == "Modified Allan deviation");
   CHECK(allan.curves[0].y == std::vector<double>{0.5, 0.3});
   CHECK(allan.curves[0].high95[0] == 0.7);
   CHECK(std::isnan(allan.curves[0].high95[1]));
@@ -35,7 +35,7 @@ TEST_CASE("tables of curves are read with their intervals and units") {
   const FigureSource wide =
       read_figure_source(written(folder, "p.csv", "frequency_hz,x[(deg/s)²/Hz],y[g²/Hz]\n0,1,2\n0.5,3,4\n1,5,6\n"));
   REQUIRE(wide.curves.size() == 2);
-  CHECK(wide.curves[0].statistic == "One-sided PSD");
+  CHECK(wide.curves[0].statistic.title == "One-sided PSD");
   CHECK(wide.curves[0].unit == "deg/s");
   CHECK(wide.curves[1].y == std::vector<double>{4, 6});
   const FigureSource variances = read_figure_source(written(folder, "v.csv", "tau,avar\n1,0.04\n10,0.01\n"));

@@ -150,7 +150,7 @@ TEST_CASE("files of one name are told apart by their folders") {
 TEST_CASE("several statistics of one channel are drawn together, told apart by their names") {
   FigureSource source =
       test::figure_source_of({test::figure_curve("gyro_x", "deg/s"), test::figure_curve("gyro_x", "deg/s")});
-  source.curves[1].statistic = "Modified Allan deviation";
+  source.curves[1].statistic = {"Modified Allan deviation"};
   Chart chart = chart_of(source, "allan");
   REQUIRE(chart.series.size() == 2);
   CHECK(chart.series[0].name == "Overlapping Allan deviation");
@@ -158,12 +158,12 @@ TEST_CASE("several statistics of one channel are drawn together, told apart by t
   CHECK_THAT(chart.y.title, Catch::StartsWith("Deviation"));
   for (const char* statistic : {"Overlapping Allan deviation", "Modified Allan deviation"}) {
     source.curves.push_back(test::figure_curve("gyro_y", "deg/s"));
-    source.curves.back().statistic = statistic;
+    source.curves.back().statistic = {statistic};
   }
   chart = chart_of(source, "allan");
   REQUIRE(chart.series.size() == 4);
   CHECK(chart.series[3].name == "gyro_y, Modified Allan deviation");
-  source.curves[1].statistic = "Time deviation";
+  source.curves[1].statistic = {"Time deviation"};
   source.curves[1].value_unit = "deg";
   CHECK_THROWS_WITH(chart_of(source, "allan"), Contains("E0976") && Contains("Time deviation in deg"));
 }
@@ -181,7 +181,7 @@ TEST_CASE("what does not go together is refused in a sentence") {
   CHECK_THROWS_WITH(chart_of(mixed, "alan"), Contains("E0978") && Contains("allan"));
   FigureSource other = mixed;
   other.curves[1] = test::figure_curve("accel", "deg/s");
-  other.curves[1].statistic = "Hadamard deviation";
+  other.curves[1].statistic = {"Hadamard deviation"};
   CHECK_THROWS_WITH(chart_of(other, "allan"), Contains("E0983") && Contains("Hadamard"));
   FigureOptions options;
   options.channels = {"gyro"};

@@ -64,15 +64,15 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   const auto needing = [](const Needs& needs) { return Description{"foo", "Foo", "here", "O(n)", needs}; };
   Array two = test::array(2);
   CHECK(why_not(needing({}), two).empty());
-  CHECK(why_not(needing({.min_channels = 3}), two) == "foo needs at least 3 channels; this scene has 2");
+  CHECK(why_not(needing({.min_channels = 3}), two) == "needs at least 3 channels; this scene has 2");
   CHECK(why_not(needing({.max_channels = 2}), two).empty());
   CHECK(why_not(needing({.max_channels = 2}), test::array(3)) ==
-        "foo takes at most 2 channels (its memory grows with their square); this scene has 3");
+        "takes at most 2 channels (its memory grows with their square); this scene has 3");
   CHECK(why_not(needing({.more_than_inputs = 2}), two) ==
-        "foo needs at least 3 channels for 1 input; this scene has 2 (the difference of two channels tells the sum of "
+        "needs at least 3 channels for 1 input; this scene has 2 (the difference of two channels tells the sum of "
         "their variances, not which is the noisier)");
   CHECK(why_not(needing({.noise_levels = true}), two) ==
-        "foo needs the noise level of each sensor: give `models`, noise or a stretch at rest");
+        "needs the noise level of each sensor: give `models`, noise or a stretch at rest");
   two.noise_levels = Eigen::Vector2d(1, 0);
   CHECK_FALSE(why_not(needing({.noise_levels = true}), two).empty());
   two.noise_levels = Eigen::Vector2d(1, 2);
@@ -81,7 +81,7 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   two.learning_samples = 10;
   CHECK(why_not(needing({.reference = true}), two).empty());
   CHECK(why_not(needing({.learning_samples = 11, .reference = true}), two) ==
-        "foo learns from at least 11 instants; the learning window has 10");
+        "learns from at least 11 instants; the learning window has 10");
   CHECK_FALSE(why_not(needing({.reference_throughout = true}), two).empty());
   CHECK_FALSE(why_not(needing({.fault_free_start = true}), two).empty());
   CHECK_FALSE(why_not(needing({.rate = true}), two).empty());
@@ -92,7 +92,7 @@ TEST_CASE("why_not: a sentence for each thing that is missing") {
   CHECK_FALSE(why_not(needing({}), two).empty());
   CHECK(why_not(needing({.observation_matrix = true}), two).empty());
   two.observation_matrix = Eigen::MatrixXd::Ones(2, 3);
-  CHECK(why_not(needing({}), two) == "foo estimates one input; this scene has 3");
+  CHECK(why_not(needing({}), two) == "estimates one input; this scene has 3");
   two.observation_matrix = Eigen::MatrixXd::Ones(2, kMaxStates + 1);
   CHECK_FALSE(why_not(needing({.observation_matrix = true}), two).empty());
   two.tilt = TiltChannels{};

@@ -52,5 +52,5 @@ QUESTIONS = [
     Question("what a sentence means", "",
              r'\brfind\("[a-z]+ ", 0\)|\bstarts_with\("[A-Z][a-z]+ [^"]*"\)|\.find\("published"\)'
              r"|substr\((\w+)\.find\('\['\)\)"
-             r"|\.(?:sentence|phrase|why|verdict)\.(?:find|rfind|starts_with|ends_with|contains)\("),
+             r"|\.(?:sentence|phrase|why|verdict|title|statistic)\.(?:find|rfind|starts_with|ends_with|contains)\("),
 ]

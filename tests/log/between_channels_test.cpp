@@ -67,10 +67,28 @@ TEST_CASE("gravity: what was taken out is a caution, what moves is not judged") 
   CHECK(scale(triad(5, "m/s^2", 2)) == "none");
 }
 
-TEST_CASE("gravity: one axis, other quantities and names without axes are not judged") {
+TEST_CASE("gravity: one axis and two tell where they read more than gravity, or upright 1 of another unit") {
+  const auto axis = [](const std::string& name, double mean, const std::string& unit) {
+    const std::vector<Channel> channels = {{name, unit, false}};
+    std::vector<ChannelQuality> quality(1);
+    quality[0].samples = 1000;
+    quality[0].mean = mean;
+    quality[0].standard_deviation = 0.001 * std::abs(mean);
+    judge_together(channels, [&](std::size_t c) -> ChannelQuality& { return quality[c]; });
+    return quality[0].findings;
+  };
+  CHECK(has(axis("acc_z", 1.0, "m/s^2"), "not_gravity"));
+  CHECK(has(axis("acc_x", 9.8, "g"), "not_gravity"));
+  CHECK(axis("acc_z", 9.8, "m/s^2").empty());
+  CHECK(axis("acc_z", -1, "g").empty());
+  for (const double tilted : {0.0, 0.3, 1.0, 4.9}) CHECK(axis("acc_x", tilted, "m/s^2").empty());
+  CHECK(axis("acc_z", 4.9, "m/s^2").empty());
+}
+
+TEST_CASE("gravity: other quantities and names without axes are not judged") {
   Scene one = triad(1, "m/s^2", 0.001);
   for (ChannelQuality& q : one.quality) q.findings.clear();
-  one.channels[1].name = "temperature";
+  for (std::size_t c = 0; c < 3; ++c) one.channels[c].name = "temperature " + std::to_string(c);
   judge_together(one.channels, [&](std::size_t c) -> ChannelQuality& { return one.quality[c]; });
   CHECK(one.quality[0].findings.empty());
   CHECK(scale(triad(1, "rad/s", 0.001)) == "none");

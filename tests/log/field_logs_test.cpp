@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
+#include <numeric>
+#include <random>
 
 #include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/time/calendar.hpp"
@@ -624,6 +627,17 @@ TEST_CASE("rows whose clock stands at no time are not named by the first of them
   but.channels = {"!c0"};
   but.rate_hz = 1;
   check_columns(read_text(text, but), 1);
+}
+
+TEST_CASE("rows in no order are refused with the way to sort them, and with no rate that they do not have") {
+  std::mt19937 engine(4);
+  std::vector<int> order(3000);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), engine);
+  std::string text = "time,a\n";
+  for (const int k : order) text += fmt::format("{:.2f},{:.2f}\n", 0.01 * k, logged(k % kLoggerRows, 1));
+  CHECK_THAT(failure(text), Contains("E0317") && Contains("in no order") && Contains("sort the rows by time") &&
+                                !Contains("`rate_hz` 0"));
 }
 
 TEST_CASE("stamps that begin again every few rows are refused") {

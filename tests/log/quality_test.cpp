@@ -620,6 +620,51 @@ TEST_CASE("samples that only repeat the one before are told from what steps repe
   CHECK_FALSE(has(meter(handled).findings, "repeated_samples"));
 }
 
+TEST_CASE("a slower channel that was interpolated by straight lines is named, whatever the ratio of the rates") {
+  std::mt19937_64 engine(26);
+  std::normal_distribution<double> normal;
+  const auto resampled = [&](double ratio, double digits) {
+    std::vector<double> slow(30000), out(30000);
+    for (double& v : slow) v = normal(engine);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double at = static_cast<double>(i) / ratio, share = at - std::floor(at);
+      const auto k = static_cast<std::size_t>(at);
+      out[i] = std::round((slow[k] + share * (slow[k + 1] - slow[k])) * digits) / digits;
+    }
+    return meter(out);
+  };
+  for (const double ratio : {2.0, 2.5, 3.15, 3.2, 10.0 / 3, 4.0, 6.25, 10.0}) {
+    INFO("ratio " << ratio);
+    const ChannelQuality q = resampled(ratio, 1e6);
+    REQUIRE(has(q.findings, "resampled"));
+    CHECK_FALSE(has(q.findings, "interpolated"));
+    CHECK(worst_of(q.findings) == Severity::caution);
+  }
+  // What moves smoothly, and noise between coarse steps, are full of lines of their own.
+  std::vector<double> smooth(30000), coarse(30000), walk(30000);
+  double one = 0;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    smooth[i] = std::sin(1e-3 * static_cast<double>(i)) + std::sin(0.37e-2 * static_cast<double>(i));
+    coarse[i] = std::round(1.5 * normal(engine));
+    walk[i] = one += std::round(0.6 * normal(engine));
+  }
+  for (const auto* x : {&smooth, &coarse, &walk}) CHECK_FALSE(has(meter(*x).findings, "resampled"));
+}
+
+TEST_CASE("zeros in bursts, far from all other values, are no rest") {
+  std::mt19937_64 engine(27);
+  std::normal_distribution<double> normal;
+  std::vector<double> x(20000);
+  for (double& v : x) v = std::round((350 + 0.25 * normal(engine)) * 4) / 4;
+  for (std::size_t at = 1000; at + 100 < x.size(); at += 2500) std::fill_n(x.begin() + at, 40, 0.0);
+  const ChannelQuality q = meter(x);
+  REQUIRE(has(q.findings, "missing_mark"));
+  CHECK(q.signs.marks == std::vector<double>{0});
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (i / 1000 % 3 == 0) x[i] = 0;  // a pump that is off for a third of the time
+  CHECK_FALSE(has(meter(x).findings, "missing_mark"));
+}
+
 TEST_CASE("spikes of one size are no wraps, and one frozen stretch is no held value") {
   std::mt19937_64 engine(22);
   std::normal_distribution<double> normal;

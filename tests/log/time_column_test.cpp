@@ -159,6 +159,17 @@ TEST_CASE("a column that is named as the time brings the unit of its name") {
   CHECK(from_raw({"millis", every(5)}, options) == Found{true, "us", false, 200000, 1});
 }
 
+TEST_CASE("seconds of a day, a week or an hour count seconds") {
+  for (const char* name : {"seconds_of_day", "seconds of day", "seconds_of_week", "ms_of_day", "minutes_of_day"}) {
+    std::string text = fmt::format("{},gyro\n", name);
+    for (int i = 0; i < 500; ++i) text += fmt::format("{},{}\n", 30000 + 10 * i, i * 7919 % 101);
+    INFO(name);
+    const std::string_view word(name);
+    const double unit = word.starts_with("ms") ? 1e-3 : word.starts_with("min") ? 60 : 1;
+    CHECK(known_rate_hz(read_text(text).info) == Approx(0.1 / unit).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("two columns that differ in the unit of time only: the first is the time") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "x.csv") << "time_us,time_ms,x\n0,0,1\n5000,5,2\n10000,10,1\n";

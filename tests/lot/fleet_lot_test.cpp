@@ -244,6 +244,25 @@ TEST_CASE("versions that differ are told, of recordings that were characterized"
   CHECK_THAT(told(), Contains("2 versions of the program"));
 }
 
+TEST_CASE("a bad finding keeps a value out of the lot, and is counted") {
+  auto records = test::made_lot({}, 14);
+  const QuantityLot before = find(fleet_lot(records), "gyro_x", DeviceQuantity::white_noise);
+  for (std::size_t i = 0; i < 5; ++i) {
+    RecordedChannel& channel = records[i].channels[0];
+    for (RecordedValue& v : channel.values)
+      if (v.quantity == DeviceQuantity::white_noise) v.value *= 100;
+    channel.findings.push_back(finding("missing_mark", "0 is a mark"));
+  }
+  const FleetLot lot = fleet_lot(records);
+  const QuantityLot& n = find(lot, "gyro_x", DeviceQuantity::white_noise);
+  CHECK(n.counts.spoilt == 5);
+  CHECK(n.counts.counted + 5 == before.counts.counted);
+  REQUIRE(n.figures);
+  CHECK(n.figures->mean == Approx(before.figures->mean).epsilon(0.05));
+  // A mark is in the mean as well.
+  CHECK(find(lot, "gyro_x", DeviceQuantity::turn_on_bias).counts.spoilt == 5);
+}
+
 TEST_CASE("what is not detected, doubtful or without a fit is counted as that") {
   auto records = test::made_lot({}, 13);
   for (std::size_t i = 0; i < 100; ++i) {

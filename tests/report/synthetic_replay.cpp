@@ -173,7 +173,7 @@ ReplayResult synthetic_replay(std::size_t sensors, std::size_t inputs) {
       a = AlgorithmResult();
       a.label = std::string(fusion::algorithms()[i].description->name);
       a.description = fusion::algorithms()[i].description;
-      a.why = a.label + " needs one gyroscope axis and two accelerometer axes";
+      a.why = "needs one gyroscope axis and two accelerometer axes";
       a.rmse = a.regret = a.ns_per_sample = kNan;
       a.rmse_ci95 = {kNan, kNan};
     }

@@ -285,8 +285,12 @@ class Characterized {
   }
   py::object fits() const {
     Json channels = Json::array();
-    for (const ChannelResult& c : result_.channels)
-      if (c.fit) channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, *c.fit));
+    for (const ChannelResult& c : result_.channels) {
+      if (!c.fit) continue;
+      NoiseFit fit = *c.fit;
+      fit.findings = findings_of(c);  // those of the samples as well, as the verb says them
+      channels.push_back(noise_fit_json(c.channel.name, c.channel.unit, fit));
+    }
     return to_python(with_valid_text(noise_fit_document(std::move(channels))));
   }
   std::vector<std::pair<std::string, py::object>> findings() const {

@@ -10,7 +10,8 @@ namespace libchar {
 namespace {
 
 constexpr std::string_view kKind = "stretch";
-constexpr std::uint32_t kVersion = 3;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock
+constexpr std::uint32_t kVersion =
+    4;  // 2: a channel; slow means, powers of means; 3: means and pieces on the clock; 4: bends
 
 void write_time(const TimeBase& time, StateWriter& to) {
   to.real(time.rate_hz);

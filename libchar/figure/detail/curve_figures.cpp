@@ -70,18 +70,14 @@ std::vector<std::pair<const Part*, std::string>> chosen_parts(std::span<const Fi
   return out;
 }
 
-bool is_of_allan_family(const std::string& statistic) {
-  return statistic == "Allan deviation" || statistic == "Overlapping Allan deviation" || statistic == "Total deviation";
-}
-
-bool of_one_kind(const std::string& a, const std::string& b) {
-  return a == b || (is_of_allan_family(a) && is_of_allan_family(b));
+bool of_one_kind(const SourceCurve::Statistic& a, const SourceCurve::Statistic& b) {
+  return a == b || (a.is_allan && b.is_allan);
 }
 
 std::set<std::string> statistics_of(const std::vector<ChosenCurve>& chosen, const std::string& name) {
   std::set<std::string> found;
   for (const ChosenCurve& one : chosen)
-    if (one.name == name) found.insert(one.curve->statistic);
+    if (one.name == name) found.insert(one.curve->statistic.title);
   return found;
 }
 
@@ -94,7 +90,7 @@ void name_by_statistic(std::vector<ChosenCurve>& chosen) {
                   [&](const std::string& name) { return statistics_of(chosen, name).size() == 1; }))
     return;
   for (ChosenCurve& one : chosen)
-    one.name = names.size() == 1 ? one.curve->statistic : one.name + ", " + one.curve->statistic;
+    one.name = names.size() == 1 ? one.curve->statistic.title : one.name + ", " + one.curve->statistic.title;
 }
 
 /// A pattern for channels like this one: "gyr*" for gyro_x, "*/Gyr*" for "IMU 0/GyrX".
@@ -116,13 +112,13 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
     if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
         other.curve->is_allan)
       throw input_error("E0976")
-          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.curve->statistic,
-                first.curve->value_unit, other.curve->statistic, other.curve->value_unit)
+          .says("curves in different units do not share an axis: {} in {}, {} in {}", first.curve->statistic.title,
+                first.curve->value_unit, other.curve->statistic.title, other.curve->value_unit)
           .hint("a figure for each unit");
-    const std::string &a = first.curve->statistic, &b = other.curve->statistic;
+    const SourceCurve::Statistic &a = first.curve->statistic, &b = other.curve->statistic;
     if (!of_one_kind(a, b) && statistics_of(chosen, first.name) != statistics_of(chosen, other.name))
       throw input_error("E0983")
-          .says("different curves do not share an axis: {} is {}, {} is {}", first.name, a, other.name, b)
+          .says("different curves do not share an axis: {} is {}, {} is {}", first.name, a.title, other.name, b.title)
           .hint("compute both in the same way");
   }
   if (chosen.size() > detail::kMostCurves)
@@ -265,11 +261,13 @@ Chart curves_figure(std::span<const FigureSource> sources, const FigureOptions& 
   const std::vector<ChosenCurve> chosen = chosen_curves(sources, options, is_allan);
   const SourceCurve& first = *chosen[0].curve;
   Chart out;
-  std::string statistic = first.statistic;
-  for (const ChosenCurve& one : chosen)
-    if (one.curve->statistic != first.statistic)
-      statistic = of_one_kind(one.curve->statistic, first.statistic) && statistic != "Deviation" ? "Allan deviation"
-                                                                                                 : "Deviation";
+  const auto all = [&](auto&& alike) {
+    return std::all_of(chosen.begin(), chosen.end(),
+                       [&](const ChosenCurve& one) { return alike(one.curve->statistic, first.statistic); });
+  };
+  const std::string statistic = all(std::equal_to<>()) ? first.statistic.title
+                                : all(of_one_kind)     ? "Allan deviation"
+                                                       : "Deviation";
   out.x = {.title = is_allan ? "Averaging time τ [s]" : "Frequency [Hz]", .log = true, .rows = {}};
   out.y = {.title = axis_title(statistic, first.value_unit), .log = true, .rows = {}};
   const bool alone = chosen.size() == 1;

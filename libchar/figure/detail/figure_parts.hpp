@@ -156,6 +156,6 @@ void add_model(FigureSource& out, const SensorModel& model);
 std::string mark_text(Term term, double value, const std::string& unit);
 
 /// "overlapping Allan deviation", "One-sided PSD".
-std::string spectrum_statistic(Sides sides, Scaling scaling);
+SourceCurve::Statistic spectrum_statistic(Sides sides, Scaling scaling);
 
 }  // namespace libchar

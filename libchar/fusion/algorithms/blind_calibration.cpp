@@ -120,10 +120,9 @@ void BlindCalibration::set_offsets() {
 }
 
 void BlindCalibration::remarks(Findings& warnings) const {
-  if (!solved_)
-    warnings.add("not_calibrated", "blind-calibration found no common movement of the channels: it was the plain mean");
+  if (!solved_) warnings.add("not_calibrated", "found no common movement of the channels: it was the plain mean");
   if (!noise_removal_ && mean_.size() < 3)
-    warnings.add("noise_bias", "blind-calibration of two channels without noise levels takes their noise for gain");
+    warnings.add("noise_bias", "of two channels without noise levels it takes their noise for gain");
 }
 
 BlindCalibrationPublished::BlindCalibrationPublished(const Array& array, const Settings& settings)

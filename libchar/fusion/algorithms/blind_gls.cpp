@@ -161,8 +161,7 @@ Estimate BlindGls::step(const Sample& y) {
 Eigen::MatrixXd BlindGls::weights() const { return weight_ / weight_.dot(gain_); }
 
 void BlindGls::remarks(Findings& warnings) const {
-  if (!solved_)
-    warnings.add("not_calibrated", "blind-gls found no common movement of the channels: it was the plain mean");
+  if (!solved_) warnings.add("not_calibrated", "found no common movement of the channels: it was the plain mean");
 }
 
 }  // namespace libchar::fusion

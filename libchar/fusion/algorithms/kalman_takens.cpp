@@ -154,12 +154,12 @@ Estimate KalmanTakensFilter::step(const Sample& y) {
 }
 
 /// Below the error of the channels together the past says more than they do: the input repeats.
-void KalmanTakensFilter::remark(std::string_view name, Findings& warnings) const {
+void KalmanTakensFilter::remark(Findings& warnings) const {
   const double fused = 1 / levels_.cwiseInverse().sum(), q = process_variance();
   if (given_q_ > 0 || !(error_weight_ > kPriorErrors) || !(q < fused)) return;
-  warnings.add("input_repeats", std::string(name) +
-                                    " predicts the input from its past better than the sensors measure it: the input "
-                                    "repeats itself or is constant; another input would not be estimated as well");
+  warnings.add("input_repeats",
+               "predicts the input from its past better than the sensors measure it: the input "
+               "repeats itself or is constant; another input would not be estimated as well");
 }
 
 void KalmanTakensTaught::finish_learning() {

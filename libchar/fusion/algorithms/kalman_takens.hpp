@@ -40,7 +40,7 @@ class KalmanTakensFilter {
   std::size_t neighbours() const { return neighbours_; }
   Estimate step(const Sample& y);
   double process_variance() const;
-  void remark(std::string_view name, Findings& warnings) const;
+  void remark(Findings& warnings) const;
 
  private:
   double predict();
@@ -75,7 +75,7 @@ struct KalmanTakens {
     return kalman_takens_cost_ns(settings, "dictionary");
   }
   Estimate step(const Sample& y) { return filter_.step(y); }
-  void remarks(Findings& warnings) const { filter_.remark(description.name, warnings); }
+  void remarks(Findings& warnings) const { filter_.remark(warnings); }
 
  private:
   KalmanTakensFilter filter_;
@@ -97,7 +97,7 @@ struct KalmanTakensTaught {
   void finish_learning();
   void exchange(LearntExchange& with) { filter_.exchange(with); }
   Estimate step(const Sample& y) { return filter_.step(y); }
-  void remarks(Findings& warnings) const { filter_.remark(description.name, warnings); }
+  void remarks(Findings& warnings) const { filter_.remark(warnings); }
 
  private:
   KalmanTakensFilter filter_;

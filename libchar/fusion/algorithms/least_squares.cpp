@@ -265,16 +265,15 @@ Estimate LearntMean::of_present(const Sample& y) const {
   return Estimate::scalar(x + learnt_.constant, std::nan(""));
 }
 
-void remark_on(const LearntWeights& learnt, std::string_view name, Findings& warnings) {
+void remark_on(const LearntWeights& learnt, Findings& warnings) {
   for (const int i : learnt.without_signal)
-    warnings.add("channel_without_signal", std::string(name) + " left out a channel that does not follow the reference",
+    warnings.add("channel_without_signal", "left out a channel that does not follow the reference",
                  "channel " + std::to_string(i + 1));
   for (const auto& [copy, original] : learnt.copies)
-    warnings.add("duplicate_channels",
-                 std::string(name) + " found a channel that is a copy of another; they share a weight",
+    warnings.add("duplicate_channels", "found a channel that is a copy of another; they share a weight",
                  "channel " + std::to_string(copy + 1) + " of channel " + std::to_string(original + 1));
   if (learnt.dependent > 0)
-    warnings.add("dependent_channels", std::string(name) + " found channels that are combinations of others", {},
+    warnings.add("dependent_channels", "found channels that are combinations of others", {},
                  static_cast<std::uint64_t>(learnt.dependent));
 }
 

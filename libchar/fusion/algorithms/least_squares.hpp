@@ -50,7 +50,7 @@ struct LearntWeights {
   std::vector<std::pair<int, int>> copies;
 };
 /// What of it the reader of a result must know.
-void remark_on(const LearntWeights& learnt, std::string_view name, Findings& warnings);
+void remark_on(const LearntWeights& learnt, Findings& warnings);
 
 struct LeastSquaresForm {
   bool calibrate = false;
@@ -118,7 +118,7 @@ class ReferenceWeightedMean {
   void exchange(LearntExchange& with) { mean_.exchange(with, channels_); }
   Estimate step(const Sample& y) const { return mean_.step(y); }
   Eigen::MatrixXd weights() const { return mean_.learnt().weights; }
-  void remarks(Findings& warnings) const { remark_on(mean_.learnt(), name_, warnings); }
+  void remarks(Findings& warnings) const { remark_on(mean_.learnt(), warnings); }
 
  private:
   LeastSquaresForm form_;

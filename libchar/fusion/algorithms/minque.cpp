@@ -167,10 +167,10 @@ void Minque::check_recovery(const Variances& variances, const Sample& y) {
 }
 
 void Minque::remarks(Findings& warnings) const {
-  if (detector_) detector_->remarks(description.name, names_, warnings);
+  if (detector_) detector_->remarks(names_, warnings);
   if (asked_ && !detection_)
     warnings.add("faults_not_watched",
-                 "minque looks for no faults: the memory of the variances (gamma) is not five times that of the fault "
+                 "no faults are looked for: the memory of the variances (gamma) is not five times that of the fault "
                  "rule (fault_gamma)");
   if (general_ || !scalar_.started()) return;
   std::vector<double> direction;
@@ -179,7 +179,7 @@ void Minque::remarks(Findings& warnings) const {
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (std::abs(direction[i]) > 0.3) names += (names.empty() ? "" : ", ") + channel_name(names_, i);
   warnings.add("variances_not_identifiable",
-               "minque cannot tell the variances of these channels apart (their sum is known, the other channels are "
+               "cannot tell the variances of these channels apart (their sum is known, the other channels are "
                "too noisy to divide it): " +
                    names);
 }

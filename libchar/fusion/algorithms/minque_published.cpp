@@ -214,10 +214,9 @@ double MinquePublished::weigh() {
 void MinquePublished::remarks(Findings& warnings) const {
   if (fault_free_ <= 0)
     warnings.add("faults_not_watched",
-                 "minque-published looks for no faults: its thresholds need a stretch that is known to hold none");
+                 "no faults are looked for: the thresholds need a stretch that is known to hold none");
   if (plain_means_ > 0)
-    warnings.add("negative_variance",
-                 "minque-published used the simple mean where an estimated variance was not above zero", {},
+    warnings.add("negative_variance", "used the simple mean where an estimated variance was not above zero", {},
                  static_cast<std::uint64_t>(plain_means_));
 }
 

@@ -205,14 +205,13 @@ void NeuralSimplex::remarks(Findings& warnings) const {
   baseline_.remarks(warnings);
   const std::int64_t led = run_.now - run_.led[0];
   if (run_.now > 0 && led > 0)
-    warnings.add("network_led", "neural-simplex: a network led in " +
-                                    brief_text(100 * static_cast<double>(led) / static_cast<double>(run_.now), 2) +
-                                    " % of the run, " + std::to_string(log_.events().size() + log_.dropped()) +
-                                    " hand-overs");
+    warnings.add("network_led",
+                 "a network led in " + brief_text(100 * static_cast<double>(led) / static_cast<double>(run_.now), 2) +
+                     " % of the run, " + std::to_string(log_.events().size() + log_.dropped()) + " hand-overs");
   if (learning_.taught && !network_.right && learning_.teaching)
     warnings.add(
         "network_not_better",
-        "neural-simplex gives its baseline: on what it had not learnt, its network's error was " +
+        "gives its baseline: on what it had not learnt, its network's error was " +
             brief_text(std::sqrt(learning_.teaching->network_square() / learning_.teaching->baseline_square()), 3) +
             " times that of the baseline");
 }

@@ -142,9 +142,8 @@ Estimate Perceptron::step(const Sample& y) {
 
 void Perceptron::remarks(Findings& warnings) const {
   if (network_.hidden < asked_)
-    warnings.add("perceptron_fewer_neurons", "the perceptron has " + std::to_string(network_.hidden) +
-                                                 " neurons instead of " + std::to_string(asked_) +
-                                                 ": most_weights allows no more for " +
+    warnings.add("perceptron_fewer_neurons", "has " + std::to_string(network_.hidden) + " neurons instead of " +
+                                                 std::to_string(asked_) + ": most_weights allows no more for " +
                                                  std::to_string(network_.inputs) + " channels");
 }
 

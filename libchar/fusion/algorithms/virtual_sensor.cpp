@@ -20,11 +20,11 @@ void VirtualSensor::finish_learning() {
 void VirtualSensor::remarks(Findings& warnings) const {
   if (filter().states().size() == 0)
     warnings.add("no_drift",
-                 "virtual-sensor found no drift in the sensors' models that shows above their white noise: its weights "
+                 "found no drift in the sensors' models that shows above their white noise: its weights "
                  "are constant");
   if (smoother_)
     warnings.add("looks_ahead",
-                 "virtual-sensor with smoothed=1 estimates each instant from the whole run, what comes after it as "
+                 "with smoothed=1 it estimates each instant from the whole run, what comes after it as "
                  "well: for recordings, not for use while they are made");
 }
 

@@ -1,12 +1,16 @@
 #include "libchar/log/detail/line_watch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "libchar/core/numeric/lanes.hpp"
 #include "libchar/log/quality.hpp"
 
 namespace libchar::detail {
+
+/// Exact lines that a grid of values makes for each repeated one.
+constexpr double kOfRepeats = 2;
 
 // The first two samples of a record have no flag.
 void LineWatch::take(double x, bool direct, std::uint64_t at) {
@@ -25,28 +29,25 @@ void LineWatch::take(double x, bool direct, std::uint64_t at) {
   ++n_;
 }
 
-/// Whether two neighbours of x[0..n) may have the flag, the one before x[0] among them; x[-3] can be read. A little
-/// less straight than `on_line`, so that steps of zero need no look of their own.
-LIBCHAR_LANES bool any_two_lanes(const double* x, std::size_t n) {
-  constexpr double kSquare = 1.001 * kStraight * kStraight;
-  Four any = {};
-  auto found = any != any, before = found;
-  before[3] = on_line(x[-3], x[-2], x[-1], kStraight) ? -1 : 0;
+/// Bits of x[0..n) that may have the flag, a little less straight than `on_line`, so that steps of zero need no look of
+/// their own; x[-2] can be read.
+LIBCHAR_LANES void line_bits_lanes(const double* x, std::size_t n, std::uint64_t* words) {
   std::size_t i = 0;
-  for (; i + 4 <= n; i += 4) {
-    const double* at = x + i;  // first: i - 2 alone is no index
-    const Four a = LIBCHAR_FOUR(at - 2), b = LIBCHAR_FOUR(at - 1), c = LIBCHAR_FOUR(at);
-    const Four step = b - a, bend = (c - b) - step;
-    const auto flag = bend * bend < kSquare * (step * step);
-    found |= flag & __builtin_shufflevector(before, flag, 3, 4, 5, 6);
-    before = flag;
+  for (; i + 64 <= n; i += 64) {
+    auto bit = Four{} != Four{}, all = bit;
+    bit = decltype(bit){1, 2, 4, 8};
+    for (std::size_t k = i; k < i + 64; k += 4) {
+      const double* at = x + k;  // first: k - 2 alone is no index
+      const Four b = LIBCHAR_FOUR(at - 1), step = b - LIBCHAR_FOUR(at - 2), bend = (LIBCHAR_FOUR(at) - b) - step;
+      all |= (bend * bend < kAboutStraight * (step * step)) & bit;
+      bit <<= 4;
+    }
+    words[i / 64] = static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
   }
-  bool out = (found[0] | found[1] | found[2] | found[3]) != 0;
-  for (const double* at = x + i; at < x + n; ++at)
-    out |= on_line(at[-2], at[-1], *at, kStraight) && on_line(at[-3], at[-2], at[-1], kStraight);
-  return out;
+  if (i < n) words[i / 64] = 0;
+  for (; i < n; ++i) words[i / 64] |= std::uint64_t{on_line(x[i - 2], x[i - 1], x[i], kStraight)} << (i % 64);
 }
-constexpr InLanes<any_two_lanes> any_two;
+constexpr InLanes<line_bits_lanes> line_bits;
 
 void LineWatch::flag(double a, double b, double c, bool whole, std::uint64_t at) {
   const bool straight = whole && on_line(a, b, c, kStraight);
@@ -60,36 +61,36 @@ void LineWatch::pass(std::uint64_t n) {
 
 void LineWatch::look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to,
                      std::uint64_t at) {
+  std::uint64_t words[kStretch / 64];
+  line_bits(&x[from], to - from, words);
   looked_ += to - from;
   std::size_t next = from;
-  for (std::size_t i = from; i < to; ++i) {
-    const double step = x[i - 1] - x[i - 2], bend = (x[i] - x[i - 1]) - step;
-    bends_ += bend * bend;
-    steps_ += step * step;
-    if (!on_line(x[i - 2], x[i - 1], x[i], kStraight)) continue;
-    pass(i - next);
-    flag(x[i - 2], x[i - 1], x[i], starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0), at + i);
-    next = i + 1;
-  }
+  for (std::size_t word = 0; 64 * word < to - from; ++word)
+    for (std::uint64_t bits = words[word]; bits != 0; bits &= bits - 1) {
+      const std::size_t i = from + 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+      pass(i - next);
+      flag(x[i - 2], x[i - 1], x[i], starts == nullptr || (starts[i] == 0 && starts[i - 1] == 0), at + i);
+      next = i + 1;
+    }
   pass(to - next);
 }
 
 // A lone flag is none: most stretches of a noise are passed over at once.
-void LineWatch::block(std::span<const double> x, const unsigned char* starts, std::uint64_t at) {
-  constexpr std::size_t kStretch = 256;
+void LineWatch::block(std::span<const double> x, const unsigned char* starts, std::uint64_t at, std::uint32_t pairs,
+                      std::uint64_t repeats) {
   const auto begins = [&](std::size_t i) { return starts != nullptr && starts[i] != 0; };
   std::size_t i = 0;
   for (; i < std::min<std::size_t>(3, x.size()); ++i) take(x[i], !begins(i), at + i);
   if (i == x.size()) return;
   n_ += x.size() - i;
-  coarse_ = coarse_ || (n_ > kEnough && has_chance_lines());
+  coarse_ = coarse_ || (n_ > kEnough && has_chance_lines(repeats));
   if (coarse_) i = x.size();
   while (i < x.size()) {
-    const std::size_t n = std::min(kStretch, x.size() - i);
-    const std::size_t passed = any_two(&x[i], n) ? 0 : n - 1;
-    pass(passed);
-    look(x, starts, i + passed, i + n, at);
-    i += n;
+    const std::size_t stretch = i / kStretch, end = std::min((stretch + 1) * kStretch, x.size());
+    const std::size_t from = stretch >= 32 || (pairs >> stretch & 1) != 0 ? i : end - 1;
+    pass(from - i);
+    look(x, starts, from, end, at);
+    i = end;
   }
   before_ = x[i - 2];
   last_ = x[i - 1];
@@ -116,8 +117,6 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
   exact_.join(later.exact_, at, 2);
   n_ = own + later.n_;
   looked_ += later.looked_;
-  bends_ += later.bends_;
-  steps_ += later.steps_;
   if (later.n_ > 1) {
     before_ = later.before_;
     last_ = later.last_;
@@ -125,10 +124,25 @@ void LineWatch::join(const LineWatch& later, bool direct, std::uint64_t at) {
   }
 }
 
-bool LineWatch::has_chance_lines() const {
-  const std::vector<double>& closed = runs_.closed();
-  const double filled = exact_.closed().empty() ? 0 : exact_.closed()[2];
-  return !closed.empty() && 40 * (closed[1] + closed[2] - filled) > static_cast<double>(n_);
+// On a grid, steps are alike about as often as values repeat; elsewhere exact lines are nobody's chance.
+bool LineWatch::has_chance_lines(std::uint64_t repeats) const {
+  const std::vector<double>&closed = runs_.closed(), &exact = exact_.closed();
+  if (closed.empty()) return false;
+  const double filled =
+      exact.empty() ? 0 : std::max(exact[2], exact[1] + exact[2] - kOfRepeats * static_cast<double>(repeats));
+  return 40 * (closed[1] + closed[2] - filled) > static_cast<double>(n_);
+}
+
+// What moves smoothly is nearly straight nearly everywhere, and more often nearly than exactly; gaps that were filled
+// are few and long.
+bool LineWatch::are_apart(std::uint64_t repeats) const {
+  constexpr double kLeast = 0.1, kBent = 0.05, kTimes = 4;  // close to a knot, a line bends by little
+  constexpr double kLongest = 40;                           // ratio of the rates
+  const auto n = static_cast<double>(n_), straight = static_cast<double>(runs_.set());
+  const double exact = static_cast<double>(exact_.set()) - kOfRepeats * static_cast<double>(repeats);
+  return exact > kLeast * n && n - straight > kBent * n &&
+         exact > kTimes * (straight - static_cast<double>(exact_.set())) &&
+         kLongest * static_cast<double>(exact_.from_length(1).first) > n;
 }
 
 // Runs of two and three say how chance goes on.
@@ -172,15 +186,16 @@ double LineWatch::alone(double grid) const {
   return (exact[1] - by_chance) * static_cast<double>(n_) / static_cast<double>(std::max<std::uint64_t>(1, looked_));
 }
 
-LineWatch::Found LineWatch::found(double grid) const {
+LineWatch::Found LineWatch::found(double grid, std::uint64_t repeats) const {
   if (coarse_) return {};
-  const Found straight{least_run(), &runs_, 0}, exact{least_exact_run(), &exact_, 0};
+  const bool apart = are_apart(repeats);
+  const Found straight{least_run(), &runs_, 0, apart}, exact{least_exact_run(), &exact_, 0, apart};
   const auto on_lines = [](const Found& one) {
     return one.least_run == 0 ? 0 : one.runs->from_length(one.least_run).second;
   };
   const Found& longer = on_lines(exact) > on_lines(straight) ? exact : straight;
   const double single = alone(grid);
-  return single > static_cast<double>(on_lines(longer)) ? Found{1, &exact_, single} : longer;
+  return single > static_cast<double>(on_lines(longer)) ? Found{1, &exact_, single, apart} : longer;
 }
 
 void forget_frozen(std::span<double> samples, std::uint64_t fewest) {

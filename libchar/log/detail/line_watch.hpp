@@ -11,6 +11,8 @@ namespace libchar::detail {
 /// How straight: a tenth leaves room for the last digit, and 1.8 % of the samples of white noise pass (the ratio of its
 /// steps is Cauchy about -1/2 with the scale sqrt(3)/2); a thousandth needs digits, and tells lines of two steps.
 constexpr double kStraight = 0.1, kExactly = 1e-3;
+/// For the square of the next bend over that of the step: a little wider than `on_line`.
+constexpr double kAboutStraight = 1.001 * kStraight * kStraight;
 
 /// The step to `c` goes on as that to `b`, within this share of it.
 inline bool on_line(double a, double b, double c, double share) {
@@ -20,8 +22,12 @@ inline bool on_line(double a, double b, double c, double share) {
 
 class LineWatch {
  public:
+  static constexpr std::size_t kStretch = 256;  ///< samples that are passed over or looked at together
   /// `starts`: samples that do not follow the one before directly; null: all do. `at`: index of x[0] in the record.
-  void block(std::span<const double> x, const unsigned char* starts, std::uint64_t at);
+  /// `pairs`: bits of the stretches that may have two flags in a row, the last flag before each among them. `repeats`:
+  /// samples so far that equal the one before.
+  void block(std::span<const double> x, const unsigned char* starts, std::uint64_t at, std::uint32_t pairs = ~0U,
+             std::uint64_t repeats = 0);
   /// `direct`: the first sample of `later` follows directly. `at`: its part's begin in the record.
   void join(const LineWatch& later, bool direct, std::uint64_t at);
 
@@ -29,18 +35,16 @@ class LineWatch {
   struct Found {
     std::uint64_t least_run = 0;  ///< flags in a row; 0: there are none
     const FlagRuns* runs = nullptr;
-    double alone = 0;  ///< samples half-way between their neighbours, by the stretches that were looked at
+    double alone = 0;    ///< samples half-way between their neighbours, by the stretches that were looked at
+    bool apart = false;  ///< throughout, and the others are not straight at all: resampled by straight lines
   };
-  /// `grid`: step of the values over the deviation of their differences; 0: there is none.
-  Found found(double grid) const;
-  /// Mean square of the bends over that of the steps: 3 for white noise, 0 for what moves smoothly.
-  double roughness() const { return steps_ > 0 ? bends_ / steps_ : 0; }
+  /// `grid`: step of the values over the deviation of their differences; 0: there is none. `repeats`: as of `block`.
+  Found found(double grid, std::uint64_t repeats = 0) const;
   /// Shorter runs of flags are told by exact lines.
   static constexpr std::uint64_t kFewest = 6;
 
   static void layout(auto& at, auto& watch) {
-    at.group("lines of a channel", watch.n_, watch.looked_, watch.bends_, watch.steps_, watch.before_, watch.last_,
-             watch.first_, watch.second_);
+    at.group("lines of a channel", watch.n_, watch.looked_, watch.before_, watch.last_, watch.first_, watch.second_);
     at(watch.pair_, watch.direct_, watch.coarse_);
     FlagRuns::layout(at, watch.runs_);
     FlagRuns::layout(at, watch.exact_);
@@ -55,15 +59,15 @@ class LineWatch {
   std::uint64_t least_run() const;
   std::uint64_t least_exact_run() const;
   double alone(double grid) const;
+  bool are_apart(std::uint64_t repeats) const;
   void flag(double a, double b, double c, bool whole, std::uint64_t at);
-  bool has_chance_lines() const;
+  bool has_chance_lines(std::uint64_t repeats) const;
   void take(double x, bool direct, std::uint64_t at);
   /// Samples without a flag that counts, and those of x[from..to), where each is looked at.
   void pass(std::uint64_t n);
   void look(std::span<const double> x, const unsigned char* starts, std::size_t from, std::size_t to, std::uint64_t at);
 
   std::uint64_t n_ = 0, looked_ = 0;  ///< looked_: not passed over, as stretches without two flags in a row are
-  double bends_ = 0, steps_ = 0;      ///< squares, where it was looked
   double before_ = 0, last_ = 0;      ///< the last two samples
   double first_ = 0, second_ = 0;     ///< the first two
   bool pair_ = false;                 ///< the last one follows directly on that before

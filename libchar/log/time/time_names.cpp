@@ -180,7 +180,7 @@ std::optional<TimeName> name_with_unit(std::string words) {
   if (const std::size_t of = all.find(" of "); of != std::string_view::npos) {
     out.unit_ns = unit_of_word(all.substr(all.substr(0, of).rfind(' ') + 1, of - all.substr(0, of).rfind(' ') - 1));
     out.letter = true;
-    return out.unit_ns != 0 && out.unit_ns < kMinute ? std::optional(out) : std::nullopt;
+    return out.unit_ns != 0 && out.unit_ns <= kMinute ? std::optional(out) : std::nullopt;
   }
   const std::string_view word = all.substr(last);
   std::string_view before = trimmed(all.substr(0, last));
@@ -241,6 +241,8 @@ std::optional<TimeName> time_name(std::string_view stem) {
 
 std::int64_t unit_behind(const ColumnLabel& column) {
   const auto [stem, unit] = name_and_unit(column.name);
+  if (stem.ends_with("_of") || stem.ends_with(" of"))  // "seconds_of_day" counts seconds
+    return unit_of_word(std::string_view(stem).substr(0, stem.size() - 3));
   for (const std::string& text : {column.unit, unit}) {
     if (const std::int64_t ns = unit_of_word(text); ns != 0) return ns;
     if ((text == "d" || text == "m") && time_name(stem)) return text == "d" ? 86400000000000 : 60000000000;

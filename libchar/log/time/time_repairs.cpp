@@ -248,23 +248,27 @@ void TimeGrid::refuse_backward() const {
   const LogInfo& log = source_.info();
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   const std::string how_far = duration_text(seconds(last_.stamp - backward_.first));
+  const bool ordered = backward_.restarted();  // rows in no order have no rate either
   std::string hint = fmt::format("`time_column` none and `rate_hz` {} take the rows one after the other",
-                                 step_.ns > 0 ? shortest(rounded(1e9 / step_.ns, 6)) : "HZ");
-  if (backward_.restarted() && last_.stamp > last_.first)
+                                 ordered && step_.ns > 0 ? shortest(rounded(1e9 / step_.ns, 6)) : "HZ");
+  if (!ordered && log.topics.empty())
+    hint = fmt::format("sort the rows by {} below the header (sort -g), `where` COLUMN=VALUE reads those of one source",
+                       log.time.column.empty() ? "their stamps" : printable(log.time.column));
+  if (ordered && last_.stamp > last_.first)
     hint = fmt::format("`to_s` {} reads what is before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
   if (!log.topics.empty() && options_.time_source != "log")
     hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
   throw input_error("E0317", backward_.place)
-      .says(backward_.restarted()
-                ? fmt::format("the time steps back here by {} and goes on from there: {}", how_far,
-                              log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
-                                  ? "parts of a second without leading zeros, or two logs in one file"
-                              : 2 * (last_.stamp - backward_.first) < last_.stamp - last_.first
-                                  ? "a clock that was set back, or two logs in one file"
-                                  : "two logs in one file, or a device that restarted")
-                : fmt::format("the time steps back here by {}, and {} rows in no order do not catch up: rows of "
-                              "several sources, or a wild stamp before",
-                              how_far, kBackward))
+      .says(ordered ? fmt::format("the time steps back here by {} and goes on from there: {}", how_far,
+                                  log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
+                                      ? "parts of a second without leading zeros, or two logs in one file"
+                                  : 2 * (last_.stamp - backward_.first) < last_.stamp - last_.first
+                                      ? "a clock that was set back, or two logs in one file"
+                                      : "two logs in one file, or a device that restarted")
+                    : fmt::format(
+                          "the time steps back here by {}, and the next {} rows are in no order: they are sorted by "
+                          "something else, or of several sources, or a wild stamp lies before",
+                          how_far, kBackward))
       .hint(hint);
 }
 

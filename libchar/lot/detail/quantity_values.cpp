@@ -137,7 +137,7 @@ std::vector<DeviceSlope> device_slopes(const TemperatureLines& at) {
 constexpr double kLargest = 1e60;
 
 /// Ordered: of several recordings of a member the best says what is known of it.
-enum class Known { no_result, doubtful, not_detected, counted };
+enum class Known { no_result, spoilt, doubtful, not_detected, counted };
 
 struct Measured {
   Known known = Known::no_result;
@@ -147,8 +147,10 @@ struct Measured {
 Measured measured(const RecordedChannel& channel, DeviceQuantity quantity, double factor) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
   if (value == nullptr) return {};
-  if (value->status == Status::not_detected) return {Known::not_detected};
-  if (value->status != Status::detected && value->status != Status::given) return {Known::doubtful};
+  const bool detected = value->status == Status::detected || value->status == Status::given;
+  if (!detected && value->status != Status::not_detected) return {Known::doubtful};
+  if (channel.is_spoilt(quantity)) return {Known::spoilt};
+  if (!detected) return {Known::not_detected};
   const LogCoefficient in_logarithms =
       in_logarithm(quantity) ? log_coefficient(coefficient_of(*value, factor)) : LogCoefficient{};
   const double sd = factor * value->sd, y = in_logarithm(quantity) ? in_logarithms.y : factor * value->value,
@@ -172,7 +174,7 @@ struct SquareSums {
 /// False where its record was fitted and it has no square.
 bool add_square(const RecordedChannel& channel, DeviceQuantity quantity, double factor, SquareSums& sums) {
   const RecordedValue* value = channel.fitted ? channel.find(quantity) : nullptr;
-  if (value == nullptr || !was_sought(value->status)) return true;
+  if (value == nullptr || !was_sought(value->status) || channel.is_spoilt(quantity)) return true;
   const auto one = square_in_lot(coefficient_of(*value, factor));
   if (!one) return false;
   sums.count += 1;
@@ -197,6 +199,7 @@ void count(Known known, LotCounts& out) {
   out.counted += known == Known::counted;
   out.not_detected += known == Known::not_detected;
   out.doubtful += known == Known::doubtful;
+  out.spoilt += known == Known::spoilt;
   out.no_result += known == Known::no_result;
 }
 

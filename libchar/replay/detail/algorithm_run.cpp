@@ -163,8 +163,7 @@ void AlgorithmRun::guarded(const Work& work) {
     learning_s_ += thread_seconds() - start;
   } catch (const Error& error) {
     if (error.problem().kind != ErrorKind::numeric && error.problem().kind != ErrorKind::usage) throw;
-    const std::string what = error.problem().what, name(planned_->entry->description->name);
-    failure_ = what.starts_with(name) ? what : planned_->label + ": " + what;
+    failure_ = error.problem().what;
     runner_.reset();
   }
 }

@@ -58,12 +58,9 @@ std::vector<SkippedAlgorithms> skipped_algorithms(const ReplayResult& result) {
   std::vector<SkippedAlgorithms> out;
   for (const AlgorithmResult& a : result.algorithms) {
     if (a.ran) continue;
-    const std::string front = std::string(a.description->name) + " ";
-    const std::string reason = a.why.starts_with(front) ? a.why.substr(front.size()) : a.why;
-    const auto known =
-        std::find_if(out.begin(), out.end(), [&](const SkippedAlgorithms& s) { return s.reason == reason; });
+    const auto known = std::find_if(out.begin(), out.end(), [&](const auto& s) { return s.reason == a.why; });
     if (known == out.end())
-      out.push_back({reason, {a.label}});
+      out.push_back({a.why, {a.label}});
     else
       known->labels.push_back(a.label);
   }
@@ -404,7 +401,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   add(doubtful_sensors(r));
   add(detected_faults(r, best));
   for (const Finding& one : best.remarks.list())
-    if (one.severity != Severity::note) add("Caution: " + one.sentence + ".");
+    if (one.severity != Severity::note) add("Caution: " + best.label + ": " + one.sentence + ".");
   add(without_reference_sentence(r, best, costs));
   add(taught_sentence(r));
   if (!r.chosen_as_robust) add(equals_sentence(r, best, costs));

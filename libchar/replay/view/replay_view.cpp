@@ -113,8 +113,7 @@ std::vector<FinalRow> final_rows(const ReplayView& view) {
 std::vector<AlgorithmRemark> remarks_of(const ReplayResult& r) {
   std::vector<AlgorithmRemark> out;
   for (const AlgorithmResult& a : r.algorithms)
-    for (const Finding& w : a.remarks.list())
-      out.push_back({w.sentence.starts_with(a.label) ? "" : a.label, w.sentence, w.count});
+    for (const Finding& w : a.remarks.list()) out.push_back({a.label, w.sentence, w.count});
   return out;
 }
 

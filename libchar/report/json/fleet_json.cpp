@@ -15,11 +15,8 @@ namespace {
 constexpr std::size_t kMostFailed = 1000, kOutliersInJson = 100, kMostSlopes = 1000;
 
 Json counts_json(const LotCounts& c) {
-  return {{"members", c.members},
-          {"counted", c.counted},
-          {"not_detected", c.not_detected},
-          {"doubtful", c.doubtful},
-          {"no_result", c.no_result}};
+  return {{"members", c.members},   {"counted", c.counted}, {"not_detected", c.not_detected},
+          {"doubtful", c.doubtful}, {"spoilt", c.spoilt},   {"no_result", c.no_result}};
 }
 
 void add_figures(Json& out, const std::optional<LotFigures>& f) {

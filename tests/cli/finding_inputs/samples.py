@@ -55,6 +55,12 @@ def interpolated():
     return x
 
 
+def resampled():
+    """A sensor of 31.25 Hz, interpolated to 100 Hz."""
+    x = noise(10000)
+    return [x[int(t)] + (x[int(t) + 1] - x[int(t)]) * (t - int(t)) for t in (i / 3.2 for i in range(30000))]
+
+
 def spiky():
     """A pulse of ten samples every 50: no spikes of a sample, and no noise."""
     return [v + (40 * SD if i % 50 < 10 else 0) for i, v in enumerate(noise(30000))]
@@ -95,6 +101,7 @@ INPUTS = {
                        made_by="samples"),
     "held_values": Input(gyro("held", lambda: [v for v in noise(15000) for _ in range(4)]), made_by="samples"),
     "interpolated": Input(gyro("interpolated", interpolated), made_by="samples", truth=N),
+    "resampled": Input(gyro("resampled", resampled), made_by="samples"),
     "repeated_samples": Input(gyro("repeated", repeated), made_by="samples", truth=N),
     "stuck": Input(gyro("frozen", frozen), made_by="samples", truth=N),
     "beyond_range": Input(gyro("beyond", lambda: [1e200 if i == 500 else v for i, v in enumerate(noise(30000))]),

@@ -22,9 +22,16 @@
 namespace libchar {
 namespace {
 
-std::string statistic_of(const std::string& word) {
+SourceCurve::Statistic statistic_of(DeviationType type) {
+  const DeviationRow& row = deviation_row(type);
+  const bool is_allan = row.order == 2 && !row.of_sum && !row.as_time && row.family == DeviationFamily::differences;
+  return {std::string(row.title), is_allan};
+}
+
+SourceCurve::Statistic statistic_of(const std::string& word) {
+  if (word.empty()) return statistic_of(DeviationType::adev);
   const auto type = deviation_type(word);
-  return type ? std::string(deviation_row(*type).title) : word.empty() ? "Allan deviation" : word;
+  return type ? statistic_of(*type) : SourceCurve::Statistic{word};
 }
 
 void add_ends(SourceCurve& curve, const std::vector<Interval>& intervals) {
@@ -34,18 +41,19 @@ void add_ends(SourceCurve& curve, const std::vector<Interval>& intervals) {
   }
 }
 
-std::string line_statistic(const std::string& kind) {
+SourceCurve::Statistic line_statistic(const std::string& kind) {
   // "psd_one_sided" of curves.csv
   if (const auto known = detail::spectrum_kind(kind)) return spectrum_statistic(known->sides, known->scaling);
-  return kind.empty() ? "Power spectral density" : kind;
+  return {kind.empty() ? "Power spectral density" : kind};
 }
 
 }  // namespace
 
-std::string spectrum_statistic(Sides sides, Scaling scaling) {
+SourceCurve::Statistic spectrum_statistic(Sides sides, Scaling scaling) {
   std::string word(name_of(scaling));
   std::transform(word.begin(), word.end(), word.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
-  return (sides == Sides::one ? "One-sided " : "Two-sided ") + word;
+  return {(sides == Sides::one ? "One-sided " : "Two-sided ") + word, false,
+          scaling == Scaling::psd || scaling == Scaling::ps};
 }
 
 std::string mark_text(Term term, double value, const std::string& unit) {
@@ -78,7 +86,8 @@ void add_spectra(FigureSource& out, const MapReader& document) {
     curve.channel = channel.name;
     curve.unit = usual_figure_unit(channel.unit);
     curve.is_allan = false;
-    curve.statistic = sides && scaling ? spectrum_statistic(*sides, *scaling) : read.sides + " " + read.scaling;
+    curve.statistic = sides && scaling ? spectrum_statistic(*sides, *scaling)
+                                       : SourceCurve::Statistic{read.sides + " " + read.scaling};
     curve.value_unit =
         channel.value_unit.empty() ? spectrum_unit(scaling.value_or(Scaling::psd), curve.unit) : channel.value_unit;
     curve.x = channel.spectrum.frequency_hz;
@@ -264,7 +273,7 @@ SourceCurve source_curve(const std::string& channel, const std::string& unit, co
   out.channel = channel;
   out.unit = usual_figure_unit(unit);
   out.value_unit = usual_figure_unit(deviation_unit(curve.type, unit));
-  out.statistic = deviation_row(curve.type).title;
+  out.statistic = statistic_of(curve.type);
   for (const AllanPoint& p : curve.points) {
     const bool known = p.edf > 0;
     out.x.push_back(p.tau_s);
@@ -313,7 +322,7 @@ SourceCurve allan_of(const SensorModel& model, const NoiseFit& fit) {
   for (const ReadOff& point : read_off_points(fit, curve))
     out.marks.push_back({point.term, point.tau_s, point.deviation,
                          mark_text(point.term, simulated_value(model[point.term]), out.unit)});
-  out.statistic = "Allan deviation";
+  out.statistic = statistic_of(DeviationType::adev);
   return out;
 }
 

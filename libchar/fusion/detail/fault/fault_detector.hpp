@@ -143,7 +143,7 @@ class FaultDetector {
   bool set_changed() const { return set_changed_; }
   std::span<const VarianceChange> changes() const { return changes_; }
   const FaultLog& log() const { return log_; }
-  void remarks(std::string_view algorithm, const std::vector<std::string>& names, Findings& warnings) const;
+  void remarks(const std::vector<std::string>& names, Findings& warnings) const;
   double threshold() const { return threshold_; }
 
  private:

@@ -263,8 +263,7 @@ void FaultDetector::stand_down() {
   sets_changed();
 }
 
-void FaultDetector::remarks(std::string_view algorithm, const std::vector<std::string>& names,
-                            Findings& warnings) const {
+void FaultDetector::remarks(const std::vector<std::string>& names, Findings& warnings) const {
   const auto at_time = [&](std::int64_t sample) {
     return rate_hz_ > 0 ? shortest(std::round(static_cast<double>(sample) / rate_hz_ * 100) / 100) + " s"
                         : "instant " + std::to_string(sample);
@@ -275,19 +274,17 @@ void FaultDetector::remarks(std::string_view algorithm, const std::vector<std::s
       if ((set >> i & 1U) != 0) text += (text.empty() ? "" : ", ") + channel_name(names, i);
     return text;
   };
-  const std::string who(algorithm);
   for (const FaultDoubt& doubt : log_.doubts()) {
     if (!doubt.ambiguous) continue;
-    warnings.add("faults_ambiguous", who + " saw at " + at_time(doubt.sample) + " that channels " +
-                                         list(doubt.one_side) + " contradict " +
+    warnings.add("faults_ambiguous", at_time(doubt.sample) + ": channels " + list(doubt.one_side) + " contradict " +
                                          (doubt.other_side != 0 ? "channels " + list(doubt.other_side) : "the others") +
-                                         " and cannot tell who is right: nobody is left out");
+                                         ", and it is not known who is right: nobody is left out");
     break;
   }
   if (stood_down_ == 0) return;
   const double share =
       now_ > 0 ? 100 * std::min(1.0, static_cast<double>(stood_instants_) / static_cast<double>(now_)) : 0;
-  warnings.add("fault_watch_stood_down", who + " stopped judging faults of bias, gain and noise " +
+  warnings.add("fault_watch_stood_down", "faults of bias, gain and noise were not judged " +
                                              std::to_string(stood_down_) + (stood_down_ == 1 ? " time" : " times") +
                                              " (for " + shortest(std::round(share)) +
                                              " % of the run) because most channels were off by more than their noise "

@@ -263,7 +263,7 @@ std::vector<PlannedAlgorithm> choose(const Scene& scene, const ReplayOptions& op
       if (const std::string name(entry.description->name); !times.contains(name))
         out.push_back({name, &entry, fusion::Settings(entry.options),
                        asked.empty() && entry.description->as_published && !options.published
-                           ? name + " is the form as published: runs by name or with `published`"
+                           ? "is the form as published: runs by name or with `published`"
                            : "",
                        asked.empty()});
   return out;
@@ -368,8 +368,9 @@ ReplayPlan make_plan(const Scene& scene, const ReplayOptions& options, const Ins
   if (plan.without_reference) keep_budget(options, live, plan);
   if (!any([](const auto&) { return true; }))
     throw numeric_error("E0905", scene.file)
-        .says("no algorithm can run on this scene: " +
-              (plan.algorithms.empty() ? std::string("none was asked for") : plan.algorithms[0].why))
+        .says("no algorithm can run on this scene: " + (plan.algorithms.empty()
+                                                            ? std::string("none was asked for")
+                                                            : plan.algorithms[0].label + " " + plan.algorithms[0].why))
         .hint("`explain_replay` says what each of them needs");
   const std::int64_t run = plan.run_to - plan.run_from;
   plan.block = options.block > 0 ? options.block

@@ -18,7 +18,7 @@ struct PlannedAlgorithm {
   std::string label;
   const fusion::Entry* entry = nullptr;
   fusion::Settings settings;
-  std::string why;        ///< why it does not run, a sentence; empty: it runs
+  std::string why;        ///< why it does not run, without its name ("needs …"); empty: it runs
   bool asked = true;      ///< false: run for `no_skip` alone, shown nowhere
   bool helped = false;    ///< there is a reference in a learning window, which it does not need
   BlindShare blind = {};  ///< how much of the run its scores without a reference are made of

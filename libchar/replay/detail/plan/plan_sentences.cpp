@@ -144,7 +144,7 @@ std::vector<std::string> sentences(const ReplayPlan& plan, const Scene& scene, c
     if (a.asked && a.runs() && !a.blind.whole && !scene.reference)
       out.push_back("leave-one-out of " + blind_share_text(a) + " (`budget_s`)");
   for (const PlannedAlgorithm& a : plan.algorithms)
-    if (a.asked && !a.runs()) out.push_back("skips " + a.why);
+    if (a.asked && !a.runs()) out.push_back("skips " + a.label + ": " + a.why);
   return out;
 }
 

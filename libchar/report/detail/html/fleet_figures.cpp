@@ -40,7 +40,7 @@ std::string spread_text(double spread, const Interval& ci95, bool logarithm, con
 std::string not_counted(const LotCounts& c) {
   std::string out;
   for (const auto& [count, what] : {std::pair(c.not_detected, "not detected"), std::pair(c.doubtful, "doubtful"),
-                                    std::pair(c.no_result, "without it")})
+                                    std::pair(c.spoilt, "spoilt by a finding"), std::pair(c.no_result, "without it")})
     if (count > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count_text(count), what);
   return out;
 }

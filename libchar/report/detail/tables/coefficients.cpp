@@ -75,11 +75,11 @@ Table power_laws_table(const NoiseFit& fit, const std::string& unit) {
   return out;
 }
 
-Cell headline_cell(const Coefficient& c, Term term, const std::string& unit) {
+Cell headline_cell(const Coefficient& c, Term term, const std::string& unit, bool spoilt) {
   if (!c.value && !c.upper95) return "–";
   const TermCells cells = term_cells(c, term, unit);
   Cell out = Cell::of(headline(cells), c);
-  if (const Tint tint = tint_of(c.status); tint == Tint::doubtful || tint == Tint::bad)
+  if (const Tint tint = tint_of(c.status); spoilt || tint == Tint::doubtful || tint == Tint::bad)
     out.unit += out.unit.empty() ? "?" : " ?";
   if (!c.value) out.tint = Tint::absent;
   return out;
@@ -99,7 +99,7 @@ std::vector<Cell> headline_cells(const RecordedChannel& channel) {
   for (const Term term : {Term::white, Term::flicker, Term::walk}) {
     const RecordedValue* value = channel.find(quantity_of(term));
     const Coefficient c = value == nullptr ? Coefficient{} : coefficient_of(*value);
-    out.push_back(headline_cell(c, term, channel.unit));
+    out.push_back(headline_cell(c, term, channel.unit, channel.is_spoilt(quantity_of(term))));
   }
   out.emplace_back(probability_text(channel.p));
   return out;

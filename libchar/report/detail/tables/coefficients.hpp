@@ -20,7 +20,8 @@ Table power_laws_table(const NoiseFit& fit, const std::string& unit);
 
 /// The coefficients that tell most, each in the unit of the field: N, B, K and how well they fit.
 inline constexpr const char* kHeadlines = "N, white noise|B, bias instability|K, random walk|fit";
-Cell headline_cell(const Coefficient& coefficient, Term term, const std::string& unit);
+/// `spoilt`: marked as not to be relied on, whatever its status.
+Cell headline_cell(const Coefficient& coefficient, Term term, const std::string& unit, bool spoilt = false);
 std::vector<Cell> headline_cells(const Channel& channel, const NoiseFit& fit);
 std::vector<Cell> headline_cells(const RecordedChannel& channel);
 inline constexpr const char* kHeadlineNote =

@@ -357,7 +357,7 @@ std::vector<std::string> skipped_words(const ReplayView& view) {
 std::vector<std::string> remark_words(const ReplayView& view) {
   std::vector<std::string> out;
   for (const AlgorithmRemark& remark : view.remarks)
-    out.push_back((remark.label.empty() ? "" : remark.label + ": ") + remark.message +
+    out.push_back(remark.label + ": " + remark.message +
                   (remark.count > 1 ? fmt::format(" ({} ×)", remark.count) : ""));
   return out;
 }
