@@ -197,8 +197,9 @@ std::int64_t unit_by_another_clock(const TableFront& table, std::size_t column, 
 
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::int64_t unit, LogInfo& info) {
+  constexpr std::size_t kFewest = 4;  // stamps: of less the first cell that is no number is what is wrong
   const double step = usual_step(first.values);
-  if (!first.integers && unit == kStampUnits[1] && !inertial(table))
+  if (!first.integers && unit == kStampUnits[1] && first.values.size() >= kFewest && !inertial(table))
     throw input_error("E0325", info.file)
         .says("the stamps state no unit: their step of {} is {} Hz in seconds and {} Hz in milliseconds",
               brief_text(step, 6), brief_text(rate_in(step, kStampUnits[0]), 6), brief_text(rate_in(step, unit), 6))
