@@ -291,24 +291,8 @@ struct Search {
     band.orders = static_cast<int>(unknowns_of(family));
     std::optional<Trial> trial = at(band);
     const bool rises = shape->zero_hz > 0 && shape->pole_hz > shape->zero_hz;
-    if (trial && rises && !shows_white_below(*trial)) return std::nullopt;
+    if (trial && rises && !shows_white_below(bins, trial->band.named, trial->theta)) return std::nullopt;
     return trial;
-  }
-
-  /// N is white noise below the zero and the pole: where slow noise is above it there, a rise is a departure of the
-  /// slow noise from its terms (another exponent, processes), and N would be read off an extrapolation. Of a fall both
-  /// levels are said.
-  bool shows_white_below(const Trial& trial) const {
-    const NamedShape& shape = trial.band.named;
-    const double corner_hz = std::min(shape.pole_hz, shape.zero_hz);
-    const auto at =
-        std::find_if(bins.begin(), bins.end(), [&](const PowerBin& bin) { return bin.high_hz > corner_hz; });
-    if (at == bins.end()) return true;
-    double slow = 0;
-    for (const std::size_t i :
-         {static_cast<std::size_t>(Term::flicker), static_cast<std::size_t>(Term::walk), kLentTerm})
-      slow += trial.theta[i] * at->unit[i];
-    return slow < trial.theta[0] * at->unit[0];
   }
 
   /// The widest band that passes with a filter or loop of low corner: found in the middle of the
@@ -819,6 +803,16 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
 }
 
 }  // namespace
+
+bool shows_white_below(const std::vector<PowerBin>& bins, const NamedShape& shape, const Mixture& theta) {
+  const double corner_hz = std::min(shape.pole_hz, shape.zero_hz);
+  const auto at = std::find_if(bins.begin(), bins.end(), [&](const PowerBin& bin) { return bin.high_hz > corner_hz; });
+  if (at == bins.end()) return true;
+  double slow = 0;
+  for (const std::size_t i : {static_cast<std::size_t>(Term::flicker), static_cast<std::size_t>(Term::walk), kLentTerm})
+    slow += theta[i] * at->unit[i];
+  return slow < theta[0] * at->unit[0];
+}
 
 std::optional<Band> judged(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const Band& band) {
   const auto trial = tried(bins, rate_hz, terms, band, {});

@@ -72,6 +72,11 @@ Band whole_band(const std::vector<PowerBin>& bins, double rate_hz);
 Band find_band(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
                const BandOptions& options = {});
 
+/// N is white noise below the zero and the pole of a shelf or loop: where slow noise is above it there, a rise is a
+/// departure of the slow noise from its terms (another exponent, processes), and N would be read off an extrapolation.
+/// Of a fall both levels are said.
+bool shows_white_below(const std::vector<PowerBin>& bins, const NamedShape& shape, const Mixture& theta);
+
 /// A band with the judgement of its residuals; nothing where it has too few bins.
 std::optional<Band> judged(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms, const Band& band);
 

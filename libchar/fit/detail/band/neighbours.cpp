@@ -245,6 +245,8 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
     const bool goes_on = other.named.family == Family::none;
     const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
+    if (is_plain(band) && other.named.family == Family::shelf && !shows_white_below(bins, other.named, there.at.theta))
+      continue;
     // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
     const double likelier = chosen - there.half_deviance - price_of(other);
     const double weight = std::exp(std::min(likelier, kMostLikelier));
