@@ -106,7 +106,7 @@ TEST_CASE("fault rules have names") {
   CHECK(name(FaultRule::saturated) == "saturated");
 }
 
-TEST_CASE("what cannot run is refused with the same sentence") {
+TEST_CASE("what cannot run is refused with the same sentence after its name") {
   for (const Entry& entry : algorithms()) {
     INFO(entry.description->name);
     const Array none = test::array(0);
@@ -116,7 +116,7 @@ TEST_CASE("what cannot run is refused with the same sentence") {
       entry.make(none, Settings(entry.options));
       FAIL("made");
     } catch (const Error& error) {
-      CHECK(error.problem().what == sentence);
+      CHECK(error.problem().what == std::string(entry.description->name) + " " + sentence);
     }
   }
 }
