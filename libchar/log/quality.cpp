@@ -897,7 +897,7 @@ void QualityMeter::State::equal_runs(const double* x, const double* before, std:
     const std::uint64_t run = odd.same.now() + 1;  // of one value, before these
     if (odd.resting.count == 0 && run < RestingValue::kRests && run + (i - from) >= RestingValue::kRests) {
       odd.resting = {x[from], RestingValue::kRests};
-      rests_from = from + (RestingValue::kRests - run);
+      rests_from = from + static_cast<std::size_t>(RestingValue::kRests - run);
     }
     if (i > from && x[from] == 0) odd.zero.repeats += i - from;
     odd.same.push_run(i - from, at + from);
