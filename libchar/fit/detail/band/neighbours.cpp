@@ -23,6 +23,7 @@
 
 #include "libchar/fit/detail/band/bin_likelihood.hpp"
 #include "libchar/fit/detail/curve/coefficients.hpp"
+#include "libchar/fit/detail/curve/profile.hpp"
 
 namespace libchar {
 namespace {
@@ -107,8 +108,6 @@ struct Opinion {
   double weight = 0, mean = 0, below = 0, above = 0;
 };
 
-constexpr double kTail = 0.025;
-
 /// Where the average over the opinions has less than 2.5 % beyond: below them for a side of -1, above for 1.
 double end_of(const std::vector<Opinion>& opinions, int side) {
   constexpr int kHalvings = 40;
@@ -125,7 +124,7 @@ double end_of(const std::vector<Opinion>& opinions, int side) {
     double tail = 0;
     for (const Opinion& of : opinions)
       tail += of.weight / sum * std::erfc((end - side * of.mean) / deviation(of) / std::numbers::sqrt2) / 2;
-    (tail > kTail ? inner : outer) = end;
+    (tail > kEachTail ? inner : outer) = end;
   }
   return side * outer;
 }
@@ -159,7 +158,7 @@ struct NeighbourReach {
 void extend(const NeighbourReach& by, Coefficient& term) {
   reach_by(by.least, term);
   reach_by(by.most, term);
-  if (by.without > kTail) term.ci95.low = 0;  // beside the weight 1 of the shape that was chosen
+  if (by.without > kEachTail) term.ci95.low = 0;  // beside the weight 1 of the shape that was chosen
   if (by.opinions.size() < 2) return;
   term.ci95.low = std::min(term.ci95.low, std::exp(end_of(by.opinions, -1)));
   term.ci95.high = std::max(term.ci95.high, std::exp(end_of(by.opinions, 1)));
@@ -195,12 +194,37 @@ void shift_to_narrower(const std::vector<PowerBin>& bins, const Band& band, doub
   shift_to(score(band_problem(bins, narrow, fit.rate_hz), kept, &start).at.theta, fit, reach);
 }
 
-/// Of a term that was not found without the shape.
-void limit_by(double theta, double sd, Coefficient& term) {
-  constexpr double kOneSided95 = 1.645;
-  if (!term.upper95) return;
-  term.upper95 = std::max(*term.upper95, std::sqrt(theta) * std::exp(kOneSided95 * sd));
-  term.ci95.high = std::max(term.ci95.high, std::sqrt(theta) * std::exp(kNormal95 * sd));
+/// Standard deviations of ln of the coefficients.
+Mixture log_sds(const BinProblem& problem, const ModelPoint& at, const TermSet& terms) {
+  const TermMatrix covariance = inverse_of(fisher_information(problem, at, terms), terms);
+  Mixture out{};
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (at.theta[i] > 0) out[i] = 0.5 * std::sqrt(covariance(k, k)) / at.theta[i];
+  }
+  return out;
+}
+
+/// The opinion of a shape that knows a term to `unseen` at least.
+void hear(const Mixture& theta, const Mixture& sd, double weight, double unseen,
+          std::array<NeighbourReach, kTerms>& reach) {
+  constexpr double kUnknown = std::numbers::ln10;  ///< standard deviation of what a shape hardly knows
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    if (!(theta[i] > 0)) reach[i].without += weight;
+    if (reach[i].opinions.empty() || !(theta[i] > 0) || !(sd[i] > 0) || sd[i] > unseen) continue;
+    const double known = std::min(sd[i], kUnknown);
+    reach[i].opinions.push_back({weight, 0.5 * std::log(theta[i]), known, known});
+  }
+}
+
+/// Of terms that were not found without the high-pass.
+void limit_by(const Mixture& theta, const Mixture& sd, const TermSet& kept, NoiseFit& fit) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    Coefficient& term = fit.term[i];
+    if (kept[i] || !term.upper95 || !(theta[i] > 0) || !(sd[i] > 0)) continue;
+    term.upper95 = std::max(*term.upper95, std::sqrt(theta[i]) * std::exp(std::sqrt(kOneSided95) * sd[i]));
+    term.ci95.high = std::max(term.ci95.high, std::sqrt(theta[i]) * std::exp(kNormal95 * sd[i]));
+  }
 }
 
 /// What the shapes put decades apart was not seen.
@@ -220,14 +244,14 @@ void say_if_unknown(Term of, NoiseFit& fit) {
 void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, const ModelPoint& best,
                          const TermSet& offered, NoiseFit& fit) {
   constexpr double kAsLikely = 0.5, kMostLikelier = 300;  ///< of ln L
-  constexpr double kUnknown = std::numbers::ln10;         ///< standard deviation of what a shape hardly knows
   const bool named = band.named.family != Family::none, taps = band.filter.kind != NoiseShape::Kind::none;
+  const bool plain = is_plain(band);
   // Of an order, in ln L: equal weights are what many sensors have. And of what is hidden, which few have.
   constexpr double kOfWeights = 2, kOfHidden = 7.5;
-  constexpr double kOfLimit = 3;   ///< of ln L, from which on limits know of what is hidden
+  constexpr double kOfLimit = 3;   ///< of ln L, from which on limits know of a high-pass
   constexpr double kUnseen = 0.5;  ///< standard deviation of the level below a step that hardly has coefficients
   const auto price_of = [&](const Band& other) {
-    return is_plain(band) ? kOfHidden : (taps ? kOfWeights : 1) * (other.orders - band.orders);
+    return plain ? kOfHidden : (taps ? kOfWeights : 1) * (other.orders - band.orders);
   };
   if (band.named.family == Family::high_pass) return;
   const TermSet kept = only_positive(fit.theta);
@@ -245,25 +269,17 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
     const bool goes_on = other.named.family == Family::none;
     const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
-    if (is_plain(band) && other.named.family == Family::shelf && !shows_white_below(bins, other.named, there.at.theta))
-      continue;
+    if (plain && other.named.family == Family::shelf && !shows_white_below(bins, other.named, there.at.theta)) continue;
     // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
     const double likelier = chosen - there.half_deviance - price_of(other);
     const double weight = std::exp(std::min(likelier, kMostLikelier));
     if (!(weight > 0)) continue;
-    const bool shifts =
-        !is_plain(band) && there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
+    const bool shifts = !plain && there.half_deviance < chosen + kAsLikely && (named || other.orders > band.orders);
     if (shifts) shift_to(there.at.theta, fit, reach);
-    const TermMatrix covariance = inverse_of(fisher_information(problem, there.at, terms), terms);
-    for (std::size_t i = 0; i < kTerms; ++i) {
-      const double theta = there.at.theta[i];
-      if (!(theta > 0)) reach[i].without += weight;
-      if (!(theta > 0)) continue;
-      const double sd = 0.5 * std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))) / theta;
-      if (!kept[i] && is_plain(band) && sd > 0 && likelier > kOfLimit - kOfHidden) limit_by(theta, sd, fit.term[i]);
-      if (!reach[i].opinions.empty() && sd > 0 && !(is_plain(band) && sd > kUnseen))
-        reach[i].opinions.push_back({weight, 0.5 * std::log(theta), std::min(sd, kUnknown), std::min(sd, kUnknown)});
-    }
+    const Mixture sd = log_sds(problem, there.at, terms);
+    hear(there.at.theta, sd, weight, plain ? kUnseen : std::numeric_limits<double>::infinity(), reach);
+    const bool falls = plain && other.named.family == Family::high_pass;
+    if (falls && likelier > kOfLimit - kOfHidden) limit_by(there.at.theta, sd, kept, fit);
   }
   for (const double less : {std::numbers::sqrt2 / 2, 0.5}) shift_to_narrower(bins, band, less, kept, fit, reach);
   for (std::size_t i = 0; i < kTerms; ++i)
