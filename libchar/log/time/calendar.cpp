@@ -529,6 +529,7 @@ std::optional<CalendarStamp> read_calendar(std::string_view text) {
   const auto clock = [](char c) { return c == ':' || c == ',' || c == '_' || (c & 0x80) != 0 || ascii_letter(c); };
   if (std::none_of(text.begin(), text.end(), clock) && std::count_if(text.begin(), text.end(), sign) < 2)
     return std::nullopt;
+  if (std::none_of(text.begin(), text.end(), decimal_digit)) return std::nullopt;  // words
   for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
     if (const auto stamp = read_calendar(text, order)) return stamp;
   return std::nullopt;
