@@ -367,6 +367,9 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
   if (options.second_opinion && allan != nullptr && terms_alone)
     now.fit.second_opinion = second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr && !behind && !hump) answer_contradictions(now.fit, *allan);
+  constexpr double kNoEnd = 1000;  // times the value: a shape takes all of it back, up to any number
+  for (Coefficient& term : now.fit.term)
+    if (term.value && term.ci95.high > kNoEnd * *term.value) term.ci95.high = std::numeric_limits<double>::infinity();
   now.fit.bins = bins;
   return std::move(now.fit);
 }
