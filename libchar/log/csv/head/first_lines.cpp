@@ -258,11 +258,14 @@ bool sources_below_units(const std::vector<Cells>& lines, std::size_t rows) {
          !line_of_units(sources) && (line_of_units(units) || unit_of_the_time(names, units));
 }
 
-// Shimmer has a line between names and units that says what was done with the values.
-bool states_calibration(const Cells& line) {
-  return std::all_of(line.begin(), line.end(), [](const Field& field) {
-    return field.text == "CAL" || field.text == "RAW" || field.text.empty();
-  });
+// Shimmer has a line between names and units that says what was done with the values; columns that it adds itself have
+// their names once more.
+bool states_calibration(const Cells& line, const Cells& above) {
+  const auto stated = [](const Field& field) { return field.text == "CAL" || field.text == "RAW"; };
+  if (std::none_of(line.begin(), line.end(), stated)) return false;
+  for (std::size_t c = 0; c < line.size(); ++c)
+    if (!stated(line[c]) && !line[c].text.empty() && (c >= above.size() || line[c].text != above[c].text)) return false;
+  return true;
 }
 
 // Campbell's table-oriented ASCII: station, names, units, what was done with the values.
@@ -373,7 +376,12 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
       out.units = last - 2;
       out.names = last - 3;
     }
-    if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words()) --*out.names;
+    if (last > 2 && states_calibration(lines[last - 2], lines[last - 3]) && census[last - 3].words()) {
+      out.units = last - 1;
+      out.names = last - 3;
+    } else if (last > 1 && states_calibration(lines[last - 1], lines[last - 2]) && census[last - 2].words()) {
+      out.names = last - 2;
+    }
     const auto empty = [](const Field& field) { return field.text.empty() && !field.quoted; };
     if (!out.units && last < rows_at && lines[last].size() > 1 &&
         std::all_of(lines[last].begin(), lines[last].end(), empty)) {  // units of columns that have none

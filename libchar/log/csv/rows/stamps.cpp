@@ -410,6 +410,7 @@ TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
     const Column& column = dialect.columns[c];
     ColumnLabel label{column.text, column.unit_below};
+    label.numbered = column.name;
     const bool first = pair && c == pair->first, second = pair && c == pair->second;
     label.calendar = (c < study.kinds.size() && is_calendar(study.kinds[c])) || first;
     label.text = second || (c < study.kinds.size() &&
@@ -433,7 +434,7 @@ void find_own_clocks(const TableFront& table, std::size_t index, Dialect& dialec
   for (std::size_t c = 0; c < dialect.columns.size() && !others.empty(); ++c) {
     Column& column = dialect.columns[c];
     const bool other = std::find(others.begin(), others.end(), c) != others.end();
-    if (other || c == index) clock = other ? column.name : "";
+    if (other || c == index || column.clock) clock = other ? column.name : "";
     if (!other) column.own_clock = clock;
   }
 }
