@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/detail/rest_doubt.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/shown.hpp"
 #include "libchar/fit/record/mean_meter.hpp"
-#include "libchar/log/between_channels.hpp"
 #include "libchar/log/channel_names.hpp"
 
 namespace libchar {
@@ -214,11 +214,7 @@ Characterization characterize_source(const Source& source, const CharacterizeOpt
     if (stages.end() == next) break;
     next = stages.end();
   }
-  if (options.data == SampleKind::rate) {
-    std::vector<Channel> channels;
-    for (const ChannelResult& channel : result.channels) channels.push_back(channel.channel);
-    judge_together(channels, [&](std::size_t c) -> ChannelQuality& { return result.channels[c].quality; });
-  }
+  if (options.data == SampleKind::rate) detail::doubt_together(result.channels);
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -95,6 +95,12 @@ struct Judge {
     for (std::size_t t = 0; t < kTerms; ++t)
       if (detail::reaches_zero(fit.term[t]))
         add("reaches_zero", fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
+    const auto is_known = [](const Coefficient& term) {
+      return term.status == Status::detected && term.value && !detail::reaches_zero(term);
+    };
+    if (std::none_of(fit.term.begin(), fit.term.end(), is_known) && !has(out, "undetermined"))
+      add("nothing_detected", "No noise term is resolved: each is not detected, or its interval includes 0.",
+          "no noise term is resolved");
   }
 
   void look_at_remedies(const NoiseFit& fit) {

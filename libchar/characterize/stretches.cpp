@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "libchar/characterize/detail/channel_stage.hpp"
+#include "libchar/characterize/detail/rest_doubt.hpp"
 #include "libchar/characterize/detail/stretch_state.hpp"
 #include "libchar/characterize/settings.hpp"
 #include "libchar/core/file/file_text.hpp"
@@ -325,6 +326,7 @@ Characterization characterize_from_stretches(std::span<const NamedState> states,
     give_back_free_memory();
   }
   if (with_values == 0) throw input_error("E0318", result.log.file).says("no channel has a finite value");
+  if (chosen.data == SampleKind::rate) detail::doubt_together(result.channels);
   result.work = work.done();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/allan/allan_deviation.hpp"
+#include "libchar/characterize/characterization_view.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/core/noise_terms.hpp"
@@ -62,11 +63,7 @@ struct SourceTrace {
   std::string channel, unit;
   double block_s = 1;
   std::vector<double> low, high;
-  struct Mark {
-    std::string label;
-    double from_s = 0, to_s = 0;
-  };
-  std::vector<Mark> marks;
+  std::vector<TraceMark> marks;
 };
 
 struct FigureSource {

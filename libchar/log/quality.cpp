@@ -88,7 +88,8 @@ struct Extreme {
   std::uint64_t run = 0, count = 0, at_next = 0;
   bool runs = false;
 
-  std::uint64_t saturated() const { return runs && count > 2 * at_next ? count : 0; }
+  /// `slow`: changes by a step or so from sample to sample. The top of a smooth peak then has up to 2.4 times as many.
+  std::uint64_t saturated(bool slow = false) const { return runs && count > (slow ? 6 : 2) * at_next ? count : 0; }
   /// -1 and numbers of nines alone: what loggers write for no reading.
   bool is_usual_mark() const {
     const double written = sign * value;
@@ -107,6 +108,11 @@ struct Extreme {
   bool is_reached(double step) const {
     constexpr std::uint64_t kAgain = 10;
     return at_next >= kAgain && value - next <= 2 * step;
+  }
+  /// The next value is nearer than chance brings one of so many samples: a signal without noise that rests there.
+  bool is_rest(double difference_sd, double samples) const {
+    constexpr double kNear = 1e-3;
+    return value - next < kNear * difference_sd / samples;
   }
   /// Nothing lies on the way to it: a range that ends is reached through what is below.
   bool is_apart(double others) const { return saturated() > 0 && value - next > 0.5 * others; }
@@ -1415,8 +1421,11 @@ ChannelQuality QualityMeter::finish(double rate_hz) const {
   q.at_minimum = state.bottom.count;
   q.at_maximum = state.top.count;
   const bool may = state.top.value > -state.bottom.value && state.may_saturate(q.distinct_values);
-  const std::uint64_t low = may && !(rests && q.minimum == 0) ? state.bottom.saturated() : 0;
-  const std::uint64_t high = may && !(rests && q.maximum == 0) ? state.top.saturated() : 0;
+  const auto saturated = [&](const Extreme& end) {
+    const bool rest = (rests && end.value == 0) || end.is_rest(q.difference_sd, state.values.n);
+    return may && !rest ? end.saturated(q.difference_sd < 2 * value_step(q)) : 0;
+  };
+  const std::uint64_t low = saturated(state.bottom), high = saturated(state.top);
   q.saturated = low + high;
   if (FrozenRuns(q).rare) q.saturated = 0;
   if (q.saturated > 0) {

@@ -1,8 +1,10 @@
 // An even motion is told from the noise of a sensor that rests: by its own noise below the motion, or by N itself.
 #include "libchar/characterize/detail/rest_doubt.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "libchar/fit/noise_fit.hpp"
@@ -75,4 +77,37 @@ TEST_CASE("white noise beyond that of any gyroscope or accelerometer is no rest"
   CHECK(doubt_rest(fit, "m/s^2", 0) == std::nullopt);
   CHECK(doubt_rest(fit, "g", 0) == std::nullopt);
   CHECK(doubt_rest(fit_record(rest_white(20000, 6, 2), kRestRate, nullptr), "m/s^2", 0));
+}
+
+TEST_CASE("means that wander more than those of any gyroscope or accelerometer are no rest") {
+  std::vector<double> walk(6000);
+  const std::vector<double> steps = rest_white(walk.size(), 8, 0.01);  // K 0.1 per root second
+  for (std::size_t t = 1; t < walk.size(); ++t) walk[t] = walk[t - 1] + steps[t];
+  const NoiseFit fit = fit_record(walk, kRestRate, nullptr);
+  const auto moves = doubt_rest(fit, "m/s^2", 0);
+  REQUIRE(moves);
+  CHECK(moves->severity == Severity::bad);
+  CHECK(doubt_rest(fit, "deg/s", 0) == std::nullopt);  // a gyroscope in poor heat does
+  CHECK(doubt_rest(fit, "degC", 0) == std::nullopt);
+}
+
+TEST_CASE("what is fixed to a body that turns throughout does not rest") {
+  const auto log_of = [](std::vector<const char*> turning) {
+    std::vector<ChannelResult> out;
+    for (const char* name : {"gx", "gy", "gz", "ax", "temp"}) {
+      out.emplace_back();
+      out.back().channel = {name, *name == 'g' ? "deg/s" : *name == 'a' ? "m/s^2" : "degC"};
+      out.back().motion.whole =
+          std::any_of(turning.begin(), turning.end(), [&](std::string_view one) { return one == name; });
+    }
+    detail::doubt_together(out);
+    return out;
+  };
+  const auto moved = log_of({"gx", "gy"});
+  CHECK(has(moved[2].findings, "moves_with_others"));
+  CHECK(has(moved[3].findings, "moves_with_others"));
+  for (const std::size_t c : {0, 1, 4}) CHECK_FALSE(has(moved[c].findings, "moves_with_others"));
+  // A table that turns about one axis; what vibrates without turning.
+  for (const auto& turning : {std::vector{"gz"}, {"ax"}, {}})
+    for (const ChannelResult& one : log_of(turning)) CHECK(one.findings.empty());
 }

@@ -261,6 +261,31 @@ TEST_CASE("every clipped sample is counted, and coarse rounding is no end of a r
   }
 }
 
+TEST_CASE("a signal without noise that rests at its extreme is not saturated") {
+  // A component of an encoder's quaternion, written to ten digits: it rests, creeps on by its last digit, and moves.
+  std::vector<double> w;
+  for (int turn = 0; turn < 20; ++turn) {
+    for (int i = 0; i < 12; ++i) w.push_back(turn % 2 == 0 ? 1.22e-5 : 1);
+    for (int i = 0; i < 5; ++i) w.push_back(turn % 2 == 0 ? 1.22e-5 + 1.25e-11 * (i + 1) : 1 - 1e-10 * (i + 1));
+    for (int i = 1; i < 100; ++i)
+      w.push_back(0.5 - (turn % 2 == 0 ? 0.5 : -0.5) * std::cos(std::numbers::pi * i / 100));
+  }
+  CHECK(meter(w).saturated == 0);
+  std::erase_if(w, [](double value) { return std::abs(value - 0.5) > 0.48; });
+  for (double& value : w) value = std::clamp(value, 0.1, 0.9);
+  CHECK(meter(w).saturated > 0);
+}
+
+TEST_CASE("the peak of a slow signal in coarse steps is no end of a range") {
+  // Of a parabola the last step holds up to 2.4 times as many samples as the one below it.
+  std::vector<double> slow(5000);
+  for (std::size_t i = 0; i < slow.size(); ++i)
+    slow[i] = std::floor(2000 + 1500 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 4900)) / 100;
+  CHECK(meter(slow).saturated == 0);
+  for (double& value : slow) value = std::min(value, 34.0);
+  CHECK(meter(slow).saturated > 0);
+}
+
 TEST_CASE("only the end of the range that clips is named") {
   const auto said = [](double low, double high) {
     auto clipped = gaussian(50000, 1);

@@ -4,7 +4,10 @@
 //   signal      whatever is above it by a factor of kDoubtful (a low-pass and noise behind it are seldom so far apart)
 //               or of kMoves (never)
 // or white noise beyond that of any sensor of its kind: 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and
-// 20 mg/√Hz (H3LIS331DL, ±400 g: 15).
+// 20 mg/√Hz (H3LIS331DL, ±400 g: 15); or slow noise whose Allan deviation at 10 s is larger than that of such white
+// noise at 1 s, where a sensor's is a hundred times smaller.
+// What turns moves the accelerometers beside it, whatever their own spectra look like: gravity turns with it. The
+// opposite does not hold, since vibration and tables move without turning.
 #include "libchar/characterize/detail/rest_doubt.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +15,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
+#include "libchar/log/between_channels.hpp"
 
 namespace libchar::detail {
 namespace {
@@ -62,6 +70,26 @@ double signal_density(const NoiseFit& fit) {
   return highest;
 }
 
+bool is_of(std::string_view unit, Quantity quantity) {
+  const auto known = find_unit(unit);
+  return known && known->quantity == quantity;
+}
+
+bool moves(const ChannelResult& channel) {
+  return channel.motion.whole || std::any_of(channel.findings.begin(), channel.findings.end(), [](const Finding& one) {
+           return one.code == "moves_throughout" && one.severity == Severity::bad;
+         });
+}
+
+/// Allan deviation of flicker and walk at 10 s, of what is detected: by the least of the interval.
+double slow_deviation(const NoiseFit& fit) {
+  double variance = 0;
+  for (const Term term : {Term::flicker, Term::walk})
+    if (const Coefficient& one = fit[term]; one.status == Status::detected && one.value)
+      variance += one.ci95.low * one.ci95.low * allan_asymptote(term, 10);
+  return std::sqrt(variance);
+}
+
 std::string density_text(double n, std::string_view unit) {
   return brief_text(n) + " " + shown_term_unit("white_noise", unit);
 }
@@ -89,14 +117,50 @@ std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, do
   const bool shaped = !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none;
   const double own = shaped ? own_noise(fit, rounding) : 0, signal = own > 0 ? signal_density(fit) : 0;
   if (own > 0 && signal > kDoubtful * own) return signal_above(own, signal, unit);
-  const double most = rate ? 0.5 * std::numbers::pi / 180 / std::numbers::sqrt2 : 0.02 * 9.80665 / std::numbers::sqrt2;
+  const char* const sensor = rate ? "gyroscope" : "accelerometer";
+  const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
   const Coefficient& white = fit[Term::white];
-  if (!white.value || !(*white.value * known->to_si > most)) return std::nullopt;
-  return finding("moves_throughout",
-                 fmt::format("N is {}, and no {} at rest has more than {}: it moves, or the unit is another.",
-                             density_text(*white.value, unit), rate ? "gyroscope" : "accelerometer",
-                             density_text(most / known->to_si, unit)),
-                 "more noise than a sensor at rest has");
+  if (white.value && *white.value > most)
+    return finding("moves_throughout",
+                   fmt::format("N is {}, and no {} at rest has more than {}: it moves, or the unit is another.",
+                               density_text(*white.value, unit), sensor, density_text(most, unit)),
+                   "more noise than a sensor at rest has");
+  if (!(slow_deviation(fit) > most)) return std::nullopt;
+  return finding(
+      "moves_throughout",
+      fmt::format("Means of 10 s differ by {} {}, and no {} at rest wanders by more than {}: it moves, or the "
+                  "unit is another.",
+                  brief_text(slow_deviation(fit)), unit, sensor, brief_text(most)),
+      "it wanders more than a sensor at rest does");
+}
+
+void doubt_together(std::span<ChannelResult> channels) {
+  std::vector<Channel> names;
+  for (const ChannelResult& one : channels) names.push_back(one.channel);
+  judge_together(names, [&](std::size_t c) -> ChannelQuality& { return channels[c].quality; });
+  std::size_t rates = 0;
+  std::vector<std::string> turning;
+  for (const ChannelResult& one : channels) {
+    if (!is_of(one.channel.unit, Quantity::angular_rate)) continue;
+    ++rates;
+    if (moves(one)) turning.push_back(one.channel.name);
+  }
+  if (turning.empty() || 2 * turning.size() < rates) return;
+  const std::string which =
+      turning.size() == 1 ? turning[0] + " turns"
+                          : fmt::format("{} and {} turn", turning[0], plural(turning.size() - 1, "other gyroscope"));
+  for (ChannelResult& one : channels) {
+    const bool inertial =
+        is_of(one.channel.unit, Quantity::angular_rate) || is_of(one.channel.unit, Quantity::acceleration);
+    if (!inertial || moves(one)) continue;
+    one.findings.push_back(
+        finding("moves_with_others",
+                which + " throughout, or the unit is another: whatever is fixed to the same body moves too, and its "
+                        "noise at rest cannot be measured from this recording.",
+                "gyroscopes of the recording turn throughout"));
+    one.findings.back().help.push_back(
+        {"Where it is fixed to another body: take it alone.", {{"channels", one.channel.name}}});
+  }
 }
 
 }  // namespace libchar::detail

@@ -377,13 +377,13 @@ Chart residuals_figure(std::span<const FigureSource> sources, const FigureOption
 namespace {
 
 /// All have one colour: one mark as it is called, several by their kinds ("5 × step, warm-up, quietest").
-std::string marks_name(const std::vector<SourceTrace::Mark>& marks) {
+std::string marks_name(const std::vector<TraceMark>& marks) {
   if (marks.size() == 1) return marks[0].label;
   std::vector<std::pair<std::string, std::size_t>> kinds;
-  for (const SourceTrace::Mark& mark : marks) {
-    const std::string kind = mark.label.substr(0, mark.label.find(' '));
-    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == kind; });
-    known == kinds.end() ? void(kinds.emplace_back(kind, 1)) : void(++known->second);
+  for (const TraceMark& mark : marks) {
+    const auto known =
+        std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == mark.kind; });
+    known == kinds.end() ? void(kinds.emplace_back(mark.kind, 1)) : void(++known->second);
   }
   std::string out;
   for (const auto& [kind, count] : kinds)
@@ -418,7 +418,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
     series.look.width = 0.5;
     y.take(series.y);
     if (chosen.size() == 1)
-      for (const SourceTrace::Mark& mark : trace->marks)
+      for (const TraceMark& mark : trace->marks)
         out.stretches.push_back({mark.from_s / unit_s, mark.to_s / unit_s, marks_name(trace->marks), Ink::orange});
     out.series.push_back(std::move(series));
   }

@@ -109,6 +109,27 @@ def band_hump(n=60000):
     return out
 
 
+def flown():
+    """An accelerometer that looks like one at rest, beside a gyroscope that turns throughout."""
+    swings = [0.0, 0.0]
+    turned = []
+    for drive, white in zip(noise(30000, 400, seed=2), noise(30000)):
+        swings[0] += 0.05 * (drive - swings[0])
+        swings[1] += 0.05 * (swings[0] - swings[1])
+        turned.append(swings[1] + white)
+    return {"acc": ("m/s^2", noise(30000, 0.03, seed=3)), "gyro": ("deg/s", turned)}
+
+
+def weather():
+    """A temperature outside, smooth over hours and in tenths."""
+    wall, room, out = 0.0, 0.0, []
+    for drive in noise(8000, 300, seed=5):
+        wall += (drive - wall) / 300
+        room += (wall - room) / 300
+        out.append(round(20 + room, 1))
+    return {"temp": ("degC", out)}
+
+
 def heating(n, period, height, uneven=0.0):
     """A heating of two states behind a slow wall."""
     draw, wall, left, on, out = random.Random(346), 0.0, 0.0, False, []
@@ -175,6 +196,9 @@ INPUTS = {
     "events_left_in": fitted("steps", lambda: steps(60000, 3000, 4), made_by="curve"),
     "motion": fitted("motion", motion, made_by="characterize", truth=N),
     "moves_throughout": fitted("resonance", band_hump, made_by="characterize"),
+    "moves_with_others": Input(raw("flown", flown), made_by="characterize",
+                               not_in={"psd": "it is the fit that finds that the gyroscope moves"}),
+    "nothing_detected": Input(raw("weather", weather, rate=1 / 60), made_by="fit"),
     "heavy_tails": fitted("laplace", laplace),
     "high_passed": fitted("coupled", high_passed),
     "outliers_in_n": fitted("outliers", outliers),

@@ -163,7 +163,7 @@ void add_traces(FigureSource& out, const MapReader& trace) {
     one.block_s = static_cast<double>(read.trace.block) / (own_hz > 0 ? own_hz : 1);
     one.low = read.trace.low;
     one.high = read.trace.high;
-    for (const TraceMark& mark : read.marks) one.marks.push_back({mark.label, mark.from_s, mark.to_s});
+    one.marks = read.marks;
     out.traces.push_back(std::move(one));
   }
 }
