@@ -801,6 +801,15 @@ std::vector<Export> printed_rows() {
       "columns that pandas numbered",
       [](int k) { return (k == 0 ? "0,1,2\n" : "") + fmt::format("{:.2f},{}.5,-2.0\n", 0.05 * k, k); }, "1[] 2[]", 20,
       0, {0.5, -2}, "header in line 1");
+  out.push_back({"columns that pandas numbered, behind an index",
+                 lines(40, [](int k) { return (k == 0 ? ",0,1\n" : "") + fmt::format("{},{},{}.5\n", k, k % 3, k); }),
+                 "0[] 1[]",
+                 20,
+                 kNoStart,
+                 {0, 0.5},
+                 "header in line 1",
+                 false,
+                 [](ReadOptions& o) { o.rate_hz = 20; }});
   add(
       "a count of rows in front of the stamps", [](int k) { return fmt::format("{},{},{}.5\n", k, 50 * k, k); },
       "c0[] c1[]", 20, 0, {0, 0.5}, "c1");

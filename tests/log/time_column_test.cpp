@@ -615,6 +615,13 @@ TEST_CASE(
   CHECK(test::read_text(text, options).info.time.rate_hz == Approx(4));
 }
 
+TEST_CASE("a temperature t that seldom changes is none the less no time") {
+  std::string text = "f,ax,t\n";
+  for (int k = 0; k < 60; ++k)
+    text += fmt::format("{},{},{}\n", 2314 + 23 * k + k % 2, k % 7, k % 5 == 2 ? 27.9 : 27.8);
+  CHECK(test::read_text(text).info.time.column == "f");
+}
+
 TEST_CASE("an index is time where it counts that since 1970, else it counts rows") {
   const auto column = [](std::int64_t first, std::int64_t step) {
     std::string text = "index,x\n";
@@ -630,13 +637,13 @@ TEST_CASE("a coarse clock is known beside a pause and a stretch where the log hu
   std::string text = "stamp_ms,x\n";
   double at = 5000;
   int last = 0;
-  for (int k = 0; k < 6000; ++k) {
+  for (int k = 0; k < 20000; ++k) {
     at += 1;
     if (k == 469) at += 4380;
     if (k == 671) at += 57;
     if (k > 671 && k < 684) at += 2.5;
     last = std::max(last, static_cast<int>(at + std::uniform_real_distribution<>(0, 1.2)(generator)));
-    text += fmt::format("{},{}\n", last, k % 7);
+    text += fmt::format("{},{}.5\n", last, k * 37 % 101);
   }
   const Recording log = test::read_text(text);
   CHECK(log.info.time.rate_hz == Approx(1000).epsilon(1e-3));

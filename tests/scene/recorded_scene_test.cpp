@@ -149,7 +149,7 @@ TEST_CASE("a scene's recording may be a folder of CSV files beside it, and its t
   const Scene scene = bench.read(head + "recording: {file: phone, topic: Gyroscope, msg: phone/msg}\nsensors: [x]\n");
   CHECK(scene.recording == folder.string());
   CHECK(scene.reading.unsaid.msg == (folder / "msg").string());
-  CHECK_THAT(scene_yaml(scene), Contains("msg: phone/msg"));
+  CHECK_THAT(scene_yaml(scene), Contains("msg: \"phone/msg\""));
   CHECK_THAT(bench.refusal(head + "recording: phone/msg\nsensors: [x]\n"), Contains("E0733"));
   CHECK_THAT(bench.refusal(head + "recording: {file: phone, msg: ../elsewhere}\nsensors: [x]\n"), Contains("E0731"));
   CHECK_THAT(bench.refusal(head + "recording: log.csv\nsensors: [{name: a, model: phone}]\n"), Contains("E0733"));

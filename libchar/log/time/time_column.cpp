@@ -149,8 +149,10 @@ bool wanders(const TableFront& table, std::size_t column) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  if (values.size() < 8) return false;
-  if (5 * std::min(up, down) > values.size()) return true;
+  constexpr std::size_t kFewest = 8;
+  if (values.size() < kFewest) return false;
+  const std::size_t both = std::min(up, down);
+  if (5 * both > values.size() || (up + down >= kFewest && 3 * both > up + down)) return true;
   const std::string name = stem_of(table.columns[column]);
   const bool clock = steady_clock(values) || (name.size() > 1 && usual_step(values) == 1);  // a count of minutes
   return temperature_or_time(name) && (!clock || like_a_temperature(table.columns[column], first));

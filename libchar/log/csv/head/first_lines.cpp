@@ -284,12 +284,15 @@ bool damaged(const Cells& line, NumberStyle style) {
   return fractions && !named;
 }
 
-// "0,1,2,3" above numbers with fractions, or eight columns and more: pandas numbers columns that have no names.
+// "0,1,2,3" above numbers with fractions, or eight columns and more, ",0,1" above an index: pandas numbers columns that
+// have no names.
 bool numbers_columns(const std::vector<Cells>& lines, NumberStyle style) {
   constexpr std::size_t kFewest = 3, kSure = 8;
   if (lines.size() < kFewest || lines[0].size() < kFewest) return false;
-  for (std::size_t c = 0; c < lines[0].size(); ++c)
-    if (lines[0][c].text != std::to_string(c)) return false;
+  const std::size_t index = lines[0][0].text.empty() ? 1 : 0;
+  for (std::size_t c = index; c < lines[0].size(); ++c)
+    if (lines[0][c].text != std::to_string(c - index)) return false;
+  if (index > 0) return lines[1][0].text == "0" && lines[2][0].text == "1";
   if (lines[0].size() >= kSure && lines[1].back().text != std::to_string(lines[0].size())) return true;
   return std::all_of(lines.begin() + 1, lines.end(), [&](const Cells& line) {
     return std::all_of(line.begin() + 1, line.end(),

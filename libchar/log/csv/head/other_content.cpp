@@ -57,7 +57,9 @@ constexpr std::array kMagics = {
     Magic{0, "ARROW1"sv, "an Arrow or Feather table", kFeather},
     Magic{0, "FEA1"sv, "a Feather table", kFeather},
     Magic{0, "TDSm"sv, "a TDMS file of LabVIEW",
-          "npTDMS reads it: nptdms.TdmsFile(FILE).as_dataframe(time_index=True).to_csv('log.csv')"},
+          "npTDMS reads it: nptdms.TdmsFile(FILE).as_dataframe(time_index=True).to_csv('log.csv'), without time_index "
+          "where "
+          "it has no rate"},
     Magic{0, "\xD0\xCF\x11\xE0"sv, "an old Excel workbook (XLS)", kSpreadsheet},
     Magic{0, "\xB5\x62"sv, "messages of u-blox (UBX)", kUbx},
     Magic{0, "H Product:Blackbox"sv, "a Blackbox log of Betaflight or INAV", "blackbox_decode FILE makes a CSV of it"},

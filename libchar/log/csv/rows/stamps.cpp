@@ -447,7 +447,7 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
     const auto name = time_name(name_and_unit(column.name).first);
     const std::string& chosen = table.columns[index].name;
     const bool named =
-        name ? !name->letter && !name->date : column.name == chosen || numbered_alike(column.name, chosen);
+        column.name == chosen || (name ? !name->letter && !name->date : numbered_alike(column.name, chosen));
     if (c == index || column.text || column.calendar || !named) continue;
     const std::vector<double> values = table.first_values(c).values;
     if (values.size() != stamps.size() || values.size() < 3) continue;
