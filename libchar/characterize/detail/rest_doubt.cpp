@@ -3,9 +3,8 @@
 //   own noise   the level that the two highest parts of the spectrum share: [.5, .7] and [.7, 1] of half the rate
 //   signal      whatever is above it by a factor of kDoubtful (a low-pass and noise behind it are seldom so far apart)
 //               or of kMoves (never)
-// or white noise beyond that of any sensor of its kind: 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and
-// 20 mg/√Hz (H3LIS331DL, ±400 g: 15); or slow noise whose Allan deviation at 10 s is larger than that of such white
-// noise at 1 s, where a sensor's is a hundred times smaller.
+// or a density above that of any sensor of its kind, at any frequency from kSlowest on (flicker and walk are far below
+// it there): 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and 20 mg/√Hz (H3LIS331DL, ±400 g: 15).
 // What turns moves the accelerometers beside it, whatever their own spectra look like: gravity turns with it. The
 // opposite does not hold, since vibration and tables move without turning.
 #include "libchar/characterize/detail/rest_doubt.hpp"
@@ -18,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/between_channels.hpp"
@@ -28,6 +27,8 @@ namespace libchar::detail {
 namespace {
 
 constexpr double kDoubtful = 50, kMoves = 1000;  ///< of densities
+constexpr double kSlowest = 0.05;                ///< Hz
+constexpr double kFewestDof = 8;                 ///< of a density
 
 struct Level {
   double density = 0, dof = 0;
@@ -60,7 +61,6 @@ double own_noise(const NoiseFit& fit, double rounding) {
 
 /// The highest density beside that of flicker and walk.
 double signal_density(const NoiseFit& fit) {
-  constexpr double kFewestDof = 8;
   const double flicker = square_of(fit[Term::flicker]), walk = square_of(fit[Term::walk]);
   double highest = square_of(fit[Term::white]);
   for (const FitResidual& one : fit.residuals) {
@@ -79,15 +79,6 @@ bool moves(const ChannelResult& channel) {
   return channel.motion.whole || std::any_of(channel.findings.begin(), channel.findings.end(), [](const Finding& one) {
            return one.code == "moves_throughout" && one.severity == Severity::bad;
          });
-}
-
-/// Allan deviation of flicker and walk at 10 s, of what is detected: by the least of the interval.
-double slow_deviation(const NoiseFit& fit) {
-  double variance = 0;
-  for (const Term term : {Term::flicker, Term::walk})
-    if (const Coefficient& one = fit[term]; one.status == Status::detected && one.value)
-      variance += one.ci95.low * one.ci95.low * allan_asymptote(term, 10);
-  return std::sqrt(variance);
 }
 
 std::string density_text(double n, std::string_view unit) {
@@ -119,19 +110,18 @@ std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, do
   if (own > 0 && signal > kDoubtful * own) return signal_above(own, signal, unit);
   const char* const sensor = rate ? "gyroscope" : "accelerometer";
   const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
-  const Coefficient& white = fit[Term::white];
-  if (white.value && *white.value > most)
-    return finding("moves_throughout",
-                   fmt::format("N is {}, and no {} at rest has more than {}: it moves, or the unit is another.",
-                               density_text(*white.value, unit), sensor, density_text(most, unit)),
-                   "more noise than a sensor at rest has");
-  if (!(slow_deviation(fit) > most)) return std::nullopt;
-  return finding(
-      "moves_throughout",
-      fmt::format("Means of 10 s differ by {} {}, and no {} at rest wanders by more than {}: it moves, or the "
-                  "unit is another.",
-                  brief_text(slow_deviation(fit)), unit, sensor, brief_text(most)),
-      "it wanders more than a sensor at rest does");
+  const FitResidual* highest = nullptr;
+  for (const FitResidual& one : fit.residuals)
+    if (one.frequency_hz >= kSlowest && one.dof >= kFewestDof &&
+        (highest == nullptr || one.measured > highest->measured))
+      highest = &one;
+  if (highest == nullptr || !(highest->measured > most * most)) return std::nullopt;
+  return finding("moves_throughout",
+                 fmt::format("The density is {} at {}, and no {} at rest has more than {}: it moves, or the unit is "
+                             "another.",
+                             density_text(std::sqrt(highest->measured), unit), frequency_text(highest->frequency_hz),
+                             sensor, density_text(most, unit)),
+                 "more noise than a sensor at rest has");
 }
 
 void doubt_together(std::span<ChannelResult> channels) {
