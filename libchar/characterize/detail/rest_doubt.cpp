@@ -3,6 +3,8 @@
 //   own noise   the level that the two highest parts of the spectrum share: [.5, .7] and [.7, 1] of half the rate
 //   signal      whatever is above it by a factor of kDoubtful (a low-pass and noise behind it are seldom so far apart)
 //               or of kMoves (never)
+// or a peak at the frequencies of bodies that is above both of its sides, within a factor of 20 in frequency, by a
+// factor of kMoves: a filter of one pole falls by 400 there;
 // or white noise beyond that of any sensor of its kind: 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and
 // 20 mg/√Hz (H3LIS331DL, ±400 g: 15); or slow noise whose Allan deviation at 10 s is larger than that of such white
 // noise at 1 s, where a sensor's is a hundred times smaller.
@@ -94,6 +96,23 @@ std::string density_text(double n, std::string_view unit) {
   return brief_text(n) + " " + shown_term_unit("white_noise", unit);
 }
 
+/// The highest part of the spectrum, where it is a peak of motion.
+const FitResidual* peak_of_motion(const NoiseFit& fit) {
+  constexpr double kFewestDof = 8, kSlowest = 0.03, kFastest = 10, kNear = 3, kFar = 20;  // Hz; in frequency
+  const FitResidual* peak = nullptr;
+  for (const FitResidual& one : fit.residuals)
+    if (one.dof >= kFewestDof && (peak == nullptr || one.measured > peak->measured)) peak = &one;
+  if (peak == nullptr || peak->frequency_hz < kSlowest || peak->frequency_hz > kFastest) return nullptr;
+  double below = peak->measured, above = peak->measured;
+  for (const FitResidual& one : fit.residuals) {
+    const double times = one.frequency_hz / peak->frequency_hz;
+    if (one.dof < kFewestDof || std::max(times, 1 / times) < kNear || std::max(times, 1 / times) > kFar) continue;
+    double& side = times < 1 ? below : above;
+    side = std::min(side, one.measured);
+  }
+  return peak->measured > kMoves * std::max(below, above) ? peak : nullptr;
+}
+
 Finding signal_above(double own, double signal, std::string_view unit) {
   const double ratio = std::sqrt(signal / own);
   Finding found = finding(
@@ -117,6 +136,12 @@ std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, do
   const bool shaped = !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none;
   const double own = shaped ? own_noise(fit, rounding) : 0, signal = own > 0 ? signal_density(fit) : 0;
   if (own > 0 && signal > kDoubtful * own) return signal_above(own, signal, unit);
+  if (const FitResidual* peak = shaped ? peak_of_motion(fit) : nullptr; peak != nullptr)
+    return finding("moves_throughout",
+                   fmt::format("The spectrum has a peak at about {} Hz, far above both of its sides: a body that rocks "
+                               "or swings.",
+                               brief_text(peak->frequency_hz, 2)),
+                   "it rocks or swings throughout");
   const char* const sensor = rate ? "gyroscope" : "accelerometer";
   const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
   const Coefficient& white = fit[Term::white];
@@ -158,8 +183,9 @@ void doubt_together(std::span<ChannelResult> channels) {
                 which + " throughout, or the unit is another: whatever is fixed to the same body moves too, and its "
                         "noise at rest cannot be measured from this recording.",
                 "gyroscopes of the recording turn throughout"));
-    one.findings.back().help.push_back(
-        {"Where it is fixed to another body: take it alone.", {{"channels", one.channel.name}}});
+    // Said, not offered as the next command: of one body it would only hide the motion.
+    one.findings.back().help.push_back({fmt::format("Where it is fixed to another body, `channels` {} takes it alone.",
+                                                    shell_word(one.channel.name))});
   }
 }
 
