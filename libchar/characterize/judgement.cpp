@@ -95,11 +95,13 @@ struct Judge {
     for (std::size_t t = 0; t < kTerms; ++t)
       if (detail::reaches_zero(fit.term[t]))
         add("reaches_zero", fmt::format("{} is uncertain: its interval includes 0.", kTermNames[t].letter));
+    constexpr double kWithin = 10;  // from one end of the interval to the other
     const auto is_known = [](const Coefficient& term) {
-      return term.status == Status::detected && term.value && !detail::reaches_zero(term);
+      return term.status == Status::detected && term.value && !detail::reaches_zero(term) &&
+             term.ci95.high < kWithin * term.ci95.low;
     };
-    if (std::none_of(fit.term.begin(), fit.term.end(), is_known) && !has(out, "undetermined"))
-      add("nothing_detected", "No noise term is resolved: each is not detected, or its interval includes 0.",
+    if (std::none_of(fit.term.begin(), fit.term.end(), is_known) && fit[Term::white].status != Status::undetermined)
+      add("nothing_detected", "No noise term is resolved: each is not detected, or its interval spans a decade.",
           "no noise term is resolved");
   }
 

@@ -181,13 +181,10 @@ using ScaleNotes = std::map<std::string, std::vector<std::string>>;  // what was
 double conversion(const std::string& stated, const Channel& channel) {
   const auto from = find_unit(stated), to = find_unit(channel.unit);
   if (!from || !to || channel.unit == "1") return 1;
-  const bool alike = from->quantity == to->quantity;
-  if (alike && from->to_si == to->to_si) return 1;
-  if (alike && from->quantity != Quantity::temperature && from->quantity != Quantity::concentration)
-    return from->to_si / to->to_si;
+  if (const auto factor = Unit::sample_factor(stated, channel.unit)) return *factor;
   throw usage_error("E0331")
       .says("values of {} in {} are not converted to {}{}", printable(channel.name), printable(stated, 20),
-            printable(channel.unit, 20), alike ? "" : ", a unit of another quantity")
+            printable(channel.unit, 20), from->quantity == to->quantity ? "" : ", a unit of another quantity")
       .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 

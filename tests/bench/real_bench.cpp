@@ -152,7 +152,7 @@ Pairs print_quarters(const Source& source, const Recording& recording) {
         fmt::print("  quarters {} and {} of {} differ: 2 ln L {:.1f}, p {:.3g}\n", a + 1, b + 1, channel.channel.name,
                    channel.ratio, channel.p);
       }
-      for (const std::string& problem : pooled.problems) fmt::print("  {}\n", problem);
+      for (const Finding& one : pooled.findings) fmt::print("  {}\n", one.sentence);
     }
   return pairs;
 }

@@ -105,9 +105,9 @@ TEST_CASE("white noise beyond that of any gyroscope or accelerometer is no rest"
   CHECK(doubt_rest(fit_record(rest_white(20000, 6, 2), kRestRate, nullptr), "m/s^2", 0));
 }
 
-TEST_CASE("means that wander more than those of any gyroscope or accelerometer are no rest") {
-  std::vector<double> walk(6000);
-  const std::vector<double> steps = rest_white(walk.size(), 8, 0.01);  // K 0.1 per root second
+TEST_CASE("slow noise beyond that of any gyroscope or accelerometer is no rest") {
+  std::vector<double> walk(30000);
+  const std::vector<double> steps = rest_white(walk.size(), 8, 0.015);  // K 0.15 per root second
   for (std::size_t t = 1; t < walk.size(); ++t) walk[t] = walk[t - 1] + steps[t];
   const NoiseFit fit = fit_record(walk, kRestRate, nullptr);
   const auto moves = doubt_rest(fit, "m/s^2", 0);

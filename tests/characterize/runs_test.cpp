@@ -99,12 +99,34 @@ TEST_CASE("pooled runs: a run of another sensor is named, and the coefficients a
   const PooledChannel pooled = only(pool_runs(runs));
   CHECK_FALSE(pooled.consistent);
   for (const ChannelRun& run : pooled.runs) CHECK(run.differs == (run.run == 7));
-  CHECK_THAT(pooled.sentences.at(0), Contains("odd"));
+  REQUIRE(has(pooled.fit.findings, "runs_unlike"));
+  CHECK_THAT(pooled.fit.findings.back().sentence, Contains("odd"));
   CHECK(pooled.rest_alike);
   const PooledChannel rest = only(pool_runs(runs_of({}, 7, 6000, 3)));
   CHECK(pooled.fit[Term::white].status == Status::detected);
   CHECK(pooled.fit[Term::white].value == rest.fit[Term::white].value);
   CHECK(pooled.fit[Term::white].ci95.high == rest.fit[Term::white].ci95.high);
+}
+
+TEST_CASE(
+    "pooled runs: a run that was moved is left out, and said; where too few are left, all are taken with what is "
+    "known") {
+  auto runs = runs_of({}, 3, 6000, 3);
+  const auto spoil = [&](std::size_t r) {
+    runs[r].channels[0].findings.push_back(finding("motion", "It was moved.", "moved in a stretch"));
+    runs[r].channels[0].findings.back().severity = Severity::bad;
+  };
+  spoil(1);
+  const PooledChannel sound = only(pool_runs(runs));
+  REQUIRE(sound.runs.size() == 2);
+  CHECK(sound.runs[1].run == 2);
+  REQUIRE(has(sound.fit.findings, "run_left_out"));
+  CHECK_THAT(sound.fit.findings.back().sentence, Contains("run1 was left out: moved in a stretch"));
+  spoil(0);
+  const PooledChannel all = only(pool_runs(runs));
+  CHECK(all.runs.size() == 3);
+  CHECK(has(all.fit.findings, "motion"));
+  CHECK(worst_of(all.fit.findings) == Severity::bad);
 }
 
 TEST_CASE("pooled runs: where more than single runs differ, the common numbers say so") {

@@ -226,6 +226,68 @@ TEST_CASE("stamps in a column for each of their numbers are read as one") {
   CHECK(test::read_text(others).info.channels.size() >= 4);
 }
 
+TEST_CASE("columns of dates without a year, in digits, and without names") {
+  struct Spread {
+    std::string head;  ///< lines in front; the last one names the columns, where it does not end the line
+    const char* form;  ///< of year, month, day, hour, minute, second, day of the year, its date, hhmm, second of day
+    int step_s;
+    bool year = true;
+  };
+  const std::string preamble = " Station 7\n  40.05  -88.37  213 m version 1\n";
+  for (const Spread& one : std::vector<Spread>{{"Month,Day,Hour,x", "{1},{2},{3}", 3600, false},
+                                               {"doy,hhmm,x", "{6},{8}", 60, false},
+                                               {"year,dayofyear,secofday,x", "{0},{6},{9}", 30},
+                                               {"Year,DOY,sod,x", "{0},{6},{9}.000", 30},
+                                               {"YYYYDDD,HHMM,x", "{7},{8:04}", 60},
+                                               {"date,time,x", "{7},{8}", 60},
+                                               {"Date,Time,x", "{0}{1:02}{2:02},{8}", 60},
+                                               {"DATE,TIME,x", "{0}{1:02}{2:02},{8:04}", 60},
+                                               {"Date,Time (HHMM),x", "{1:02}/{2:02}/{0},{8:04}", 60},
+                                               {preamble, " {0} {6:3} {1:2} {2:2} {3:2} {4:2} ", 60},
+                                               {"94255\t2023\t1000\n", "{6}\t{8}\t", 60, false},
+                                               {"", "{0},{6},{8}", 300},
+                                               {"", "{0}{1:02}{2:02} {8:04}", 600},
+                                               {"", "{0} {6} {3} {4}", 60}}) {
+    INFO(one.head << one.form);
+    const bool named = !one.head.empty() && !one.head.ends_with('\n');
+    std::string text = one.head + (named ? "\n" : "");
+    const char sign = named ? ',' : one.form[std::string_view(one.form).find_first_of(", \t", 3)];
+    for (int i = 0; i < 800; ++i) {
+      const int s = 79200 + i * one.step_s, of_year = 90 + s / 86400, hour = s / 3600 % 24, minute = s / 60 % 60;
+      const int month = of_year > 120  ? 5
+                        : of_year > 90 ? 4
+                                       : 3,
+                day = of_year - (month == 5   ? 120
+                                 : month == 4 ? 90
+                                              : 59);
+      text += fmt::format(fmt::runtime(one.form), 2023, month, day, hour, minute, s % 60, of_year, 2023000 + of_year,
+                          100 * hour + minute, s % 86400);
+      text += fmt::format("{}{}.5\n", std::string_view(" \t").find(text.back()) == std::string_view::npos ? sign : ' ',
+                          i % 7);
+    }
+    const Recording r = test::read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(1.0 / one.step_s).epsilon(1e-9));
+    CHECK(r.info.time.missing_samples == 0);
+    REQUIRE(r.info.channels.size() == 1);
+    CHECK(r.samples[0][8] == 1.5);
+    const std::int64_t start = 1680300000 + (one.year ? 0 : -694224000);  // the same day of 2001
+    CHECK(r.info.time.start_ns.value_or(0) == start * kBillion);
+  }
+  std::string buoy = "#YY  MM DD hh mm WDIR WSPD\n#yr  mo dy hr mn degT m/s\n";
+  for (int i = 0; i < 60; ++i)
+    buoy += fmt::format("2023 05 {:02} {:02} 50 {} {}.5\n", 1 + i / 24, i % 24, 90 + i, i % 7);
+  CHECK(test::read_text(buoy).info.channels[1].name == "WSPD");
+  // Whole numbers that only look so are channels.
+  std::string counts = "1 100 1.5\n";
+  for (int i = 1; i < 100; ++i) counts += fmt::format("{} {} {}.5\n", 1 + i % 300, (i * 7) % 60, i % 7);
+  CHECK(test::read_text(counts).info.channels.size() == 3);
+  // A year ends.
+  std::string year = "Month,Day,Hour,x\n";
+  for (int i = 0; i < 96; ++i)
+    year += fmt::format("{},{},{},1\n", i < 48 ? 12 : 1, i < 48 ? 30 + i / 24 : i / 24 - 1, i % 24);
+  CHECK(test::read_text(year).info.time.missing_samples == 0);
+}
+
 TEST_CASE("dates in digits are read, in one column or in two, whatever they are called") {
   const auto tm_of = [](int second) {  // from 2024-03-14T23:40:12 on
     const int s = 85212 + second, day = 14 + s / 86400, of_day = s % 86400;
@@ -293,4 +355,12 @@ TEST_CASE("times of day as digits, hhmmss, are told from numbers by their even s
   CHECK(r.info.time.column == "time");
   CHECK(r.info.time.rate_hz == Approx(1));
   CHECK(r.samples.size() == 300);
+}
+
+TEST_CASE("seconds behind minutes are read where rows are missing") {
+  std::string text;
+  for (int i = 0, minute = 0; i < 300; ++i, minute += i % 3 == 0 ? 2 : 1)
+    text += fmt::format("{} 2017 05 17 {:02} {:02} {} 30.{:03}\n", 900000 + 3 * i, 14 + minute / 60, minute % 60,
+                        30 + i / 30, i % 97);
+  CHECK(test::read_text(text).info.channels.size() == 2);
 }

@@ -714,3 +714,57 @@ TEST_CASE("a byte-order mark in front of each line") {
   CHECK(log.info.time.rate_hz == Approx(1 / 60.0));
   CHECK(log.info.channels.size() == 1);
 }
+
+TEST_CASE("cells with several numbers are a column for each") {
+  using Names = std::vector<std::string>;
+  struct Tuple {
+    const char *head, *form;
+    char sign;
+  };
+  for (const Tuple& one :
+       {Tuple{"t,v [m/s^2],s\n", "{0:.2f},\"({1:.2f}, {2:.2f}, {3:.2f})\",{3:.2f}\n", ','},
+        Tuple{"t,v [m/s^2],s\n", "{0:.2f},\"[{1:.2f} {2:.2f} {3:.2f}]\",{3:.2f}\n", ','},
+        Tuple{"t,v [m/s^2],s\n", "{0:.2f},[{1:.2f}, {2:.2f}, {3:.2f}],{3:.2f}\n", ','},
+        Tuple{"t,\"v [m/s^2]\",s\n", "{0:.2f},\"{1:.2f}, {2:.2f}, {3:.2f}\",{3:.2f}\n", ','},
+        Tuple{"t;v [m/s^2];s\n", "{0:.2f};{{{1:.2f}, {2:.2f}, {3:.2f}}};{3:.2f}\n", ';'},
+        Tuple{"t\tv [m/s^2]\ts\n", "{0:.2f}\tarray([{1:.2f}, {2:.2f}, {3:.2f}])\t{3:.2f}\n", '\t'}}) {
+    INFO(one.form);
+    std::string text = one.head;
+    for (int k = 0; k < 300; ++k)
+      text += k == 200 ? fmt::format("{1:.2f}{0}{0}1.5\n", one.sign, 0.01 * k)
+                       : fmt::format(fmt::runtime(one.form), 0.01 * k, logged(k, 1), -logged(k, 2), logged(k, 3));
+    const Recording log = read_text(text);
+    CHECK(names_in(log) == Names{"v_0", "v_1", "v_2", "s"});
+    CHECK(log.info.channels[1].unit == "m/s^2");
+    CHECK(log.info.time.rate_hz == Approx(100));
+    CHECK(log.samples[1][7] == Approx(-logged(7, 2)).margin(0.006));
+    CHECK(std::isnan(log.samples[2][200]));
+    CHECK(log.samples[3][200] == 1.5);
+  }
+  // Decimal commas and thousands in quotes are one number.
+  std::string comma = "t,x\n", thousands = "t,x\n";
+  for (int k = 0; k < 60; ++k) {
+    comma += fmt::format("{},\"{},{:02}\"\n", k, k % 9, k);
+    thousands += fmt::format("{},\"1 234 {}.5\"\n", k, 100 + k);
+  }
+  CHECK(names_in(read_text(comma)) == Names{"x"});
+  CHECK(read_text(thousands).samples[0][7] == 1234107.5);
+}
+
+TEST_CASE("names in front of all columns but the first, which counts or holds the stamps") {
+  using Names = std::vector<std::string>;
+  const auto table = [](const std::string& head, const char* form) {
+    std::string text = head;
+    for (int k = 0; k < 200; ++k)
+      text += fmt::format(fmt::runtime(form), k, 0.01 * k, logged(k, 1), logged(k, 2), logged(k, 3));
+    return read_text(text);
+  };
+  for (const Recording& log : {table("# ax ay az\n", "{0} {2:.2f} {3:.2f} {4:.2f}\n"),
+                               table("% ax\tay\taz\n", "{0}\t{2:.2f}\t{3:.2f}\t{4:.2f}\n"),
+                               table("ax,ay,az\n", "{0},{2:.2f},{3:.2f},{4:.2f}\n"),
+                               table("# ax ay az\n", "{1:.2f} {2:.2f} {3:.2f} {4:.2f}\n")}) {
+    CHECK(names_in(log) == Names{"ax", "ay", "az"});
+    CHECK(log.samples[2][5] == Approx(logged(5, 3)).margin(0.006));
+  }
+  CHECK(table("# ax ay az\n", "{1:.2f} {2:.2f} {3:.2f} {4:.2f}\n").info.time.rate_hz == Approx(100));
+}

@@ -648,3 +648,32 @@ TEST_CASE("parts of a second without leading zeros") {
     CHECK(r.info.samples == 300);
   }
 }
+
+TEST_CASE("the finer clock of a table is the time, and a coarse one that keeps time with it no channel") {
+  struct Clocks {
+    const char *head, *form;  ///< of seconds since 1970, whole and with the host's delay
+    const char* column;
+  };
+  for (const Clocks& one :
+       {Clocks{"device_time,host_time", "{0},{1:.3f}", "host_time"}, Clocks{"device_ts,pc_ts", "{0},{1:.3f}", "pc_ts"},
+        Clocks{"sensor_time,received_at", "{0},{1:.3f}", "received_at"},
+        Clocks{"timestamp,millis", "{0},{2:.0f}", "millis"}, Clocks{"epoch,t_us", "{0},{3:.0f}", "t"}}) {
+    INFO(one.head);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> delay(0, 0.004);
+    std::string text = std::string(one.head) + ",x\n";
+    for (int k = 0; k < 1200; ++k) {
+      const double t = 0.05 * k + delay(random);
+      text += fmt::format(fmt::runtime(one.form), 1700000000 + k / 20, 1.7e9 + t, 5000 + 1e3 * t, 1e6 * t);
+      text += fmt::format(",{}\n", k % 7);
+    }
+    const Recording log = test::read_text(text);
+    CHECK(log.info.time.column == one.column);
+    CHECK(log.info.time.rate_hz == Approx(20).epsilon(1e-3));
+    CHECK(log.info.channels.size() == 1);
+  }
+  // What rises beside a coarse clock need not be one.
+  std::string text = "time_s,odometer\n";
+  for (int k = 0; k < 300; ++k) text += fmt::format("{},{:.2f}\n", k / 20, 0.05 * k);
+  CHECK(test::read_text(text).info.time.column == "time");
+}

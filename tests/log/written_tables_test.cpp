@@ -163,6 +163,7 @@ TEST_CASE("UTF-16 is read in either order of its bytes, also cut in two") {
     CHECK(said(r.info.dialect, "UTF-16"));
     const Recording cut = read_text(wide.substr(0, wide.size() - 3), options);
     CHECK(cut.samples[0].size() == 49);
+    CHECK(read_text(wide.substr(2)).samples[0].size() == 50);  // without its mark
   }
 }
 

@@ -43,7 +43,7 @@ PooledRuns pooled_of(const std::vector<Characterization>& runs) {
     channel.sentences = {c.channel.name + " " + runs[1].log.file};
     out.channels.push_back(std::move(channel));
   }
-  out.problems = {runs[0].log.file};
+  out.findings = {finding("not_computed", runs[0].log.file)};
   return out;
 }
 

@@ -17,8 +17,10 @@
 #include <numeric>
 
 #include "libchar/allan/noise_curves.hpp"
+#include "libchar/characterize/judgement.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/fit/signs/rounding.hpp"
 #include "libchar/simulate/random.hpp"
 
@@ -288,7 +290,12 @@ PooledChannel pooled_channel(std::span<const Characterization> runs, const Chann
         if (!out.runs[r].differs) rest.push_back(records[r]);
       out.fit = fit_pooled(rest, samples / seconds, fit).fit;
     }
-    out.sentences.push_back(consistency_sentence(out, runs));
+    std::string said = consistency_sentence(out, runs);
+    if (out.consistent)
+      out.sentences.push_back(std::move(said));
+    else
+      out.fit.findings.push_back(
+          finding("runs_unlike", std::move(said), "the runs do not have one set of coefficients"));
   }
   if (const auto rounding = common_rounding(runs, channel.name, fitted)) detail::take_out_rounding(*rounding, out.fit);
   if (options.data == SampleKind::rate) find_bias(runs, out);
@@ -297,22 +304,61 @@ PooledChannel pooled_channel(std::span<const Characterization> runs, const Chann
 }
 
 std::string pool_verdict(const PooledRuns& pooled) {
-  std::vector<std::string> unlike;
-  for (const PooledChannel& c : pooled.channels)
+  std::vector<std::string> unlike, without;
+  for (const PooledChannel& c : pooled.channels) {
     if (!c.consistent) unlike.push_back(c.channel.name);
+    if (has(c.fit.findings, "run_left_out")) without.push_back(c.channel.name);
+  }
   std::string out;
   const std::size_t n = pooled.channels.size();
   if (n == 0) return "No channel could be pooled.";
   if (unlike.empty())
-    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them.", pooled.runs.size(),
-                      n == 1 ? "the channel" : fmt::format("each of {} channels", n));
+    out = fmt::format("{} runs, one sensor: one set of coefficients describes {} in all of them{}.", pooled.runs.size(),
+                      n == 1 ? "the channel" : fmt::format("each of {} channels", n),
+                      without.empty() ? "" : " that are sound");
   else
     out = fmt::format("{} runs that do not have one set of coefficients for {}.", pooled.runs.size(),
                       fmt::join(unlike, ", "));
+  if (!without.empty()) out += fmt::format(" Runs were left out of {}.", fmt::join(without, ", "));
   std::size_t spread = 0;
   for (const PooledChannel& c : pooled.channels) spread += c.bias && c.bias->spread_ci95.low > 0;
   if (spread > 0) out += fmt::format(" The bias changes from turn-on to turn-on in {} of {}.", spread, n);
   return out;
+}
+
+/// The worst that is known of a run's channel, where its coefficients are not to be relied on; without a code: nothing.
+Finding what_spoils(const ChannelResult& channel) {
+  const std::vector<Finding> found = findings_of(channel);
+  if (channel.fit && worst_of(found) != Severity::bad) return {};
+  return found.empty() ? finding("no_fit", "it could not be fitted") : found[0];
+}
+
+/// Runs of a channel, and what is said of those that are left out, or taken because too few are sound.
+struct Choice {
+  std::vector<std::size_t> runs;
+  std::vector<Finding> findings;
+};
+
+Choice chosen_runs(std::span<const Characterization> runs, const std::string& channel) {
+  Choice out;
+  std::vector<std::size_t> fitted;
+  std::vector<Finding> spoilt;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ChannelResult& one = *find_channel(runs[r], channel);
+    if (one.fit) fitted.push_back(r);
+    Finding worst = what_spoils(one);
+    if (worst.code.empty()) {
+      out.runs.push_back(r);
+      continue;
+    }
+    const std::string why = as_part(worst.phrase.empty() ? worst.sentence : worst.phrase);
+    out.findings.push_back(finding("run_left_out", fmt::format("{} was left out: {}.", runs[r].log.file, why),
+                                   "a run was left out: " + why));
+    worst.sentence = runs[r].log.file + ": " + worst.sentence;
+    if (one.fit) spoilt.push_back(std::move(worst));
+  }
+  if (out.runs.size() >= 2 || fitted.size() < 2) return out;
+  return {std::move(fitted), std::move(spoilt)};
 }
 
 }  // namespace
@@ -335,18 +381,16 @@ PooledRuns pool_runs(std::span<const Characterization> runs, const PoolOptions& 
         {run.log.file, run.log.samples, rate > 0 ? static_cast<double>(run.log.samples) / rate : 0, rate});
   }
   for (const ChannelResult& first : runs[0].channels) {
-    std::vector<std::size_t> fitted;
-    for (std::size_t r = 0; r < runs.size(); ++r)
-      if (find_channel(runs[r], first.channel.name)->fit) fitted.push_back(r);
-    if (fitted.size() < 2) {
-      out.problems.push_back(fmt::format("{}: not pooled, it could be fitted in {} of {} runs", first.channel.name,
-                                         fitted.size(), runs.size()));
+    const Choice choice = chosen_runs(runs, first.channel.name);
+    if (choice.runs.size() < 2) {
+      out.findings.push_back(finding("not_computed", fmt::format("{}: not pooled, it could be fitted in {} of {} runs",
+                                                                 first.channel.name, choice.runs.size(), runs.size())));
+      out.findings.back().subject = first.channel.name;
       continue;
     }
-    if (fitted.size() < runs.size())
-      out.problems.push_back(fmt::format("{}: pooled over the {} of {} runs in which it could be fitted",
-                                         first.channel.name, fitted.size(), runs.size()));
-    out.channels.push_back(pooled_channel(runs, first.channel, fitted, options));
+    out.channels.push_back(pooled_channel(runs, first.channel, choice.runs, options));
+    std::vector<Finding>& known = out.channels.back().fit.findings;
+    known.insert(known.end(), choice.findings.begin(), choice.findings.end());
   }
   out.verdict = pool_verdict(out);
   return out;

@@ -34,14 +34,14 @@ struct ChannelRun {
 struct PooledChannel {
   Channel channel;
   NoiseFit fit;                  ///< of all runs together, without those that differ where the others are alike
-  std::vector<ChannelRun> runs;  ///< those that were fitted
+  std::vector<ChannelRun> runs;  ///< those that were pooled
   double ratio = 0;              ///< sum of the ratios of the runs
   double p = 1;                  ///< of as large a sum, by chance
   int simulations = 0;           ///< that the probabilities are counted in
   bool consistent = true;
   bool rest_alike = true;              ///< all runs but those that differ have one set of coefficients
   std::optional<RandomEffects> bias;   ///< turn-on bias: mean and spread; none: fewer than two runs, or of a phase
-  std::vector<std::string> sentences;  ///< the finding first
+  std::vector<std::string> sentences;  ///< what is alike, and the bias
 };
 
 struct RunInfo {
@@ -53,8 +53,8 @@ struct RunInfo {
 struct PooledRuns {
   std::vector<RunInfo> runs;
   std::vector<PooledChannel> channels;
-  std::vector<std::string> problems;  ///< channels that could not be pooled, in sentences
-  std::string verdict;                ///< a paragraph for all channels
+  std::vector<Finding> findings;  ///< channels that could not be pooled
+  std::string verdict;            ///< a paragraph for all channels
 };
 
 /// Throws Error(input) where the runs are not of one sensor: channels, units or rates that differ, one file twice, a

@@ -3,11 +3,8 @@
 //   own noise   the level that the two highest parts of the spectrum share: [.5, .7] and [.7, 1] of half the rate
 //   signal      whatever is above it by a factor of kDoubtful (a low-pass and noise behind it are seldom so far apart)
 //               or of kMoves (never)
-// or a peak at the frequencies of bodies that is above both of its sides, within a factor of 20 in frequency, by a
-// factor of kMoves: a filter of one pole falls by 400 there;
-// or white noise beyond that of any sensor of its kind: 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and
-// 20 mg/√Hz (H3LIS331DL, ±400 g: 15); or slow noise whose Allan deviation at 10 s is larger than that of such white
-// noise at 1 s, where a sensor's is a hundred times smaller.
+// or a density above that of any sensor of its kind, at any frequency from kSlowest on (flicker and walk are far below
+// it there): 0.5 deg/s/√Hz one-sided (ADXRS649: 0.25), and 20 mg/√Hz (H3LIS331DL, ±400 g: 15).
 // What turns moves the accelerometers beside it, whatever their own spectra look like: gravity turns with it. The
 // opposite does not hold, since vibration and tables move without turning.
 #include "libchar/characterize/detail/rest_doubt.hpp"
@@ -20,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/between_channels.hpp"
@@ -30,6 +27,8 @@ namespace libchar::detail {
 namespace {
 
 constexpr double kDoubtful = 50, kMoves = 1000;  ///< of densities
+constexpr double kSlowest = 0.05;                ///< Hz
+constexpr double kFewestDof = 8;                 ///< of a density
 
 struct Level {
   double density = 0, dof = 0;
@@ -62,7 +61,6 @@ double own_noise(const NoiseFit& fit, double rounding) {
 
 /// The highest density beside that of flicker and walk.
 double signal_density(const NoiseFit& fit) {
-  constexpr double kFewestDof = 8;
   const double flicker = square_of(fit[Term::flicker]), walk = square_of(fit[Term::walk]);
   double highest = square_of(fit[Term::white]);
   for (const FitResidual& one : fit.residuals) {
@@ -83,34 +81,8 @@ bool moves(const ChannelResult& channel) {
          });
 }
 
-/// Allan deviation of flicker and walk at 10 s, of what is detected: by the least of the interval.
-double slow_deviation(const NoiseFit& fit) {
-  double variance = 0;
-  for (const Term term : {Term::flicker, Term::walk})
-    if (const Coefficient& one = fit[term]; one.status == Status::detected && one.value)
-      variance += one.ci95.low * one.ci95.low * allan_asymptote(term, 10);
-  return std::sqrt(variance);
-}
-
 std::string density_text(double n, std::string_view unit) {
   return brief_text(n) + " " + shown_term_unit("white_noise", unit);
-}
-
-/// The highest part of the spectrum, where it is a peak of motion.
-const FitResidual* peak_of_motion(const NoiseFit& fit) {
-  constexpr double kFewestDof = 8, kSlowest = 0.03, kFastest = 10, kNear = 3, kFar = 20;  // Hz; in frequency
-  const FitResidual* peak = nullptr;
-  for (const FitResidual& one : fit.residuals)
-    if (one.dof >= kFewestDof && (peak == nullptr || one.measured > peak->measured)) peak = &one;
-  if (peak == nullptr || peak->frequency_hz < kSlowest || peak->frequency_hz > kFastest) return nullptr;
-  double below = peak->measured, above = peak->measured;
-  for (const FitResidual& one : fit.residuals) {
-    const double times = one.frequency_hz / peak->frequency_hz;
-    if (one.dof < kFewestDof || std::max(times, 1 / times) < kNear || std::max(times, 1 / times) > kFar) continue;
-    double& side = times < 1 ? below : above;
-    side = std::min(side, one.measured);
-  }
-  return peak->measured > kMoves * std::max(below, above) ? peak : nullptr;
 }
 
 Finding signal_above(double own, double signal, std::string_view unit) {
@@ -136,27 +108,20 @@ std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, do
   const bool shaped = !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none;
   const double own = shaped ? own_noise(fit, rounding) : 0, signal = own > 0 ? signal_density(fit) : 0;
   if (own > 0 && signal > kDoubtful * own) return signal_above(own, signal, unit);
-  if (const FitResidual* peak = shaped ? peak_of_motion(fit) : nullptr; peak != nullptr)
-    return finding("moves_throughout",
-                   fmt::format("The spectrum has a peak at about {} Hz, far above both of its sides: a body that rocks "
-                               "or swings.",
-                               brief_text(peak->frequency_hz, 2)),
-                   "it rocks or swings throughout");
   const char* const sensor = rate ? "gyroscope" : "accelerometer";
   const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
-  const Coefficient& white = fit[Term::white];
-  if (white.value && *white.value > most)
-    return finding("moves_throughout",
-                   fmt::format("N is {}, and no {} at rest has more than {}: it moves, or the unit is another.",
-                               density_text(*white.value, unit), sensor, density_text(most, unit)),
-                   "more noise than a sensor at rest has");
-  if (!(slow_deviation(fit) > most)) return std::nullopt;
-  return finding(
-      "moves_throughout",
-      fmt::format("Means of 10 s differ by {} {}, and no {} at rest wanders by more than {}: it moves, or the "
-                  "unit is another.",
-                  brief_text(slow_deviation(fit)), unit, sensor, brief_text(most)),
-      "it wanders more than a sensor at rest does");
+  const FitResidual* highest = nullptr;
+  for (const FitResidual& one : fit.residuals)
+    if (one.frequency_hz >= kSlowest && one.dof >= kFewestDof &&
+        (highest == nullptr || one.measured > highest->measured))
+      highest = &one;
+  if (highest == nullptr || !(highest->measured > most * most)) return std::nullopt;
+  return finding("moves_throughout",
+                 fmt::format("The density is {} at {}, and no {} at rest has more than {}: it moves, or the unit is "
+                             "another.",
+                             density_text(std::sqrt(highest->measured), unit), frequency_text(highest->frequency_hz),
+                             sensor, density_text(most, unit)),
+                 "more noise than a sensor at rest has");
 }
 
 void doubt_together(std::span<ChannelResult> channels) {

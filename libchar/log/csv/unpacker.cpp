@@ -1,6 +1,7 @@
 #include "libchar/log/csv/unpacker.hpp"
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <optional>
 #include <utility>
@@ -12,7 +13,7 @@
 #include "libchar/log/csv/lvm_rows.hpp"
 #include "libchar/log/csv/object_rows.hpp"
 #include "libchar/log/csv/sentence_rows.hpp"
-#include "libchar/log/csv/signs.hpp"
+#include "libchar/log/csv/signs/signs.hpp"
 #include "libchar_have.hpp"
 
 #if LIBCHAR_HAVE_ZLIB
@@ -221,6 +222,16 @@ class FromUtf16 final : public DecodedText {
   bool big_ = false;
 };
 
+/// Text whose mark was lost: each second byte is zero, but for few signs, and none of the others.
+Packing unmarked_utf16(std::string_view front) {
+  constexpr std::size_t kFewest = 16;
+  std::array<std::size_t, 2> zeros = {};
+  for (std::size_t i = 0; i < front.size(); ++i) zeros[i % 2] += front[i] == '\0';
+  const std::size_t most = front.size() / 2 - front.size() / 16;
+  if (front.size() < kFewest || std::min(zeros[0], zeros[1]) > 0) return Packing::none;
+  return zeros[1] >= most ? Packing::utf16le : zeros[0] >= most ? Packing::utf16be : Packing::none;
+}
+
 }  // namespace
 
 Packing packing_of(std::string_view first_bytes) {
@@ -235,12 +246,14 @@ Packing packing_of(std::string_view first_bytes) {
     if (first_bytes.starts_with("\xFF\xFE")) return Packing::utf16le;
     if (first_bytes.starts_with("\xFE\xFF")) return Packing::utf16be;
   }
+  if (const Packing utf16 = unmarked_utf16(first_bytes); utf16 != Packing::none) return utf16;
   if (is_lvm(first_bytes)) return Packing::lvm;
   if (is_sentences(first_bytes)) return Packing::sentences;
   if (is_echo(first_bytes)) return Packing::echo;
   if (in_apostrophes(first_bytes)) return Packing::apostrophes;
   if (is_json_rows(first_bytes)) return Packing::json;
   if (has_spread_dates(first_bytes)) return Packing::dates;
+  if (has_tuples(first_bytes)) return Packing::tuples;
   return signs_of(first_bytes).any() ? Packing::signs : Packing::none;
 }
 
@@ -263,6 +276,8 @@ std::unique_ptr<Unpacker> make_unpacker(Packing packing,
       return open_apostrophes(std::move(stored));
     case Packing::dates:
       return open_spread_dates(std::move(stored));
+    case Packing::tuples:
+      return open_tuples(std::move(stored));
     case Packing::signs:
       return open_signs(std::move(stored));
     case Packing::lvm:

@@ -14,7 +14,22 @@
 
 namespace libchar::csv {
 
-enum class Packing { none, gzip, zstd, xz, utf16le, utf16be, json, lvm, sentences, echo, apostrophes, signs, dates };
+enum class Packing {
+  none,
+  gzip,
+  zstd,
+  xz,
+  utf16le,
+  utf16be,
+  json,
+  lvm,
+  sentences,
+  echo,
+  apostrophes,
+  signs,
+  dates,
+  tuples
+};
 
 /// By the first bytes.
 Packing packing_of(std::string_view first_bytes);

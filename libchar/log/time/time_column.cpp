@@ -21,7 +21,6 @@ namespace libchar {
 
 namespace {
 
-// "frame", "Packet number", "sample_no": they count what was taken, and are no clocks however steadily they rise.
 bool counts_something(const std::string& words) {
   static constexpr std::array<std::string_view, 19> kCounters = {
       "frame",  "frames", "index",   "idx",    "seq", "sequence", "count", "counter", "packet", "packetcounter",
@@ -207,10 +206,17 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
   }
   if (found) info.time.candidate.clear();
   if (found)
-    info.guesses.push_back(
-        fmt::format("time column: {}, because it is a steady clock (`time_column` none keeps it as a channel)",
-                    printable(table.columns[*found].name)));
+    info.guesses.push_back(fmt::format(
+        "time column: {}, because it is a steady clock (`time_column` none keeps it as a channel)",
+        table.columns[*found].name.empty() ? fmt::format("c{}", *found) : printable(table.columns[*found].name)));
   return found;
+}
+
+// Of a clock that does not tell its own samples apart, the one that does and rises with it, whatever its name.
+std::optional<std::size_t> finer_clock(const TableFront& table, std::size_t chosen) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (keeps_time(table, chosen, c) && steady_clock(table.first_values(c).values)) return c;
+  return std::nullopt;
 }
 
 std::vector<TimeCandidate> time_candidates(const TableFront& table) {
@@ -331,6 +337,38 @@ std::optional<std::size_t> column_that_rises(const TableFront& table, const Read
 
 }  // namespace
 
+bool called_count(std::string_view name) {
+  std::string words = ascii_lower(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return counts_something(words);
+}
+
+bool keeps_time(const TableFront& table, std::size_t coarse, std::size_t fine) {
+  constexpr double kDecade = 0.1, kCount = 1.05;
+  constexpr std::size_t kFewest = 3;
+  const FirstValues counts = table.first_values(coarse), stamps = table.first_values(fine);
+  for (const auto& [c, values] : {std::pair(coarse, &counts), std::pair(fine, &stamps)}) {
+    const ColumnLabel& column = table.columns[c];
+    if (column.text || (column.calendar && c == coarse) || unit_of_another_quantity(column) ||
+        !(column.calendar || speaks_of_time(column) || unit_of_time(column) || counts_since_1970(*values)))
+      return false;
+  }
+  const std::vector<double>&a = counts.values, &b = stamps.values;
+  if (coarse == fine || a.size() != b.size() || a.size() < kFewest) return false;
+  std::size_t steps = 0;
+  for (std::size_t i = 1; i < a.size(); ++i) {
+    if (a[i] < a[i - 1] || a[i] != std::floor(a[i])) return false;
+    steps += a[i] > a[i - 1];
+  }
+  const double all = a.back() - a.front(), scale = (b.back() - b.front()) / all;
+  if (steps < kFewest || 5 * steps > 4 * a.size() || !(scale > 0)) return false;
+  const double decade = std::pow(10, std::round(std::log10(scale)));  // the units of both are decades apart
+  if (std::fabs(scale / decade - 1) > std::max(kDecade, 2 / all)) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::fabs(b[i] - b[0] - decade * (a[i] - a[0])) > kCount * decade) return false;
+  return true;
+}
+
 bool called_time(const std::string& name) { return time_name(name_and_unit(name).first).has_value(); }
 
 double usual_step(const std::vector<double>& values) {
@@ -373,7 +411,14 @@ std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t c
 std::optional<std::size_t> find_time_column(const TableFront& table, const ReadOptions& options, LogInfo& info) {
   if (options.time_column == "none") return std::nullopt;
   if (options.time_column != "auto") return named_column(table, options.time_column, options, info.file);
-  if (table.named) return column_called_time(table, options, info);
+  if (table.named) {
+    const auto named = column_called_time(table, options, info);
+    const auto finer = named ? finer_clock(table, *named) : std::nullopt;
+    if (finer)
+      info.guesses.push_back(fmt::format("time column: {}, finer than {} (`time_column` takes another one)",
+                                         printable(table.columns[*finer].name), printable(table.columns[*named].name)));
+    return finer ? finer : named;
+  }
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c].calendar && !table.columns[c].text) return c;
   return column_that_rises(table, options, info);

@@ -73,6 +73,12 @@ std::int64_t unit_behind(const ColumnLabel& column);
 /// ("TOW [ms]"); 0 where neither does.
 std::int64_t unit_said(const ColumnLabel& column);
 
+/// "frame", "Packet number", "sample_no": counts what was taken, and is no clock however steadily it rises.
+bool called_count(std::string_view name);
+
+/// Whole numbers that follow a finer clock from count to count ("seconds" beside milliseconds): the same clock.
+bool keeps_time(const TableFront& table, std::size_t coarse, std::size_t fine);
+
 /// Columns of stamps beside the chosen one that step at another rate, channels behind them: tables of several loggers
 /// side by side.
 std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t chosen);

@@ -186,8 +186,8 @@ std::optional<TimeName> name_with_unit(std::string words) {
   std::string_view before = trimmed(all.substr(0, last));
   for (const std::string_view link : {" in", ","})
     if (before.ends_with(link)) before.remove_suffix(link.size());
-  static constexpr std::array<std::string_view, 6> kOthers = {"t",        "run",         "runtime",
-                                                              "run time", "since start", "test time"};
+  static constexpr std::array<std::string_view, 8> kOthers = {"t",           "run",       "runtime", "run time",
+                                                              "since start", "test time", "decimal", "fractional"};
   const bool time = among(kOthers, before) ||
                     std::any_of(kTimeNames.begin(), kTimeNames.end(),
                                 [&](const KnownName& known) { return known.name == before && known.unit_ns == 0; });

@@ -102,11 +102,13 @@ bool usual_interval(double seconds) {
 
 /// The step of whole numbers is a usual interval in these units; nobody counts ten seconds and more in fractions.
 std::vector<std::int64_t> usual_units(double step) {
-  constexpr double kLongest = 5;
+  constexpr double kLongest = 5, kLongestOfMicros = 10;  // as ns at 100 Hz
   std::vector<std::int64_t> out;
   for (const std::int64_t unit : kStampUnits) {
     const double seconds = step * 1e-9 * static_cast<double>(unit);
-    if (step > 1 && usual_interval(seconds) && (unit == kStampUnits[0] || seconds <= kLongest)) out.push_back(unit);
+    if (step > 1 && usual_interval(seconds) &&
+        (unit == kStampUnits[0] || seconds <= (unit == 1000 ? kLongestOfMicros : kLongest)))
+      out.push_back(unit);
   }
   return out;
 }

@@ -155,14 +155,15 @@ Json runs_json(const RunsReport& report) {
   }
   out["fit"] = noise_fit_document(std::move(fits));
   out["consistency"] = {{"channels", std::move(channels)}};
-  out["problems"] = texts_json(report.pooled->problems);
+  out["findings"] = Json::array();
+  for (const Finding& one : report.pooled->findings) out["findings"].push_back(document_of(finding_fields(), one));
   if (report.limits != nullptr) out["limits"] = document_of(limit_report_fields(), *report.limits);
   return out;
 }
 
 std::string runs_html(const RunsReport& report) {
   std::string body = "<section id=\"overview\">\n<p class=\"verdict\">" + html_text(report.pooled->verdict) + "</p>\n" +
-                     bullet_list(report.pooled->problems, "cautions") + "</section>\n";
+                     findings_list(report.pooled->findings) + "</section>\n";
   if (report.limits != nullptr) body += limits_section(*report.limits);
   for (const PooledChannel& c : report.pooled->channels) body += channel_part(report, c);
   body += "<section class=\"channel\">\n<h2>Each run by itself</h2>\n" +
@@ -179,7 +180,7 @@ std::string runs_text(const RunsReport& report, const TextLook& look) {
     out += "\n" + fit_text(c.channel, c.fit, look) + findings_text(c.fit.findings, 5, look.colours);
     for (const std::string& sentence : c.sentences) out += "  " + printable(sentence) + "\n";
   }
-  for (const std::string& problem : report.pooled->problems) out += "\n" + printable(problem) + "\n";
+  out += findings_text(report.pooled->findings, 5, look.colours);
   if (report.limits != nullptr) out += limits_text(*report.limits, look);
   return out;
 }

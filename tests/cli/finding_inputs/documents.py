@@ -34,6 +34,22 @@ def recorded(folder):
     return [["simulate", path, "-o", folder / "simulated.csv", "--force"]]
 
 
+def pooled(change):
+    """Runs of one gyroscope, of which the last is changed."""
+    def make(folder):
+        paths = []
+        for run in range(4):
+            values = noise(8000, seed=run + 1)
+            paths.append(folder / f"run{run}.csv")
+            paths[-1].write_text(csv_text({"w[deg/s]": change(values) if run == 3 else values}))
+        return [["characterize", *paths, "--pool", "-o", folder / "pool", "--force"]]
+    return make
+
+
+def moved(values):
+    return [v + (60 * math.sin(i / 9) * math.sin(i / 700) if 2000 < i < 6000 else 0) for i, v in enumerate(values)]
+
+
 # Fonts without the one that figures are laid out for.
 FONTS = """<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd"><fontconfig>
 <include>/etc/fonts/fonts.conf</include><selectfont>
@@ -55,6 +71,8 @@ INPUTS = {
                          sentence="the font Liberation Sans is not installed"),
     "recorded_signal_short": asked(recorded),
     "zero_frequency": asked(spectrum),
+    "run_left_out": asked(pooled(moved)),
+    "runs_unlike": asked(pooled(lambda values: [1.5 * v for v in values])),
     "curve_uncertainty": asked(curve(0.02)),
     "curve_scatter": asked(curve(0.022, stated=True)),
 }

@@ -107,23 +107,13 @@ bool named_by_open_signals(Study& study) {
   return true;
 }
 
-// EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
-// time,Ax,Ay": the last comment before the data, when it has as many cells.
-bool named_by_comment(Study& study) {
-  if (study.options.header != "auto") return false;
-  bool announced = false;
-  const auto stripped = [&](std::string_view text) {
-    text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
-    const std::string_view names = announced_names(text);
-    announced = !names.empty();
-    return announced ? names : text;
-  };
-  const auto last = std::find_if_not(study.comments.rbegin(), study.comments.rend(),
-                                     [&](const Line& one) { return is_ruler(stripped(one.text)); });
-  if (last == study.comments.rend()) return false;
-  const Line& line = *last;
-  const std::string_view text = stripped(line.text);
-  if (text.empty() || (study.columns < 2 && !announced)) return false;
+// A comment with as many cells as the rows have, which are words.
+bool takes_names(Study& study, const Line& line, bool with_time) {
+  std::string_view text = line.text;
+  text.remove_prefix(std::min(text.find_first_not_of(" \t#%/;"), text.size()));
+  const std::string_view announced = announced_names(text);
+  if (!announced.empty()) text = announced;
+  if (text.empty() || (study.columns < 2 && announced.empty())) return false;
   const Cells names = table_cells(study, text);
   const bool numbers = std::all_of(names.begin(), names.end(), [&](const Field& name) {
     return read_sampled(name.text, study.style()).kind != Cell::bad;
@@ -131,9 +121,25 @@ bool named_by_comment(Study& study) {
   const bool sentence = std::any_of(names.begin(), names.end(), [](const Field& name) {
     return name.text.starts_with("and ");  // "logging every 3 s, and mode CPM, using device 4"
   });
-  if (names.size() != study.columns || numbers || sentence) return false;
+  const bool time = std::any_of(names.begin(), names.end(), [](const Field& name) { return called_time(name.text); });
+  if (names.size() != study.columns || numbers || sentence || (with_time && !time)) return false;
   read_names(study, line, text);
   return true;
+}
+
+// EuRoC writes "#timestamp [ns],w_RS_S_x [rad s^-1],…", Gulf Coast Data Concepts ";Headers,
+// time,Ax,Ay,Az": the last comment before the data, when it has as many cells; or, with the time, the one before it.
+bool named_by_comment(Study& study) {
+  if (study.options.header != "auto") return false;
+  const std::vector<Line> comments = study.comments;
+  bool last = true;
+  for (auto line = comments.rbegin(); line != comments.rend(); ++line) {
+    const std::size_t from = std::min(line->text.find_first_not_of(" \t#%/;"), line->text.size());
+    if (is_ruler(line->text.substr(from))) continue;
+    if (takes_names(study, *line, !last)) return true;
+    if (!std::exchange(last, false)) return false;
+  }
+  return false;
 }
 
 // Sea-Bird writes "# name 4 = t090C: Temperature [ITS-90, deg C]" in front of its rows, a line for each column.

@@ -13,9 +13,33 @@
 namespace libchar::csv {
 namespace {
 
+// "ax ay az" above "17 0.1 0.2 0.3": a first column of row numbers, or below a comment of stamps, has no name.
+bool leaves_first_unnamed(const Study& study, std::string_view text, const Field& first) {
+  constexpr std::size_t kFewest = 8;
+  const bool comment = std::any_of(study.comments.begin(), study.comments.end(), [&](const Line& line) {
+    return text.data() >= line.text.data() && text.data() < line.text.data() + line.text.size();
+  });
+  std::vector<double> values;
+  bool whole = true;
+  for (const Line& line : study.sample) {
+    const Cells cells = cells_in(study.dialect, line.text);
+    const Cell cell = cells.size() == study.columns ? read_cell(cells[0].text, study.dialect.decimal) : Cell{};
+    if (cell.kind != Cell::value) continue;
+    values.push_back(cell.number);
+    whole = whole && cell.integer;
+  }
+  if (values.size() < kFewest || called_count(first.text)) return false;
+  const double step = usual_step(values);
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double here = values[i] - values[i - 1];
+    if (whole ? here != 1 : !(here > 0.5 * step && here < 1.5 * step)) return false;
+  }
+  return whole || comment;
+}
+
 // R does not name the first column, of row numbers; others name the first ones alone, where the time is among them and
 // no comma of the rows is a decimal one.
-void add_missing_names(const Study& study, Cells& fields) {
+void add_missing_names(const Study& study, std::string_view text, Cells& fields) {
   const std::size_t columns = study.columns, rows = study.sample.size();
   const auto is_word = [&](const Field& field) { return cell_kind(field, study.style()) == CellKind::word; };
   if (rows < 3 || 2 * fields.size() < columns || !std::all_of(fields.begin(), fields.end(), is_word)) return;
@@ -37,7 +61,8 @@ void add_missing_names(const Study& study, Cells& fields) {
   const bool time = fields.size() > 1 && std::any_of(fields.begin(), fields.end(), says_time);
   const Cell a = read_cell(before[0].text, '.'), b = read_cell(last[0].text, '.');
   const bool counts = a.kind == Cell::value && b.kind == Cell::value && a.integer && b.number == a.number + 1;
-  if (fields.size() + 1 == columns && ((quoted && last[0].quoted) || (time && counts)))
+  if (fields.size() + 1 == columns &&
+      ((quoted && last[0].quoted) || (time && counts) || (!time && leaves_first_unnamed(study, text, fields[0]))))
     fields.insert(fields.begin(), Field{"", 0, true});
   const auto has_point = [](const Field& field) { return field.text.find('.') != std::string::npos; };
   if (!time || (study.dialect.delimiter == ',' && std::none_of(last.begin(), last.end(), has_point))) return;
@@ -49,7 +74,7 @@ void add_missing_names(const Study& study, Cells& fields) {
 void fit_names(const Study& study, std::string_view text, Cells& fields) {
   const std::size_t columns = study.columns;
   if (fields.size() == columns + 1 && fields.back().text == "Comment") fields.pop_back();
-  if (fields.size() < columns) add_missing_names(study, fields);
+  if (fields.size() < columns) add_missing_names(study, text, fields);
   const auto behind_blank = [&](const Field& field) {
     return &field != fields.data() && field.offset > 0 && text[field.offset - 1] == ' ';
   };

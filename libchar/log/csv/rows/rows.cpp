@@ -615,8 +615,8 @@ class CarefulLines {
         ++to_.out.account.stamps;
         return true;
       case StampDefect::missing:
-        fail("E0313", "missing time stamp", std::string(text), "`time_column` none and `rate_hz` HZ ignore the stamps",
-             span.start);
+        fail("E0313", "missing time stamp", std::string(text),
+             "`drop_bad_rows` leaves such rows out, `time_column` none and `rate_hz` HZ ignore the stamps", span.start);
         break;
       case StampDefect::malformed: {
         if ((to == Plan::kTime ? to_.dialect.time : to_.dialect.more_time).calendar) {

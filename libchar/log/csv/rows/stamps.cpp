@@ -444,6 +444,7 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const ColumnLabel& column = table.columns[c];
     const auto name = time_name(name_and_unit(column.name).first);
+    if (keeps_time(table, c, index)) dialect.columns[c].clock = true;
     const std::string& chosen = table.columns[index].name;
     const bool named =
         name ? !name->letter && !name->date : column.name == chosen || numbered_alike(column.name, chosen);
@@ -455,7 +456,7 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
     bool same = most > 0;
     for (std::size_t i = 0; i < values.size() && same; ++i)
       same = std::fabs(values[i] - values[0] - scale * (stamps[i] - stamps[0])) <= most;
-    dialect.columns[c].clock = same;
+    dialect.columns[c].clock = dialect.columns[c].clock || same;
   }
 }
 

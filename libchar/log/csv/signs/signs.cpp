@@ -1,4 +1,4 @@
-#include "libchar/log/csv/signs.hpp"
+#include "libchar/log/csv/signs/signs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 // stand for quotes; brackets of printed lists, codes of a terminal's colours, checksums behind '*', exponents of
 // Fortran (1.5D+03), narrow blanks between thousands, days of the week in front of dates ("Sun, 22 Nov 2026"), lines
 // drawn between columns, byte-order marks in each line, and samples of one channel that go on from line to line
-// (SLIST). And stamps that stand in several columns.
+// (SLIST). And stamps that stand in several columns, and several numbers in a cell.
 
 #include <functional>
 #include <memory>
@@ -31,5 +31,9 @@ std::unique_ptr<Unpacker> open_signs(std::function<std::size_t(char*, std::size_
 bool has_spread_dates(std::string_view front);
 /// One column of stamps in their place.
 std::unique_ptr<Unpacker> open_spread_dates(std::function<std::size_t(char*, std::size_t)> stored);
+
+/// Cells with several numbers, "(1.0, 2.0, 3.0)".
+bool has_tuples(std::string_view front);
+std::unique_ptr<Unpacker> open_tuples(std::function<std::size_t(char*, std::size_t)> stored);
 
 }  // namespace libchar::csv
