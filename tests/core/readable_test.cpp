@@ -42,6 +42,8 @@ TEST_CASE("how much above the best possible: hundredths of a per cent, then time
 
 TEST_CASE("intervals: both ends with the digits of the value, infinity in words") {
   CHECK(interval_text({0.5, 2}, 2) == "0.50 … 2.0");
+  CHECK(end_text(3e-5, 1.2e-5, 2) == "3.0×10⁻⁵");
+  CHECK(end_text(0.03, 1.1e-16, 2) == "0.030");
   CHECK(interval_text({0.5, std::numeric_limits<double>::infinity()}, 2) == "0.50 … no end");
   CHECK(interval_text({std::numeric_limits<double>::quiet_NaN(), 2}) == "–");
 }

@@ -39,6 +39,16 @@ TEST_CASE("noise-free bins give their coefficients back to nine digits") {
   CHECK(fit.remedies.empty());
 }
 
+TEST_CASE("a term that scoring left beside its bound is at its bound") {
+  const BinProblem problem = bin_problem(noise_free({1e-6, 0, 25e-6, 0, 0}, 200));
+  ModelPoint start;
+  start.theta = {1e-6, 1e-30, 25e-6, 0, 0};
+  const Polished found = polish(problem, start);
+  CHECK(found.at.theta[1] == 0);
+  CHECK(found.at.theta[2] == Approx(25e-6).epsilon(1e-9));
+  CHECK(found.converged);
+}
+
 TEST_CASE("the deviance residual and its slope") {
   for (const double u : {1e-3, 0.5, 0.98999, 0.9901, 1 - 1e-9, 1.0, 1 + 1e-9, 1.0099, 1.0101, 3.0, 50.0}) {
     const long double d = static_cast<long double>(u) - 1;

@@ -242,7 +242,7 @@ TEST_CASE("columns of dates without a year, in digits, and without names") {
                                                {"date,time,x", "{7},{8}", 60},
                                                {"Date,Time,x", "{0}{1:02}{2:02},{8}", 60},
                                                {"DATE,TIME,x", "{0}{1:02}{2:02},{8:04}", 60},
-                                               {"Date,Time (HHMM),x", "{1:02}/{2:02}/{0},{8:04}", 60},
+                                               {"Date,Time_(HHMM),x", "{1:02}/{2:02}/{0},{8:04}", 60},
                                                {preamble, " {0} {6:3} {1:2} {2:2} {3:2} {4:2} ", 60},
                                                {"94255\t2023\t1000\n", "{6}\t{8}\t", 60, false},
                                                {"", "{0},{6},{8}", 300},

@@ -487,6 +487,19 @@ TEST_CASE("counts become values: by a number in the unit, by options for channel
   }
 }
 
+TEST_CASE("the g of a load cell is the gram, and that of an accelerometer is not") {
+  const std::string text =
+      "t [s],load [g],net_weight [g],HX711 [g],acc_z [g],loaded [g]\n0,1,2,3,4,5\n1,2,3,4,5,6\n2,1,2,3,4,5\n";
+  const Recording r = read_text(text);
+  for (std::size_t c : {0, 1, 2}) CHECK(r.info.channels[c].unit == "gram");
+  for (std::size_t c : {3, 4}) CHECK(r.info.channels[c].unit == "g");
+  CHECK(r.samples[0] == std::vector<double>{1, 2, 1});
+  CHECK(r.info.guesses.size() == 3);
+  ReadOptions options;
+  options.channel_unit = {"load=g"};
+  CHECK(read_text(text, options).info.channels[0].unit == "g");
+}
+
 TEST_CASE("what is not read is recognised, with the way to a table") {
   using namespace std::string_literals;
   const std::pair<std::string, const char*> contents[] = {

@@ -768,3 +768,14 @@ TEST_CASE("names in front of all columns but the first, which counts or holds th
   }
   CHECK(table("# ax ay az\n", "{1:.2f} {2:.2f} {3:.2f} {4:.2f}\n").info.time.rate_hz == Approx(100));
 }
+
+TEST_CASE("an interval with its unit in front of the table is that of the rows") {
+  for (const auto& [line, rate] :
+       {std::pair("Interval;0,5 s", 2.0), std::pair("Log interval: 5 min", 1 / 300.0),
+        std::pair("Messintervall;10 ms", 100.0), std::pair("Calibration interval;5 s", 0.0)}) {
+    std::string text = std::string(line) + "\nax;ay\n";
+    for (int k = 0; k < 60; ++k) text += fmt::format("0,{:02};1,{:02}\n", (k * 13) % 60, (k * 7) % 60);
+    INFO(line);
+    CHECK(read_text(text).info.time.rate_hz == Approx(rate));
+  }
+}

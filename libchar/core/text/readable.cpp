@@ -51,6 +51,8 @@ std::string number_text(double value, int digits) { return written(value, digits
 std::string end_text(double end, double of, int digits) {
   if (std::isinf(end)) return "no end";
   if (end == 0 || of == 0 || !std::isfinite(end) || !std::isfinite(of)) return number_text(end, digits);
+  constexpr double kFar = 1000;  // beyond that the power of the value makes the end longer, not easier to compare
+  if (std::abs(end) > kFar * std::abs(of)) return number_text(end, digits);
   const Scientific s = scientific(of, digits);
   // Where only the end would have a power, it has few digits of the value's.
   if (!s.power)

@@ -529,7 +529,11 @@ std::optional<CalendarStamp> read_calendar(std::string_view text) {
   const auto clock = [](char c) { return c == ':' || c == ',' || c == '_' || (c & 0x80) != 0 || ascii_letter(c); };
   if (std::none_of(text.begin(), text.end(), clock) && std::count_if(text.begin(), text.end(), sign) < 2)
     return std::nullopt;
-  for (const DateOrder order : {DateOrder::day_first, DateOrder::month_first, DateOrder::year_first})
+  if (std::none_of(text.begin(), text.end(), decimal_digit)) return std::nullopt;  // words
+  if (const auto stamp = read_calendar(text, DateOrder::day_first)) return stamp;
+  const auto twice = [&](char c) { return std::count(text.begin(), text.end(), c) > 1; };
+  if (!twice('-') && !twice('/') && !twice('.')) return std::nullopt;  // no date whose order is not said
+  for (const DateOrder order : {DateOrder::month_first, DateOrder::year_first})
     if (const auto stamp = read_calendar(text, order)) return stamp;
   return std::nullopt;
 }

@@ -352,15 +352,17 @@ bool called_count(std::string_view name) {
 bool keeps_time(const TableFront& table, std::size_t coarse, std::size_t fine) {
   constexpr double kDecade = 0.1, kCount = 1.05;
   constexpr std::size_t kFewest = 3;
-  const FirstValues counts = table.first_values(coarse), stamps = table.first_values(fine);
-  for (const auto& [c, values] : {std::pair(coarse, &counts), std::pair(fine, &stamps)}) {
-    const ColumnLabel& column = table.columns[c];
-    if (column.text || (column.calendar && c == coarse) || unit_of_another_quantity(column) ||
-        !(column.calendar || speaks_of_time(column) || unit_of_time(column) || counts_since_1970(*values)))
-      return false;
-  }
+  const ColumnLabel &one = table.columns[coarse], &other = table.columns[fine];
+  if (coarse == fine || one.text || other.text || one.calendar) return false;
+  const FirstValues counts = table.first_values(coarse);
+  const auto clock = [&](const ColumnLabel& column, const FirstValues& values) {
+    return !unit_of_another_quantity(column) &&
+           (column.calendar || counts_since_1970(values) || speaks_of_time(column) || unit_of_time(column));
+  };
+  if (!counts.integers || !clock(one, counts)) return false;
+  const FirstValues stamps = table.first_values(fine);
   const std::vector<double>&a = counts.values, &b = stamps.values;
-  if (coarse == fine || a.size() != b.size() || a.size() < kFewest) return false;
+  if (a.size() != b.size() || a.size() < kFewest || !clock(other, stamps)) return false;
   std::size_t steps = 0;
   for (std::size_t i = 1; i < a.size(); ++i) {
     if (a[i] < a[i - 1] || a[i] != std::floor(a[i])) return false;

@@ -258,7 +258,7 @@ ModelPoint report_coefficients(const BinProblem& problem, const Decision& decisi
                                NoiseFit& fit) {
   const Polished polished = polish(problem, decision.at);
   fit.theta = polished.at.theta;
-  fit.search.converged = !polished.known || (decision.converged && polished.converged);
+  fit.search.converged = !polished.known || polished.ended || (decision.converged && polished.converged);
   fit.search.iterations = decision.iterations + polished.iterations;
   const Optimum best{polished.at, polished.half_deviance};
   const WithDropped all = with_dropped(problem, decision, best, options.terms);

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libchar/core/process/silent_glog.hpp"
 #include "libchar/core/process/work.hpp"
@@ -102,8 +103,33 @@ DevianceResidual deviance_residual(double energy, double model, double dof) {
   return {d * root, -dof / (2 * root)};
 }
 
-Polished polish(const BinProblem& problem, const ModelPoint& start) {
+namespace {
+
+/// Up to the rounding of the sum.
+double slack_of(double half_deviance) { return 1e-9 + 1e-13 * half_deviance; }
+
+/// A term without which the likelihood is no worse is at its bound: scoring may only come near it, and its logarithm
+/// has no end.
+bool take_out_vanished(const BinProblem& problem, ModelPoint& at) {
+  bool any = false;
+  const double best = half_deviance(problem, at);
+  for (double& theta : at.theta) {
+    if (!(theta > 0)) continue;
+    const double before = std::exchange(theta, 0);
+    if (half_deviance(problem, at) <= best + slack_of(best))
+      any = true;
+    else
+      theta = before;
+  }
+  return any;
+}
+
+}  // namespace
+
+Polished polish(const BinProblem& problem, const ModelPoint& scored) {
   const SilentGlog silent;
+  ModelPoint start = scored;
+  take_out_vanished(problem, start);
   std::vector<Eigen::Index> terms;
   std::vector<double> unknown;
   for (std::size_t i = 0; i < kTerms; ++i) {
@@ -129,10 +155,11 @@ Polished polish(const BinProblem& problem, const ModelPoint& start) {
     polished.theta[static_cast<std::size_t>(terms[i])] = std::exp(unknown[i]);
   std::copy_n(unknown.begin() + static_cast<std::ptrdiff_t>(terms.size()), shapes, polished.shape.begin());
   const double value = half_deviance(problem, polished);
-  // Never worse than the start, up to the rounding of the sum. A descent that begins at the maximum
-  // may find no step at all, which the solver calls a failure.
-  const double slack = 1e-9 + 1e-13 * result.half_deviance;
-  result.converged = value <= result.half_deviance + slack;
+  // Never worse than the start. A descent that begins at the maximum may find no step at all, which the solver calls a
+  // failure.
+  result.converged = value <= result.half_deviance + slack_of(result.half_deviance);
+  result.ended = result.converged && summary.termination_type == ceres::CONVERGENCE;
+  if (result.converged && take_out_vanished(problem, polished)) return polish(problem, polished);
   if (result.converged) {
     result.at = polished;
     result.half_deviance = value;

@@ -10,8 +10,9 @@ struct Polished {
   double half_deviance = 0;
   TermMatrix covariance = TermMatrix::Zero();  ///< of ln theta of the positive terms
   int iterations = 0;
-  bool converged = false;
-  bool known = true;  ///< the covariance; else the likelihood cannot be computed around `at`
+  bool converged = false;  ///< not worse than the start
+  bool ended = false;      ///< at a maximum, wherever it began
+  bool known = true;       ///< the covariance; else the likelihood cannot be computed around `at`
 };
 
 /// Minimises the deviance over ln theta of the positive terms of `start` and over the shape.

@@ -106,10 +106,14 @@ double interval_of(const Statement& said) {
       unit = known;
     }
   const auto known = find_unit(unit);
-  const double factor = known && known->quantity == Quantity::time ? known->to_si : 1;
+  const bool said_of_time = known && known->quantity == Quantity::time;
+  const double factor = said_of_time ? known->to_si : 1;
+  static constexpr std::array<std::string_view, 6> kWithUnit = {
+      "loginterval", "recordinginterval", "measurementinterval", "messintervall", "abtastintervall", "abtastzeit"};
+  const bool interval = said_of_time && (key == "interval" || key == "intervall" || ends_with_any(key, kWithUnit));
   const bool clock = key == "clock" && (factor < 1 || unit == "s");  // "#CLOCK=400.000uS" of Hantek
   const bool step = (key == "dt" || key == "tau") && !said.of_a_name;
-  return ends_with_any(key, kKeys) || step || clock ? *said.number * factor : 0;
+  return ends_with_any(key, kKeys) || step || clock || interval ? *said.number * factor : 0;
 }
 
 /// "Epoch Period (hh:mm:ss) 00:00:15" of ActiGraph: seconds.

@@ -74,6 +74,7 @@ bool named_by_signal_express(Study& study) {
 
 bool named_by_yokogawa(Study& study) {
   const std::vector<Line> lines = study.sample;
+  if (lines.empty() || lines[0].text.find("Header Size") == std::string_view::npos) return false;
   const auto at = [&](std::string_view key) {
     return static_cast<std::size_t>(
         std::find_if(lines.begin(), lines.end(),

@@ -78,13 +78,15 @@ void fit_names(const Study& study, std::string_view text, Cells& fields) {
   const auto behind_blank = [&](const Field& field) {
     return &field != fields.data() && field.offset > 0 && text[field.offset - 1] == ' ';
   };
-  const auto in_brackets = [&](const Field& field) {
-    const std::string_view front = text.substr(0, field.offset);
-    const auto signs = [&](char a, char b) {
-      return std::count_if(front.begin(), front.end(), [&](char c) { return c == a || c == b; });
-    };
-    return signs('(', '[') > signs(')', ']');
-  };
+  std::vector<bool> inside(fields.size());
+  std::size_t at = 0;
+  int depth = 0;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    for (; at < std::min(fields[k].offset, text.size()); ++at)
+      depth += text[at] == '(' || text[at] == '[' ? 1 : text[at] == ')' || text[at] == ']' ? -1 : 0;
+    inside[k] = depth > 0;
+  }
+  const auto in_brackets = [&](const Field& field) { return inside[static_cast<std::size_t>(&field - fields.data())]; };
   const std::size_t more = study.dialect.delimiter == ',' && fields.size() > columns ? fields.size() - columns : 0;
   const auto explains = [&](const auto& joined) {
     return more > 0 && std::count_if(fields.begin(), fields.end(), joined) == static_cast<std::ptrdiff_t>(more);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/time/time_column.hpp"
@@ -537,9 +538,13 @@ void choose_stamps(const StampStudy& study, const ReadOptions& options, Dialect&
   const auto partner_of = [&](std::size_t column) {
     return pair && column == pair->first ? part_of(pair->second) : StampPart{};
   };
+  std::map<std::size_t, FirstValues> known;  // many questions are about the same values
   table.first_values = [&](std::size_t column) {
-    return table.columns[column].calendar ? first_stamps(study, dialect, part_of(column), partner_of(column))
-                                          : first_numbers(study, column);
+    const auto found = known.find(column);
+    if (found != known.end()) return found->second;
+    return known[column] = table.columns[column].calendar
+                               ? first_stamps(study, dialect, part_of(column), partner_of(column))
+                               : first_numbers(study, column);
   };
   auto index = led ? std::optional<std::size_t>(0) : find_time_column(table, options, info);
   if (!index) return;

@@ -125,6 +125,7 @@ constexpr PartName kPartNames[] = {{"year", DatePart::year},
 DatePart part_of_name(std::string_view cell, bool hour_seen, bool date_seen) {
   std::string word = ascii_lower(trimmed(cell.substr(0, cell.find_first_of("[("))));  // "utc_second" has no unit
   while (!word.empty() && (word[0] == '#' || word[0] == '%' || word[0] == ' ')) word.erase(0, 1);
+  word.erase(word.find_last_not_of('_') + 1);  // "Time_(HHMM)"
   std::string joined = word;
   std::erase_if(joined, [](char c) { return std::string_view("_. -").find(c) != std::string_view::npos; });
   word.erase(0, word.find_last_of("_. /") + 1);  // npos + 1 is 0
