@@ -44,6 +44,19 @@ bool detail::names_angular_rate(std::string_view channel) {
   return ends_in_any(front, kRateWords);
 }
 
+bool detail::names_mass(std::string_view channel) {
+  static constexpr std::array<std::string_view, 11> words = {"load", "loadcell", "weight", "mass",    "scale", "scales",
+                                                             "hx",   "balance",  "tare",   "gewicht", "poids"};
+  const std::string text = ascii_lower(channel.substr(0, channel.find_first_of("([{")));
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && is_letter(text[end])) ++end;
+    if (std::find(words.begin(), words.end(), std::string_view(text).substr(at, end - at)) != words.end()) return true;
+    at = end + 1;
+  }
+  return false;
+}
+
 AxisName axis_name(std::string_view channel) {
   const std::string stem = stem_of(channel);
   if (stem.empty() || stem.back() < 'x') return {};

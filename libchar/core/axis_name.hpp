@@ -19,6 +19,9 @@ namespace detail {
 /// Whether the name is that of a gyroscope's channel or of what one measures: "gx", "gyro_x", "wz", "delta_angle[0]".
 bool names_angular_rate(std::string_view channel);
 
+/// Whether the name is that of a balance or a load cell, whose g is the gram: "load", "weight_1", "HX711", "net mass".
+bool names_mass(std::string_view channel);
+
 }  // namespace detail
 
 }  // namespace libchar

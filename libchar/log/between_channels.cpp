@@ -21,7 +21,7 @@ constexpr double kGravity = 9.80665;  // m/s^2
 constexpr double kTolerance = 0.15;   // biases and scale errors of cheap sensors, and where on Earth
 constexpr double kAtRest = 0.05;      // standard deviation of all axes together, in g or of the mean's length
 
-/// Channels that are axes of one accelerometer, at least one.
+/// Channels that are axes of one sensor, at least one.
 struct Axes {
   std::vector<std::size_t> channels;
   bool has_z = false;
@@ -37,11 +37,11 @@ AxisName axis_or_number(const std::string& channel) {
   return name;
 }
 
-std::vector<Axes> accelerometers(std::span<const Channel> channels) {
+std::vector<Axes> axes_of(Quantity quantity, std::span<const Channel> channels) {
   std::map<std::pair<std::string, std::string>, Axes> found;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const auto unit = find_unit(channels[c].unit);
-    if (!unit || unit->quantity != Quantity::acceleration) continue;
+    if (!unit || unit->quantity != quantity) continue;
     const AxisName name = axis_or_number(channels[c].name);
     if (name.axis == 0) continue;
     Axes& axes = found[{name.front, channels[c].unit}];
@@ -51,6 +51,25 @@ std::vector<Axes> accelerometers(std::span<const Channel> channels) {
   std::vector<Axes> out;
   for (auto& [key, axes] : found) out.push_back(std::move(axes));
   return out;
+}
+
+/// Length and scatter of the mean vector.
+std::pair<double, double> mean_of(const std::vector<std::size_t>& axes, double unit,
+                                  const std::function<ChannelQuality&(std::size_t)>& quality) {
+  double mean = 0, scatter = 0;
+  for (const std::size_t c : axes) {
+    mean += std::pow(quality(c).mean * unit, 2);
+    scatter += std::pow(quality(c).standard_deviation * unit, 2);
+  }
+  return {std::sqrt(mean), std::sqrt(scatter)};
+}
+
+void offer_scale(std::span<const Channel> channels, const std::vector<std::size_t>& axes, const std::string& factor,
+                 double ratio, Finding& found) {
+  Finding::Help help{"Scale the axes."};
+  for (const std::size_t c : axes) help.options.push_back({"channel_scale", channels[c].name + "=" + factor});
+  found.help.push_back(std::move(help));
+  found.effects = {{Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
 }
 
 bool is_near(double ratio, double wanted) { return std::fabs(ratio / wanted - 1) < kTolerance; }
@@ -91,18 +110,13 @@ bool some_axes_tell(double ratio, const std::string& stated, bool has_z) {
 }
 
 void judge_gravity(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
-  for (const Axes& axes : accelerometers(channels)) {
+  for (const Axes& axes : axes_of(Quantity::acceleration, channels)) {
     const std::vector<std::size_t>& all = axes.channels;
     const std::string unit = shown_unit(channels[all[0]].unit);
     const double in_g = find_unit(channels[all[0]].unit)->to_si / kGravity;
-    double mean = 0, scatter = 0;
-    for (const std::size_t c : all) {
-      mean += std::pow(quality(c).mean * in_g, 2);
-      scatter += std::pow(quality(c).standard_deviation * in_g, 2);
-    }
-    const double ratio = std::sqrt(mean);
-    const bool steady = std::sqrt(scatter) < kAtRest * ratio;
-    if (!(steady || std::sqrt(scatter) < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
+    const auto [ratio, scatter] = mean_of(all, in_g, quality);
+    const bool steady = scatter < kAtRest * ratio;
+    if (!(steady || scatter < kAtRest) || !std::isfinite(ratio) || is_near(ratio, 1)) continue;
     const bool whole = all.size() == 3;
     if (!whole && !some_axes_tell(ratio, channels[all[0]].unit, axes.has_z)) continue;
     const Suspicion suspicion = suspicion_of(ratio, channels[all[0]].unit, steady);
@@ -119,14 +133,37 @@ void judge_gravity(std::span<const Channel> channels, const std::function<Channe
                             brief_text(1 / in_g, 4), suspicion.says),
                 fmt::format("the mean acceleration is {} {}: {}", brief_text(ratio / in_g, 4), unit, suspicion.says));
     if (ratio < kTolerance && (suspicion.factor.empty() || !whole)) found.severity = Severity::caution;
-    if (!suspicion.factor.empty()) {
-      Finding::Help help{"Scale the axes."};
-      for (const std::size_t c : all)
-        help.options.push_back({"channel_scale", channels[c].name + "=" + suspicion.factor});
-      found.help.push_back(std::move(help));
-      found.effects = {{Affected::scale, ratio < 1 ? Direction::too_small : Direction::too_large, ratio}};
-    }
+    if (!suspicion.factor.empty()) offer_scale(channels, all, suspicion.factor, ratio, found);
     for (const std::size_t c : all) quality(c).findings.push_back(found);
+  }
+}
+
+/// The field of the Earth is 22 to 67 µT. Iron and shields make a tenth or five times of it, and other units more.
+void judge_field(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
+  constexpr double kWeakest = 22e-6, kStrongest = 67e-6, kUsual = 45e-6, kShielded = 5e-6, kIron = 3e-4, kSure = 100;
+  for (const Axes& axes : axes_of(Quantity::magnetic_field, channels)) {
+    const std::vector<std::size_t>& all = axes.channels;
+    const std::string& stated = channels[all[0]].unit;
+    const double tesla = find_unit(stated)->to_si;
+    const auto [field, scatter] = mean_of(all, tesla, quality);
+    if (all.size() != 3 || !(scatter < kAtRest * field) || (field > kShielded && field < kIron)) continue;
+    for (const char* real : {"T", "mT", "µT", "nT", "Gauss", "mGauss"}) {
+      const double times = rounded(find_unit(real)->to_si / tesla, 9), here = field * times;
+      if (!(here > kWeakest && here < kStrongest)) continue;
+      const std::string says =
+          fmt::format("this looks like {} under the name of {}", shown_unit(real), shown_unit(stated));
+      const std::string mean = brief_text(field / tesla, 3) + " " + shown_unit(stated);
+      Finding found = finding("not_earth_field",
+                              fmt::format("The mean field of the three axes is {}, and that of the Earth is 22 to 67 "
+                                          "µT: {}.",
+                                          mean, says),
+                              fmt::format("the mean field is {}: {}", mean, says));
+      if (field > kSure * kUsual) found.severity = Severity::bad;  // no magnetometer measures that
+      offer_scale(channels, all, times < 1 ? "1/" + shortest(rounded(1 / times, 9)) : shortest(times), 1 / times,
+                  found);
+      for (const std::size_t c : all) quality(c).findings.push_back(found);
+      break;
+    }
   }
 }
 
@@ -162,6 +199,7 @@ void judge_copies(std::span<const Channel> channels, const std::function<Channel
 
 void judge_together(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality) {
   judge_gravity(channels, quality);
+  judge_field(channels, quality);
   judge_copies(channels, quality);
 }
 

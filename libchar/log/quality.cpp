@@ -90,10 +90,12 @@ struct Extreme {
 
   /// `slow`: changes by a step or so from sample to sample. The top of a smooth peak then has up to 2.4 times as many.
   std::uint64_t saturated(bool slow = false) const { return runs && count > (slow ? 6 : 2) * at_next ? count : 0; }
-  /// -1 and numbers of nines alone: what loggers write for no reading.
+  /// -1 and numbers of nines alone: what loggers write for no reading; all bits of a word, read from a bus in error.
   bool is_usual_mark() const {
     const double written = sign * value;
-    return written == -1 ||
+    int bits = 0;
+    const bool all_bits = written >= 32767 && std::frexp(written + 1, &bits) == 0.5;
+    return written == -1 || all_bits ||
            std::any_of(std::begin(kNines), std::end(kNines), [&](double nines) { return std::fabs(written) == nines; });
   }
   /// Stands often, and further from the next value than all others are apart (`others`: their range): no tail of a

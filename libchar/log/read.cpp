@@ -188,6 +188,9 @@ double conversion(const std::string& stated, const Channel& channel) {
       .hint("`channel_scale` {}=1, if only the name of the unit is wrong", channel.name);
 }
 
+// "load [g]" is in grams: no unit of an acceleration, and of no quantity that this program knows.
+bool is_in_grams(const Channel& channel) { return channel.unit == "g" && detail::names_mass(channel.name); }
+
 // Names and units as they are asked for; counts become values, by `channel_scale`, else by a number in the unit, and
 // values in another unit of the log are converted. Returns the factors, and says in `notes` what was done.
 std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOptions& options, ScaleNotes* notes) {
@@ -197,7 +200,9 @@ std::vector<double> dress_channels(std::vector<Channel>& channels, const ReadOpt
   for (std::size_t c = 0; c < channels.size(); ++c) {
     Channel& channel = channels[c];
     std::string count;
-    if (const auto unit = value_for(options.channel_unit, channel.name)) channel.unit = *unit;
+    const auto said = value_for(options.channel_unit, channel.name);
+    if (said) channel.unit = *said;
+    if (!said && is_in_grams(channel)) channel.unit = "gram";
     const auto counts = count_unit(channel.unit);
     if (counts) {
       channel.unit = counts->unit;
@@ -415,6 +420,10 @@ LogInfo named_info(const RowSource& source, const ReadOptions& options) {
   LogInfo info = source.info();
   ScaleNotes scaled;
   dress_channels(info.channels, options, &scaled);
+  for (const Channel& channel : info.channels)
+    if (channel.unit == "gram" && channel.stated == "g")
+      info.guesses.push_back(
+          fmt::format("unit of {0}: gram, by its name (`channel_unit` {0}=g says otherwise)", printable(channel.name)));
   for (const auto& [count, names] : scaled) info.dialect.push_back(count + ": " + first_names(names));
   return info;
 }

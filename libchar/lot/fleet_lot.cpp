@@ -280,9 +280,10 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
   for (const std::size_t r : fleet.sorted.first)
     if (lot.stands_out[r]) devices.push_back(fleet.records[r].device);
   std::set<std::pair<std::size_t, std::size_t>> channels;  // of single devices
-  bool any = false, searched = false, axes = true;
+  bool any = false, searched = false, axes = true, spoilt = false;
   for (const QuantityLot& q : lot.quantities) {
     any = any || q.counts.counted > 0;
+    spoilt = spoilt || q.counts.spoilt > 0;
     searched = searched || q.searched;
     axes = axes && (q.of_kind || !q.searched);
     for (const FleetOutlier& o : q.outliers)
@@ -295,7 +296,8 @@ std::string outlying_sentence(const FleetLot& lot, const Fleet& fleet) {
   std::string out = devices.empty() ? "" : stand_out(devices, "device");
   if (!of_one.empty()) out += stand_out(of_one, "channel");
   if (!out.empty()) return out;
-  return axes ? " No channel is an outlier." : " No device is an outlier.";
+  return fmt::format(" No {} is an outlier{}.", axes ? "channel" : "device",
+                     spoilt ? " among those without a bad finding" : "");
 }
 
 /// The alarm of the control charts of all channels together: by the most improbable of their signals, which has the

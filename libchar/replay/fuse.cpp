@@ -476,6 +476,7 @@ void Fusing::begin_check() {
   const Eigen::MatrixXd h = array.h();
   if (array.one_common_input() && array.channels >= 2) {
     check_.readings.emplace(array.channels, instants_->info().count);
+    check_.readings->expect(learnt_readings());
     check_.doubt.emplace(learnt_readings());
   }
   check_.steps.emplace(h(check_.rows, Eigen::indexing::all), instants_->info().count);

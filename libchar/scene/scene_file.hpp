@@ -49,6 +49,8 @@ std::string scene_yaml(const Scene& scene);
 // Files that a scene names: next to it or below it, regular, and only read.
 
 struct SceneFolder {
+  /// What may be a folder: nothing, a log ("CSV files of a phone"), anything.
+  enum class Kind { none, logs, any };
   std::string scene;           ///< path of the scene file
   bool allow_outside = false;  ///< files elsewhere may be named
   bool may_be_absent = false;  ///< a file that is not there yet is only checked for where it would be
@@ -56,9 +58,10 @@ struct SceneFolder {
 
 /// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at
 /// `where` ("FILE:LINE:COL") for a path that leaves the scene's folder (by "..", absolute, or over
-/// a link), names the scene itself, or is not an existing regular file. Nothing is opened.
+/// a link), names the scene itself or its folder, or is neither an existing regular file nor a folder that is allowed.
+/// Nothing is opened.
 std::string resolve_scene_file(const std::string& named, const SceneFolder& folder, const std::string& where,
-                               const std::string& key);
+                               const std::string& key, SceneFolder::Kind folders = SceneFolder::Kind::none);
 
 /// `file` relative to the folder of `scene`, as the scene would name it; absolute when it is
 /// elsewhere. Throws Error(output) for a name that is not UTF-8, which YAML does not allow.

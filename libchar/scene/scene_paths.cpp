@@ -23,7 +23,12 @@ struct Named {
   const std::string& text;
   const std::string& where;
   const std::string& key;
+  fs::path root = {};  ///< folder of the scene
 
+  bool own_folder(const fs::path& whole) const {
+    std::error_code none;
+    return fs::equivalent(whole, root, none);
+  }
   Refusal refusal(const char* code) const { return input_error(code, where).about(key).got(text); }
 };
 
@@ -58,13 +63,16 @@ void check_text(const Named& named) {
                                       named.text.size());
 }
 
-void check_kind(const Named& named, const fs::path& whole) {
+void check_kind(const Named& named, const fs::path& whole, SceneFolder::Kind folders) {
   const std::string shown = printable(whole.string());
   std::error_code problem;
   const fs::file_status status = fs::status(whole, problem);
   if (status.type() == fs::file_type::not_found)
     throw named.refusal("E0732").says("there is no file {}", shown).hint(hint_for(named.text, whole.parent_path()));
   if (problem) throw named.refusal("E0732").says("cannot look at {}: {}", shown, problem.message());
+  const bool log =
+      folders == SceneFolder::Kind::logs && !named.own_folder(whole) && detail::is_folder_of_tables(whole.string());
+  if (fs::is_directory(status) && (folders == SceneFolder::Kind::any || log)) return;
   if (fs::is_directory(status)) throw named.refusal("E0733").says("{} is a folder, a file was expected", shown);
   if (!fs::is_regular_file(status))
     throw named.refusal("E0733")
@@ -75,10 +83,10 @@ void check_kind(const Named& named, const fs::path& whole) {
 }  // namespace
 
 std::string resolve_scene_file(const std::string& text, const SceneFolder& folder, const std::string& where,
-                               const std::string& key) {
-  const Named named{text, where, key};
+                               const std::string& key, SceneFolder::Kind folders) {
+  const Named named{text, where, key, folder_of(folder.scene)};
   check_text(named);
-  const fs::path path(text), root = folder_of(folder.scene);
+  const fs::path path(text), root = named.root;
   if (!folder.allow_outside && path.is_absolute())
     throw named.refusal("E0731").says("an absolute path leaves the scene's folder").hint(kOutside);
   if (!folder.allow_outside && leaves(path.lexically_normal()))
@@ -86,19 +94,21 @@ std::string resolve_scene_file(const std::string& text, const SceneFolder& folde
         .says("{} lies outside the scene's folder", printable((root / path).lexically_normal().string()))
         .hint(kOutside);
   // As the system walks it: "link/.." is not always ".".
-  const fs::path whole = fs::path(folder.scene).parent_path() / path;
+  const fs::path whole = named_log_file((fs::path(folder.scene).parent_path() / path).string());
   std::error_code problem, root_problem;
   if (folder.may_be_absent && !fs::exists(whole, problem) && !problem) return whole.string();
-  check_kind(named, whole);
+  check_kind(named, whole, folders);
   const fs::path real = fs::canonical(whole, problem);
   const fs::path real_root = fs::canonical(root, root_problem);
   if (problem || root_problem)
     throw named.refusal("E0732").says("cannot look at {}: {}", printable(whole.string()),
                                       (problem ? problem : root_problem).message());
-  if (!folder.allow_outside && !detail::is_beneath(real, real_root))
-    throw named.refusal("E0731")
-        .says("a link leads out of the scene's folder, to {}", printable(real.string()))
-        .hint(kOutside);
+  const bool parts = detail::is_folder_of_tables(whole.string());
+  for (const std::string& file : parts ? files_of_log(whole.string()) : std::vector<std::string>{real.string()})
+    if (!folder.allow_outside && !detail::is_beneath(file, real_root))
+      throw named.refusal("E0731")
+          .says("a link leads out of the scene's folder, to {}", printable(fs::canonical(file, problem).string()))
+          .hint(kOutside);
   if (detail::is_of_the_kernel(real))
     throw named.refusal("E0733").says("{} is not a recorded file", printable(real.string()));
   if (fs::equivalent(whole, folder.scene, problem)) throw named.refusal("E0734").says("the scene names itself as data");

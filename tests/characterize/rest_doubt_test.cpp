@@ -63,6 +63,32 @@ TEST_CASE("an even motion above the noise of an inertial sensor is no rest") {
   CHECK(perhaps->severity == Severity::caution);
 }
 
+TEST_CASE("what rocks shows a peak, and a sensor behind a high-pass and a low-pass has none") {
+  const std::vector<double> u = rest_white(90000, 7, 1);
+  const auto two_poles = [&](double low, double high, double sd) {  // each of first order, and twice
+    std::vector<double> y = u;
+    for (const bool above : {true, true, false, false}) {
+      const double pole = std::exp(-2 * std::acos(-1.0) * (above ? low : high) / kRestRate);
+      double state = 0;
+      for (double& v : y) {
+        state = pole * state + (1 - pole) * v;
+        v = above ? v - state : state;
+      }
+    }
+    double squares = 0;
+    for (const double v : y) squares += v * v;
+    for (double& v : y) v *= sd / std::sqrt(squares / static_cast<double>(y.size()));
+    return fit_record(y, kRestRate, nullptr);
+  };
+  const auto rocks = doubt_rest(two_poles(0.6, 0.8, 0.05), "rad/s", 0);
+  REQUIRE(rocks);
+  CHECK(rocks->code == "moves_throughout");
+  CHECK(rocks->severity == Severity::bad);
+  CHECK(doubt_rest(two_poles(0.6, 0.8, 0.05), "degC", 0) == std::nullopt);
+  CHECK(doubt_rest(two_poles(0.1, 20, 0.05), "m/s^2", 0) == std::nullopt);
+  CHECK(doubt_rest(two_poles(1, 15, 0.05), "m/s^2", 0) == std::nullopt);
+}
+
 TEST_CASE("noise of a sensor at rest, behind a low-pass too, is rest") {
   CHECK(doubt_rest(fit_of_motion(0, 3), "rad/s", 0) == std::nullopt);
   CHECK(doubt_rest(fit_of_motion(0.1, 3, 0), "deg/s", 0) == std::nullopt);
@@ -106,6 +132,7 @@ TEST_CASE("what is fixed to a body that turns throughout does not rest") {
   const auto moved = log_of({"gx", "gy"});
   CHECK(has(moved[2].findings, "moves_with_others"));
   CHECK(has(moved[3].findings, "moves_with_others"));
+  for (const Finding::Help& help : moved[3].findings.back().help) CHECK(help.options.empty());  // no way around
   for (const std::size_t c : {0, 1, 4}) CHECK_FALSE(has(moved[c].findings, "moves_with_others"));
   // A table that turns about one axis; what vibrates without turning.
   for (const auto& turning : {std::vector{"gz"}, {"ax"}, {}})

@@ -107,6 +107,23 @@ TEST_CASE("digital: a converter's step above the noise") {
   CHECK(coarse.staircase->bounded);
 }
 
+TEST_CASE("digital: what rounding adds is known no better than where between two steps the value stands") {
+  for (const double sigma : {0.25, 0.3, 0.4, 0.45, 0.6, 0.8})
+    for (const double stands : {0.0, 0.25, 0.5}) {
+      std::vector<double> y = test::NoiseSource(kDigitalSamples, 1, 44).record(sigma, 0, 0);
+      for (double& value : y) value = std::round(value + stands);
+      const DigitalFaults faults = test::digital_faults(y, 1, 1);
+      if (!faults.rounding) continue;
+      double mean = 0, square = 0;
+      for (const double value : y) mean += value / static_cast<double>(y.size());
+      for (const double value : y) square += (value - mean) * (value - mean) / static_cast<double>(y.size());
+      INFO("noise of " << sigma << " steps at " << stands << " steps");
+      const DigitalFaults::Rounding& rounding = *faults.rounding;
+      CHECK(std::fabs(square - rounding.variance - sigma * sigma) < 2.5 * rounding.sd + 0.01);
+      if (sigma > 0.5) CHECK(rounding.sd < 0.01);
+    }
+}
+
 TEST_CASE("digital: a clean recording of a real sensor") {
   NEEDS_SHARED("data/static_adis16405_run1.npy");
   const test::Array array = test::npy(test::shared("data/static_adis16405_run1.npy"));

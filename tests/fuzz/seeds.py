@@ -74,6 +74,15 @@ def printed_rows():
     yield "csv", rows(lambda k: f"#RAWIMUSXA,COM1,0,0,FINE,2000,{k}.5;0,0,2000,{k}.5,00000077,1,2,3,4,5,6*0a0b0c0d\n")
     yield "csv", ("LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tOne\n***End_of_Header***\t\n\t\nChannels\t1\n"
                   "Delta_X\t0.01\n***End_of_Header***\t\nX_Value\tA\tComment\n" + rows(lambda k: f"{k / 100}\t{k}\n"))
+    special = "***Start_Special***\nX0\t7\n***End_Special***\n"
+    for columns, names in (("Multi", "X_Value\tA\tX_Value\tB"), ("No", "X_Value\tA\tB")):
+        each = "\t\t" if columns == "Multi" else "\t"
+        yield "csv", (f"LabVIEW Measurement\nSeparator\tTab\nX_Columns\t{columns}\n***End_of_Header***\n\nChannels\t2\n"
+                      f"X0\t0{each}0\nDelta_X\t.01{each}.02\n{special}***End_of_Header***\n{names}\n" +
+                      rows(lambda k: (f"{k / 100}\t{k}\t{k / 50}\t{k}\n" if columns == "Multi" else f"\t{k}\t{k}\n")
+                           + ("\n" if k == 6 else "")))
+    yield "csv", rows(lambda k: f"2026-11-22 12:00:{k + 10}: $VNYPR,1,2,3*5D\n17.5 $VNGYR,+0.{k},-.2,+3.5,T00{k}*5D\n")
+    yield "csv", rows(lambda k: f"%CORRIMUSA,2200,300000.{k};1,0.125,0.25,{k},-1,-2,-3,0,0*5aa97065\n")
     yield "csv", rows(lambda k: f"2021-12-19 05:00:{k + 14} PPS 1 4.417 0.067 1.094e-06 N 1 3.957e-07 -9.719e-12 "
                                 "1.000e-09 8.640e-06 2.516e-05\n")
     yield "csv", rows(lambda k: f"61016 {8 * k}.878 0.000001853 -33.344 0.000003510 0.002074 3\n")

@@ -17,14 +17,14 @@ struct Scene {
 };
 
 /// Three axes of this mean in this unit, with this scatter.
-Scene triad(double z, const std::string& unit, double sd) {
+Scene triad(double z, const std::string& unit, double sd, const std::string& front = "acc_") {
   Scene out;
-  for (const char* name : {"acc_x", "acc_y", "acc_z"}) {
-    out.channels.push_back({name, unit, false});
+  for (const char axis : {'x', 'y', 'z'}) {
+    out.channels.push_back({front + axis, unit, false});
     ChannelQuality q;
     q.samples = 1000;
     q.standard_deviation = sd;
-    q.mean = name[4] == 'z' ? z : 0.01 * z;
+    q.mean = axis == 'z' ? z : 0.01 * z;
     out.quality.push_back(q);
   }
   judge_together(out.channels, [&](std::size_t c) -> ChannelQuality& { return out.quality[c]; });
@@ -34,7 +34,7 @@ Scene triad(double z, const std::string& unit, double sd) {
 std::string scale(const Scene& scene) {
   if (scene.quality[0].findings.empty()) return "none";
   const Finding& one = scene.quality[0].findings[0];
-  CHECK(one.code == "not_gravity");
+  CHECK(one.code == (scene.channels[0].name[0] == 'm' ? "not_earth_field" : "not_gravity"));
   CHECK(scene.quality[2].findings == scene.quality[0].findings);
   return one.help.empty() ? "" : one.help[0].options[0].value;
 }
@@ -102,6 +102,22 @@ TEST_CASE("gravity: the columns of an array are axes") {
   }
   judge_together(array.channels, [&](std::size_t c) -> ChannelQuality& { return array.quality[c]; });
   CHECK(array.quality[0].findings.size() == 1);
+}
+
+TEST_CASE("the field of the Earth: a sound magnetometer has no finding, and one in another unit is named") {
+  const auto field = [](double z, const std::string& unit) { return triad(z, unit, 0.01 * z, "mag_"); };
+  for (const double iron : {8.0, 25.0, 48.0, 65.0, 250.0}) CHECK(scale(field(iron, "uT")) == "none");
+  CHECK(scale(field(0.48, "Gauss")) == "none");
+  CHECK(scale(field(48, "T")) == "mag_x=1/1e+06");
+  CHECK(field(48, "T").quality[0].findings[0].severity == Severity::bad);
+  CHECK(scale(field(48000, "uT")) == "mag_x=1/1000");
+  CHECK(scale(field(480, "uT")) == "mag_x=1/10");
+  CHECK(field(480, "uT").quality[0].findings[0].severity == Severity::caution);
+  CHECK(scale(field(0.48, "uT")) == "mag_x=100");
+  CHECK(scale(field(3000, "uT")) == "none");           // a magnet
+  CHECK(scale(triad(48, "T", 20, "mag_")) == "none");  // it turns
+  CHECK(scale(triad(0, "T", 1, "mag_")) == "none");    // noise alone
+  CHECK(scale(triad(4.8e-5, "T", 1e-7, "mag_")) == "none");
 }
 
 TEST_CASE("a channel that is another one is named, also with its sign turned") {

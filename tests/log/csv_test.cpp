@@ -487,13 +487,26 @@ TEST_CASE("counts become values: by a number in the unit, by options for channel
   }
 }
 
+TEST_CASE("the g of a load cell is the gram, and that of an accelerometer is not") {
+  const std::string text =
+      "t [s],load [g],net_weight [g],HX711 [g],acc_z [g],loaded [g]\n0,1,2,3,4,5\n1,2,3,4,5,6\n2,1,2,3,4,5\n";
+  const Recording r = read_text(text);
+  for (std::size_t c : {0, 1, 2}) CHECK(r.info.channels[c].unit == "gram");
+  for (std::size_t c : {3, 4}) CHECK(r.info.channels[c].unit == "g");
+  CHECK(r.samples[0] == std::vector<double>{1, 2, 1});
+  CHECK(r.info.guesses.size() == 3);
+  ReadOptions options;
+  options.channel_unit = {"load=g"};
+  CHECK(read_text(text, options).info.channels[0].unit == "g");
+}
+
 TEST_CASE("what is not read is recognised, with the way to a table") {
   using namespace std::string_literals;
   const std::pair<std::string, const char*> contents[] = {
       {"PAR1\x15\x04\x15"s, "read_parquet"},
       {"ARROW1\0\0\xFF"s, "read_feather"},
       {"TDSm\x0E\0\0\0"s, "nptdms"},
-      {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"s, "save it as CSV"},
+      {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"s, "--convert-to xlsx"},
       {"\xB5\x62\x01\x07\x5C\0"s, "pyubx2"},
       {"H Product:Blackbox flight data recorder\n"s, "blackbox_decode"},
       {"weather,place=roof temperature=21.5,humidity=40i 1465839830100400200\n"s, "influx -execute"},
@@ -501,9 +514,25 @@ TEST_CASE("what is not read is recognised, with the way to a table") {
       {"MDF     4.10    "s + std::string(200, 0), "asammdf"},
       {"$GPGGA,123519,4807.038,N\n"s, "gpsbabel"},
       {"\0\x05\xE9\x5C\x6F\x10\x20\x30\xFE\x09\0\x01"s, "mavlogdump"},
+      {"$GLGSV,1,1,02,65,40,083,46*5F\r\n"s, "gpsbabel"},
+      {"8.0,M,,*4B\r\n$BDGGA,123519,4807.038,N\r\n$BDGGA,123520,4807.038,N\r\n"s, "gpsbabel"},
+      {"\x07\x01\xB5\x62\x05\x01\x02\0\x06\x01\x0F\x38\xB5"s, "pyubx2"},  // begins within a message
+      {"\x80\x02]q\0("s, "pickle"},
       {"\x80\x04\x95\x10\0\0\0"s, "pickle"},
+      {"\x80\x05\x95\x10\0\0\0"s, "pickle"},
+      {"MS\x03\x04\0\0\0\0"s, "obspy"},
+      {"C 1 CLIENT" + std::string(70, ' '), "obspy"},
+      {"1.0                 COMPACT RINEX FORMAT                    CRINEX VERS   / TYPE\n"s, "georinex"},
+      {"CDF\x02\0\0\0\0"s, "xarray"},
+      {"0       " + std::string(160, 'X') + "01.01.2612.00.00512     " + std::string(80, ' '), "mne.io"},
+      {"PK\x03\x04" + std::string(26, '\0') + "mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "libreoffice"},
+      {"# DDL\nCREATE DATABASE x\n# DML\nimu gx=0.5 1700000000000000000\n"s, "influx -execute"},
+      {"imu,host=a gx=0.5,gy=0.25\nimu,host=a gx=0.5,gy=0.5\n"s, "influx -execute"},
+      {"<html><table><tr><td>1</td></tr></table></html>\n"s, "read_html"},
+      {"[[0, 1.5], [0.1, 1.25], [0.2, 1.5]]\n"s, "DataFrame"},
+      {"{\"t\": [0, 1, 2], \"x\": [1, 2, 1]}\n"s, "DataFrame"},
       {"000001D CMPX\x01\x02"s, "obspy"},
-      {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s, "gfzrnx"},
+      {"     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE\n"s, "georinex"},
       {"# Noise of one channel.\nformat: sensor-model\nversion: 1\n"s, "simulate and compare"},
       {"{\n  \"format\": \"characterization\",\n  \"version\": 1\n}\n"s, "compare and verify"},
   };

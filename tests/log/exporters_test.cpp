@@ -228,7 +228,7 @@ std::vector<Export> phone_exports() {
   out.push_back({"Physics Toolbox Sensor Suite",
                  "time,gFx,gFy,gFz,\n" +
                      lines(12, [](int k) { return fmt::format("{:.4f},0.01,{},0.99,\n", 0.0051 + 0.005 * k, k); }),
-                 "gFx[] gFy[] gFz[]",
+                 "gFx[g] gFy[g] gFz[g]",
                  200,
                  5100000,
                  {0.01, 0, 0.99},
@@ -801,6 +801,15 @@ std::vector<Export> printed_rows() {
       "columns that pandas numbered",
       [](int k) { return (k == 0 ? "0,1,2\n" : "") + fmt::format("{:.2f},{}.5,-2.0\n", 0.05 * k, k); }, "1[] 2[]", 20,
       0, {0.5, -2}, "header in line 1");
+  out.push_back({"columns that pandas numbered, behind an index",
+                 lines(40, [](int k) { return (k == 0 ? ",0,1\n" : "") + fmt::format("{},{},{}.5\n", k, k % 3, k); }),
+                 "0[] 1[]",
+                 20,
+                 kNoStart,
+                 {0, 0.5},
+                 "header in line 1",
+                 false,
+                 [](ReadOptions& o) { o.rate_hz = 20; }});
   add(
       "a count of rows in front of the stamps", [](int k) { return fmt::format("{},{},{}.5\n", k, 50 * k, k); },
       "c0[] c1[]", 20, 0, {0, 0.5}, "c1");
@@ -965,6 +974,31 @@ std::vector<Export> printed_messages() {
                  kNoStart,
                  {0.5},
                  "",
+                 false,
+                 [](ReadOptions& o) { o.rate_hz = 10; }});
+  out.push_back({"ros2 topic echo behind a warning, with carriage returns",
+                 "WARNING: topic [/imu] does not appear to be published yet\r\n" +
+                     lines(20,
+                           [](int k) {
+                             return fmt::format(
+                                 "header:\r\n  stamp:\r\n    sec: 1700000000\r\n    nanosec: {}\r\nz: {}.5\r\n---\r\n",
+                                 10000000 * k, k);
+                           }),
+                 "z[]",
+                 100,
+                 1700000000000000000,
+                 {0.5},
+                 "messages that ROS printed"});
+  out.push_back({"ros2 topic echo of an array",
+                 lines(20,
+                       [](int k) {
+                         return fmt::format("layout:\n  dim: []\n  data_offset: 0\ndata:\n- {}.5\n- -1.0\n---\n", k);
+                       }),
+                 "layout.data_offset[] data[0][] data[1][]",
+                 10,
+                 kNoStart,
+                 {0, 0.5, -1},
+                 "messages that ROS printed",
                  false,
                  [](ReadOptions& o) { o.rate_hz = 10; }});
   out.push_back({"rostopic echo with a message that is broken",

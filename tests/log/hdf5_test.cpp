@@ -40,6 +40,21 @@ TEST_CASE("hdf5: members of a record may be arrays of any dimensions") {
   CHECK(log.samples[6][19] == 79.0 / 8);
 }
 
+TEST_CASE("hdf5: the fields of a record within a record have its name in front") {
+  NEEDS_LIBRARY(HDF5);
+  const Recording log = array_log("nested.h5", {});
+  std::string names;
+  for (const Channel& channel : log.info.channels) names += channel.name + " ";
+  CHECK(names == "gyr.x gyr.y_0 gyr.y_1 id ");
+  CHECK(log.info.time.rate_hz == Approx(100));
+  CHECK(log.samples[0][19] == 19.0 / 4);
+  CHECK(log.samples[2][19] == 39.0 / 8);
+  CHECK(log.samples[3][19] == 7);
+  ReadOptions options;
+  options.channels = {"gyr.y_1"};
+  CHECK(array_log("nested.h5", options).samples[0] == log.samples[2]);
+}
+
 TEST_CASE("hdf5: groups are topics, records bring their own stamps, an attribute is a rate") {
   NEEDS_LIBRARY(HDF5);
   const LogInfo listing = log_listing(test::fixture("arrays/groups.h5").string(), {});

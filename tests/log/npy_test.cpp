@@ -238,7 +238,18 @@ TEST_CASE("the header is read as Python writes it and never more freely") {
   CHECK_THAT(fault_of("{'descr': '|S5', " + rest), Catch::Contains("text"));
   CHECK_THAT(fault_of("{'descr': 'f8', " + rest), Catch::Contains("of a type that is not read"));
   CHECK_THAT(fault_of("{'descr': [('a', '<f8'), ('a', '<f8')], " + rest), Catch::Contains("two fields have one name"));
-  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')])], " + rest), Catch::Contains("record within a record"));
+  const NpyHeader nested = header_of(
+      "{'descr': [('t', '<f8'), ('w', [('x', '<f4'), ('y', '<f8', (2,))]), ('', '|V2'), ('n', '<i2')], " + rest + "\n");
+  REQUIRE(nested.fields.size() == 4);
+  CHECK(nested.fields[1].name == "w.x");
+  CHECK(nested.fields[2].name == "w.y");
+  CHECK(nested.fields[2].byte == 12);
+  CHECK(nested.fields[3].byte == 30);
+  CHECK(nested.item_bytes == 32);
+  CHECK_THAT(fault_of("{'descr': [('a', [('b', '<f8')], (2,))], " + rest), Catch::Contains("array of records"));
+  std::string deep = "'<f8'";
+  for (int k = 0; k < 40; ++k) deep = "[('a', " + deep + ")]";
+  CHECK_THAT(fault_of("{'descr': " + deep + ", " + rest), Catch::Contains("too deep"));
   CHECK_THAT(fault_of("{'descr': [], " + rest), Catch::Contains("no field"));
   CHECK_THAT(fault_of("{'descr': [('a', '<f8', (4294967296, 4294967296, 4))], " + rest), Catch::Contains("overflows"));
   CHECK_THAT(fault_of("{'descr': [('a', '<f8', (200000,))], " + rest), Catch::Contains("more than 32768 columns"));

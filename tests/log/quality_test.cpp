@@ -176,6 +176,19 @@ TEST_CASE("zeros among values that hardly repeat are marks, or a dead band, and 
   CHECK(meter(moving).saturated == 0);
 }
 
+TEST_CASE("all bits of a word are a mark, as a bus in error gives them") {
+  for (const double mark : {8388607.0, 65535.0, 32767.0}) {
+    std::vector<double> x = gaussian(20000, 1);
+    for (double& value : x) value = std::round(0.3 * mark + 20 * value);
+    for (std::size_t i = 100; i < x.size(); i += 500) x[i] = mark;
+    for (std::size_t i = 300; i < x.size(); i += 1000) x[i] = 0;  // so that the range of the others is wide
+    CHECK(has(meter(x).findings, "missing_mark"));
+    for (double& value : x)
+      if (value == mark) value -= 7;  // no word's end
+    CHECK_FALSE(meter(x).signs.marks == std::vector{mark - 7});
+  }
+}
+
 TEST_CASE("two marks side by side are marks, and no jumps of a phase") {
   std::vector<double> x = gaussian(20000, 1);
   for (std::size_t i = 100; i < x.size(); i += 250) x[i] = i % 500 == 100 ? -99 : -98;

@@ -125,9 +125,99 @@ TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments 
   std::string apart = multi;  // LabVIEW writes what is said of a channel below its column of values
   apart.replace(apart.find("Volts\tVolts"), 11, "Volts\t\tg");
   CHECK(names(read(lvm("Multi", apart + "0,00\t1\t0,00\t2\n0,01\t2\t0,01\t3\n"))) == "A[Volts] B[g] ");
-  CHECK_THAT(outcome(StoredTable("a.lvm", lvm("Multi", multi + "0,00\t1\t0,50\t2\n")).path),
-             Catch::Contains("E0340") && Catch::Contains("clocks of their own"));
   CHECK_THAT(outcome(StoredTable("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));
+}
+
+TEST_CASE("LabVIEW: channels with clocks of their own have columns of stamps, in the file or by Delta_X") {
+  const auto header = [](const std::string& x0, const std::string& delta) {
+    return "Channels\t3\nSamples\t40\t10\t40\nX0\t" + x0 + "\nDelta_X\t" + delta + "\n***End_of_Header***\n";
+  };
+  std::string each = header("0,0\t\t0,0\t\t0,0", "0,01\t\t0,04\t\t0,01") + "X_Value\tA\tX_Value\tB\tX_Value\tC\n";
+  std::string none = header("0,0\t0,0\t0,0", "0,01\t0,04\t0,01") + "X_Value\tA\tB\tC\tComment\n";
+  for (int k = 0; k < 40; ++k) {
+    const std::string b = k < 10 ? std::to_string(3 * k % 7) : "", stamp = k < 10 ? fmt::format("0,{:02}", 4 * k) : "";
+    each += fmt::format("0,{0:02}\t{1}\t{2}\t{3}\t0,{0:02}\t{4}\n", k, k % 5, stamp, b, k % 3);
+    none += fmt::format("\t{}\t{}\t{}\n", k % 5, b, k % 3);
+  }
+  for (const std::string& text : {lvm("Multi", each), lvm("No", none)}) {
+    const StoredTable file("a.lvm", text);
+    const Recording log = read_recording(file.path);
+    CHECK(names(log) == "A B C ");
+    CHECK(log.info.time.rate_hz == Approx(100));
+    CHECK(log.info.channels[0].own_clock.empty());
+    CHECK(log.info.channels[2].own_clock.empty());
+    ReadOptions options;
+    options.time_column = log.info.channels[1].own_clock;
+    options.channels = {"B"};
+    const Recording slow = read_recording(file.path, options);
+    CHECK(slow.info.time.rate_hz == Approx(25));
+    CHECK(slow.samples[0].size() == 10);
+    CHECK(slow.samples[0][9] == 27 % 7);
+  }
+}
+
+TEST_CASE("LabVIEW: one header for many packets, special blocks, names that lack, a segment of the next day") {
+  const auto read = [](const std::string& text) { return read_recording(StoredTable("a.lvm", text).path); };
+  const auto packet = [](int from) {
+    std::string rows;
+    for (int k = from; k < from + 3; ++k) rows += fmt::format("0,0{}\t{}\t{}\n", k - from, k, 2 * k);
+    return rows + "\n";
+  };
+  const std::string two = segment("23:59:59,5", "0", "X_Value\tA\tB");
+  const Recording packets = read(lvm("One", two + packet(0) + packet(3)));
+  CHECK(packets.samples[0] == std::vector<double>{0, 1, 2, 3, 4, 5});
+  CHECK(packets.info.time.rate_hz == Approx(100));
+  const std::string special = "***Start_Special***\nX0\t7\nDelta_X\t5\n\nY_Unit_Label\tg\n***End_Special***\n";
+  std::string with = two;
+  with.insert(with.find("***End_of_Header***"), special);
+  CHECK(names(read(lvm("One", with + packet(0)))) == "A[Volts] B[Volts] ");
+  CHECK(read(lvm("No", with + "\t1\t2\n\t2\t3\n\t3\t4\n")).info.time.rate_hz == Approx(100));
+  CHECK(names(read(lvm("One", segment("12:00:00,5", "0", "X_Value\tA\t") + packet(0)))) ==
+        "A[Volts] Untitled 1[Volts] ");
+  const auto of_day = [](std::string text, const std::string& day) {
+    text.replace(text.find("Time\t"), 0, "Date\t" + day + "\t" + day + "\n");
+    return text;
+  };
+  const Recording night =
+      read(lvm("One", of_day(two, "2026/11/22") + packet(0) +
+                          of_day(segment("00:00:00,5", "0", "X_Value\tA\tB"), "2026/11/23") + packet(3)));
+  CHECK(night.info.time.gaps == 1);  // a second, of which .03 s are recorded
+  CHECK(night.samples[0].size() == 103);
+  const std::string other = outcome(
+      StoredTable("a.lvm", lvm("One", two + packet(0) + segment("23:59:59,9", "0", "X_Value\tA\tC") + packet(3))).path);
+  CHECK_THAT(other, Catch::Contains("E0340") && Catch::Contains("`head -n 20 FILE"));
+  std::string spectrum = two;
+  spectrum.insert(0, "X_Dimension\tFrequency\tFrequency\n");
+  CHECK_THAT(outcome(StoredTable("a.lvm", lvm("One", spectrum + packet(0))).path), Catch::Contains("Frequency"));
+}
+
+TEST_CASE("lines of inertial units in a log of several kinds, behind stamps, behind a receiver's answers") {
+  ReadOptions options;
+  options.rate_hz = 40;
+  const auto read = [&](const std::string& text) { return read_recording(StoredTable("a.txt", text).path, options); };
+  const std::string gyro = "$VNGYR,+00.1,-0.2,+3.5*5D\r\n", attitude = "$VNYPR,+001.0,+002.0,+003.0*5D\r\n";
+  CHECK(names(read(attitude + gyro + attitude + gyro)) == "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
+  CHECK(names(read("$VNGYR,+00.1,-0.2,+3.5,T0001234567*5D\r\n" + gyro)) ==
+        "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
+  CHECK_THAT(outcome(StoredTable("a.txt", gyro + "$VNGYR,+00.1,-0.2*5D\r\n" + gyro).path), Catch::Contains("E0304"));
+  options.rate_hz.reset();
+  std::string stamped, raw = "<OK\r\n[COM1]", corrected;
+  for (int k = 0; k < 20; ++k) {
+    stamped += fmt::format("2026-11-22 12:00:0{}.{:02}: $VNGYR,+00.{},-0.2,+3.5*5D\r\n", k / 10, 10 * (k % 10), k % 7);
+    raw += fmt::format("%RAWIMUSA,2200,300000.000;2200,300000.{:02},00000077,1,2,3,4,{},6*5aa97065\r\n", k, k % 5);
+    corrected += fmt::format("%CORRIMUSA,2200,300000.{:02};1,0.125,0.25,{}.5,-1,-2,-3,0,0*5aa97065\r\n", k, k % 3);
+  }
+  const Recording behind = read(stamped);
+  CHECK(behind.info.time.rate_hz == Approx(10));
+  CHECK(names(behind) == "gyro_x[rad/s] gyro_y[rad/s] gyro_z[rad/s] ");
+  CHECK(behind.samples[0][5] == 0.5);
+  const Recording answers = read(raw);
+  CHECK(answers.info.time.rate_hz == Approx(100));
+  CHECK(answers.samples[4][7] == -2);
+  const Recording rates = read(corrected);
+  CHECK(rates.info.time.rate_hz == Approx(100));
+  CHECK(names(rates) == "pitch[rad/s] roll[rad/s] yaw[rad/s] lateral[m/s^2] longitudinal[m/s^2] vertical[m/s^2] ");
+  CHECK(rates.samples[2][4] == 1.5);
 }
 
 TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
@@ -182,6 +272,19 @@ TEST_CASE("Shimmer: a line between names and units says that values are calibrat
   CHECK(log.samples[1][1] == 0.25);
 }
 
+TEST_CASE("Shimmer: several devices in front of the names, columns of Consensys behind them") {
+  const Recording log = read_recording(
+      StoredTable(
+          "a.dat",
+          "Thigh\tThigh\tShank\tShank\tAnnotation\nTimestamp\tGyro X\tTimestamp\tGyro X\tPulse\n"
+          "CAL\tCAL\tCAL\tCAL\tPulse\nmSecs\tdeg/sec\tmSecs\tdeg/sec\tBoolean\n"
+          "10.0\t0.5\t10.0\t0.1\t0\n20.0\t0.25\t20.0\t0.2\t0\n30.0\t0.75\t30.0\t0.3\t1\n40.0\t0.5\t40.0\t0.1\t0\n")
+          .path);
+  CHECK(names(log) == "Thigh Gyro X[deg/sec] Shank Gyro X[deg/sec] Pulse[Boolean] ");
+  CHECK(log.info.time.rate_hz == Approx(100));
+  CHECK(log.samples[1] == std::vector<double>{0.1, 0.2, 0.3, 0.1});
+}
+
 TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or one that is named") {
   const Recording log = read_recording(of("log.xlsx"));
   CHECK(names(log) == "gx[deg/s] temp[degC] ");
@@ -190,7 +293,7 @@ TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or on
   CHECK(log.samples[0][59] == 59.0 / 8);
   CHECK(std::isnan(log.samples[1][5]));
   CHECK(log.info.topics.size() == 2);
-  CHECK_THAT(log.info.guesses.front(), Catch::Contains("sheet: Log, the first of 2"));
+  CHECK_THAT(log.info.guesses.front(), Catch::Contains("sheet: Log, the first table of 2 sheets"));
   const Recording bench = read_recording(of("log.xlsx"), topic("Bench"));
   CHECK(names(bench) == "a[g] ");
   CHECK(bench.samples[0][39] == 1 + 39.0 / 64);
@@ -206,6 +309,36 @@ TEST_CASE("a phone's archive: a topic for each file, with the units of its senso
   const Recording joined = read_recording(of("phone.zip"), both);
   CHECK(names(joined) == "Accelerometer/x[m/s^2] Gyroscope/x[rad/s] ");
   CHECK(joined.samples[1][49] == 49);
+}
+
+TEST_CASE("units of what a phone's app writes without them: of the file's name, of the names of the columns") {
+  const auto of_file = [](const std::string& name, const std::string& header) {
+    std::string text = header + "\n";
+    const auto columns = std::count(header.begin(), header.end(), ',');
+    for (int k = 0; k < 10; ++k) {
+      text += header.starts_with("time,seconds") ? fmt::format("{},{}", 1700000000000000000 + k * 10000000L, 0.01 * k)
+                                                 : fmt::format("{}", 0.01 * k);
+      for (auto c = header.starts_with("time,seconds") ? 1 : 0; c < columns; ++c)
+        text += fmt::format(",{}", (k + c) % 4 + 0.5);
+      text += "\n";
+    }
+    return names(read_recording(StoredTable(name, text).path));
+  };
+  CHECK(of_file("Barometer.csv", "time,seconds_elapsed,relativeAltitude,pressure") ==
+        "relativeAltitude[m] pressure[hPa] ");
+  CHECK(of_file("MagnetometerUncalibrated.csv", "time,seconds_elapsed,z,y,x") == "z[uT] y[uT] x[uT] ");
+  CHECK(of_file("AccelerometerUncalibrated.csv", "time,seconds_elapsed,z,y,x") == "z y x ");
+  CHECK(of_file("Orientation.csv", "time,seconds_elapsed,yaw,qx") == "yaw[rad] qx ");
+  CHECK(of_file("a.csv", "time,gFx,gFy,gFz,TgF") == "gFx[g] gFy[g] gFz[g] TgF[g] ");
+  CHECK(of_file("a.csv", "time,ax,wx,Bx") == "ax[m/s^2] wx[rad/s] Bx[uT] ");
+  CHECK(of_file("a.csv", "time,ax,ay,az") == "ax ay az ");
+}
+
+TEST_CASE("an archive with one recording and notes beside it needs no choice") {
+  CHECK(names(read_recording(of("phone_notes.zip"))) == "z[m/s^2] y[m/s^2] x[m/s^2] ");
+  const Recording sheet = read_recording(of("notes_first.xlsx"));
+  CHECK(names(sheet) == "a[g] ");
+  CHECK_THAT(sheet.info.guesses.front(), Catch::Contains("sheet: Bench, the first table of 2 sheets"));
 }
 
 TEST_CASE("a table of one row beside a recording needs no choice") {

@@ -596,7 +596,58 @@ TEST_CASE("counts of a timer of unknown speed are a doubt, whole milliseconds ha
   CHECK(severity(84000) == Severity::caution);
   CHECK(severity(1000) == Severity::caution);  // 1 Hz or 1 kHz
   CHECK(severity(10) == Severity::caution);    // 100 Hz or 0.1 Hz
+  CHECK(severity(498) == Severity::caution);   // a loop of 500 ms, or 2 kHz
   CHECK(severity(4) == Severity::note);
+}
+
+TEST_CASE(
+    "tables side by side whose times have one name: each is chosen by its number, one that repeats is the first") {
+  std::string text = "t,A,t,B,t,C\n";
+  for (int k = 0; k < 200; ++k)
+    text += fmt::format("{0},{1},{2},{3},{0},{4}\n", 0.1 * k, k % 7, 0.25 * k, k % 5, k % 3);
+  const Recording log = test::read_text(text);
+  REQUIRE(log.info.channels.size() == 3);
+  CHECK(log.info.channels[1].own_clock == "t_2");
+  CHECK(log.info.channels[2].own_clock.empty());
+  ReadOptions options;
+  options.time_column = "t_2";
+  options.channels = {"B"};
+  CHECK(test::read_text(text, options).info.time.rate_hz == Approx(4));
+}
+
+TEST_CASE("a temperature t that seldom changes is none the less no time") {
+  std::string text = "f,ax,t\n";
+  for (int k = 0; k < 60; ++k)
+    text += fmt::format("{},{},{}\n", 2314 + 23 * k + k % 2, k % 7, k % 5 == 2 ? 27.9 : 27.8);
+  CHECK(test::read_text(text).info.time.column == "f");
+}
+
+TEST_CASE("an index is time where it counts that since 1970, else it counts rows") {
+  const auto column = [](std::int64_t first, std::int64_t step) {
+    std::string text = "index,x\n";
+    for (int k = 0; k < 50; ++k) text += fmt::format("{},{}\n", first + step * k, k % 7);
+    return test::read_text(text).info.time.column;
+  };
+  CHECK(column(1700000000000000000, 5000000) == "index");
+  CHECK(column(3, 1).empty());
+}
+
+TEST_CASE("a coarse clock is known beside a pause and a stretch where the log hung") {
+  std::mt19937 generator(5);
+  std::string text = "stamp_ms,x\n";
+  double at = 5000;
+  int last = 0;
+  for (int k = 0; k < 20000; ++k) {
+    at += 1;
+    if (k == 469) at += 4380;
+    if (k == 671) at += 57;
+    if (k > 671 && k < 684) at += 2.5;
+    last = std::max(last, static_cast<int>(at + std::uniform_real_distribution<>(0, 1.2)(generator)));
+    text += fmt::format("{},{}.5\n", last, k * 37 % 101);
+  }
+  const Recording log = test::read_text(text);
+  CHECK(log.info.time.rate_hz == Approx(1000).epsilon(1e-3));
+  CHECK(log.info.warnings.find("duplicate_timestamp") == nullptr);
 }
 
 TEST_CASE("samples that beat slowly with whole seconds keep their rate") {

@@ -259,8 +259,14 @@ TEST_CASE("a bad finding keeps a value out of the lot, and is counted") {
   CHECK(n.counts.counted + 5 == before.counts.counted);
   REQUIRE(n.figures);
   CHECK(n.figures->mean == Approx(before.figures->mean).epsilon(0.05));
-  // A mark is in the mean as well.
-  CHECK(find(lot, "gyro_x", DeviceQuantity::turn_on_bias).counts.spoilt == 5);
+  // A mark is in the mean as well, and so are a wrong unit and a motion.
+  for (const char* code : {"missing_mark", "moves_throughout"}) {
+    for (std::size_t i = 0; i < 5; ++i) records[i].channels[0].findings = {finding(code, "not the sensor's own")};
+    const FleetLot left = fleet_lot(records);
+    CHECK(find(left, "gyro_x", DeviceQuantity::turn_on_bias).counts.spoilt == 5);
+    // Who is left out is not called sound.
+    CHECK_THAT(left.verdict, !Contains("is an outlier."));
+  }
 }
 
 TEST_CASE("what is not detected, doubtful or without a fit is counted as that") {

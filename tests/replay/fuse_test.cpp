@@ -9,6 +9,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/core/text/decimal.hpp"
+#include "libchar/replay/detail/learnt_fusion.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/replay.hpp"
 #include "tests/replay/kept_columns.hpp"
@@ -100,6 +101,10 @@ FuseOptions by(const std::string& label) {
 }
 
 }  // namespace
+
+TEST_CASE("what an algorithm remarks while it fuses has the names of the sensors") {
+  CHECK(array_of(FuseBench(kNoisyScene).learnt).names == std::vector<std::string>{"a", "b", "c", "d"});
+}
 
 TEST_CASE("fuse: the log that it was learnt from gives the replay's estimates, bit for bit") {
   const std::string all =

@@ -143,6 +143,27 @@ TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median
   CHECK(changes[0].to_end);
 }
 
+TEST_CASE("reading meter: a sensor that is missing moves the median of the others, not the others") {
+  for (const Eigen::Index n : {4, 5, 6})
+    for (const Eigen::Index gone : {0, 1, 2, 3}) {
+      test::Gaussian gauss(9);
+      Eigen::MatrixXd y(n, 20000);
+      for (Eigen::Index k = 0; k < y.cols(); ++k)
+        for (Eigen::Index i = 0; i < n; ++i)
+          y(i, k) = honest_truth(static_cast<int>(k)) + 0.2 * static_cast<double>(i * i - 4) + 0.05 * gauss();
+      detail::ReadingMeter before(n, 20000), meter(n, 20000), after(n, 20000);
+      before.push(y);
+      const auto learnt = before.learnt();
+      y.row(gone).rightCols(8000).setConstant(std::nan(""));
+      meter.push(y);
+      CHECK(meter.changes(meter.steady(), true).empty());
+      y.row(gone).setConstant(std::nan(""));
+      after.expect(learnt);
+      after.push(y);
+      CHECK(after.changes(learnt).empty());
+    }
+}
+
 TEST_CASE("reading meter: a gain that is another one from some time on is one that drifts, and sound gains are none") {
   for (const double at : {0.25, 0.65})
     for (const double step : {-0.1, 0.}) {

@@ -139,3 +139,20 @@ TEST_CASE("what is meant as a scene: by its suffix, or its head") {
   CHECK_FALSE(looks_like_scene("nowhere.csv"));
   CHECK_FALSE(looks_like_scene("-"));
 }
+
+TEST_CASE("a scene's recording may be a folder of CSV files beside it, and its types of messages a folder") {
+  const test::SceneBench bench;
+  const std::filesystem::path folder = bench.path("phone");
+  std::filesystem::create_directories(folder / "msg");
+  bench.put("phone/Gyroscope.csv", "time,x\n0,1\n0.01,2\n0.02,1\n");
+  const std::string head = "format: scene\nversion: 1\n";
+  const Scene scene = bench.read(head + "recording: {file: phone, topic: Gyroscope, msg: phone/msg}\nsensors: [x]\n");
+  CHECK(scene.recording == folder.string());
+  CHECK(scene.reading.unsaid.msg == (folder / "msg").string());
+  CHECK_THAT(scene_yaml(scene), Contains("msg: \"phone/msg\""));
+  CHECK_THAT(bench.refusal(head + "recording: phone/msg\nsensors: [x]\n"), Contains("E0733"));
+  CHECK_THAT(bench.refusal(head + "recording: {file: phone, msg: ../elsewhere}\nsensors: [x]\n"), Contains("E0731"));
+  CHECK_THAT(bench.refusal(head + "recording: log.csv\nsensors: [{name: a, model: phone}]\n"), Contains("E0733"));
+  std::filesystem::create_symlink("/etc/hostname", folder / "Link.csv");
+  CHECK_THAT(bench.refusal(head + "recording: phone\nsensors: [x]\n"), Contains("E0731"));
+}

@@ -148,8 +148,9 @@ void doubt_together(std::span<ChannelResult> channels) {
                 which + " throughout, or the unit is another: whatever is fixed to the same body moves too, and its "
                         "noise at rest cannot be measured from this recording.",
                 "gyroscopes of the recording turn throughout"));
-    one.findings.back().help.push_back(
-        {"Where it is fixed to another body: take it alone.", {{"channels", one.channel.name}}});
+    // Said, not offered as the next command: of one body it would only hide the motion.
+    one.findings.back().help.push_back({fmt::format("Where it is fixed to another body, `channels` {} takes it alone.",
+                                                    shell_word(one.channel.name))});
   }
 }
 

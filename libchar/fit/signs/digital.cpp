@@ -6,7 +6,8 @@
 // Rounding to steps q of noise of that size adds white noise (B. Widrow and I. Kollar, "Quantization Noise", 2008,
 // ch. 5): of the variance
 //   q^2/12 + q^2 exp(-2 pi^2 sigma^2/q^2) (4 sigma^2/q^2 + 1/pi^2) cos(2 pi mean/q) + ...,
-// and errors of neighbours share (6/pi^2) exp(-4 pi^2 sigma^2/q^2) of it, .017 at sigma = .3 step.
+// and errors of neighbours share (6/pi^2) exp(-4 pi^2 sigma^2/q^2) of it, .017 at sigma = .3 step. A value that stands
+// between two steps flips between them with half of that noise: what looks like less than half a step may be .25.
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFewestAtRail = 8, kFewestRepeats = 64;
+constexpr double kSheppard = 0.5;    ///< steps: down to there rounding is white noise of a twelfth of its square
 constexpr double kMostAtRail = 0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
 DigitalSums::AtRail rail_of(std::span<const double> record, const ValueCensus& census, bool high, double present) {
@@ -59,7 +61,9 @@ std::optional<DigitalFaults::Rounding> rounding_noise(const ValueCensus& census,
                                                       const std::optional<Staircase>& staircase, double step) {
   if (staircase ? staircase->bounded : static_cast<double>(census.repeats) > chance_of_repeat(1) * present)
     return std::nullopt;
-  const double noise = staircase ? staircase->noise / step : 1, pi = std::numbers::pi;
+  constexpr double kLeast = 0.25;
+  const double noise = !staircase ? 1 : staircase->noise < kSheppard * step ? kLeast : staircase->noise / step;
+  const double pi = std::numbers::pi;
   const double ripple = std::exp(-2 * pi * pi * noise * noise) * (4 * noise * noise + 1 / (pi * pi));
   return DigitalFaults::Rounding{step, step * step / 12, step * step * ripple / std::numbers::sqrt2};
 }
@@ -81,8 +85,7 @@ void describe_faults(DigitalFaults& faults, std::string_view unit) {
       fmt::format("The noise between samples, {}{}, is below the converter's step of {}: {}",
                   stairs.bounded ? "at most " : "", with_unit(stairs.noise, unit), with_unit(stairs.step, unit),
                   stairs.bounded ? "what is measured is the rounding." : "the rounding is part of what is measured.")));
-  // Down to half a step rounding is white noise of a twelfth of its square, which N is without (rounding_noise).
-  constexpr double kSheppard = 0.5;
+  // N is without its rounding (rounding_noise).
   if (stairs.noise >= kSheppard * stairs.step) faults.findings.back().severity = Severity::note;
 }
 

@@ -75,7 +75,7 @@ std::string event_sentence(const Event& event, std::string_view unit) {
                : fmt::format("A warm-up that is not over, with a time constant of at least {} ({} at {})",
                              duration_text(event.tau_ci95.low), size, duration_text(event.tau_s));
   if (event.kind == EventKind::ramp)
-    text = fmt::format("A straight drift of {} over the record ({}{} /s)", size,
+    text = fmt::format("A straight drift of {} over the record ({}{}/s)", size,
                        number_text(event.slope, digits_for(relative)), unit.empty() ? "" : " " + std::string(unit));
   if (event.kind == EventKind::cycle)
     text = event.tau_ci95.low > 0

@@ -325,7 +325,7 @@ void describe(Motion& motion, double duration_s) {
     moved.where.time_s = motion.moving_s;
     if (motion.louder > kHarmless) {
       moved.severity = Severity::bad;
-      moved.effects = {{Affected::noise, Direction::too_large, motion.louder}};
+      moved.effects = {{Affected::mean}, {Affected::noise, Direction::too_large, motion.louder}};
     }
     moved.help.push_back({"Use the longest still stretch.", {{"still", "auto"}}});
     motion.findings.push_back(std::move(moved));

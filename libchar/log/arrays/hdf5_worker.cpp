@@ -131,7 +131,7 @@ const char* why_no_number(hid_t type) {
     case H5T_BITFIELD:
       return "holds opaque bytes";
     case H5T_COMPOUND:
-      return "is a record within a record";
+      return "holds records or complex numbers";
     case H5T_TIME:
       return "holds calendar times";
     default:
@@ -180,46 +180,62 @@ bool read_member(hid_t type, ElementField& field, std::string& why_not) {
 }
 
 // Of the shape that the member has in the file: the library converts between equal shapes only.
-hid_t native_member(hid_t record, const ElementField& field) {
+hid_t native_member(hid_t member, const ElementField& field) {
   const hid_t number = native_of(field.number.type);
-  const int index = field.array ? H5Tget_member_index(record, field.name.c_str()) : -1;
-  if (index < 0) return H5Tcopy(number);
-  const Handle member = type_handle(H5Tget_member_type(record, static_cast<unsigned>(index)));
+  if (!field.array) return H5Tcopy(number);
   hsize_t extents[H5S_MAX_RANK];
   const int rank = H5Tget_array_dims2(member, extents);
   return H5Tarray_create2(number, static_cast<unsigned>(std::max(rank, 1)), extents);
 }
 
-// The fields of a record that are numbers, packed; the library reads just these.
-hid_t record_type(hid_t type, LogArray& array) {
-  if (is_complex(type)) {
-    array.why_not = "holds complex numbers";
-    return -1;
-  }
-  for (int i = 0; i < H5Tget_nmembers(type); ++i) {
+// The fields of a record that are numbers, packed; the library reads just these. Those of a record within it have its
+// name in front.
+hid_t packed_record(hid_t type, LogArray& array, const std::string& front, std::size_t depth) {
+  constexpr std::size_t kDeepest = 8;
+  struct Member {
+    std::string name;
+    std::uint64_t byte;
+    Handle type;
+  };
+  std::vector<Member> members;
+  const std::uint64_t first = array.element_bytes;
+  for (int i = 0; i < H5Tget_nmembers(type) && array.element_bytes <= kMaxMemberBytes; ++i) {
     const auto k = static_cast<unsigned>(i);
     const Handle member = type_handle(H5Tget_member_type(type, k));
+    const std::string name = member_name(type, k);
+    const std::uint64_t byte = array.element_bytes;
+    if (H5Tget_class(member) == H5T_COMPOUND && !is_complex(member) && depth < kDeepest) {
+      Handle inner = type_handle(packed_record(member, array, front + name + ".", depth + 1));
+      if (inner) members.push_back({name, byte - first, std::move(inner)});
+      continue;
+    }
     ElementField field;
-    field.name = member_name(type, k);
+    field.name = front + name;
     std::string why;
     if (!read_member(member, field, why)) {
       array.left_out.push_back(field.name + " " + why);
       continue;
     }
-    field.byte = array.element_bytes;
+    field.byte = byte;
     array.element_bytes += field.count * size_of(field.number.type);
-    if (array.element_bytes > kMaxMemberBytes) break;
+    members.push_back({name, byte - first, type_handle(native_member(member, field))});
     array.fields.push_back(std::move(field));
   }
-  if (array.fields.empty() || array.element_bytes > kMaxMemberBytes) {
-    array.why_not = array.fields.empty() ? "is a record without a number" : "has records of more than a megabyte";
+  if (members.empty() || array.element_bytes > kMaxMemberBytes) return -1;
+  const hid_t memory = H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(array.element_bytes - first));
+  for (const Member& member : members)
+    H5Tinsert(memory, member.name.c_str(), static_cast<std::size_t>(member.byte), member.type);
+  return memory;
+}
+
+hid_t record_type(hid_t type, LogArray& array) {
+  if (is_complex(type)) {
+    array.why_not = "holds complex numbers";
     return -1;
   }
-  const hid_t memory = H5Tcreate(H5T_COMPOUND, static_cast<std::size_t>(array.element_bytes));
-  for (const ElementField& field : array.fields) {
-    const Handle side = type_handle(native_member(type, field));
-    H5Tinsert(memory, field.name.c_str(), static_cast<std::size_t>(field.byte), side);
-  }
+  const hid_t memory = packed_record(type, array, "", 0);
+  if (memory < 0)
+    array.why_not = array.fields.empty() ? "is a record without a number" : "has records of more than a megabyte";
   return memory;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/binary/npy_header.hpp"
 #include "libchar/log/binary/rows.hpp"
@@ -19,6 +21,12 @@ std::uint64_t product(std::uint64_t a, std::uint64_t b, const std::string& file)
   return result;
 }
 
+/// The array with its longest dimension in front, as one would write it.
+std::string turned(const NpyHeader& header) {
+  const auto longest = std::max_element(header.shape.begin(), header.shape.end()) - header.shape.begin();
+  return header.shape.size() == 2 ? "array.T" : fmt::format("numpy.moveaxis(array, {}, 0)", longest);
+}
+
 std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   const std::string where = file + " (field shape)";
   const std::size_t dimensions = header.shape.size();
@@ -33,7 +41,7 @@ std::uint64_t columns_of(const NpyHeader& header, const std::string& file) {
   if (columns > kMaxColumns)
     throw input_error("E0408", where)
         .says("has {} columns, more than the limit of {}", columns, kMaxColumns)
-        .hint("are rows and columns exchanged? save array.T");
+        .hint("are rows and columns exchanged? save {}", turned(header));
   return columns;
 }
 
@@ -115,9 +123,9 @@ std::unique_ptr<RowSource> open_npy(const std::string& path, const ReadOptions& 
   else
     add_plain_columns(header, columns, layout);
   if (!header.structured && columns > 64 && layout.rows <= 64)
-    layout.warnings.add(
-        "looks_transposed",
-        fmt::format("{} rows × {} columns: are rows and channels exchanged? save array.T", layout.rows, columns));
+    layout.warnings.add("looks_transposed",
+                        fmt::format("{} rows × {} columns: are rows and channels exchanged? save {}", layout.rows,
+                                    columns, turned(header)));
   LogInfo info;
   info.format = "npy";
   info.dialect = {fmt::format(".npy version {}", header.major), describe(header, columns)};

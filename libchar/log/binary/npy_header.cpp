@@ -204,20 +204,27 @@ class Literal {
       return;
     }
     header.structured = true;
+    read_record(header, "", 0);
+    if (header.fields.empty()) throw refusal("E0409", 0).says("the record has no field that holds numbers");
+  }
+
+  // Fields of a record within a record have its name in front.
+  void read_record(NpyHeader& header, const std::string& front, std::size_t depth) {
+    constexpr std::size_t kDeepest = 8;
+    if (depth > kDeepest) throw refusal("E0409", position_).says("records lie too deep in each other").got(word());
     ++position_;
     while (peek() != ']') {
-      read_field(header);
+      read_field(header, front, depth);
       if (peek() == ',')
         ++position_;
       else if (peek() != ']')
         throw refusal("E0407", position_).says("expected , or ] in descr").got(word());
     }
     ++position_;
-    if (header.fields.empty()) throw refusal("E0409", 0).says("the record has no field that holds numbers");
   }
 
   // ('gyr', '<f8', (3,)); the last part is optional.
-  void read_field(NpyHeader& header) {
+  void read_field(NpyHeader& header, const std::string& front, std::size_t depth) {
     expect('(');
     if (peek() == '(')
       throw refusal("E0409", position_).says("a field has a title as well as a name, which is not read").got(word());
@@ -225,11 +232,15 @@ class Literal {
     field.name = string();
     expect(',');
     const std::size_t at = (skip_blanks(), position_);
-    if (peek() == '[')
-      throw refusal("E0409", at, field.name)
-          .says("is a record within a record, which is not read")
-          .got(word())
-          .hint("save it flat, one field per channel");
+    if (peek() == '[') {
+      read_record(header, front + field.name + ".", depth + 1);
+      if (peek() == ',')
+        throw refusal("E0409", at, field.name)
+            .says("is an array of records, which is not read")
+            .got(word())
+            .hint("save it flat, one field per channel");
+      return expect(')');
+    }
     const std::string type = string();
     if (peek() == ',') ++position_;
     if (peek() != ')') {
@@ -242,6 +253,7 @@ class Literal {
     }
     expect(')');
     if (field.name.empty() && type.starts_with("|V")) return skip_padding(header, type, at);
+    if (!field.name.empty()) field.name.insert(0, front);
     for (const NpyField& other : header.fields)
       if (other.name == field.name) throw refusal("E0307", at).says("two fields have one name").got(field.name);
     if (field.name.empty()) throw refusal("E0409", at).says("a field has no name").got(type);

@@ -223,6 +223,8 @@ class CsvSource final : public RowSource {
       if (chunks_.headed()) options_.header = "yes";
     }
     dialect_ = understand(head, chunks_.whole(), options_, info_);
+    if (chunks_.whole() && dialect_.data_offset >= head.size())
+      throw input_error("E0322", info_.file).says("no data rows");
     if (dialect_.group_column >= 0)
       plan_groups(options);
     else
@@ -298,7 +300,7 @@ class CsvSource final : public RowSource {
     const std::string_view body = head.substr(std::min(dialect_.data_offset, head.size()));
     const auto lines = static_cast<std::uint64_t>(
         std::count(body.begin(), body.end(), dialect_.line_end == LineEnd::cr ? '\r' : '\n'));
-    if (chunks_.packed()) return 0;
+    if (chunks_.packed()) return chunks_.whole() ? lines : 0;
     if (body.empty() || chunks_.size() <= dialect_.data_offset) return 0;
     return static_cast<std::uint64_t>(static_cast<double>(chunks_.size() - dialect_.data_offset) /
                                       static_cast<double>(body.size()) * static_cast<double>(lines));
@@ -311,7 +313,9 @@ class CsvSource final : public RowSource {
     throw input_error("E0335", fmt::format("{}:{}", info_.file, odd_.bad.spots[0].line))
         .says("{} of {} rows cannot be read, more than one in ten", odd_.bad.count, rows_ + odd_.bad.count)
         .hint(
-            "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how the cells are written");
+            "`channels` '!NAME' leaves out a column of words, `delimiter` and `decimal` say how the cells are written; "
+            "of "
+            "lines of several kinds grep WORD FILE | sensorchar inspect - reads one");
   }
 
   // Every byte of the file and every cell of its rows went somewhere; anything else is a defect of this reader.

@@ -11,7 +11,8 @@ namespace libchar::csv {
 namespace {
 
 constexpr std::size_t kDeepestEcho = 32;
-constexpr std::string_view kWord = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", kEnd = "\n---\n";
+constexpr std::string_view kWord = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", kEnd = "---";
+constexpr std::string_view kWarning = "WARNING: ";  // of the command, in front of its first message
 
 /// The lines of one message.
 class MessageLines {
@@ -98,8 +99,8 @@ class EchoRows final : public ObjectRows {
     MessageLines lines;
     ++objects_;
     for (std::string line; from_.line(line, kMaxLine);) {
-      if (line == "---" && object.text.empty()) continue;
-      if (line == "---") {
+      if (object.text.empty() && (line == kEnd || (objects_ == 1 && line.starts_with(kWarning)))) continue;
+      if (line == kEnd) {
         object.cells = std::move(lines.cells);
         if (object.broken) object.cells.clear();
         return object;
@@ -119,14 +120,21 @@ class EchoRows final : public ObjectRows {
 }  // namespace
 
 bool is_echo(std::string_view front) {
-  const std::size_t colon = front.find_first_not_of(kWord);
-  if (colon == 0 || colon == std::string_view::npos || front[colon] != ':') return false;
-  const std::string_view key = front.substr(0, colon + 1);
-  const std::size_t first = front.find('\n'), end = front.find(kEnd);
-  if (first == std::string_view::npos) return false;
-  if (trimmed(front.substr(0, first)) == "header:" && front.substr(first + 1).starts_with("  ")) return true;
-  return front[colon + 1] == ' ' && end != std::string_view::npos &&
-         (front.substr(end + kEnd.size()).starts_with(key) || key.starts_with(front.substr(end + kEnd.size())));
+  const auto take_line = [&] {
+    const std::string_view line = front.substr(0, front.find('\n'));
+    front.remove_prefix(std::min(line.size() + 1, front.size()));
+    return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
+  };
+  std::string_view first = take_line();
+  while (first.starts_with(kWarning)) first = take_line();
+  const std::size_t colon = first.find_first_not_of(kWord);
+  if (colon == 0 || colon == std::string_view::npos || first[colon] != ':') return false;
+  const std::string_view key = first.substr(0, colon + 1), value = trimmed(first.substr(colon + 1));
+  if (!value.empty() && first[colon + 1] != ' ') return false;
+  if (key == "header:" && value.empty() && front.starts_with("  ")) return true;
+  while (!front.empty() && take_line() != kEnd) {
+  }
+  return front.starts_with(key);
 }
 
 std::unique_ptr<Unpacker> open_echo_rows(std::function<std::size_t(char*, std::size_t)> stored,

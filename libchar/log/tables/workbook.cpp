@@ -203,10 +203,12 @@ class Workbook final : public TableReader {
   }
   std::vector<std::string> dialect() const override { return {"workbook of " + plural(sheets_.size(), "sheet")}; }
   std::optional<std::pair<std::size_t, std::string>> usual_table() const override {
-    for (std::size_t t = 0; sheets_.size() > 1 && t < sheets_.size(); ++t)
-      if (topics()[t].why_not.empty())
-        return std::pair(t, fmt::format("sheet: {}, the first of {} (`topic` takes another one)",
-                                        printable(topics()[t].name), sheets_.size()));
+    // A sheet of notes has no rows of numbers.
+    for (const std::uint64_t rows : {std::uint64_t{2}, std::uint64_t{0}})
+      for (std::size_t t = 0; sheets_.size() > 1 && t < sheets_.size(); ++t)
+        if (topics()[t].why_not.empty() && topics()[t].rows >= rows)
+          return std::pair(t, fmt::format("sheet: {}, the first table of {} (`topic` takes another one)",
+                                          printable(topics()[t].name), plural(sheets_.size(), "sheet")));
     return {};
   }
   std::unique_ptr<RowSource> open_table(std::size_t topic, const ReadOptions& options) override {

@@ -221,20 +221,27 @@ StampLine line_through(std::span<const double> places) {
   return line;
 }
 
-/// How far pieces of so many rows spread, each about its own line.
-double spread_of_pieces(std::span<const double> line, std::size_t rows) {
+/// How far pieces of so many rows spread, each about its own line, from the quietest on.
+std::vector<double> spreads_of_pieces(std::span<const double> line, std::size_t rows) {
   std::vector<double> spreads;
   for (std::size_t i = 0; i + rows <= line.size(); i += rows / 2)
     spreads.push_back(line_through(line.subspan(i, rows)).spread);
-  return middle_of(std::move(spreads));
+  std::sort(spreads.begin(), spreads.end());
+  return spreads;
 }
 
-/// A random walk spreads twice as far in four times the rows, what is late once no further.
+/// A random walk spreads twice as far in four times the rows, what is late once no further: in the middle of the pieces
+/// or, where the log hung in some of them, in their quieter half.
 bool keeps_to_a_line(const FirstSteps& steps) {
   constexpr std::size_t kLeast = 128;
+  constexpr double kTwice = 1.55;
   const std::size_t n = steps.line.size();
   if (n < kLeast) return false;
-  return spread_of_pieces(steps.line, n / 4) < 1.55 * spread_of_pieces(steps.line, n / 16);
+  const std::vector<double> wide = spreads_of_pieces(steps.line, n / 4), narrow = spreads_of_pieces(steps.line, n / 16);
+  const auto holds = [&](std::size_t part) {
+    return wide[(wide.size() - 1) / part] < kTwice * narrow[(narrow.size() - 1) / part];
+  };
+  return holds(2) || holds(4);
 }
 
 /// Stamps that do not rise are those of samples, not of doubles, where longer steps make up for them.

@@ -47,7 +47,9 @@ std::size_t named_column(const TableFront& table, const std::string& wanted, con
   const auto& columns = table.columns;
   const auto same = [&](const ColumnLabel& c) { return c.name == wanted; };
   const auto same_stem = [&](const ColumnLabel& c) { return stem_of(c) == wanted; };
-  const auto found = std::find_if(columns.begin(), columns.end(), same);
+  auto found = std::find_if(columns.begin(), columns.end(), same);
+  if (found == columns.end())
+    found = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.numbered == wanted; });
   if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
   if (std::count_if(columns.begin(), columns.end(), same_stem) == 1)
     return static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same_stem) - columns.begin());
@@ -146,8 +148,10 @@ bool wanders(const TableFront& table, std::size_t column) {
     up += values[i] > values[i - 1];
     down += values[i] < values[i - 1];
   }
-  if (values.size() < 8) return false;
-  if (5 * std::min(up, down) > values.size()) return true;
+  constexpr std::size_t kFewest = 8;
+  if (values.size() < kFewest) return false;
+  const std::size_t both = std::min(up, down);
+  if (5 * both > values.size() || (up + down >= kFewest && 3 * both > up + down)) return true;
   const std::string name = stem_of(table.columns[column]);
   const bool clock = steady_clock(values) || (name.size() > 1 && usual_step(values) == 1);  // a count of minutes
   return temperature_or_time(name) && (!clock || like_a_temperature(table.columns[column], first));
@@ -192,12 +196,13 @@ std::optional<std::size_t> column_like_a_clock(const TableFront& table, const Re
     const ColumnLabel& column = table.columns[c];
     std::string name = ascii_lower(stem_of(column));
     std::replace(name.begin(), name.end(), '_', ' ');
-    if (column.text || (counts_something(name) && !speaks_of_time(column)) || unit_of_another_quantity(column) ||
-        name.find("temp") != std::string::npos || name.find("year") != std::string::npos || name == "t" ||
-        (has_unit(column) && !unit_of_time(column)))
+    if (column.text || unit_of_another_quantity(column) || name.find("temp") != std::string::npos ||
+        name.find("year") != std::string::npos || name == "t" || (has_unit(column) && !unit_of_time(column)))
       continue;
     named = speaks_of_time(column) && name.find("tick") == std::string::npos;  // whose unit is nobody's
     const FirstValues first = table.first_values(c);
+    // "index" of pandas may be a count of the rows, or their stamps.
+    if (counts_something(name) && !speaks_of_time(column) && !counts_since_1970(first)) continue;
     if ((named || !found) && (counts_since_1970(first) || steady_clock(first.values)) &&
         !like_a_temperature(column, first))
       found = c;
@@ -251,7 +256,8 @@ bool of_the_whole(const ColumnLabel& column) {
 std::string names_of(const TableFront& table, const std::vector<TimeCandidate>& which, std::size_t but) {
   std::vector<std::string> names;
   for (const TimeCandidate& other : which)
-    if (other.column != but) names.push_back(printable(table.columns[other.column].name));
+    if (const ColumnLabel& column = table.columns[other.column]; other.column != but)
+      names.push_back(printable(column.name == table.columns[but].name ? column.numbered : column.name));
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

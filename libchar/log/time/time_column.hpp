@@ -33,10 +33,11 @@ struct TimeName {
 std::optional<TimeName> time_name(std::string_view stem);
 
 struct ColumnLabel {
-  std::string name;       ///< as it stands in the file, "" when the file names no columns
-  std::string unit;       ///< said apart from the name (by a sidecar); "" when it can only be in the name
-  bool calendar = false;  ///< its values are dates or clock times, `first_values` seconds
-  bool text = false;      ///< no numbers, or part of the stamps of another column: never the time
+  std::string name;           ///< as it stands in the file, "" when the file names no columns
+  std::string unit;           ///< said apart from the name (by a sidecar); "" when it can only be in the name
+  std::string numbered = {};  ///< with the number that is put behind the second of a name
+  bool calendar = false;      ///< its values are dates or clock times, `first_values` seconds
+  bool text = false;          ///< no numbers, or part of the stamps of another column: never the time
 };
 
 /// The first finite values of a column.

@@ -197,6 +197,13 @@ std::int64_t unit_by_another_clock(const TableFront& table, std::size_t column, 
   return 0;
 }
 
+/// A loop that waits so long takes a little more or less: delay(500) of an Arduino steps by 498 or 503.
+bool near_a_pause(double seconds) {
+  constexpr std::array kPauses = {0.2, 0.25, 0.5, 1.0, 2.0, 5.0};
+  constexpr double kNear = 0.02;
+  return std::any_of(kPauses.begin(), kPauses.end(), [&](double s) { return std::fabs(seconds - s) < kNear * s; });
+}
+
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::int64_t unit, LogInfo& info) {
   constexpr std::size_t kFewest = 4;  // stamps: of less the first cell that is no number is what is wrong
@@ -208,7 +215,11 @@ bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::i
         .hint("`time_unit` s or `time_unit` ms decides");
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
   if (uneven_ones(first) || (!first.integers && unit == kStampUnits[1])) units = {kStampUnits[0], kStampUnits[1]};
-  if (std::find(units.begin(), units.end(), unit) == units.end()) units.insert(units.begin(), unit);
+  const auto add = [&](std::vector<std::int64_t>::const_iterator where, std::int64_t one) {
+    if (std::find(units.begin(), units.end(), one) == units.end()) units.insert(where, one);
+  };
+  add(units.begin(), unit);
+  if (first.integers && unit == kStampUnits[2] && near_a_pause(step * 1e-3)) add(units.end(), kStampUnits[1]);
   constexpr double kSlowest = 200;  // of sensors in ms
   if (units.size() == 1 && unit == kStampUnits[0]) {
     if (!(step > 1 && step < kSlowest)) return false;

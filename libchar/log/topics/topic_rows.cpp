@@ -33,8 +33,9 @@ std::vector<std::string> readable_names(const std::vector<LogTopic>& topics) {
 }
 
 std::string way_to_read(const LogTopic& topic) {
-  return topic.why_not.find("no definition") == std::string::npos ? "inspect lists the topics"
-                                                                  : "`msg` DIR names a folder of its .msg files";
+  return topic.why_not.find("definition of") == std::string::npos
+             ? "inspect lists the topics"
+             : "`msg` DIR names a folder of its .msg files and of all types in them";
 }
 
 void refuse_unreadable(const LogTopic& topic, const std::string& file) {

@@ -150,6 +150,7 @@ fusion::Array array_of(const LearntFusion& learnt) {
   Eigen::MatrixXd h(out.channels, static_cast<Eigen::Index>(learnt.inputs.size()));
   for (Eigen::Index i = 0; i < out.channels; ++i) {
     const LearntSensor& sensor = *given[static_cast<std::size_t>(i)];
+    out.names.push_back(sensor.name);
     if (levels) out.noise_levels[i] = *sensor.noise_variance;
     if (models) out.noise_models.push_back(noise_model_of(sensor));
     for (Eigen::Index j = 0; j < h.cols() && !tilt; ++j) h(i, j) = sensor.h[static_cast<std::size_t>(j)];

@@ -197,19 +197,22 @@ void read_truth(const MapReader& at, ArraySimulation& s, const SceneFolder& fold
 
 }  // namespace
 
-std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene) {
-  std::string path = resolve_scene_file(at.text(key), folder, at.where(at.require(key)), at.path_of(key));
+std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene,
+                          SceneFolder::Kind folders) {
+  std::string path = resolve_scene_file(at.text(key), folder, at.where(at.require(key)), at.path_of(key), folders);
   if (std::find(scene.files.begin(), scene.files.end(), path) == scene.files.end()) scene.files.push_back(path);
   return path;
 }
 
 std::string scene_recording_of(const MapReader& at, std::string_view key, const SceneFolder& folder,
                                ReadOptions& reading, Scene& scene) {
-  if (is_scalar(at.require(key))) return scene_file_of(at, key, folder, scene);
+  if (is_scalar(at.require(key))) return scene_file_of(at, key, folder, scene, SceneFolder::Kind::logs);
   std::vector<std::string> keys = keys_of(scene_reading_fields());
   keys.insert(keys.begin(), {"file", "resample_hz"});
   const MapReader map = at.map(key, keys);
   read_fields(scene_reading_fields(), map, reading);
+  if (std::string& msg = reading.unsaid.msg; !msg.empty())
+    msg = resolve_scene_file(msg, folder, map.where(map.require("msg")), map.path_of("msg"), SceneFolder::Kind::any);
   const auto resample_hz = map.maybe_number("resample_hz", kPositive);
   if (resample_hz && (&reading != &scene.reading || reading.rate_hz))
     map.refuse("resample_hz", reading.rate_hz ? "rate_hz is for logs without stamps, resample_hz for uneven ones"
@@ -220,7 +223,7 @@ std::string scene_recording_of(const MapReader& at, std::string_view key, const 
     map.refuse("delimiter", "expected auto, tab, space or one character");
   if (reading.from_s && reading.to_s && !(*reading.from_s < *reading.to_s))
     throw scene_refusal("E0740", map, "to_s").says("the recording is read from a time to a later one");
-  return scene_file_of(map, "file", folder, scene);
+  return scene_file_of(map, "file", folder, scene, SceneFolder::Kind::logs);
 }
 
 ArraySimulation scene_simulation_of(const MapReader& top, const SceneFolder& folder, Scene& scene) {

@@ -60,7 +60,8 @@ void check_oversampling(const MapReader& at, std::uint64_t oversampling);
 // ---- files ----
 
 /// The path behind `key`, checked, and noted in `scene.files`.
-std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene);
+std::string scene_file_of(const MapReader& at, std::string_view key, const SceneFolder& folder, Scene& scene,
+                          SceneFolder::Kind folders = SceneFolder::Kind::none);
 
 /// A path, or a map with a path and how to read the file.
 std::string scene_recording_of(const MapReader& at, std::string_view key, const SceneFolder& folder,

@@ -58,8 +58,9 @@ Entries without_comments(Entries entries) {
 }
 
 // A recording with what its reading needs beside the file's own word.
-Entry recording_entry(const std::string& file, const ReadOptions& reading, const std::string& scene,
+Entry recording_entry(const std::string& file, ReadOptions reading, const std::string& scene,
                       std::optional<double> resample_hz = {}) {
+  if (!reading.unsaid.msg.empty()) reading.unsaid.msg = path_for_scene(reading.unsaid.msg, scene);
   Entries more;
   if (resample_hz) more.push_back({"resample_hz", *resample_hz});
   append(more, entries_of(scene_reading_fields(), reading));

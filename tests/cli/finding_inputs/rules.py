@@ -37,6 +37,7 @@ OTHER_SEVERITIES = {
     "interpolated": {"bad"},  # more than a hundredth of the samples
     "stuck": {"bad"},  # more than a hundredth of the samples
     "not_gravity": {"caution"},  # gravity taken out: nothing says a factor
+    "not_earth_field": {"bad"},  # no magnetometer reads so much
     "slow_channel": {"bad"},  # in the grid of the table
     "spikes_left_out": {"caution"},  # more than a thousandth of the samples
     "spikes_kept": {"caution"},  # too many

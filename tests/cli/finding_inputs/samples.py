@@ -25,6 +25,12 @@ def gravity():
     return axes
 
 
+def field():
+    axes = {name: ("T", noise(30000, SD, seed)) for seed, name in enumerate(("mag_x", "mag_y", "mag_z"))}
+    axes["mag_z"] = ("T", [v + 48 for v in axes["mag_z"][1]])
+    return axes
+
+
 def copied():
     axes = {name: ("deg/s", noise(30000, SD, seed)) for seed, name in enumerate(("gyro_x", "gyro_y", "gyro_z"))}
     axes["gyro_z"] = ("deg/s", [-v for v in axes["gyro_x"][1]])
@@ -112,6 +118,7 @@ INPUTS = {
     "spiky": Input(gyro("spiky", spiky), made_by="samples", analysis=("--no-remedies",),
                    not_in={"allan": "it takes the remedies, and says what was done"}),
     "not_gravity": Input(raw("gravity", gravity), made_by="samples", truth=N),
+    "not_earth_field": Input(raw("field", field), made_by="samples"),
     "copied_channel": Input(raw("copied", copied), made_by="samples"),
     "missing_samples": Input(gyro("missing", with_holes), made_by="characterize",
                              not_in=dict.fromkeys(("allan", "psd"), "terms that touch a missing sample are left out")),

@@ -262,11 +262,14 @@ bool sources_below_units(const std::vector<Cells>& lines, std::size_t rows) {
          !line_of_units(sources) && (line_of_units(units) || unit_of_the_time(names, units));
 }
 
-// Shimmer has a line between names and units that says what was done with the values.
-bool states_calibration(const Cells& line) {
-  return std::all_of(line.begin(), line.end(), [](const Field& field) {
-    return field.text == "CAL" || field.text == "RAW" || field.text.empty();
-  });
+// Shimmer has a line between names and units that says what was done with the values; columns that it adds itself have
+// their names once more.
+bool states_calibration(const Cells& line, const Cells& above) {
+  const auto stated = [](const Field& field) { return field.text == "CAL" || field.text == "RAW"; };
+  if (std::none_of(line.begin(), line.end(), stated)) return false;
+  for (std::size_t c = 0; c < line.size(); ++c)
+    if (!stated(line[c]) && !line[c].text.empty() && (c >= above.size() || line[c].text != above[c].text)) return false;
+  return true;
 }
 
 // Campbell's table-oriented ASCII: station, names, units, what was done with the values.
@@ -285,12 +288,15 @@ bool damaged(const Cells& line, NumberStyle style) {
   return fractions && !named;
 }
 
-// "0,1,2,3" above numbers with fractions, or eight columns and more: pandas numbers columns that have no names.
+// "0,1,2,3" above numbers with fractions, or eight columns and more, ",0,1" above an index: pandas numbers columns that
+// have no names.
 bool numbers_columns(const std::vector<Cells>& lines, NumberStyle style) {
   constexpr std::size_t kFewest = 3, kSure = 8;
   if (lines.size() < kFewest || lines[0].size() < kFewest) return false;
-  for (std::size_t c = 0; c < lines[0].size(); ++c)
-    if (lines[0][c].text != std::to_string(c)) return false;
+  const std::size_t index = lines[0][0].text.empty() ? 1 : 0;
+  for (std::size_t c = index; c < lines[0].size(); ++c)
+    if (lines[0][c].text != std::to_string(c - index)) return false;
+  if (index > 0) return lines[1][0].text == "0" && lines[2][0].text == "1";
   if (lines[0].size() >= kSure && lines[1].back().text != std::to_string(lines[0].size())) return true;
   return std::all_of(lines.begin() + 1, lines.end(), [&](const Cells& line) {
     return std::all_of(line.begin() + 1, line.end(),
@@ -377,7 +383,12 @@ TableStart find_table_start(const std::vector<Cells>& lines, const std::vector<C
       out.units = last - 2;
       out.names = last - 3;
     }
-    if (last > 2 && states_calibration(lines[*out.names]) && census[*out.names - 1].words()) --*out.names;
+    if (last > 2 && states_calibration(lines[last - 2], lines[last - 3]) && census[last - 3].words()) {
+      out.units = last - 1;
+      out.names = last - 3;
+    } else if (last > 1 && states_calibration(lines[last - 1], lines[last - 2]) && census[last - 2].words()) {
+      out.names = last - 2;
+    }
     const auto empty = [](const Field& field) { return field.text.empty() && !field.quoted; };
     if (!out.units && last < rows_at && lines[last].size() > 1 &&
         std::all_of(lines[last].begin(), lines[last].end(), empty)) {  // units of columns that have none

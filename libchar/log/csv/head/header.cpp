@@ -1,12 +1,14 @@
 #include "libchar/log/csv/head/header.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -264,6 +266,27 @@ void leave_clock_unnamed(const Study& study, Cells& names) {
     }
 }
 
+/// Names that several sources have ("Gyroscope X" of each Shimmer), but for those of times, get the source before them,
+/// from the line above.
+void name_by_sources(Study& study, const Line& header) {
+  auto& columns = study.dialect.columns;
+  if (study.preamble.empty() || study.preamble.back().number + 1 != header.number) return;
+  const Cells sources = split(study.preamble.back().text, study.dialect.delimiter);
+  std::map<std::string, std::size_t> count;
+  std::set<std::string> named;
+  for (const Column& column : columns) ++count[column.text];
+  if (sources.size() != columns.size() || count.size() == columns.size()) return;
+  std::vector<std::string> texts;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (cell_kind(sources[c], study.style()) != CellKind::word) return;
+    const bool several = count[columns[c].text] > 1 && !called_time(columns[c].text);
+    texts.push_back(several ? header_text(study, sources[c], study.preamble.back(), 0) + " " + columns[c].text
+                            : columns[c].text);
+    if (several && !named.insert(texts.back()).second) return;
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c].text = texts[c];
+}
+
 void read_names(Study& study, const Line& line, std::string_view text) {
   Dialect& dialect = study.dialect;
   dialect.has_header = true;
@@ -293,6 +316,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
     added.line = line.number + lines;
     added.position = newline == std::string_view::npos ? field.offset + indent + 1 : field.offset - newline;
   }
+  name_by_sources(study, line);
   // "Date; Time; BC1" above rows between blanks
   if (dialect.delimiter == ' ' && std::all_of(dialect.columns.begin(), dialect.columns.end() - 1, [](const Column& c) {
         return c.text.size() > 1 && c.text.ends_with(';');
@@ -334,26 +358,55 @@ void do_without_names(Study& study) {
                             place_name(first.number, 1));
 }
 
-/// Sensor Logger writes a file for each sensor, columns z, y, x without units; the file's name says which.
+/// What a phone's app writes without a unit: columns of a file, of any file where it is "".
+struct PhoneUnit {
+  std::string_view file, columns, unit;
+};
+
+// Sensor Logger writes a file for each sensor, whose name says which (its page of units, awesome-sensor-logger). Its
+// uncalibrated accelerometer is in g or m/s^2.
+constexpr PhoneUnit kSensorLogger[] = {{"accelerometer", "x y z", "m/s^2"},
+                                       {"totalacceleration", "x y z", "m/s^2"},
+                                       {"gravity", "x y z", "m/s^2"},
+                                       {"gyroscope", "x y z", "rad/s"},
+                                       {"gyroscopeuncalibrated", "x y z", "rad/s"},
+                                       {"magnetometer", "x y z", "uT"},
+                                       {"magnetometeruncalibrated", "x y z", "uT"},
+                                       {"orientation", "pitch roll yaw", "rad"},
+                                       {"wristmotion", "rotationRateX rotationRateY rotationRateZ", "rad/s"},
+                                       {"barometer", "pressure", "hPa"},
+                                       {"barometer", "relativeAltitude", "m"},
+                                       {"location", "altitude horizontalAccuracy verticalAccuracy", "m"},
+                                       {"location", "speed speedAccuracy", "m/s"},
+                                       {"location", "latitude longitude bearing bearingAccuracy", "deg"}};
+constexpr PhoneUnit kPhysicsToolbox[] = {{"", "gFx gFy gFz TgF gFTotal", "g"},
+                                         {"", "ax ay az aT", "m/s^2"},
+                                         {"", "wx wy wz", "rad/s"},
+                                         {"", "Bx By Bz", "uT"},
+                                         {"", "p", "hPa"}};
+
 void find_units_of_phone(Study& study) {
-  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {{"accelerometer", "m/s^2"},
-                                                                             {"totalacceleration", "m/s^2"},
-                                                                             {"gravity", "m/s^2"},
-                                                                             {"gyroscope", "rad/s"},
-                                                                             {"magnetometer", "uT"}};
-  const auto& columns = study.dialect.columns;
+  auto& columns = study.dialect.columns;
   const auto has_column = [&](std::string_view text) {
     return std::any_of(columns.begin(), columns.end(), [&](const Column& column) { return column.text == text; });
   };
-  if (!has_column("seconds_elapsed") || !has_column("x") || !has_column("y") || !has_column("z")) return;
+  const bool logger = has_column("seconds_elapsed"),
+             toolbox = !logger && (has_column("gFx") || (has_column("az") && has_column("aT")) ||
+                                   (has_column("ax") && has_column("wx") && has_column("Bx")));
+  if (!logger && !toolbox) return;
   const std::string stem = ascii_lower(std::filesystem::path(study.info.file).stem().string());
-  for (const auto& [name, unit] : kUnits) {
-    if (stem != name) continue;
-    for (Column& column : study.dialect.columns)
-      if (column.text == "x" || column.text == "y" || column.text == "z") column.unit_below = unit;
-    study.info.guesses.push_back(
-        fmt::format("units: {}, those of Sensor Logger in a file of this name (`units` says otherwise)", unit));
-  }
+  std::vector<std::string_view> said;
+  for (const PhoneUnit& row : logger ? std::span<const PhoneUnit>(kSensorLogger) : std::span(kPhysicsToolbox))
+    for (Column& column : columns) {
+      if (row.file != (logger ? stem : "") || column.text.empty() || column.text.find(' ') != std::string::npos ||
+          (" " + std::string(row.columns) + " ").find(" " + column.text + " ") == std::string::npos)
+        continue;
+      column.unit_below = row.unit;
+      if (std::find(said.begin(), said.end(), row.unit) == said.end()) said.push_back(row.unit);
+    }
+  if (!said.empty())
+    study.info.guesses.push_back(fmt::format("units: {}, those of {} (`units` says otherwise)", fmt::join(said, ", "),
+                                             logger ? "Sensor Logger in a file of this name" : "Physics Toolbox"));
 }
 
 void find_other_units(Study& study) {

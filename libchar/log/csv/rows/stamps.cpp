@@ -411,6 +411,7 @@ TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::
   for (std::size_t c = 0; c < dialect.columns.size(); ++c) {
     const Column& column = dialect.columns[c];
     ColumnLabel label{column.text, column.unit_below};
+    label.numbered = column.name;
     const bool first = pair && c == pair->first, second = pair && c == pair->second;
     label.calendar = (c < study.kinds.size() && is_calendar(study.kinds[c])) || first;
     label.text = second || (c < study.kinds.size() &&
@@ -434,7 +435,7 @@ void find_own_clocks(const TableFront& table, std::size_t index, Dialect& dialec
   for (std::size_t c = 0; c < dialect.columns.size() && !others.empty(); ++c) {
     Column& column = dialect.columns[c];
     const bool other = std::find(others.begin(), others.end(), c) != others.end();
-    if (other || c == index) clock = other ? column.name : "";
+    if (other || c == index || column.clock) clock = other ? column.name : "";
     if (!other) column.own_clock = clock;
   }
 }
@@ -448,7 +449,7 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
     if (keeps_time(table, c, index)) dialect.columns[c].clock = true;
     const std::string& chosen = table.columns[index].name;
     const bool named =
-        name ? !name->letter && !name->date : column.name == chosen || numbered_alike(column.name, chosen);
+        column.name == chosen || (name ? !name->letter && !name->date : numbered_alike(column.name, chosen));
     if (c == index || column.text || column.calendar || !named) continue;
     const std::vector<double> values = table.first_values(c).values;
     if (values.size() != stamps.size() || values.size() < 3) continue;

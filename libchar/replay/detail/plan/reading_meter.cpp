@@ -81,7 +81,14 @@ ReadingMeter::ReadingMeter(Eigen::Index sensors, std::int64_t instants)
     : n_(static_cast<std::size_t>(sensors)),
       block_(instants >= kManyInstants ? kLongBlock : kShortBlock),
       now_(n_),
-      neighbours_(n_) {}
+      neighbours_(n_),
+      usual_(n_) {}
+
+void ReadingMeter::expect(const Readings& learnt) {
+  for (std::size_t i = 0; i < n_; ++i)
+    if (learnt[i]) usual_[i] = {learnt[i]->offset, learnt[i]->gain};
+  whole_ = std::max(whole_, static_cast<double>(block_));
+}
 
 void ReadingMeter::push(const Eigen::MatrixXd& samples) {
   for (Eigen::Index k = 0; k < samples.cols(); ++k) {
@@ -89,10 +96,20 @@ void ReadingMeter::push(const Eigen::MatrixXd& samples) {
     for (const double y : samples.col(k))
       if (fusion::usable(y)) sorted_.push_back(y);
     const bool enough = sorted_.size() >= std::min(kLeastSensors, n_);
-    const double u = enough ? median_in_place(sorted_) : 0;
+    const bool whole = sorted_.size() == n_;
+    double u = enough ? median_in_place(sorted_) : 0;
+    if (enough && !whole && whole_ >= static_cast<double>(block_)) {
+      sorted_.clear();
+      for (std::size_t i = 0; i < n_; ++i)
+        if (const double y = samples(static_cast<Eigen::Index>(i), k); fusion::usable(y))
+          sorted_.push_back(y - usual_[i].offset - usual_[i].gain * u);
+      u = median_in_place(sorted_);
+    }
+    whole_ += whole ? 1 : 0;
     for (std::size_t i = 0; enough && i < n_; ++i) {
       const double y = samples(static_cast<Eigen::Index>(i), k);
       if (!fusion::usable(y)) continue;
+      if (whole) usual_[i].offset += (y - u - usual_[i].offset - usual_[i].gain * u) / whole_;
       Sums& s = now_[i];
       if (s.n == 0) {
         s.u0 = u;

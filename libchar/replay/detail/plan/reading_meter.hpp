@@ -59,6 +59,9 @@ class ReadingMeter {
     std::int64_t from = 0, to = 0;  ///< instants
     bool to_end = false;
   };
+  /// What the sensors were where this was learnt, for a log in which some are missing from the start.
+  void expect(const Readings& learnt);
+
   /// `quieter`: also where it scatters less, as one does that fails for most of the log; none where most change.
   std::vector<Change> changes(const Readings& learnt, bool quieter = false) const;
 
@@ -151,6 +154,12 @@ class ReadingMeter {
   std::vector<Neighbours> neighbours_;     // of each sensor
   std::vector<std::vector<Sums>> blocks_;  // one of `stride_` is kept
   std::vector<double> sorted_;
+  /// What a sensor is beside the median of all: where one is missing, the median of the rest is none of all.
+  struct Usual {
+    double offset = 0, gain = 0;
+  };
+  std::vector<Usual> usual_;
+  double whole_ = 0;  // instants at which all were present
 };
 
 }  // namespace libchar::detail
