@@ -234,9 +234,10 @@ TEST_CASE("marks of a trace that look the same share one name in the legend") {
     for (const FigureStretch& one : make_figure({&source, 1}, options).stretches) out.insert(one.name);
     return out;
   };
-  source.traces[0].marks = {{"step 3.1 V", 1, 1}};
+  source.traces[0].marks = {{"step", 1, 1, "step 3.1 V"}};
   CHECK(names() == std::set<std::string>{"step 3.1 V"});
-  source.traces[0].marks = {{"step 3.1 V", 1, 1}, {"warm-up -1 V, τ 27 s", 0, 1}, {"step -2 V", 2, 2}};
+  source.traces[0].marks = {
+      {"step", 1, 1, "step 3.1 V"}, {"warm-up", 0, 1, "warm-up -1 V, τ 27 s"}, {"step", 2, 2, "step -2 V"}};
   CHECK(names() == std::set<std::string>{"2 × step, warm-up"});
 }
 
