@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/numeric/distributions.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/shown.hpp"
 #include "libchar/core/text/text.hpp"
@@ -81,6 +82,12 @@ bool moves(const ChannelResult& channel) {
          });
 }
 
+/// What its density is at least; below in one of ten thousand.
+double surely(const FitResidual& one) {
+  constexpr double kSure = 1 - 1e-4;
+  return one.measured * one.dof / chi_square_quantile(kSure, one.dof);
+}
+
 std::string density_text(double n, std::string_view unit) {
   return brief_text(n) + " " + shown_term_unit("white_noise", unit);
 }
@@ -112,10 +119,10 @@ std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, do
   const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
   const FitResidual* highest = nullptr;
   for (const FitResidual& one : fit.residuals)
-    if (one.frequency_hz >= kSlowest && one.dof >= kFewestDof &&
-        (highest == nullptr || one.measured > highest->measured))
+    if (one.frequency_hz >= kSlowest && one.dof >= kFewestDof && surely(one) > most * most &&
+        (highest == nullptr || surely(one) > surely(*highest)))
       highest = &one;
-  if (highest == nullptr || !(highest->measured > most * most)) return std::nullopt;
+  if (highest == nullptr) return std::nullopt;
   return finding("moves_throughout",
                  fmt::format("The density is {} at {}, and no {} at rest has more than {}: it moves, or the unit is "
                              "another.",

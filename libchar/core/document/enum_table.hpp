@@ -43,11 +43,10 @@ template <typename Enum, detail::WordList words>
 inline constexpr auto enum_words = [] {
   constexpr std::string_view all(words.text);
   std::array<EnumWord<Enum>, std::count(all.begin(), all.end(), ' ') + 1> rows{};
-  auto from = all.begin();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto end = std::find(from, all.end(), ' ');  // gcc's sanitizer takes `string_view::find` for no constant
-    rows[i] = {static_cast<Enum>(i), std::string_view(from, end)};
-    from = i + 1 < rows.size() ? end + 1 : end;
+  for (std::size_t i = 0, from = 0; i < rows.size(); ++i) {
+    const std::size_t end = std::min(all.find(' ', from), all.size());
+    rows[i] = {static_cast<Enum>(i), all.substr(from, end - from)};
+    from = end + 1;
   }
   return rows;
 }();

@@ -115,7 +115,7 @@ INPUTS = {
     "no_value": Input(raw("none", lambda: {"gyro": ("deg/s", noise(3000)), "off": ("deg/s", [math.nan] * 3000)}),
                       made_by="samples",
                       not_in={"psd": "it says no_finite_value, which the reader found"}),
-    "spiky": Input(gyro("spiky", spiky), made_by="samples", analysis=("--no-remedies",),
+    "spiky": Input(raw("spiky", lambda: {"level": ("V", spiky())}), made_by="samples", analysis=("--no-remedies",),
                    not_in={"allan": "it takes the remedies, and says what was done"}),
     "not_gravity": Input(raw("gravity", gravity), made_by="samples", truth=N),
     "not_earth_field": Input(raw("field", field), made_by="samples"),

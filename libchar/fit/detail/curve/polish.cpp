@@ -113,6 +113,7 @@ double slack_of(double half_deviance) { return 1e-9 + 1e-13 * half_deviance; }
 bool take_out_vanished(const BinProblem& problem, ModelPoint& at) {
   bool any = false;
   const double best = half_deviance(problem, at);
+  if (!std::isfinite(best)) return false;
   for (double& theta : at.theta) {
     if (!(theta > 0)) continue;
     const double before = std::exchange(theta, 0);
