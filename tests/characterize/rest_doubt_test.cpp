@@ -107,13 +107,13 @@ TEST_CASE("white noise beyond that of any gyroscope or accelerometer is no rest"
 
 TEST_CASE("slow noise beyond that of any gyroscope or accelerometer is no rest") {
   std::vector<double> walk(30000);
-  const std::vector<double> steps = rest_white(walk.size(), 8, 0.015);  // K 0.15 per root second
+  const std::vector<double> steps = rest_white(walk.size(), 8, 0.04);  // K 0.4 per root second
   for (std::size_t t = 1; t < walk.size(); ++t) walk[t] = walk[t - 1] + steps[t];
   const NoiseFit fit = fit_record(walk, kRestRate, nullptr);
   const auto moves = doubt_rest(fit, "m/s^2", 0);
   REQUIRE(moves);
   CHECK(moves->severity == Severity::bad);
-  CHECK(doubt_rest(fit, "deg/s", 0) == std::nullopt);  // a gyroscope in poor heat does
+  CHECK(doubt_rest(fit, "mg", 0) == std::nullopt);
   CHECK(doubt_rest(fit, "degC", 0) == std::nullopt);
 }
 
