@@ -64,8 +64,8 @@ const Finding* unsaid(const Judgement& judgement, Severity severity) {
 // "The noise model explains both channels within their scatter, and the Allan fits agree."
 std::string explained_sentence(const Characterization& result, const std::vector<Judgement>& judged) {
   const std::size_t n = judged.size();
-  const auto good = static_cast<std::size_t>(std::count_if(
-      judged.begin(), judged.end(), [](const Judgement& j) { return !j.has("no_fit") && !j.has("misfit"); }));
+  std::size_t good = 0;  // a recording that moves has no fit, and no finding says so beside the motion
+  for (std::size_t c = 0; c < n; ++c) good += result.channels[c].fit && !judged[c].has("misfit") ? 1 : 0;
   if (good < n) return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
   const auto opinions =
       static_cast<std::size_t>(std::count_if(result.channels.begin(), result.channels.end(),

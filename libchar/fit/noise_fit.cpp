@@ -369,7 +369,10 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
   if (allan != nullptr && !behind && !hump) answer_contradictions(now.fit, *allan);
   constexpr double kNoEnd = 1000;  // times the value: a shape takes all of it back, up to any number
   for (Coefficient& term : now.fit.term)
-    if (term.value && term.ci95.high > kNoEnd * *term.value) term.ci95.high = std::numeric_limits<double>::infinity();
+    if (term.value && term.ci95.high > kNoEnd * *term.value) {
+      term.ci95.high = std::numeric_limits<double>::infinity();
+      if (term.status == Status::detected) term.status = Status::undetermined;
+    }
   now.fit.bins = bins;
   return std::move(now.fit);
 }

@@ -197,6 +197,10 @@ TEST_CASE("verdict: says what is fine, what is not, and where") {
   result.channels.pop_back();
   CHECK(verdict_of(result).find("all 5 channels") != std::string::npos);
   CHECK(verdict_of(test::barely_anything()).find("No fit was possible for gyr_x, gyr_y") != std::string::npos);
+  Characterization moved = test::synthetic_imu();  // no finding speaks of the fit beside the motion
+  moved.channels[0].fit.reset();
+  moved.channels[0].findings = {finding("moves_throughout", "It moves.")};
+  CHECK(verdict_of(moved).find("4 of 6 channels") != std::string::npos);
   result.channels.clear();
   CHECK(verdict_of(result) == "The recording holds no channel to characterize.");
 }
