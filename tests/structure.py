@@ -31,6 +31,7 @@ LIMITS = {  # of one key of a gate, in what it counts
     "eigen": (0, "includes of Eigen in a header that libchar/libchar.hpp reaches"),
     "columns": (0, f"lines above {COLUMNS} columns"),
     "owner": (0, "spellings outside of the owner's file"),
+    "test": (0, "names of tests with a semicolon, at which CMake cuts the list of them"),
 }
 
 
@@ -153,9 +154,18 @@ def gate_owners(tree, counts):
                 counts["owner", f"{question.name}: {floor_of(path)}"].add(f"{path}:{line}")
 
 
+def gate_tests(tree, counts):
+    for path, text in tree.cpp("tests").items():
+        for called in re.finditer(r'TEST_CASE(?:_METHOD)?\(\s*((?:"(?:[^"\\]|\\.)*"\s*)+)', text):
+            name = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', called[1]))
+            if ";" in name:
+                counts["test", path].add(f"{path}: {name}")
+
+
 def measured(root):
     tree, counts = Tree(root), collections.defaultdict(Count)
-    for gate in (gate_members, gate_files, gate_names, gate_top, gate_twice, gate_eigen, gate_columns, gate_owners):
+    for gate in (gate_members, gate_files, gate_names, gate_top, gate_twice, gate_eigen, gate_columns, gate_owners,
+                 gate_tests):
         gate(tree, counts)
     return counts
 

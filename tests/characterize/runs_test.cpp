@@ -109,8 +109,8 @@ TEST_CASE("pooled runs: a run of another sensor is named, and the coefficients a
 }
 
 TEST_CASE(
-    "pooled runs: a run that was moved is left out, and said; where too few are left, all are taken with what is "
-    "known") {
+    "pooled runs: a run that was moved is left out, and said, and where too few are left, all are taken with "
+    "what is known") {
   auto runs = runs_of({}, 3, 6000, 3);
   const auto spoil = [&](std::size_t r) {
     runs[r].channels[0].findings.push_back(finding("motion", "It was moved.", "moved in a stretch"));

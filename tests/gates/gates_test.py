@@ -144,6 +144,12 @@ class Gates(unittest.TestCase):
             self.refused("columns", structure.floor_of(path))
             (self.root / path).unlink()
 
+    def test_tests(self):
+        self.write("tests/fit/one_test.cpp", 'TEST_CASE("fit: a, b: c") { int d; }\n')
+        self.accepted()
+        self.write("tests/fit/one_test.cpp", 'TEST_CASE(\n    "fit: a \\"b\\", "\n    "c; d") {}\n')
+        self.refused("test", "tests/fit/one_test.cpp")
+
     def test_every_question_has_a_spelling_here(self):
         self.assertEqual(sorted(SPELLINGS), sorted(question.name for question in QUESTIONS))
 
