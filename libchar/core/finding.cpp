@@ -1,7 +1,10 @@
 #include "libchar/core/finding.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
+#include <set>
 
 #include "libchar/core/detail/finding_table.hpp"
 #include "libchar/core/text/text.hpp"
@@ -97,6 +100,37 @@ std::string as_part(const std::string& whole) {
   };
   if (is_in(0, 'A', 'Z') && is_in(1, 'a', 'z')) sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
   return sentence;
+}
+
+void detail::add_cautions(std::vector<Finding>& to, std::span<const Finding> from, const std::string& subject) {
+  for (Finding one : from) {
+    one.subject = subject;
+    if (one.severity != Severity::note && std::find(to.begin(), to.end(), one) == to.end())
+      to.push_back(std::move(one));
+  }
+}
+
+std::string detail::findings_cell(std::span<const Finding> findings) {
+  std::string out;
+  std::set<std::string_view> named;
+  for (const Finding& one : findings)
+    if (one.severity != Severity::note && named.insert(one.code).second)
+      out += (out.empty() ? "" : " ") + one.code + ":" + std::string(name_of(one.severity));
+  return out;
+}
+
+std::vector<Finding> detail::findings_in_cell(std::string_view cell) {
+  std::vector<Finding> out;
+  for (const std::string_view word : split(cell, " ")) {
+    const std::size_t colon = std::min(word.find(':'), word.size());
+    const FindingKind* kind = find_finding_kind(word.substr(0, colon));
+    const auto severity = find_enum<Severity>(word.substr(std::min(colon + 1, word.size())));
+    if (kind == nullptr || !severity) continue;
+    const std::string title(kind->title), meaning(kind->meaning);
+    out.push_back(finding(kind->code, fmt::format("In the recording of this curve: {}. {}", title, meaning), title));
+    out.back().severity = *severity;
+  }
+  return out;
 }
 
 std::string settings_text(const Finding::Help& help) {

@@ -104,6 +104,12 @@ std::string findings_text(std::span<const Finding> findings, std::size_t most = 
 /// "3 × SENTENCE (first: line 412, line 413, line 9001)", control characters escaped.
 std::string sentence_of(const Finding& finding);
 namespace detail {
+/// Cautions and bad ones of `from`, about the channel or sensor `subject`, each once.
+void add_cautions(std::vector<Finding>& to, std::span<const Finding> from, const std::string& subject);
+/// What a table of curves carries of a curve: "motion:bad spikes:caution", from cautions on; "" without any.
+std::string findings_cell(std::span<const Finding> findings);
+/// Its inverse, with the sentence that the code's kind has; other words are left out.
+std::vector<Finding> findings_in_cell(std::string_view cell);
 /// " Read it alone (`channels` temp).": what options do about it; "" where none does anything.
 std::string help_of(const Finding& finding);
 }  // namespace detail

@@ -76,8 +76,6 @@ void refuse_empty(const FigureSource& source) {
 void read_table(FigureSource& out, const std::string& file) {
   const std::string held = curve_in_header(file);
   if (held.empty()) refuse_log(file);
-  add_wide_spectra(out, file);
-  if (!out.curves.empty()) return;
   for (const bool is_allan : {true, false}) {
     if (held.find(is_allan ? "allan" : "psd") == std::string::npos) continue;
     try {

@@ -101,7 +101,8 @@ TEST_CASE("every window of the library is offered by psd and by characterize") {
 TEST_CASE("allan says which deviation a row is, and what a log beyond the memory allowed would take") {
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const auto table = test::run({"allan", log, "-c", "gyro_z", "--type", "mdev", "--taus", "1s"});
-  CHECK_THAT(table.out, Contains("edf,terms,curve\n") && Catch::EndsWith(",mdev\n") && Contains("\ngyro_z,deg/s,1,"));
+  CHECK_THAT(table.out,
+             Contains("edf,terms,curve,findings\n") && Catch::EndsWith(",mdev,\n") && Contains("\ngyro_z,deg/s,1,"));
   const test::TemporaryFolder folder;
   const std::string longer = (folder / "long.f64").string();  // more than a leaf
   std::vector<double> samples((std::size_t{1} << 20U) + 1000);

@@ -184,6 +184,23 @@ class Log(Case):
         if verb == "inspect":
             self.follow(next_line(said), "next of inspect")
 
+    def table(self, verb, *words):
+        """What reads the table of curves that a verb writes: as codes with their severity, from cautions on."""
+        doc = document(run(self.folder, verb, *words, "--json"))
+        severe = [one for one in findings_in(doc) if one["code"] == self.code and one["severity"] != "note"]
+        if not severe or not any(one.get("effects") or one in findings_in(doc.get("channels")) for one in severe):
+            return
+        made = run(self.folder, verb, *words, "-o", f"{verb}.csv", "--force")
+        if made.returncode != 0:
+            return faults.append(f"{self.code}: {failure(made)}")
+        drawn = run(self.folder, "plot", f"{verb}.csv", "-o", "table.svg", "--force")
+        fitted = run(self.folder, "fit", f"{verb}.csv", "--curve", verb, "--json")
+        if fitted.returncode != 0:  # a curve of too few points, or not of densities
+            return
+        one = found(document(fitted), self.code)
+        cell(self.code, f"fit --curve {verb}", "JSON", one is not None)
+        cell(self.code, f"plot of {verb}.csv", "text", says(drawn.stdout + drawn.stderr, one or severe[0]))
+
     def characterize(self):
         words = [self.log, *self.made.options, *self.made.analysis, "-o", self.out, "--force"]
         self.said = run(self.folder, "characterize", *words)
@@ -287,6 +304,8 @@ class Log(Case):
             cell(self.code, "inspect", "text", False, self.why("inspect"))
         for verb in ("allan", "psd", "fit"):
             self.verb(verb, self.log, *options, *self.analysis_of(verb))
+        for verb in ("allan", "psd"):
+            self.table(verb, self.log, *options, *self.analysis_of(verb))
         why = self.why("convert")
         copied = None if why else run(self.folder, "convert", self.log, *options, "-o", "copy.csv", "--force")
         cell(self.code, "convert", "text", copied and says(copied.stdout + copied.stderr, self.finding), why)

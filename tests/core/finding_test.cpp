@@ -70,3 +70,25 @@ TEST_CASE("findings: the worst first, in their order otherwise") {
   CHECK(worst_of(all) == Severity::bad);
   CHECK(worst_of({}) == Severity::note);
 }
+
+TEST_CASE("findings: a cell of a table carries what is no note, and reads back") {
+  Finding motion = finding("motion", "It moved at 3 s."), resampled = finding("held_values", "Held.");
+  motion.severity = Severity::bad;
+  resampled.severity = Severity::caution;
+  const std::vector<Finding> known = {finding("blank_line", "Blank."), motion, resampled, resampled};
+  CHECK(detail::findings_cell(known) == "motion:bad held_values:caution");
+  CHECK(detail::findings_cell({}).empty());
+  const std::vector<Finding> read = detail::findings_in_cell("motion:bad held_values:caution");
+  REQUIRE(read.size() == 2);
+  CHECK(read[0].severity == Severity::bad);
+  CHECK(read[0].effects == motion.effects);
+  CHECK(read[1].severity == Severity::caution);
+  CHECK(detail::findings_cell(read) == "motion:bad held_values:caution");
+  for (const char* other : {"", "none", "motion", "motion:worse", ":bad", "see page 3", "no_such_code:bad"})
+    CHECK(detail::findings_in_cell(other).empty());
+  std::vector<Finding> all;
+  detail::add_cautions(all, known, "gx");
+  detail::add_cautions(all, known, "gx");
+  REQUIRE(all.size() == 2);
+  CHECK(all[0].subject == "gx");
+}

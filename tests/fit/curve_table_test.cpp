@@ -124,3 +124,29 @@ TEST_CASE("the relative errors of a published table are read") {
   const auto table = read_curve_table(test::shared("data/avarcurve_navchip_published.csv").string(), true);
   CHECK(table->curves[0].curve.relative_sd.at(0) == 0.0005674816915767);
 }
+
+TEST_CASE("what is known of a curve stands beside it, in a column of long and of wide tables") {
+  const auto longer = read("channel,tau_s,deviation,findings\na,1,2,motion:bad\na,2,1,motion:bad\nb,1,2,\n", true);
+  REQUIRE(longer->curves.size() == 2);
+  REQUIRE(longer->curves[0].findings.size() == 1);
+  CHECK(longer->curves[0].findings[0].code == "motion");
+  CHECK(longer->curves[1].findings.empty());
+  const auto wide = read(
+      "frequency_hz,a[V],b[(deg/s)²/Hz],c[g/√Hz],findings\n0,1,2,3,|motion:bad spikes:caution|constant:caution\n"
+      "1,1,2,,\n2,1,2,3,\n",
+      false);
+  REQUIRE(wide->curves.size() == 3);
+  CHECK(wide->curves[0].findings.empty());
+  CHECK(wide->curves[1].findings.size() == 2);
+  CHECK(wide->curves[1].unit == "deg/s");
+  CHECK(wide->curves[1].kind == "psd_one_sided");
+  REQUIRE(wide->curves[2].findings.size() == 1);
+  CHECK(wide->curves[2].curve.root);
+  CHECK(wide->curves[2].curve.x == std::vector<double>{2});  // its own rate: no value at 1 Hz
+  const auto two = read("frequency_hz,a[V²/Hz]\n-1,2\n0,9\n1,2\n", false);
+  CHECK(two->curves[0].curve.sides == Sides::two);
+  CHECK(two->curves[0].findings.empty());
+  CHECK(two->at_zero == 1);
+  CHECK_THROWS_WITH(read("frequency_hz,a[V²/Hz]\n1,2\n2\n", false), Catch::Contains("E0304"));
+  CHECK_THROWS_WITH(read("frequency_hz,a[V²/Hz]\n1,x\n", false), Catch::Contains("E0311"));
+}

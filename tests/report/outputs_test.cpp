@@ -123,11 +123,12 @@ TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   const auto result = test::synthetic_imu();
   const auto rows = rows_of(csv_curves(result));
   CHECK(rows[0] == std::vector<std::string>{"curve", "channel", "unit", "x_unit", "x", "value", "low68", "high68",
-                                            "low95", "high95", "dof", "terms", "model", "model_low95", "model_high95"});
+                                            "low95", "high95", "dof", "terms", "model", "model_low95", "model_high95",
+                                            "findings"});
   std::size_t expected = 1;
   for (const ChannelResult& c : result.channels) expected += c.allan.points.size() + c.spectrum.value.size();
   CHECK(rows.size() == expected);
-  for (const auto& row : rows) REQUIRE(row.size() == 15);
+  for (const auto& row : rows) REQUIRE(row.size() == 16);
   const auto& points = result.channels[0].allan.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     CHECK(parse_double(rows[i + 1][5]) == points[i].deviation);
@@ -144,7 +145,7 @@ TEST_CASE("curves.csv: hostile names stay one cell and start no formula") {
   const auto result = test::hostile();
   std::set<std::string> names;
   for (const auto& row : rows_of(csv_curves(result))) {
-    REQUIRE(row.size() == 15);
+    REQUIRE(row.size() == 16);
     CHECK(std::string("=+-@\t\r").find(row[1].empty() ? 'x' : row[1][0]) == std::string::npos);
     names.insert(row[1]);
   }

@@ -117,7 +117,7 @@ void run_allan(Session& session, const AllanVerb& verb) {
     document.update(allan_json(channels, curves, findings));
     text = dump_json(document);
   } else {
-    text = allan_csv(channels, curves);
+    text = allan_csv(channels, curves, findings, result.log.warnings);
   }
   if (verb.output.empty()) return print(text);
   refuse_strict(session);

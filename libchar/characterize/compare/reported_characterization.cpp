@@ -130,6 +130,7 @@ ReportedCharacterization read_curve_candidate(const std::string& file) {
   for (const NamedCurve& named : table ? table->curves : std::vector<NamedCurve>{}) {
     if (!is_compared(named.kind)) continue;
     ReportedChannel& channel = channel_of(out, named.name, named.unit);
+    detail::add_cautions(out.findings, named.findings, named.name);
     for (std::size_t i = 0; i < named.curve.x.size(); ++i) {
       AllanPoint& point = channel.curve.emplace_back();
       point.tau_s = named.curve.x[i];
@@ -186,10 +187,7 @@ ReportedCharacterization reported_models(const std::vector<SensorModel>& models,
     if (model.noise_shape.taps > 0) channel.shape += fmt::format(" of {}", model.noise_shape.taps);
     channel.curve = sensor_model_curve(model, sensor_model_fit(model)).points;
     if (out.recording.empty()) out.recording = model.recording.file;
-    for (Finding one : model.findings) {
-      one.subject = model.channel;
-      if (one.severity != Severity::note) out.findings.push_back(std::move(one));
-    }
+    add_cautions(out.findings, model.findings, model.channel);
   }
   return out;
 }

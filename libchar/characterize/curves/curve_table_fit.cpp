@@ -19,6 +19,7 @@ struct Table {
   LogInfo info;
   std::vector<Channel> channels;
   std::vector<DigitisedCurve> curves;
+  std::vector<std::vector<Finding>> findings;  // of each curve
 };
 
 /// A deviation whose square is not the Allan variance (hdev, mdev, totdev) has other coefficients.
@@ -114,6 +115,7 @@ Table named_table(const std::string& path, const CurveTable& named, const CurveT
       refuse_power_spectrum(path, n.name, n.value_unit);
     table.channels.push_back({n.name, n.unit, false});
     table.curves.push_back(n.curve);
+    table.findings.push_back(n.findings);
   }
   if (table.curves.empty())
     throw input_error("E0802", path)
@@ -139,6 +141,8 @@ CurveTableFit fit_curve_table(const std::string& path, const CurveTableOptions& 
     curve.duration_s = options.duration_s;
     curve.rate_hz = options.reading.rate_hz;
     out.channels.push_back({table.channels[c], fit_curve(curve, options.fit)});
+    std::vector<Finding>& known = out.channels.back().fit.findings;
+    if (c < table.findings.size()) known.insert(known.end(), table.findings[c].begin(), table.findings[c].end());
   }
   return out;
 }

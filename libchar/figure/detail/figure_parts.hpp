@@ -144,10 +144,8 @@ void add_fit_to_curves(FigureSource& out, const MapReader& fit);
 void add_traces(FigureSource& out, const MapReader& trace);
 void add_simulated(FigureSource& out, const MapReader& verification);
 
-/// A table with a row a point (fit/curve_table.hpp).
+/// A table of curves (fit/curve_table.hpp).
 void add_table(FigureSource& out, const std::string& file, bool is_allan);
-/// What psd prints: frequency_hz and a column NAME[UNIT] a channel. Adds nothing where the file is none.
-void add_wide_spectra(FigureSource& out, const std::string& file);
 
 /// Allan curve and spectrum that a model implies, with its terms.
 void add_model(FigureSource& out, const SensorModel& model);

@@ -15,7 +15,7 @@
 namespace libchar {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
 
 // "Tau [s]" and "tau" are the same name.
 std::string bare_name(std::string name) {
@@ -41,7 +41,7 @@ std::string unit_behind(const std::string& name) {
 
 struct Columns {
   std::optional<std::size_t> x, root, power, channel, unit, kind, dof, low, high, relative, absolute, low95, high95,
-      model;
+      model, findings;
   struct Units {
     double abscissa = 1;   // in s or Hz
     std::string value;     // behind its name
@@ -69,6 +69,7 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
   c.low95 = find(header, {"low95"});
   c.high95 = find(header, {"high95"});
   c.model = find(header, {"model"});
+  c.findings = find(header, {"findings"});
   c.relative = find(header, {"rel_err", "relative_error", "rel_error", "relative error", "relative_sd", "rel_sd",
                              "relative_uncertainty", "rel_unc"});
   if (c.x) c.units.abscissa = detail::abscissa_factor(unit_behind(header[*c.x].text), is_allan);
@@ -82,23 +83,31 @@ Columns columns_of(const std::vector<TextCell>& header, bool is_allan) {
 // One row into its curve; the place is of the cell that does not fit.
 class Reader {
  public:
-  Reader(std::string file, const Columns& columns, const TextTable& table, bool is_allan)
+  Reader(std::string file, const std::vector<TextCell>& header, char decimal, bool is_allan)
       : file_(std::move(file)),
-        columns_(columns),
-        width_(table.header.cells.size()),
-        decimal_(table.decimal),
+        columns_(columns_of(header, is_allan)),
+        width_(header.size()),
+        decimal_(decimal),
         is_allan_(is_allan) {}
 
-  void take(const TextRow& row) {
-    if (row.cells.size() != width_)
+  bool has_curve() const { return columns_.x && (columns_.root || columns_.power); }
+
+  void require_width(const TextRow& row, std::size_t width) const {
+    if (row.cells.size() != width)
       throw input_error("E0304", fmt::format("{}:{}:1", file_, row.line))
-          .says("{} fields, {} expected", row.cells.size(), width_)
+          .says("{} fields, {} expected", row.cells.size(), width)
           .hint("each row has a value for each name of the header");
+  }
+
+  void take(const TextRow& row) {
+    require_width(row, width_);
     const auto text = [&](const std::optional<std::size_t>& column) { return column ? row.cells[*column].text : ""; };
     const std::string kind = text(columns_.kind);
     if (columns_.kind && is_allan_ != (kind.find("dev") != std::string::npos || kind == "allan")) return;
     const std::string& unit = columns_.unit ? row.cells[*columns_.unit].text : columns_.units.value;
     NamedCurve& target = curve_of(columns_.channel ? text(columns_.channel) : "curve", unit, kind);
+    if (columns_.findings && target.curve.x.empty())
+      target.findings = detail::findings_in_cell(row.cells[*columns_.findings].text);
     const bool by_root = columns_.root.has_value();
     const double x = columns_.units.abscissa * number(row, *columns_.x),
                  y = number(row, by_root ? *columns_.root : *columns_.power);
@@ -177,6 +186,61 @@ class Reader {
   std::uint64_t zeros_ = 0;
 };
 
+/// Spectra as psd prints them: frequency_hz, a column NAME[UNIT] for each channel, then perhaps `findings`.
+struct Wide {
+  std::vector<TextCell> names, units;
+  bool with_findings = false;
+};
+
+Wide wide_of(const std::vector<TextCell>& header) {
+  Wide out;
+  if (header.size() < 2 || header[0].text != "frequency_hz") return out;
+  out.with_findings = header.back().text == "findings";
+  for (std::size_t c = 1; c + (out.with_findings ? 1 : 0) < header.size(); ++c) {
+    const std::string& cell = header[c].text;
+    const std::size_t open = cell.rfind('[');
+    if (open == std::string::npos || !cell.ends_with(']')) return {};
+    out.names.push_back({cell.substr(0, open)});
+    out.units.push_back({cell.substr(open + 1, cell.size() - open - 2)});
+  }
+  return out;
+}
+
+/// The header of rows that hold one value each.
+std::vector<TextCell> narrow_header() {
+  return {{"frequency_hz"}, {"value"}, {"channel"}, {"unit"}, {"curve"}, {"findings"}};
+}
+
+/// What the first row says of each channel: "motion:bad|spikes:caution".
+std::vector<TextCell> findings_in(const Wide& wide, const TextTable& table) {
+  std::vector<TextCell> out(wide.names.size());
+  if (!wide.with_findings || table.rows.empty()) return out;
+  std::size_t c = 0;
+  for (const char one : table.rows[0].cells.back().text)
+    if (one == '|')
+      c = std::min(c + 1, out.size() - 1);
+    else
+      out[c].text += one;
+  return out;
+}
+
+/// Each value as a row of its own; a channel with another rate has none at some frequencies.
+void take_wide(Reader& reader, const Wide& wide, const TextTable& table) {
+  const std::vector<TextCell> known = findings_in(wide, table);
+  const bool two = std::any_of(table.rows.begin(), table.rows.end(), [&](const TextRow& row) {
+    return !row.cells.empty() && number_in(row.cells[0], table.decimal).value_or(0) < 0;
+  });
+  for (const TextRow& row : table.rows) {
+    reader.require_width(row, table.header.cells.size());
+    for (std::size_t c = 0; c < wide.names.size(); ++c) {
+      if (row.cells[c + 1].text.empty()) continue;
+      const Scaling scaling = detail::values_of_unit(wide.units[c].text).scaling;
+      const std::string kind = detail::spectrum_kind_word({scaling, two ? Sides::two : Sides::one});
+      reader.take({row.line, {row.cells[0], row.cells[c + 1], wide.names[c], wide.units[c], {kind}, known[c]}});
+    }
+  }
+}
+
 }  // namespace
 
 double detail::abscissa_factor(const std::string& unit, bool is_allan) {
@@ -190,10 +254,13 @@ std::optional<CurveTable> read_curve_table(const std::string& path, bool is_alla
     throw input_error("E0801", path)
         .says("a table of curves of more than {} bytes", kMaxBytes)
         .hint("is this a log? then leave `curve` out");
-  const Columns columns = columns_of(table->header.cells, is_allan);
-  if (!columns.x || !(columns.root || columns.power)) return std::nullopt;
-  Reader reader(path, columns, *table, is_allan);
-  for (const TextRow& row : table->rows) reader.take(row);
+  const Wide wide = is_allan ? Wide{} : wide_of(table->header.cells);
+  Reader reader(path, wide.names.empty() ? table->header.cells : narrow_header(), table->decimal, is_allan);
+  if (!reader.has_curve()) return std::nullopt;
+  if (!wide.names.empty())
+    take_wide(reader, wide, *table);
+  else
+    for (const TextRow& row : table->rows) reader.take(row);
   auto curves = reader.finish();
   if (curves.empty())
     throw input_error("E0802", path)
@@ -219,11 +286,7 @@ std::string curve_in_header(const std::string& path) {
   }
   if (!find(header, {"frequency_hz", "frequency", "freq"})) return "";
   const Columns c = columns_of(header, false);
-  // A column NAME[UNIT] for each channel, as psd prints them.
-  const bool wide =
-      header.size() > 1 && header[0].text == "frequency_hz" &&
-      std::all_of(header.begin() + 1, header.end(), [](const TextCell& cell) { return cell.text.ends_with(']'); });
-  return c.root || c.power || wide ? "psd" : "";
+  return c.root || c.power || !wide_of(header).names.empty() ? "psd" : "";
 }
 
 }  // namespace libchar

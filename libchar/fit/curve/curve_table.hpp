@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/core/finding.hpp"
 #include "libchar/fit/curve/curve_fit.hpp"
 
 namespace libchar {
@@ -16,8 +17,9 @@ struct NamedCurve {
   /// Of our own tables, for those who draw them; as long as the curve, or empty where there is no such column. NaN: an
   /// empty cell.
   std::vector<double> low68, high68, low95, high95, model;
-  std::string kind;        ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
-  std::string value_unit;  ///< in the column `unit`, unchanged
+  std::string kind;                    ///< in the column `curve`: "oadev", "psd_one_sided"; empty: there is none
+  std::string value_unit;              ///< in the column `unit`, unchanged
+  std::vector<Finding> findings = {};  ///< in the column `findings` of our own tables
 };
 
 struct CurveTable {
@@ -32,7 +34,8 @@ struct CurveTable {
 /// curve, and what says how well a value is known, in this order: edf or dof; low68 and high68; rel_err or
 /// relative_error (a fraction, or percent when its header says %; one standard deviation of the value); error, sd or
 /// uncertainty (in the unit of the value). One curve for each name in the channel column, in the order of their first
-/// rows. Nothing when the header does not name an abscissa and a value: such a file is a plain table of numbers.
+/// rows. Or the spectra that psd prints: frequency_hz and a column NAME[UNIT] for each channel. Nothing when the header
+/// does not name an abscissa and a value: such a file is a plain table of numbers.
 /// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
 

@@ -18,17 +18,30 @@
 #include "libchar/spectrum/spectrum_words.hpp"
 
 namespace libchar {
+namespace {
 
-std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves) {
-  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve\n";
-  for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c)
+/// What is known of a curve: of its channel, and of the recording where a quantity depends on it.
+std::string known_of(std::vector<Finding> findings, const Findings& recording) {
+  for (const Finding& one : recording.list())
+    if (!one.effects.empty()) findings.push_back(one);
+  return detail::findings_cell(findings);
+}
+
+}  // namespace
+
+std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
+                      const std::vector<std::vector<Finding>>& findings, const Findings& recording) {
+  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve,findings\n";
+  for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c) {
+    const std::string known_of_it = known_of(c < findings.size() ? findings[c] : std::vector<Finding>{}, recording);
     for (const AllanPoint& p : curves[c].points) {
       const bool stated = !deviation_row(curves[c].type).without_interval();
       const auto known = [&](double value) { return stated ? value : kNone; };
       text += csv_line(channels[c].name, deviation_unit(curves[c].type, channels[c].unit), p.tau_s, p.deviation,
                        known(p.ci68.low), known(p.ci68.high), known(p.ci95.low), known(p.ci95.high), known(p.edf),
-                       p.terms, name_of(curves[c].type));
+                       p.terms, name_of(curves[c].type), known_of_it);
     }
+  }
   return text;
 }
 
@@ -62,12 +75,17 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 std::string spectra_csv(const LogSpectra& spectra) {
   std::string text = "frequency_hz";
   std::vector<double> axis;  // of channels with a rate of their own too
+  std::string known;         // of each channel, in the first row
+  bool any = false;
   for (const ChannelResult& c : spectra.channels) {
     text += "," + csv_cell(fmt::format("{}[{}]", c.channel.name, spectrum_unit(c.spectrum.scaling, c.channel.unit)));
     const std::vector<double> before = std::exchange(axis, {}), &own = c.spectrum.frequency_hz;
     std::set_union(before.begin(), before.end(), own.begin(), own.end(), std::back_inserter(axis));
+    const std::string cell = known_of(findings_of(c), spectra.log.warnings);
+    known += (&c == spectra.channels.data() ? "" : "|") + cell;
+    any = any || !cell.empty();
   }
-  text += "\n";
+  text += any ? ",findings\n" : "\n";
   std::vector<std::size_t> next(spectra.channels.size());
   for (const double frequency : axis) {
     text += csv_cell(frequency);
@@ -76,6 +94,7 @@ std::string spectra_csv(const LogSpectra& spectra) {
       const bool has = next[c] < own.value.size() && own.frequency_hz[next[c]] == frequency;
       text += has ? "," + csv_cell(own.value[next[c]++]) : ",";
     }
+    if (any) text += "," + csv_cell(std::exchange(known, ""));
     text += "\n";
   }
   return text;
@@ -285,28 +304,30 @@ namespace {
 
 Interval or_none(const std::optional<Interval>& interval) { return interval.value_or(Interval{kNone, kNone}); }
 
-void add_allan(std::string& out, const ChannelView& view) {
+void add_allan(std::string& out, const ChannelView& view, const Findings& recording) {
   const ChannelResult& c = *view.result;
+  const std::string known_of_it = known_of(detail::findings_of_curve(c), recording);
   for (std::size_t i = 0; i < c.allan.points.size(); ++i) {
     const AllanPoint& p = c.allan.points[i];
     const auto known = [&](double value) { return p.edf > 0 ? value : kNone; };
     const Interval model = view.allan_model ? or_none(view.allan_model->intervals[i]) : or_none({});
     out += csv_line(name_of(c.allan.type), c.channel.name, c.channel.unit, "s", p.tau_s, p.deviation, known(p.ci68.low),
                     known(p.ci68.high), known(p.ci95.low), known(p.ci95.high), known(p.edf), p.terms,
-                    view.allan_model ? view.allan_model->values[i] : std::nullopt, model.low, model.high);
+                    view.allan_model ? view.allan_model->values[i] : std::nullopt, model.low, model.high, known_of_it);
   }
 }
 
-void add_spectrum(std::string& out, const ChannelView& view) {
+void add_spectrum(std::string& out, const ChannelView& view, const Findings& recording) {
   const ChannelResult& c = *view.result;
   const Spectrum& s = c.spectrum;
   const std::string curve = detail::spectrum_kind_word({s.scaling, s.sides});
   const std::string unit = spectrum_unit(s.scaling, c.channel.unit);
+  const std::string known_of_it = known_of(findings_of(c), recording);
   for (std::size_t i = 0; i < s.frequency_hz.size(); ++i) {
     const Interval ci68 = or_none(view.spectrum_ci68[i]), ci95 = or_none(view.spectrum_ci95[i]);
     out += csv_line(curve, c.channel.name, unit, "Hz", s.frequency_hz[i], s.value[i], ci68.low, ci68.high, ci95.low,
                     ci95.high, i < s.dof.size() && s.dof[i] > 0 ? s.dof[i] : kNone, "",
-                    view.spectrum_model ? view.spectrum_model->values[i] : std::nullopt, "", "");
+                    view.spectrum_model ? view.spectrum_model->values[i] : std::nullopt, "", "", known_of_it);
   }
 }
 
@@ -314,10 +335,10 @@ void add_spectrum(std::string& out, const ChannelView& view) {
 
 std::string csv_curves(const CharacterizationView& view) {
   std::string out =
-      "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95\n";
+      "curve,channel,unit,x_unit,x,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95,findings\n";
   for (const ChannelView& channel : view.channels) {
-    add_allan(out, channel);
-    add_spectrum(out, channel);
+    add_allan(out, channel, view.result->log.warnings);
+    add_spectrum(out, channel, view.result->log.warnings);
   }
   return out;
 }

@@ -11,9 +11,11 @@
 
 namespace libchar {
 
-/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve: one row per point; bounds and edf empty
-/// where there is no interval. A channel has an entry in both lists for each of its curves.
-std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves);
+/// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve,findings: one row per point; bounds and edf
+/// empty where there is no interval. A channel has an entry in both lists for each of its curves; `findings` of each
+/// curve, none where it is shorter, and those of the recording: cautions and bad ones as "motion:bad spikes:caution".
+std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
+                      const std::vector<std::vector<Finding>>& findings = {}, const Findings& recording = {});
 
 /// Channel by channel, without models; where there are several types, `types` and the `type` of each entry.
 /// `findings`: of each channel, none where it is shorter.
@@ -22,7 +24,8 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 
 // The spectra of a log as tables and as a document (docs/json.md).
 
-/// frequency_hz and one column per channel.
+/// frequency_hz and one column per channel. Where something is known of one, a last column `findings`, in whose first
+/// row they are by channel: "motion:bad|spikes:caution".
 std::string spectra_csv(const LogSpectra& spectra);
 /// channel,unit,frequency_hz,amplitude,excess,width_hz: one row per line.
 std::string lines_csv(const LogSpectra& spectra);
@@ -57,7 +60,7 @@ Json spectrograms_json(const LogSpectrograms& spectrograms);
 // The curves of a characterization as one table.
 
 /// Allan and spectrum curves of all channels in one table:
-/// curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95.
+/// curve,channel,unit,x,x_unit,value,low68,high68,low95,high95,dof,terms,model,model_low95,model_high95,findings.
 std::string csv_curves(const CharacterizationView& view);
 std::string csv_curves(const Characterization& result);
 

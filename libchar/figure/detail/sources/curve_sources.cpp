@@ -211,60 +211,7 @@ void add_table(FigureSource& out, const std::string& file, bool is_allan) {
     curve.high95 = named.high95;
     curve.model = named.model;
     out.curves.push_back(std::move(curve));
-  }
-}
-
-namespace {
-
-struct WideColumn {
-  std::string name, unit;
-};
-
-std::optional<WideColumn> wide_column(const std::string& cell) {
-  const std::size_t open = cell.rfind('[');
-  if (open == std::string::npos || !cell.ends_with(']')) return std::nullopt;
-  return WideColumn{cell.substr(0, open), cell.substr(open + 1, cell.size() - open - 2)};
-}
-
-}  // namespace
-
-void add_wide_spectra(FigureSource& out, const std::string& file) {
-  const auto table = read_text_table(file, kMaxDocumentBytes);
-  if (!table || table->header.cells.size() < 2 || table->header.cells[0].text != "frequency_hz") return;
-  std::vector<SourceCurve> curves;
-  std::vector<Scaling> scalings;
-  for (std::size_t c = 1; c < table->header.cells.size(); ++c) {
-    const auto column = wide_column(table->header.cells[c].text);
-    if (!column) return;
-    SourceCurve& curve = curves.emplace_back();
-    const detail::SpectrumValues values = detail::values_of_unit(column->unit);
-    scalings.push_back(values.scaling);
-    curve.channel = column->name;
-    curve.unit = usual_figure_unit(values.unit);
-    curve.is_allan = false;
-    curve.value_unit = column->unit;
-  }
-  bool two_sided = false;
-  for (const TextRow& row : table->rows) {
-    const auto number = [&](std::size_t c) {
-      const auto value = c < row.cells.size() ? number_in(row.cells[c], table->decimal) : std::nullopt;
-      if (value) return *value;
-      throw input_error("E0311", fmt::format("{}:{}", file, row.line))
-          .says("a number was expected in each column of the header")
-          .got(c < row.cells.size() ? row.cells[c].text : "");
-    };
-    const double f = number(0);
-    two_sided = two_sided || f < 0;
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-      const double y = number(c + 1);
-      if (!(f > 0)) continue;
-      curves[c].x.push_back(f);
-      curves[c].y.push_back(y);
-    }
-  }
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    curves[c].statistic = spectrum_statistic(two_sided ? Sides::two : Sides::one, scalings[c]);
-    out.curves.push_back(std::move(curves[c]));
+    detail::add_cautions(out.findings, named.findings, named.name);
   }
 }
 
@@ -355,11 +302,7 @@ void add_model(FigureSource& out, const SensorModel& model) {
       mark.text = mark_text(mark.term, simulated_value(model[mark.term]), curve.unit);
     out.curves.push_back(std::move(curve));
   }
-  for (Finding one : model.findings) {
-    if (one.severity == Severity::note) continue;
-    one.subject = model.channel;
-    out.findings.push_back(std::move(one));
-  }
+  detail::add_cautions(out.findings, model.findings, model.channel);
 }
 
 }  // namespace libchar
