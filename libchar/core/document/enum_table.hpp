@@ -44,9 +44,10 @@ inline constexpr auto enum_words = [] {
   constexpr std::string_view all(words.text);
   std::array<EnumWord<Enum>, std::count(all.begin(), all.end(), ' ') + 1> rows{};
   for (std::size_t i = 0, from = 0; i < rows.size(); ++i) {
-    const std::size_t end = std::min(all.find(' ', from), all.size());
-    rows[i] = {static_cast<Enum>(i), all.substr(from, end - from)};
-    from = end + 1;
+    const std::string_view rest = all.substr(from);  // gcc's sanitizers take no `find` of a text for a constant
+    const auto length = static_cast<std::size_t>(std::find(rest.begin(), rest.end(), ' ') - rest.begin());
+    rows[i] = {static_cast<Enum>(i), rest.substr(0, length)};
+    from += length + 1;
   }
   return rows;
 }();
