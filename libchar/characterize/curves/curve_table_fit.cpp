@@ -19,7 +19,7 @@ struct Table {
   LogInfo info;
   std::vector<Channel> channels;
   std::vector<DigitisedCurve> curves;
-  std::vector<std::vector<Finding>> findings;  // of each curve
+  std::vector<std::vector<Finding>> findings = {};  // of each curve
 };
 
 /// A deviation whose square is not the Allan variance (hdev, mdev, totdev) has other coefficients.
