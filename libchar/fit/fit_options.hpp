@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libchar/core/noise_terms.hpp"
+#include "libchar/fit/at_rest.hpp"
 
 namespace libchar {
 
@@ -27,6 +28,11 @@ struct FitOptions {
   bool slow_cycles = true;
   /// stretches of the record are compared (a record that is kept only, remedies on)
   bool stationarity = true;
+  /// what the terms alone do not describe is searched for: bands, shapes, processes, laws of the slow end (remedies
+  /// on). Off where the record is known to hold a signal: no coefficient of a sensor is behind that
+  bool explain = true;
+  /// a record that surely has more holds a signal, too
+  std::optional<detail::AtRest> at_rest;
   /// of the record's first differences, where it is known: spikes are looked for above an alarm
   std::optional<double> difference_kurtosis;
   std::string unit;             ///< of the samples, in sentences

@@ -86,7 +86,8 @@ Attempt attempt(const std::vector<PowerBin>& bins, Band band, double rate_hz, st
   fit.rate_hz = rate_hz;
   fit.samples = samples;
   fit.duration_s = static_cast<double>(samples) / rate_hz;
-  fit.search.method = fmt::format("DCT-II Whittle likelihood, {} bins", problem.size());
+  fit.search.method =
+      fmt::format("DCT-II Whittle likelihood{}, {} bins", options.explain ? "" : " of the terms alone", problem.size());
   out.best = report ? report_coefficients(problem, decision, out.options, fit) : polish(problem, decision.at).at;
   fit.theta = out.best.theta;
   out.half_deviance = half_deviance(problem, out.best);
@@ -269,7 +270,7 @@ void raise_white_limit(NoiseFit& fit) {
   white.ci95.high = std::max(white.ci95.high, *white.upper95);
 }
 
-void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
+void judge(NoiseFit& fit, bool passes, bool in_any_band, const AllanCurve* allan) {
   raise_white_limit(fit);
   if (passes && !(fit.goodness.p < kMisfit)) return;
   admit_misfit(fit, allan);
@@ -280,9 +281,10 @@ void judge(NoiseFit& fit, bool passes, const AllanCurve* allan) {
   fit.findings.push_back(
       finding("misfit",
               fmt::format("The model does not describe the record within its statistical accuracy (chi-square {:.0f} "
-                          "for {:.0f} degrees of freedom, worst near {}), in any band: the intervals are widened by "
-                          "its scatter, and the data support no coefficient.",
-                          fit.goodness.chi2, fit.goodness.dof, detail::frequency_text(worst->frequency_hz)),
+                          "for {:.0f} degrees of freedom, worst near {}){}: the intervals are widened by its "
+                          "scatter, and the data support no coefficient.",
+                          fit.goodness.chi2, fit.goodness.dof, detail::frequency_text(worst->frequency_hz),
+                          in_any_band ? ", in any band" : ""),
               "the noise terms do not describe the recording"));
 }
 
@@ -325,13 +327,14 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
   BandOptions band_options;
   band_options.small_shapes = !options.clock && !options.white_top;
   band_options.corners = !options.clock;
-  if (options.remedies)
+  const bool explains = options.remedies && options.explain;
+  if (explains)
     band = find_band(bins, rate_hz, options.terms, band_options);
   else
     band = whole_band(bins, rate_hz);
   std::optional<GaussMarkovChoice> process;
   const bool hump = band.bottom_hz > 0;
-  if (options.remedies && options.gauss_markov && !options.clock && !hump)
+  if (explains && options.gauss_markov && !options.clock && !hump)
     process = choose_gauss_markov(bins, band, rate_hz, static_cast<double>(samples) / rate_hz, options.terms);
   std::optional<PowerLawChoice> law;
   if (process) law = choose_power_law(bins, band, rate_hz, options.terms);
@@ -346,7 +349,7 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     process->tau_s = *(now.band.tau_s = likeliest_tau(bins, now.band, rate_hz, now.fit.theta));
     now = attempt(bins, now.band, rate_hz, samples, options);
   }
-  if (options.remedies) {
+  if (explains) {
     report_band(now.band, bins, now.fit);
     if (hump) answer_hump(bins, now.band.bottom_hz, options.terms, now.fit);
     if (!now.band.law) answer_low_frequencies(now);
@@ -357,14 +360,14 @@ NoiseFit fit_offered(const std::vector<PowerBin>& bins, double rate_hz, std::uin
     if (band_options.small_shapes && now.band.passes) average_over_shapes(now);
     if (band_options.small_shapes && possible) reach_to_law(*possible, now.fit);
   }
-  judge(now.fit, now.band.passes, allan);
+  judge(now.fit, now.band.passes, explains, allan);
   if (process) answer_process(bins, now.band, *process, now.fit);
   if (options.clock) settle_flicker_phase(now.fit);
   // An Allan curve has no way of saying what lies behind a high-pass.
   const bool behind = now.band.named.family == NamedShape::Family::high_pass;
   const bool terms_alone = !behind && !hump && !(now.fit.gauss_markov && now.fit.gauss_markov->in_model) &&
                            !(now.fit.flicker_phase && now.fit.flicker_phase->value);
-  if (options.second_opinion && allan != nullptr && terms_alone)
+  if (options.second_opinion && options.explain && allan != nullptr && terms_alone)
     now.fit.second_opinion = second_opinion(*allan, now.fit, workspace != nullptr ? &workspace->covariances : nullptr);
   if (allan != nullptr && !behind && !hump) answer_contradictions(now.fit, *allan);
   constexpr double kNoEnd = 1000;  // times the value: a shape takes all of it back, up to any number
@@ -416,6 +419,10 @@ NoiseFit fit_powers(std::span<const PooledPower> powers, double rate_hz, std::ui
   FitOptions chosen = options;
   // The cycles are in the Allan curve: no opinion on what is left.
   chosen.second_opinion = options.second_opinion && lines.cycles.empty();
+  const auto is_beyond = [&](const PowerBin& bin) {
+    return options.at_rest->excess(bin.frequency_hz, bin.energy / rate_hz, bin.dof) > 1;
+  };
+  if (options.at_rest && std::any_of(lines.bins.begin(), lines.bins.end(), is_beyond)) chosen.explain = false;
   NoiseFit fit = fit_power_bins(lines.bins, rate_hz, samples, allan, chosen, workspace);
   if (!lines.cycles.empty()) fit.findings.push_back(detail::cycle_finding(lines.cycles));
   fit.cycles = std::move(lines.cycles);

@@ -105,6 +105,36 @@ TEST_CASE("white noise beyond that of any gyroscope or accelerometer is no rest"
   CHECK(doubt_rest(fit_record(rest_white(20000, 6, 2), kRestRate, nullptr), "m/s^2", 0));
 }
 
+TEST_CASE(
+    "a record louder than any sensor at rest is fitted with the terms alone, as one that is not to be explained") {
+  const auto fit_with = [](double most, bool explain) {
+    std::vector<double> y = slow_motion(40000, 3, 0.1);
+    const std::vector<double> noise = rest_white(y.size(), 5, kOwnNoise);
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] += noise[t];
+    FitOptions options;
+    options.explain = explain;
+    if (most > 0) options.at_rest = detail::AtRest{most, 0.05};
+    return fit_record(y, kRestRate, nullptr, options);
+  };
+  const NoiseFit whole = fit_with(0, true), alone = fit_with(0, false), loud = fit_with(1e-6, true);
+  CHECK_FALSE((whole.band.whole && whole.shape.kind == NoiseShape::Kind::none));
+  CHECK((alone.band.whole && alone.shape.kind == NoiseShape::Kind::none));
+  CHECK(loud.theta == alone.theta);
+  CHECK(fit_with(1, true).theta == whole.theta);
+  CHECK(doubt_rest(alone, "rad/s", 0)->severity == Severity::bad);
+}
+
+TEST_CASE("how far a density is above the loudest sensor counts its degrees of freedom") {
+  const detail::AtRest limit{4, 0.05};
+  CHECK(limit.excess(1, 4, 1e9) == Approx(1).epsilon(1e-3));
+  CHECK(limit.excess(1, 8, 10) < 1);  // by chance
+  CHECK(limit.excess(1, 40, 10) > 1);
+  CHECK(limit.excess(1, 40, 7) == 0);
+  CHECK(limit.excess(0.04, 1e9, 1e3) == 0);
+  CHECK(detail::limit_at_rest("deg/s")->most_density == Approx(0.125));
+  CHECK_FALSE(detail::limit_at_rest("degC"));
+}
+
 TEST_CASE("slow noise beyond that of any gyroscope or accelerometer is no rest") {
   std::vector<double> walk(30000);
   const std::vector<double> steps = rest_white(walk.size(), 8, 0.04);  // K 0.4 per root second

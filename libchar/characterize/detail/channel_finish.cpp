@@ -315,6 +315,9 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         const std::string& unit = result.channel.unit;
         if (unit != "1") options.unit = unit;  // for sentences: a ratio has none
         options.clock = options_.data != SampleKind::rate;
+        if (!options.clock) options.at_rest = detail::limit_at_rest(unit);
+        if (worst_of(result.motion.findings) == Severity::bad)  // no coefficient of it will be used
+          options.explain = options.events = options.stationarity = false;
         // Else of what is left; what is held repeats, and jumps.
         if (options_.unwrap == 0 && options_.frozen <= 1 && options_.interpolated == 0 &&
             !(found_.signs.held_times > 1))

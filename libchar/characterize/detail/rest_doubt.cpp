@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kDoubtful = 50, kMoves = 1000;  ///< of densities
 constexpr double kSlowest = 0.05;                ///< Hz
-constexpr double kFewestDof = 8;                 ///< of a density
+constexpr double kFewestDof = 8;                 ///< of a density, beside flicker and walk
 
 struct Level {
   double density = 0, dof = 0;
@@ -82,12 +82,6 @@ bool moves(const ChannelResult& channel) {
          });
 }
 
-/// What its density is at least; below in one of ten thousand.
-double surely(const FitResidual& one) {
-  constexpr double kSure = 1 - 1e-4;
-  return one.measured * one.dof / chi_square_quantile(kSure, one.dof);
-}
-
 std::string density_text(double n, std::string_view unit) {
   return brief_text(n) + " " + shown_term_unit("white_noise", unit);
 }
@@ -108,26 +102,35 @@ Finding signal_above(double own, double signal, std::string_view unit) {
 
 }  // namespace
 
-std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, double rounding) {
+std::optional<AtRest> limit_at_rest(std::string_view unit) {
   const auto known = find_unit(unit);
   const bool rate = known && known->quantity == Quantity::angular_rate;
   if (!rate && !(known && known->quantity == Quantity::acceleration)) return std::nullopt;
+  const double root = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
+  return AtRest{root * root, kSlowest};
+}
+
+std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, double rounding) {
+  const auto limit = limit_at_rest(unit);
+  if (!limit) return std::nullopt;
   const bool shaped = !fit.band.whole || fit.shape.kind != NoiseShape::Kind::none;
   const double own = shaped ? own_noise(fit, rounding) : 0, signal = own > 0 ? signal_density(fit) : 0;
   if (own > 0 && signal > kDoubtful * own) return signal_above(own, signal, unit);
-  const char* const sensor = rate ? "gyroscope" : "accelerometer";
-  const double most = (rate ? 0.5 * std::numbers::pi / 180 : 0.02 * 9.80665) / std::numbers::sqrt2 / known->to_si;
   const FitResidual* highest = nullptr;
-  for (const FitResidual& one : fit.residuals)
-    if (one.frequency_hz >= kSlowest && one.dof >= kFewestDof && surely(one) > most * most &&
-        (highest == nullptr || surely(one) > surely(*highest)))
-      highest = &one;
+  double most = 1;
+  for (const FitResidual& one : fit.residuals) {
+    const double excess = limit->excess(one.frequency_hz, one.measured, one.dof);
+    if (!(excess > most)) continue;
+    most = excess;
+    highest = &one;
+  }
   if (highest == nullptr) return std::nullopt;
+  const char* const sensor = is_of(unit, Quantity::angular_rate) ? "gyroscope" : "accelerometer";
   return finding("moves_throughout",
                  fmt::format("The density is {} at {}, and no {} at rest has more than {}: it moves, or the unit is "
                              "another.",
                              density_text(std::sqrt(highest->measured), unit), frequency_text(highest->frequency_hz),
-                             sensor, density_text(most, unit)),
+                             sensor, density_text(std::sqrt(limit->most_density), unit)),
                  "more noise than a sensor at rest has");
 }
 

@@ -11,6 +11,9 @@
 
 namespace libchar::detail {
 
+/// Of an inertial sensor; nothing for another unit.
+std::optional<AtRest> limit_at_rest(std::string_view unit);
+
 /// `rounding`: density of the converter's, 0 where it is not known. Nothing where the spectrum is that of a sensor at
 /// rest, or the unit that of no inertial sensor.
 std::optional<Finding> doubt_rest(const NoiseFit& fit, std::string_view unit, double rounding);
