@@ -220,6 +220,14 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
       return one.code == "motion" || one.code == "moves_throughout" || one.code == "spiky" ||
              one.code == "strength_change";
     });
+  // That the terms do not describe what moved follows from it.
+  if (std::any_of(found.out.begin(), found.out.end(), [](const Finding& one) {
+        return one.severity == Severity::bad && (one.code == "motion" || one.code == "moves_throughout");
+      }))
+    std::erase_if(found.out, [](const Finding& one) {
+      return one.code == "misfit" || one.code == "nothing_detected" || one.code == "contradicted" ||
+             one.code == "undetermined" || one.code == "white_or_flicker" || one.code == "flicker_or_walk";
+    });
   // So are the ends of a range that the samples wrap at: they are no spikes, steps or levels.
   if (has(found.out, "phase_wraps"))
     std::erase_if(found.out, [](const Finding& one) {

@@ -106,7 +106,7 @@ std::string sentence_of(const Finding& finding);
 namespace detail {
 /// Cautions and bad ones of `from`, about the channel or sensor `subject`, each once.
 void add_cautions(std::vector<Finding>& to, std::span<const Finding> from, const std::string& subject);
-/// What a table of curves carries of a curve: "motion:bad spikes:caution", from cautions on; "" without any.
+/// What a table of curves carries of a curve: "motion:bad event:caution", from cautions on; "" without any.
 std::string findings_cell(std::span<const Finding> findings);
 /// Its inverse, with the sentence that the code's kind has; other words are left out.
 std::vector<Finding> findings_in_cell(std::string_view cell);

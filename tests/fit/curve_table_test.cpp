@@ -132,7 +132,7 @@ TEST_CASE("what is known of a curve stands beside it, in a column of long and of
   CHECK(longer->curves[0].findings[0].code == "motion");
   CHECK(longer->curves[1].findings.empty());
   const auto wide = read(
-      "frequency_hz,a[V],b[(deg/s)²/Hz],c[g/√Hz],findings\n0,1,2,3,|motion:bad spikes:caution|constant:caution\n"
+      "frequency_hz,a[V],b[(deg/s)²/Hz],c[g/√Hz],findings\n0,1,2,3,|motion:bad event:caution|constant:caution\n"
       "1,1,2,,\n2,1,2,3,\n",
       false);
   REQUIRE(wide->curves.size() == 3);

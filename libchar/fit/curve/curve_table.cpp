@@ -211,7 +211,7 @@ std::vector<TextCell> narrow_header() {
   return {{"frequency_hz"}, {"value"}, {"channel"}, {"unit"}, {"curve"}, {"findings"}};
 }
 
-/// What the first row says of each channel: "motion:bad|spikes:caution".
+/// What the first row says of each channel: "motion:bad|event:caution".
 std::vector<TextCell> findings_in(const Wide& wide, const TextTable& table) {
   std::vector<TextCell> out(wide.names.size());
   if (!wide.with_findings || table.rows.empty()) return out;

@@ -13,7 +13,7 @@ namespace libchar {
 
 /// channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve,findings: one row per point; bounds and edf
 /// empty where there is no interval. A channel has an entry in both lists for each of its curves; `findings` of each
-/// curve, none where it is shorter, and those of the recording: cautions and bad ones as "motion:bad spikes:caution".
+/// curve, none where it is shorter, and those of the recording: cautions and bad ones as "motion:bad event:caution".
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
                       const std::vector<std::vector<Finding>>& findings = {}, const Findings& recording = {});
 
@@ -25,7 +25,7 @@ Json allan_json(const std::vector<Channel>& channels, const std::vector<AllanCur
 // The spectra of a log as tables and as a document (docs/json.md).
 
 /// frequency_hz and one column per channel. Where something is known of one, a last column `findings`, in whose first
-/// row they are by channel: "motion:bad|spikes:caution".
+/// row they are by channel: "motion:bad|event:caution".
 std::string spectra_csv(const LogSpectra& spectra);
 /// channel,unit,frequency_hz,amplitude,excess,width_hz: one row per line.
 std::string lines_csv(const LogSpectra& spectra);

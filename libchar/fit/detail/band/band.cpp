@@ -61,7 +61,8 @@ struct Trial {
   Band band;
   std::vector<std::size_t> index;  ///< of its bins among all
   std::vector<double> z, ratio;    ///< residuals, and measured over model
-  Mixture theta{};
+  ModelPoint best;
+  Mixture theta{};  ///< of it
   double half_deviance = 0;
 };
 
@@ -102,8 +103,9 @@ void judge_band(const std::vector<PowerBin>& bins, std::size_t fitted, const Ban
   trial.band.passes = std::min(all.p, top.p) >= options.probability;
 }
 
+/// `nested`: the same band with the first of its orders, or nearly the same, whose maximum is a start near this one's.
 std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, TermSet terms, const Band& band,
-                           const BandOptions& options) {
+                           const BandOptions& options, const Trial* nested = nullptr) {
   Trial trial;
   trial.band = band;
   trial.index = members(bins, band);
@@ -113,7 +115,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
   if (band.faster_s) terms[kQuantizationTerm] = true;
   const std::vector<PowerBin> inside = bins_of(bins, band, rate_hz);
   const BinProblem problem = band_problem(bins, band, rate_hz);
-  const ScoringResult best = score(problem, terms, nullptr, 1e-6);
+  const ScoringResult best = score(problem, terms, nested != nullptr ? &nested->best : nullptr, 1e-6);
   if (!std::isfinite(best.half_deviance)) return std::nullopt;
   const Eigen::ArrayXd model = model_of(problem, best.at);
   for (std::size_t i = 0; i < inside.size(); ++i) {
@@ -121,6 +123,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
     trial.z.push_back(normal_deviate(trial.ratio.back(), inside[i].dof));
   }
   trial.half_deviance = best.half_deviance;
+  trial.best = best.at;
   trial.theta = best.at.theta;
   judge_band(bins, count_of(only_positive(best.at.theta)) + unknowns_of(band), options, trial);
   return trial;
@@ -227,7 +230,9 @@ struct Search {
     return slowest;
   }
 
-  std::optional<Trial> at(const Band& band) const { return tried(bins, rate_hz, terms, band, options); }
+  std::optional<Trial> at(const Band& band, const Trial* nested = nullptr) const {
+    return tried(bins, rate_hz, terms, band, options, nested);
+  }
 
   void keep_closest(std::optional<Trial> trial) {
     if (!trial) return;
@@ -241,10 +246,12 @@ struct Search {
       Band band = cut_at(from, bins, top_hz);
       if (members(bins, band).size() < kFewestBins) return std::nullopt;
       const int most = top_hz < kDeepest * rate_hz / 2 ? std::min(1, options.most_orders) : options.most_orders;
+      std::optional<Trial> fewer;
       for (band.orders = 0; band.orders <= most; ++band.orders) {
-        std::optional<Trial> trial = at(band);
+        std::optional<Trial> trial = at(band, fewer ? &*fewer : nullptr);
         if (trial && trial->band.passes) return trial->band;
-        keep_closest(std::move(trial));
+        keep_closest(trial);
+        fewer = std::move(trial);
       }
     }
   }
@@ -254,10 +261,12 @@ struct Search {
     constexpr double kWorth = 4;  ///< of ln L beyond one a coefficient
     double least = plain.half_deviance - kWorth;
     std::optional<Band> best;
+    std::optional<Trial> trial;
     Band band = plain.band;
     band.quantized = false;
     for (band.orders = 1; band.orders <= kMostShape; ++band.orders) {
-      const std::optional<Trial> trial = at(band);
+      const std::optional<Trial> fewer = std::move(trial);
+      trial = at(band, fewer ? &*fewer : nullptr);
       if (!trial || !trial->band.passes || !(trial->half_deviance + band.orders < least)) continue;
       least = trial->half_deviance + band.orders;
       best = trial->band;
@@ -454,7 +463,7 @@ struct Search {
       for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0}) {
         Band scaled = band;
         for (Resonance& resonance : scaled.resonances) resonance.strength *= factor;
-        std::optional<Trial> trial = at(scaled);
+        std::optional<Trial> trial = at(scaled, best ? &*best : nullptr);
         if (trial && like && !(trial->half_deviance < like->half_deviance - kExplains)) continue;
         if (trial && (!best || trial->half_deviance < best->half_deviance)) best = std::move(trial);
       }

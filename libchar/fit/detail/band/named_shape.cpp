@@ -155,10 +155,14 @@ class Fit {
     for (const PowerBin& bin : inside) nodes_.push_back(nodes_of(bin, rate_hz));
   }
 
-  double deviance(const Unknowns& u) const { return score(problem(u), terms_, nullptr, kCoarse).half_deviance; }
+  /// Where the terms are likeliest beside a shape; `near`: those beside a shape close to it.
+  ScoringResult at(const Unknowns& u, const Mixture* near = nullptr) const {
+    const ModelPoint start{near != nullptr ? *near : Mixture{}, {}};
+    return score(problem(u), terms_, near != nullptr ? &start : nullptr, kCoarse);
+  }
 
   /// A straight line in the unknowns, to its maximum; false where the likelihood does not rise.
-  bool step(Unknowns& u, double& value) const {
+  bool step(Unknowns& u, ScoringResult& now) const {
     const std::vector<std::size_t> free = free_of(u.family);
     BinProblem line = problem(u);
     const Eigen::ArrayXd root = (line.dof / 2).sqrt();
@@ -170,7 +174,8 @@ class Fit {
         slopes(j, static_cast<Eigen::Index>(k)) = root[j] * at.slope[free[k]];
     }
     line.shape = thin_qr(slopes).q.array().colwise() / root;
-    const ScoringResult best = score(line, terms_, nullptr, kCoarse);
+    const ModelPoint start{now.at.theta, {}};
+    const ScoringResult best = score(line, terms_, &start, kCoarse);
     Eigen::VectorXd gain = Eigen::VectorXd::Zero(line.size());
     for (Eigen::Index k = 0; k < line.shapes(); ++k)
       gain += best.at.shape[static_cast<std::size_t>(k)] * (line.shape.col(k) * root).matrix();
@@ -180,11 +185,11 @@ class Fit {
     for (int half = 0; half < kHalvings; ++half, length /= 2) {
       Unknowns next = u;
       for (std::size_t k = 0; k < free.size(); ++k) next.x[free[k]] += length * change[static_cast<Eigen::Index>(k)];
-      const double there = deviance(next);
-      if (!(there < value)) continue;
-      const bool goes_on = value - there > kEnough;
+      const ScoringResult there = at(next, &best.at.theta);
+      if (!(there.half_deviance < now.half_deviance)) continue;
+      const bool goes_on = now.half_deviance - there.half_deviance > kEnough;
       u = next;
-      value = there;
+      now = there;
       return goes_on;
     }
     return false;
@@ -261,18 +266,19 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, d
   const int steps = goes_on && family != NamedShape::Family::high_pass ? 4 : 12;
   const Fit fit(inside, rate_hz, terms);
   Unknowns best;
-  double value = std::numeric_limits<double>::infinity();
+  ScoringResult now;
+  now.half_deviance = std::numeric_limits<double>::infinity();
   const std::vector<Unknowns> starts = goes_on ? std::vector<Unknowns>{unknowns(*start, rate_hz)}
                                        : start ? of_third_order(unknowns(*start, rate_hz))
                                                : grid(family, inside, rate_hz);
   for (const Unknowns& at : starts) {
-    const double there = fit.deviance(at);
-    if (!(there < value)) continue;
-    value = there;
+    ScoringResult there = fit.at(at);
+    if (!(there.half_deviance < now.half_deviance)) continue;
+    now = std::move(there);
     best = at;
   }
-  if (!(value < hopeless)) return std::nullopt;
-  for (int i = 0; i < steps && fit.step(best, value); ++i) {
+  if (!(now.half_deviance < hopeless)) return std::nullopt;
+  for (int i = 0; i < steps && fit.step(best, now); ++i) {
   }
   const NamedShape shape = shape_of(best, rate_hz);
   if (!std::isfinite(shape.pole_hz) || !std::isfinite(shape.damping) || !std::isfinite(shape.zero_hz) ||
