@@ -193,13 +193,18 @@ class Log(Case):
         made = run(self.folder, verb, *words, "-o", f"{verb}.csv", "--force")
         if made.returncode != 0:
             return faults.append(f"{self.code}: {failure(made)}")
-        drawn = run(self.folder, "plot", f"{verb}.csv", "-o", "table.svg", "--force")
         fitted = run(self.folder, "fit", f"{verb}.csv", "--curve", verb, "--json")
         if fitted.returncode != 0:  # a curve of too few points, or not of densities
             return
-        one = found(document(fitted), self.code)
-        cell(self.code, f"fit --curve {verb}", "JSON", one is not None)
-        cell(self.code, f"plot of {verb}.csv", "text", says(drawn.stdout + drawn.stderr, one or severe[0]))
+        channels = document(fitted)["channels"]
+        if doc.get("channels") and not {one["name"] for one in channels} & {
+                one["name"] for one in doc["channels"] if found(one, self.code) or found(doc["findings"], self.code)}:
+            return  # the channel that has it has no curve
+        name = next((one["name"] for one in channels if found(one, self.code)), "")
+        cell(self.code, f"fit --curve {verb}", "JSON", bool(name))
+        drawn = run(self.folder, "plot", f"{verb}.csv", *(["-c", name] if name else []), "-o", "table.svg", "--force")
+        cell(self.code, f"plot of {verb}.csv", "text",
+             says(drawn.stdout + drawn.stderr, found(channels, self.code) or severe[0]))
 
     def characterize(self):
         words = [self.log, *self.made.options, *self.made.analysis, "-o", self.out, "--force"]

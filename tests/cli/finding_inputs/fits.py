@@ -101,11 +101,11 @@ def slow_bump(n=60000):
 
 
 def band_hump(n=60000):
-    """A broad resonance near 3 Hz."""
+    """A broad resonance near 3 Hz, of no more noise than gyroscopes have."""
     a, b, y1, y2, out = 2 * 0.995 * math.cos(2 * math.pi * 0.03), -0.995**2, 0.0, 0.0, []
     for drive, white in zip(noise(n, 0.1, seed=2), noise(n)):
         y1, y2 = a * y1 + b * y2 + drive, y1
-        out.append(y1 + white)
+        out.append(0.001 * (y1 + white))
     return out
 
 
