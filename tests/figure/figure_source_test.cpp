@@ -76,7 +76,7 @@ TEST_CASE("what is no curve is refused with what to do") {
       {"newer.json", "{\"format\": \"allan\", \"version\": 99, \"channels\": []}", "E05", "version"},
       {"none.json", "{\"format\": \"allan\", \"version\": 1, \"channels\": []}", "E0975", "no curve"},
       {"bad.csv", "tau_s,deviation\n1,x\n", "E0311", "a number"},
-      {"wide.csv", "frequency_hz,x[g²/Hz]\n1,2\n2\n", "E0311", "a number"},
+      {"wide.csv", "frequency_hz,x[g²/Hz]\n1,2\n2\n", "E0304", "2 expected"},
   };
   for (const auto& row : kRows) {
     INFO(row.name);
