@@ -74,9 +74,7 @@ struct Judge {
   void look_at_goodness(const NoiseFit& fit) {
     const bool said =
         has(fit.findings, "misfit") || has(fit.findings, "digital_misfit") || has(fit.findings, "power_law");
-    constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
-    const bool unexplained = !letters_with(fit, Status::misfit).empty() || fit.goodness.p < kMisfit;
-    if (unexplained && !said)
+    if (!detail::is_described(fit) && !said)
       add("misfit", "The noise terms do not describe the recording: the data support no coefficient.",
           "the noise terms do not describe the recording");
     if (!fit.search.converged) add("not_converged", "The fit did not converge.");
@@ -235,6 +233,11 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
              one.code == "events_left_in" || one.code == "strength_change" || one.code == "not_stationary";
     });
   return worst_first(std::move(found.out));
+}
+
+bool detail::is_described(const NoiseFit& fit) {
+  constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
+  return letters_with(fit, Status::misfit).empty() && !(fit.goodness.p < kMisfit);
 }
 
 std::vector<Finding> detail::findings_of_curve(ChannelResult channel) {

@@ -51,6 +51,9 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
 
 namespace detail {
+/// The terms describe the record, or the band of it that is fitted, within its scatter.
+bool is_described(const NoiseFit& fit);
+
 /// What is known of the samples behind a curve, and what the fit that makes the intervals found and took apart, which
 /// the curve does not: steps, cycles, lines, noise that is not the same throughout.
 std::vector<Finding> findings_of_curve(ChannelResult channel);

@@ -64,8 +64,10 @@ const Finding* unsaid(const Judgement& judgement, Severity severity) {
 // "The noise model explains both channels within their scatter, and the Allan fits agree."
 std::string explained_sentence(const Characterization& result, const std::vector<Judgement>& judged) {
   const std::size_t n = judged.size();
-  std::size_t good = 0;  // a recording that moves has no fit, and no finding says so beside the motion
-  for (std::size_t c = 0; c < n; ++c) good += result.channels[c].fit && !judged[c].has("misfit") ? 1 : 0;
+  const auto is_explained = [](const ChannelResult& c) { return c.fit && detail::is_described(*c.fit); };
+  const auto good =
+      static_cast<std::size_t>(std::count_if(result.channels.begin(), result.channels.end(), is_explained));
+  if (good == 0 && n == 1) return "The noise model does not explain the channel.";
   if (good < n) return fmt::format("The noise model explains {} of {} channels within their scatter.", good, n);
   const auto opinions =
       static_cast<std::size_t>(std::count_if(result.channels.begin(), result.channels.end(),

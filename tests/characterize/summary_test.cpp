@@ -194,6 +194,20 @@ TEST_CASE("summary: the terminal says the sentence of the view") {
   CHECK(view.groups[1].channels == std::vector<std::size_t>{3, 4, 5});
 }
 
+TEST_CASE("verdict: what moved is not explained, and that it is not described needs no finding beside the motion") {
+  ChannelResult c = clean();
+  c.findings = {finding("motion", "It was moved.", "moved in a stretch"), finding("misfit", "Not described.")};
+  c.findings[0].severity = Severity::bad;
+  for (Coefficient& term : c.fit->term)
+    if (term.value) term.status = Status::misfit;
+  CHECK_FALSE(judge(c).has("misfit"));
+  Characterization result;
+  result.channels = {c, clean()};
+  CHECK_THAT(verdict_of(result), Catch::StartsWith("The noise model explains 1 of 2 channels"));
+  result.channels.pop_back();
+  CHECK_THAT(verdict_of(result), Catch::StartsWith("The noise model does not explain the channel. Do not use it"));
+}
+
 TEST_CASE("verdict: several channels with one reason say it, with unlike ones see each") {
   Characterization result = test::synthetic_imu();
   std::vector<Judgement> judged(result.channels.size());
