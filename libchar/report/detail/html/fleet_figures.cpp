@@ -230,7 +230,7 @@ std::string left_out_sentence(const QuantityLot& q) {
              number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
 }
 
-/// Whom the mean is of where not all have a value.
+/// Which devices the mean covers when some have no value.
 std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
       "Mean and spread are those of {} of {} devices, undetected or doubtful ones included by the squares measured in "
