@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 using namespace libchar;
