@@ -353,7 +353,7 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
     rate_hz      sampling rate in Hz (rate is the same); not needed for a Recording or a log that has it
     type         adev, oadev, mdev, tdev, hdev, ohdev, totdev, …
     taus         octave, decade, dense, ten, or averaging times in s
-    data         what the samples are: rate, phase (its integral), frequency (in Hz, around nominal_frequency)
+    data         meaning of the samples: rate, phase (its integral), frequency (in Hz, around nominal_frequency)
 
     Deviations are in the unit of the channel. Raises NumericError when no channel has enough samples.
     """
