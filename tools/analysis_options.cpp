@@ -93,7 +93,7 @@ void add_still_option(VerbOptions& verb, AnalysisOptions& a) {
 
 void add_data_options(VerbOptions& verb, AnalysisOptions& a) {
   verb.add_enum("--data", a.options.data,
-                "what the samples are: the quantity itself, its integral, or a frequency in Hz (default: rate)");
+                "meaning of the samples: the quantity itself, its integral, or a frequency in Hz (default: rate)");
   verb.add_number(
       "--nominal-frequency", a.nominal_frequency,
       "with --data frequency: the frequency that counts as zero deviation, Hz (default: values are fractional)", 0);
@@ -156,7 +156,7 @@ void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& seg
       "65536 samples of a longer record)");
   verb.add_number("--overlap", spectrum.overlap, "overlap of segments, a fraction (default: 0.5)", 0, 0.99);
   verb.add_enum("--window", spectrum.window, "window (default: hann)");
-  verb.add_enum("--detrend", spectrum.detrend, "what is removed from each segment (default: constant)");
+  verb.add_enum("--detrend", spectrum.detrend, "trend to remove from each segment (default: constant)");
 }
 
 void add_fit_options(VerbOptions& verb, AnalysisOptions& a) {

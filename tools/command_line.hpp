@@ -130,8 +130,8 @@ class VerbOptions {
 };
 
 /// Verbs of two words ("fleet plan") are called with a hyphen between them; here they are joined. A
-/// first word alone, and one with a second that makes no verb, is refused with those that do; all
-/// that asks for help of a first word becomes "help fleet".
+/// first word alone, or with a second that is not its verb, is refused, and the message lists the
+/// verbs; any request for help on a first word becomes "help fleet".
 std::vector<std::string> with_joined_verb(const std::vector<std::string>& command,
                                           const std::vector<std::string>& verbs);
 

@@ -40,7 +40,7 @@ std::string coverage_cell(const EstimatorAccuracy& method) {
     out += fmt::format("{}{} {:.0f}", out.empty() ? "" : ", ", kTermNames[static_cast<std::size_t>(term.term)].letter,
                        100 * term.coverage.value);
   }
-  return out.empty() ? "states none" : out + " %";
+  return out.empty() ? "no intervals" : out + " %";
 }
 
 BenchChart chart_of(const CharacterizationBench& bench) {

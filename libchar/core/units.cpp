@@ -22,10 +22,11 @@ struct UnitRow {
 };
 
 const std::array kUnits = {
-    UnitRow{"rad/s", Quantity::angular_rate, 1, "rad/s|radians/s|radian/s|rads-1|rad/sec|radps|rads^-1"},
+    UnitRow{"rad/s", Quantity::angular_rate, 1,
+            "rad/s|rads/s|rads/sec|radians/s|radian/s|radians/sec|rads-1|rad/sec|radps|rads^-1"},
     UnitRow{"mrad/s", Quantity::angular_rate, 1e-3, "mrad/s|mrads-1|mrads^-1"},
     UnitRow{"deg/s", Quantity::angular_rate, kDegree,
-            "deg/s|°/s|dps|degs-1|deg/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
+            "deg/s|°/s|dps|degs-1|deg/sec|degs/s|degs/sec|°/sec|degree/s|degrees/s|degrees/sec|°s-1|°s^-1|degs^-1"},
     UnitRow{"mdeg/s", Quantity::angular_rate, 1e-3 * kDegree, "mdeg/s|mdps|m°/s"},
     UnitRow{"deg/h", Quantity::angular_rate, kDegree / 3600,
             "deg/h|°/h|dph|deg/hr|°/hr|deg/hour|°/hour|degree/h|degrees/h|degrees/hour|degh-1|degh^-1"},

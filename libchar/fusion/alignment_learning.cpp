@@ -604,9 +604,10 @@ class Learner {
     for (std::size_t k = 0; k < used_.size(); ++k) still += can_delay_[k] ? 0 : 1;
     still -= std::min(still, delays_.bounds.size() + delays_.ends);
     if (options_.delay && still > 0)
-      note(fmt::format("the stretch does not tell the delay of {} of {} sensors: left at zero", still, used_.size()));
+      note(fmt::format("the delay of {} of {} sensors cannot be estimated from this stretch: left at zero", still,
+                       used_.size()));
     if (!delays_.bounds.empty())
-      note(fmt::format("the delay of {} of {} sensors is not resolved from zero, and is at most {} samples (95 %)",
+      note(fmt::format("the delay of {} of {} sensors is not distinguishable from zero: at most {} samples (95 %)",
                        delays_.bounds.size(), used_.size(),
                        brief_text(*std::max_element(delays_.bounds.begin(), delays_.bounds.end()), 2)));
     if (delays_.ends > 0)

@@ -46,7 +46,12 @@ FleetOutlier outlier_of(const Fleet& fleet, const Statistic& s, const Outlier& f
   HabitualValue usual;
   usual.symbol = s.lot.unit;
   if (const auto term = term_of(s.lot.quantity)) usual = detail::headline_unit(*term, s.lot.channel_unit);
-  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(out.value * usual.factor),
+  // As its own report has it: the value that is compared is corrected for the bias of a logarithm.
+  const RecordedValue* const own = channel.find(s.lot.quantity);
+  const double reported = own != nullptr && std::isfinite(own->value)
+                              ? own->value * factor_of(*s.group, channel, s.lot.quantity)
+                              : out.value;
+  out.sentence = fmt::format("{} {} {}, {} times that of the others ({}).", what, number_text(reported * usual.factor),
                              usual.symbol, number_text(out.ratio, 3), probability_text(found.p));
   return out;
 }

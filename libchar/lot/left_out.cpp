@@ -6,8 +6,8 @@
 //   mean of the others = mean + l sd,   their variance = (1 - l (l - z)) sd²
 // and no other share f that is missing moves the mean further. sd is that of the values, spread and uncertainty
 // together, since what is too small is so as it was measured: from the scatter of those counted, at its 97.5 % limit.
-// Temperature coefficients that are not detected are about zero: the mean of all is between 1 - f of the mean of those
-// detected and that.
+// Temperature coefficients that are not detected are about zero: with m the mean of the detected ones and f the share
+// of the others, the mean of all lies in [(1 - f) m, m].
 
 #include <algorithm>
 #include <cmath>

@@ -26,9 +26,10 @@ const Document* kalibr_part(const Document& document) {
 }
 
 bool is_of_imu_utils(const Document& document) {
-  const Document *gyr = below(document, "Gyr"), *acc = below(document, "Acc");
-  return (gyr != nullptr && below(*gyr, "avg-axis") != nullptr) ||
-         (acc != nullptr && below(*acc, "avg-axis") != nullptr);
+  for (const char* sensor : {"Gyr", "Acc"})
+    for (const char* axis : {"avg-axis", "x-axis"})
+      if (const Document* part = below(document, sensor); part != nullptr && below(*part, axis) != nullptr) return true;
+  return false;
 }
 
 Coefficient given(double value) {
@@ -65,6 +66,24 @@ std::vector<SensorModel> of_kalibr(const MapReader& at, const std::string& file)
 /// The lowest Allan deviation of bias instability B is B sqrt(2 ln 2 / pi).
 double instability_of_floor(double floor) { return floor / std::sqrt(2 * std::numbers::ln2 / std::numbers::pi); }
 
+/// One axis of imu_utils; `rate_hz` 0: densities.
+SensorModel of_axis(const MapReader& one, const std::string& key, const std::string& axis, double rate_hz,
+                    const std::string& file) {
+  SensorModel out = stated(axis.empty() ? key : key + "_" + axis, key == "gyr", "imu_utils", file);
+  out.axis = axis;
+  out.rate_hz = rate_hz;
+  out.noise[0] = given(one.number(key + "_n") / (rate_hz > 0 ? std::sqrt(rate_hz) : 1));
+  const double slow = one.number(key + "_w");
+  if (rate_hz == 0) {
+    out.noise[static_cast<std::size_t>(Term::walk)] = given(slow);
+    return out;
+  }
+  out.noise[static_cast<std::size_t>(Term::flicker)] = given(instability_of_floor(slow));
+  out.remarks.push_back(key + "_w is the lowest Allan deviation: read as bias instability, not as a random walk");
+  return out;
+}
+
+/// The mean of the axes stands in only for a sensor whose axes are not in the file.
 std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& file) {
   const bool densities = at.has("densities");
   if (densities == at.has("rate_hz"))
@@ -73,28 +92,16 @@ std::vector<SensorModel> of_imu_utils(const MapReader& at, const std::string& fi
         .hint(
             "add a line rate_hz: 200 (the rate) where gyr_n is the noise of a sample, as the version of 2018 writes "
             "it, or densities: true for the fork that writes densities");
-  const double rate_hz = at.number_or("rate_hz", 0), root = densities ? 1 : std::sqrt(rate_hz);
+  const double rate_hz = at.number_or("rate_hz", 0);
   std::vector<SensorModel> out;
   for (const auto& [part, key] : {std::pair{"Gyr", "gyr"}, std::pair{"Acc", "acc"}}) {
     if (!at.has(part)) continue;
     const MapReader sensor = at.map(part);
-    for (const char* axis : {"x", "y", "z"}) {
-      const std::string name = std::string(axis) + "-axis";
-      if (!sensor.has(name)) continue;
-      const MapReader one = sensor.map(name);
-      SensorModel& model = out.emplace_back(stated(std::string(key) + "_" + axis, *part == 'G', "imu_utils", file));
-      model.axis = axis;
-      model.rate_hz = rate_hz;
-      model.noise[0] = given(one.number(std::string(key) + "_n") / root);
-      const double slow = one.number(std::string(key) + "_w");
-      if (densities) {
-        model.noise[static_cast<std::size_t>(Term::walk)] = given(slow);
-        continue;
-      }
-      model.noise[static_cast<std::size_t>(Term::flicker)] = given(instability_of_floor(slow));
-      model.remarks.push_back(std::string(key) +
-                              "_w is the lowest Allan deviation: read as bias instability, not as a random walk");
-    }
+    const std::size_t before = out.size();
+    for (const std::string axis : {"x", "y", "z"})
+      if (sensor.has(axis + "-axis")) out.push_back(of_axis(sensor.map(axis + "-axis"), key, axis, rate_hz, file));
+    if (out.size() == before && sensor.has("avg-axis"))
+      out.push_back(of_axis(sensor.map("avg-axis"), key, "", rate_hz, file));
   }
   return out;
 }

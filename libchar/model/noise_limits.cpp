@@ -133,7 +133,7 @@ const Fields<NoiseLimits>& limits_fields() {
       constant<NoiseLimits>("format", std::string("noise-limits"), {.meaning = "noise-limits"}),
       constant<NoiseLimits>("version", std::uint64_t{1}, {.meaning = "1"}),
       tool_row<NoiseLimits>(),
-      field<&NoiseLimits::sensor>("sensor", {.meaning = "whose limits, in words", .otherwise = "not said"}),
+      field<&NoiseLimits::sensor>("sensor", {.meaning = "device that the limits belong to", .otherwise = "not stated"}),
       custom<NoiseLimits, read_blocks, write_no_blocks>("limits", "list of maps",
                                                         {.meaning = "each with the keys below", .required = true}),
   };

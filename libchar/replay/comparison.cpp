@@ -199,7 +199,7 @@ std::vector<std::string> unlike(const ReplayReport& a, const ReplayReport& b) {
   return out;
 }
 
-/// What differs and makes no other scene of it: learning window, options, noise levels, program.
+/// Differences that do not make it another scene: learning window, options, noise levels, program.
 std::vector<std::string> remarks(const Comparison& c) {
   std::vector<std::string> out;
   Differences found(out);

@@ -44,7 +44,7 @@ struct Comparison {
   ReplayReport a, b;
   /// Why these are not two replays of one scene; empty: they are.
   std::vector<std::string> unlike;
-  /// What differs and makes no other scene of it: learning window, options, noise levels, program.
+  /// Differences that do not make it another scene: learning window, options, noise levels, program.
   std::vector<std::string> remarks;
   /// By RMSE of B; then those without one in B, by A's. Points into `a` and `b`.
   std::vector<ComparedAlgorithm> algorithms;

@@ -182,8 +182,8 @@ struct ReplayWork {
   std::uint64_t blind_steps = 0;  ///< the same for leave-one-out and split arrays
 };
 
-/// What the fault detector does of a run whose faults are known when one false alarm of the array is
-/// accepted in so many seconds.
+/// Performance of the fault detector on a run with known faults, at one false alarm of the array per
+/// `false_alarm_s`.
 struct DetectionAt {
   double false_alarm_s = 0;
   std::vector<FaultAnswer> answers;

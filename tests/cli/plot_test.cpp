@@ -142,7 +142,8 @@ TEST_CASE("report --form is a test report to sign") {
   INFO(form.err);
   REQUIRE(form.code == 0);
   for (const char* part : {"1. Object", "2. Conditions", "SHA-256", "3. Method", "4. Results", "<svg", "5. Limits",
-                           "6. Remarks", "7. Signatures", "Tested by", "gyro_z [deg/s]"})
+                           "6. Remarks", "7. Signatures", "Tested by", "gyro_z [deg/s]",
+                           "N white noise, B bias instability", "Overlapping Allan deviation, 95 % intervals"})
     CHECK_THAT(form.out, Contains(part));
   CHECK_THAT(form.out, !Contains("accel_z [g]"));
   CHECK(test::run({"report", test::fixture("imu_at_rest.csv").string(), "--form"}).code == 0);

@@ -72,6 +72,12 @@ TEST_CASE("known answers: Kalibr, EuRoC, OpenVINS take the densities as they are
   }
   CHECK(has(exported("kalibr", test::euroc_imu()).text, "\nrostopic: /imu0\nupdate_rate: 200.0"));
   CHECK(has(exported("euroc", test::euroc_imu()).text, "\nrate_hz: 200.0"));
+  auto of_sheet = test::euroc_imu();
+  for (SensorModel& m : of_sheet) {
+    m.duration_s = m.tau_max_s = 0;
+    m.noise[1] = test::at_most(1e-9);
+  }
+  CHECK(has(exported("sdf", of_sheet).text, "correlation time of 10^6 s, because"));  // in ASCII
   // The topic of the bag, unless the options say another one.
   auto of_bag = test::euroc_imu();
   for (SensorModel& m : of_bag) m.recording.topic = "/mavros/imu/data_raw";
@@ -271,6 +277,7 @@ TEST_CASE("axes: the largest by default, with the spread in a comment, rms and o
   models[2].noise[0] = known(3e-4);  // gyr_y
   CHECK(number_after(exported("kalibr", models).text, "gyroscope_noise_density") == 3e-4);
   CHECK(has(exported("kalibr", models).text, "largest of x 0.0001697, y 3e-04, z 0.0001697"));
+  CHECK(has(exported("fast-lio", models).text, "white_noise: largest of x 0.0001697, y 3e-04, z 0.0001697"));
   ExportOptions options;
   options.axes = AxisChoice::rms;
   CHECK(number_after(exported("kalibr", models, options).text, "gyroscope_noise_density") ==

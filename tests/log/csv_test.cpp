@@ -395,6 +395,20 @@ TEST_CASE("any delimiter, line end and decimal mark give the same samples") {
       }
 }
 
+TEST_CASE("a last row that the end of the file cuts is left out and said, if there was a table before it") {
+  std::string table = "t,x,y\n";
+  for (int k = 0; k < 20; ++k) table += std::to_string(k) + ",0.5," + std::to_string(k % 3) + "\n";
+  for (const char* rest : {"20", "20,", "20,0.2", "20,-"}) {
+    CAPTURE(rest);
+    const auto r = read_text(table + rest);
+    CHECK(r.samples.at(0).size() == 20);
+    REQUIRE(count(r, "no_final_newline") == 1);
+    CHECK_THAT(r.info.warnings.find("no_final_newline")->sentence, Catch::Contains("the row is left out"));
+  }
+  CHECK_THROWS_WITH(read_text(table + "20,0.2\n"), Catch::Contains("E0304"));   // a whole line
+  CHECK_THROWS_WITH(read_text("t,x,y\n0,1,2\n1,2"), Catch::Contains("E0304"));  // not a table yet
+}
+
 TEST_CASE("a last line without line end is kept and said, unless its last cell is seen to be whole") {
   for (const char* text : {"t,x\n1.0,2.0\n2.0,3.0\n3.0,4.", "t,x\n1.0,2.0\r\n2.0,3.0\n3.0,4", "a\n1\n2\n4"}) {
     const Recording r = read_text(text);

@@ -340,6 +340,18 @@ TEST_CASE("whole numbers in steps of a minute are milliseconds where a gyroscope
           Approx(1.0 / seconds));
 }
 
+TEST_CASE("whole numbers in steps of ten to thirty are seconds where thermometers are read") {
+  const auto unit_of = [](const std::string& head, int step) {
+    std::string text = head + "\n";
+    for (int k = 0; k < 40; ++k) text += fmt::format("{},{}.5,{}.25\n", step * k, 20 + k % 3, 40 + k % 5);
+    return test::read_text(text).info.time.unit;
+  };
+  for (const int step : {10, 20, 30, 60}) CHECK(unit_of("time,in (°C),out (°C)", step) == "s");
+  CHECK(unit_of("time,temp[degC],humidity[%]", 30) == "s");
+  CHECK(unit_of("time,temp[degC],gx[deg/s]", 10) == "ms");
+  CHECK(unit_of("time,temp[degC],x", 10) == "ms");
+}
+
 TEST_CASE("a temperature that rises and a row counter are no time") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0, 0.05);

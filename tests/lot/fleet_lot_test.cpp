@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "libchar/core/error.hpp"
+#include "libchar/core/text/readable.hpp"
 #include "tests/lot/made_fleet.hpp"
 
 using namespace libchar;
@@ -109,6 +110,9 @@ TEST_CASE("a device that does not belong to its fleet is named with its reason, 
   CHECK(records[lot.worst[0].recording].device == "imu41");
   CHECK_THAT(lot.worst[0].reasons[0], Contains("gyro_x: Bias instability") && Contains(" deg/h, ") &&
                                           Contains("times that of the others (p < 0.0001)"));
+  // The number of the device's own report, not that of the comparison.
+  CHECK_THAT(lot.worst[0].reasons[0],
+             Contains(" " + number_text(records[40].channels[0].values[1].value * 3600) + " deg/h, "));
   CHECK(find(lot, "gyro_y", DeviceQuantity::white_noise).outliers[0].ratio == Approx(1.5).epsilon(0.2));
   CHECK(lot.stands_out[16]);
   CHECK_FALSE(lot.stands_out[17]);

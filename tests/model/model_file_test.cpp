@@ -154,6 +154,12 @@ TEST_CASE("model files: Kalibr's and imu_utils' are read, each by its own conven
   const auto fork = read_model_list(write("c.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + axes));
   CHECK(*fork[0][Term::white].value == 4.0e-3);
   CHECK(*fork[0][Term::walk].value == 2.0e-5);
+  const std::string mean = "  avg-axis:\n    gyr_n: 4.0e-3\n    gyr_w: 2.0e-5\n";
+  const auto means = read_model_list(write("d.yaml", "%YAML:1.0\n---\ndensities: true\nGyr:\n" + mean));
+  REQUIRE(means.size() == 1);  // for all three axes
+  CHECK(means[0].channel == "gyr");
+  CHECK(means[0].axis.empty());
+  CHECK(*means[0][Term::white].value == 4.0e-3);
 }
 
 TEST_CASE("model file: a log in its place is told where models come from, however long it is") {

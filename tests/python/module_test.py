@@ -296,6 +296,10 @@ class TakesWhatPeopleHave(unittest.TestCase):
         self.assertEqual([f.name for f in stamped], log.names)
         curve = libchar.allan(gone)[0]
         self.assertAlmostEqual(curve.tau_s[0], 0.02)  # rate and gap by the stamps
+        gone.columns = ["Gyro Z (deg/s)", "acceleration (left)"]
+        for named in (gone, gone.reset_index(drop=True)):
+            self.assertEqual([(c.name, c.unit) for c in libchar.allan(named, 50)],
+                             [("Gyro Z (deg/s)", "deg/s"), ("acceleration (left)", "")])
         for result in (curve, libchar.psd(log)[0], libchar.characterize(log)):
             self.assertGreater(len(result.to_dataframe()), 1)
 
@@ -394,11 +398,20 @@ class HasEveryVerb(unittest.TestCase):
         found = libchar.inspect(IMU)
         self.assertEqual((found["rate_hz"], found["samples"]), (told["rate_hz"], told["samples"]))
         self.assertEqual(libchar.inspect(self.log)["samples"], told["samples"])
+        self.assertEqual(libchar.inspect(self.log)["file"], "memory")
+        self.assertRegex(repr(found), r"^\S*imu_at_rest.csv: file, (?s:.)*\ngyro_z +deg/s")
 
     def test_models_and_exports(self):
         model = self.result.models()[0]
         self.assertEqual(model.channel, "gyro_z")
         self.assertEqual(len(libchar.simulate(model, duration_s=10)), 500)
+        self.assertIn("<pre>", model._repr_html_())
+        for several in (self.result, self.result.models()):
+            made = libchar.simulate(several, duration_s=10, seed=3)
+            self.assertEqual([*made][:2], ["gyro_z", "accel_z"])
+            self.assertEqual((made.file, len(made)), ("simulation", 500))
+        self.assertEqual(libchar.simulate([model], duration_s=10)["gyro_z"].tolist(),
+                         libchar.simulate(model, duration_s=10)["gyro_z"].tolist())
         text = self.result.export(to="kalibr", axis=["gyro_z=g", "accel_z=a"], anyway=True)
         self.assertIn("gyroscope_noise_density", text)
         self.assertIn("gyro_z", model.export("matlab", axis="gyro_z=g"))
@@ -412,11 +425,17 @@ class HasEveryVerb(unittest.TestCase):
         self.assertEqual([side["name"] for side in found["sides"]], ["ours", "new"])
         self.assertTrue(found.verdict)
         self.assertIn("<html", found.html)
+        self.assertTrue(repr(found).startswith(found.verdict))
+        table = found.to_dataframe()
+        self.assertEqual(list(table["sensor"])[:2], ["ours", "new"])
+        self.assertIn("white_noise", list(table["term"]))
         model, curve = self.result.models()[0], libchar.allan(other)[0]
         self.assertTrue(libchar.compare(model, curve, channels=["gyro_z"]).verdict)
         logs = [libchar.simulate(self.result.models()[0], duration_s=300, seed=seed) for seed in range(3)]
         found = libchar.lot(*logs, channel="gyro_z")
         self.assertEqual(found["devices"], 3)
+        self.assertIn("white_noise", list(found.to_dataframe()["what"]))
+        self.assertIn("<table", found._repr_html_())
 
     def test_pairs_and_arrays(self):
         rng = np.random.default_rng(2)
@@ -453,9 +472,11 @@ class HasEveryVerb(unittest.TestCase):
             self.assertIn(">model<", raw.svg)
             self.assertIn("<svg", libchar.plot(noise(), noise(seed=2), rate=100).svg)
             self.assertIn("<svg", self.log.plot(kind="trace", channel="gyro_z").svg)
+            self.assertIn("<svg", self.result["gyro_z"].plot(kind="residuals").svg)
             self.assertIn("<svg", libchar.plot(IMU, channel="gyro_z").svg)
         self.assertEqual(list(libchar.fit(self.log)[0].to_dataframe()["coefficient"])[0], "white_noise")
-        for shown in (self.log, self.result, libchar.fit(self.log)[0], libchar.allan(self.log)[0]):
+        for shown in (self.log, self.result, self.result["gyro_z"], libchar.fit(self.log)[0],
+                      libchar.allan(self.log)[0]):
             self.assertRegex(shown._repr_html_(), "<(table|svg)")
 
 
@@ -526,7 +547,7 @@ class Refuses(unittest.TestCase):
                      lambda: libchar.allan(x, 1, taus="eighth")):
             self.refused(libchar.UsageError, call, "E0202")
         self.assertRaises(ValueError, lambda: libchar.allan(x, 1, type="odev"))
-        for call in (lambda: libchar.fit(x, 1, units=3), lambda: libchar.simulate(["a", "b"]),
+        for call in (lambda: libchar.fit(x, 1, units=3), lambda: libchar.simulate(["a", 3]),
                      lambda: libchar.replay({"a": x}, rate=1, sensors=[1])):
             self.refused(libchar.UsageError, call, "E0208")
 

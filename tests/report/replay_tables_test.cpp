@@ -179,3 +179,10 @@ TEST_CASE("replay page: the same result gives the same bytes") {
   const ReplayResult r = test::synthetic_replay(6, 2);
   CHECK(replay_html(r) == replay_html(r));
 }
+
+TEST_CASE("replay page: heads that are names of sensors and methods stay as they are written") {
+  const ReplayResult r = test::synthetic_replay();
+  const std::string page = replay_html(r);
+  for (const SensorResult& s : r.sensors) CHECK(test::count(page, "<th scope=\"col\">" + s.name + "</th>") >= 1);
+  CHECK(test::count(page, "(false_alarm_s)") == 0);
+}

@@ -82,7 +82,7 @@ std::string program_help(const ProgramUsage& program, std::size_t width) {
   text += fmt::format("Usage: {} VERB [OPTION…] …\n\nVerbs:\n", program.name);
   std::vector<HelpRow> rows;
   for (const VerbUsage& verb : program.verbs) rows.push_back({typed(verb.name), verb.what});
-  rows.push_back({"help VERB", "show what a verb does, its options with units and defaults, examples"});
+  rows.push_back({"help VERB", "Show what a verb does, its options with units and defaults, examples"});
   text += help_rows(rows, width) + "\nOptions:\n";
   rows.clear();
   for (const OptionUsage& option : program.options) rows.push_back({flags_and_value(option), option_text(option)});

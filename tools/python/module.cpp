@@ -18,8 +18,10 @@
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
+#include "libchar/core/units.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/libchar.hpp"
+#include "libchar/log/detail/column_name.hpp"
 #include "libchar/log/recording_json.hpp"
 #include "libchar/replay/fusion_file.hpp"
 #include "libchar/report/html/html_report.hpp"
@@ -483,6 +485,12 @@ void raise_error(const Error& error) {
   PyErr_SetObject(g_errors[which], made.ptr());
 }
 
+/// The unit that the name of a column ends in, "" where that is not one: "Gyro X (deg/s)".
+std::string unit_of_name(const std::string& column) {
+  const std::string unit = name_and_unit(column).second;
+  return find_unit(unit) ? unit : "";
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_libchar, module) {
@@ -512,6 +520,7 @@ PYBIND11_MODULE(_libchar, module) {
   module.def("set_errors", &set_errors);
   module.def("version", [] { return std::string(version()); });
   module.def("build", &build);
+  module.def("unit_of_name", &unit_of_name);
   module.def("read", &read);
   module.def("characterize_file", &characterize_file);
   module.def("characterize_columns", &characterize_columns);

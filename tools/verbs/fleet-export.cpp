@@ -69,7 +69,7 @@ std::function<void()> export_options(VerbOptions& options, Session& session) {
       .add_choice("--to", verb->engine, engine_names(),
                   "job arrays of Slurm, a Snakefile, or commands for GNU parallel")
       .required();
-  options.add_flag("--json", verb->json, "print what was written as JSON");
+  options.add_flag("--json", verb->json, "print the result as JSON");
   options.add_duration("--job", verb->job_s, "run time of a job; it gets as many units as fit (default: 60s)");
   options.add_count("--at-once", verb->jobs.at_once, "jobs at a time (default: the engine's choice)");
   options.add_count("--retries", verb->retries, "retries of a failed job (default: 3)", 0, 100);

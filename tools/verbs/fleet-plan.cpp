@@ -138,7 +138,7 @@ std::function<void()> plan_options(VerbOptions& options, Session& session) {
           "file with digests of logs, as sha256sum prints them: the plan does not compute them; workers check them")
       .value_name("FILE")
       .one_value_each();
-  options.add_flag("--json", verb->json, "print what was planned as JSON");
+  options.add_flag("--json", verb->json, "print the plan as JSON");
   options.add_flag("--by-channel", verb->plan.by_channel, "one unit per channel of a log");
   options.add_flag("--no-reports", verb->no_reports,
                    "coefficients only: no page, no tables and no models of each device");

@@ -130,7 +130,7 @@ std::function<void()> run_options(VerbOptions& options, Session& session) {
                     1, 1024);
   options.add_flag("--strict", session.strict,
                    "end with exit code 3 after a warning about a log, once all units are done");
-  options.add_flag("--json", verb->json, "print what was done as JSON");
+  options.add_flag("--json", verb->json, "print the result as JSON");
   return [&session, verb] { run_run(session, *verb); };
 }
 

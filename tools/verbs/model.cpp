@@ -181,7 +181,7 @@ void add_choices(VerbOptions& sub, ModelVerb& verb) {
                "one number for three axes: the largest, their root mean square, or one axis (default: auto, one per "
                "axis if the consumer takes three, else max)");
   sub.add_texts("--axis", verb.places,
-                "meaning of a channel whose name and unit do not tell: gx … gz, ax … az, mx … mz; g, a, m alone for "
+                "meaning of a channel if name and unit do not show it: gx … gz, ax … az, mx … mz; g, a, m alone for "
                 "all three axes")
       .value_name("CHANNEL=PLACE")
       .one_value_each()
@@ -239,7 +239,7 @@ void add_only(VerbOptions& options, const ModelVerb& verb) {
 std::function<void()> model_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ModelVerb>();
   options.add_texts("FILE", verb->files,
-                    "model files (.sensor.yaml, .json), or what characterize wrote (its folder, report.json); the axes "
+                    "model files (.sensor.yaml, .json), or results of characterize (folder, report.json); the axes "
                     "of one device together. With --to c the folder of a replay or its fusion.yaml");
   options.add_text("--algorithm", verb->algorithm, "c: method of the replay (default: the recommended one)")
       .value_name("NAME");
@@ -261,7 +261,7 @@ VerbEntry verb_model() {
           "model",
           "Show a sensor model, or export it (--to) for Kalibr, Gazebo, VINS and others",
           model_options,
-          {{"what a model says", "sensorchar model report/gyro_z.sensor.yaml"},
+          {{"the contents of a model", "sensorchar model report/gyro_z.sensor.yaml"},
            {"the numbers of an IMU for Kalibr, from its z axes",
             "sensorchar model report --to kalibr --axes z -o imu.yaml"}}};
 }

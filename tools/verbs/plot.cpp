@@ -175,12 +175,12 @@ void add_only(VerbOptions& options, const PlotVerb& verb) {
 std::function<void()> plot_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<PlotVerb>();
   options.add_texts("FILE", verb->files,
-                    "recordings, report.json of characterize or replay (or its folder), what allan or psd print, "
+                    "recordings, report.json of characterize or replay (or its folder), output of allan or psd, "
                     "curves.csv, sensor models; several are drawn over each other");
   options.add_text("-o,--output", verb->output, "the figure: .svg, .pdf or .png (- is standard output)")
       .value_name("FILE");
   options.add_choice("--kind", verb->figure.kind, figure_words(),
-                     "which figure (default: allan of a characterization, front of a replay)");
+                     "figure to draw (default: allan of a characterization, front of a replay)");
   options.add_flag("--list", verb->list, "list the figures").alone();
   options
       .add_texts("-c,--channel", verb->figure.channels,

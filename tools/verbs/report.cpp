@@ -104,7 +104,7 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
   const auto verb = std::make_shared<ReportVerb>();
   options
       .add_texts("FILE", verb->files,
-                 "report.json of characterize or replay (runs.json of pooled runs, what fit --json prints) or its "
+                 "report.json of characterize or replay (runs.json of pooled runs, output of fit --json) or its "
                  "folder, a recording, or sensor models; several make the table of compare")
       .required();
   const Option markdown = options.add_flag("--markdown", verb->markdown, "a table in Markdown (default)");
@@ -119,7 +119,7 @@ std::function<void()> report_options(VerbOptions& options, Session& session) {
   options.add_texts("-c,--channel", verb->channels, "channels by name or pattern such as 'gyro*' (default: all)")
       .separated_by_commas()
       .once_each();
-  options.add_text("-o,--output", verb->output, "write there instead of to stdout").value_name("FILE");
+  options.add_text("-o,--output", verb->output, "output file (default: standard output)").value_name("FILE");
   options.add_flag("--force", verb->force, "overwrite the output file");
   add_recording_options(options, session, verb->analysis, verb->files);
   return [verb, &session] { run_report(session, *verb); };

@@ -65,7 +65,7 @@ std::set<std::string> others_there(const std::vector<OutputFile>& outputs, const
   return others;
 }
 
-/// What the documents that this set replaces name as theirs and its own do not: regular files of the folder.
+/// Regular files that the documents being replaced list as theirs and the new ones do not; they are removed.
 std::vector<std::string> stale_files(const std::vector<OutputFile>& outputs, const std::vector<WholeFile*>& streamed) {
   const auto replaces = [](const OutputFile& output) {
     std::error_code ignored;

@@ -127,7 +127,7 @@ Moments::Central Moments::merged(const Central& a, const Central& b) {
   if (a.n == 0) return b;
   if (b.n == 0) return a;
   if (a.exponent != b.exponent) {
-    // The range only grows; a unit of its own for small samples ends where larger ones come.
+    // The range never shrinks; the special unit of small samples is dropped when larger ones arrive.
     return merged(in_unit(a, b.exponent), b);
   }
   Central c;

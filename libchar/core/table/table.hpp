@@ -59,6 +59,7 @@ struct Table {
     std::string about = {};  ///< what it means, where the pointer rests
     unsigned doors = kTerminal | kDocument | kPage;
     bool folded = false;  ///< on a page, at first
+    bool name = false;    ///< the head names something (a sensor, a method): kept as written
   };
   enum class Kind {
     plain,

@@ -263,7 +263,7 @@ GaussMarkov gauss_markov(const PlacedModel& placed, const ExportOptions& options
   out.origin = k > 0 ? fmt::format("random_walk with a correlation time of {}{}",
                                    options.correlation_s ? "your choice"
                                    : record > 0          ? "ten records"
-                                                         : "10⁶ s, for the length of the record is unknown",
+                                                         : "10^6 s, because the length of the recording is not known",
                                    b > 0 ? "; bias_instability is left out" : "")
                      : "neither bias_instability nor random_walk was detected: no varying bias";
   return out;
@@ -318,8 +318,9 @@ ImuFigures imu_figures(const SensorGroup& group, const ExportOptions& options, c
     const std::string key = fmt::format("the {}'s {}", triad.kind, kTermNames[static_cast<std::size_t>(term)].key);
     ExportFigure figure = positive_figure(triad, term, options, consumer, key);
     if (figure.limit)
-      notes.push_back(fmt::format("{} was not detected; its upper 95 % limit {} is written, for {} needs a number > 0",
-                                  key, shortest(rounded(*figure.value, 3)), consumer));
+      notes.push_back(
+          fmt::format("{} was not detected; its upper 95 % limit {} is written, because {} needs a number > 0", key,
+                      shortest(rounded(*figure.value, 3)), consumer));
     return figure;
   };
   out.gyroscope_white = take(*group.gyroscope, Term::white);

@@ -142,8 +142,13 @@ std::string row_lines(std::string_view target, const ImuFigures& f, std::string_
     for (const ConsumerRow* row : rows_of(target, sensor)) {
       const ExportFigure& figure = figure_of(f, sensor, row->term);
       const double rate_hz = std::string_view(sensor) == "gyroscope" ? f.gyroscope_rate_hz : f.accelerometer_rate_hz;
+      const double value = row_value(*row, *figure.value, {.rate_hz = rate_hz});
+      std::string origin = figure.origin;
+      // Its numbers are those of the model: where the file has another function of them, their name comes first.
+      if (!origin.empty() && value != *figure.value)
+        origin = fmt::format("{}: {}", kTermNames[static_cast<std::size_t>(row->term)].key, origin);
       out += indent;
-      out += yaml_line(row->key, row_value(*row, *figure.value, {.rate_hz = rate_hz}), file_unit(*row), figure.origin);
+      out += yaml_line(row->key, value, file_unit(*row), origin);
     }
   return out;
 }

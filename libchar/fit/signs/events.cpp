@@ -119,7 +119,7 @@ void fit_both(const Search& search, std::vector<EventShape> shapes, Hypothesis& 
   now.deviance = deviance_of(now.fit.rest, now.power);
 }
 
-/// The best place of a kind beside a regression, its score and the threshold of that.
+/// Most likely place of an event of one kind, given the regression; its score and threshold.
 struct Candidate {
   EventShape shape;
   double score = 0, threshold = 0;

@@ -100,7 +100,7 @@ class NpzFile final : public ArrayContainer {
     std::uint64_t bytes = header.item_bytes;
     bool fits = true;
     for (const std::uint64_t extent : header.shape) fits = fits && !__builtin_mul_overflow(bytes, extent, &bytes);
-    // A dimension of 0 hides what is senseless beside it, and the array is left out.
+    // If one dimension is 0 the others are not checked, and the array is left out.
     if (fits && bytes <= packed.stretch.bytes - header.data_byte) return;
     throw input_error("E0410", where)
         .says("is truncated: its shape needs more than the {} bytes there are", packed.stretch.bytes - header.data_byte)

@@ -364,6 +364,9 @@ class CsvSource final : public RowSource {
       warnings.add("no_final_newline",
                    "the last line has no line end: if the file was cut, its last number may be cut too",
                    place_name(next_line_ + chunk.unended->line, chunk.unended->column));
+    if (chunk.cut)
+      warnings.add("no_final_newline", "the file ends in the middle of a row: the row is left out",
+                   place_name(next_line_ + chunk.cut->line, chunk.cut->column));
     for (std::size_t c = 0; c < plan_.channels; ++c) {
       missing_per_channel_[c] += chunk.missing_per_channel[c];
       fractional_[c] |= chunk.fractional[c];

@@ -19,7 +19,7 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 
 /// Unpacks `packed` into `to`, which grows with what comes out and never beyond `most`. Returns
 /// what is wrong ("" = the stream came to its end); `to` holds what came before that. `method` is
-/// one that `why_not_packed` has nothing against, and not "none".
+/// a supported compression (`why_not_packed` returns nothing for it), not "none".
 std::string unpack(std::string_view method, std::span<const std::byte> packed, std::uint64_t most,
                    std::vector<std::byte>& to);
 

@@ -169,6 +169,22 @@ bool inertial(const TableFront& table) {
   return axes == 3;
 }
 
+/// Thermometers, and what is logged with them: every few seconds or minutes, not 33 times a second.
+bool weather(const TableFront& table, std::size_t time) {
+  bool any = false;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const ColumnLabel& column = table.columns[c];
+    if (c == time || column.text || column.calendar) continue;
+    const auto unit = find_unit(column.unit.empty() ? name_and_unit(column.name).second : column.unit);
+    if (!unit) return false;
+    const Quantity q = unit->quantity;
+    any = any || q == Quantity::temperature;
+    if (q != Quantity::temperature && q != Quantity::ratio && q != Quantity::pressure && q != Quantity::concentration)
+      return false;
+  }
+  return any;
+}
+
 /// Whole numbers with one step, of no usual interval in any unit.
 bool counts_of_a_timer(const FirstValues& first) {
   const std::vector<double>& values = first.values;
@@ -302,6 +318,8 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     constexpr double kSlow = 5;  // s
     if (guess == kStampUnits[0] && first.integers && step > kSlow && !says_a_date(first) && inertial(table))
       guess = kStampUnits[1];
+    if (guess == kStampUnits[1] && first.integers && usual_interval(step) && weather(table, column))
+      guess = kStampUnits[0];
     unit.ns = comparable ? unit_of_rate(guess, first.values, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     const std::int64_t other = comparable || first.integers ? 0 : unit_by_another_clock(table, column, step);

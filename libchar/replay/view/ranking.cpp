@@ -253,8 +253,8 @@ SensorSentence sensor_sentence(const ReplayResult& r) {
   if (ratio < 1 - kPracticalTolerance && interval.high < 1)
     return {fmt::format("Fusion pays: {} is {} (95 %: {} to {}) below that of {}.", whose, percent_text(1 - ratio),
                         percent_text(1 - interval.high), percent_text(1 - interval.low), alone)};
-  return {fmt::format("Whether fusion pays is not resolved: {} is {} times that of {} (95 %: {} to {}).", whose,
-                      brief_text(ratio), alone, brief_text(interval.low), brief_text(interval.high))};
+  return {fmt::format("The recording does not show whether fusion pays: {} is {} times that of {} (95 %: {} to {}).",
+                      whose, brief_text(ratio), alone, brief_text(interval.low), brief_text(interval.high))};
 }
 
 std::string offsets_sentence(const ReplayResult& r) {

@@ -280,7 +280,8 @@ std::string histogram_figure(const Histogram& h, const LotAxis& axis, const std:
   upright(axis.mean, Ink::green, "mean");
   upright(axis.limit, Ink::vermilion, "limit");
   std::string caption = beyond_text(axis, chart.x) + "Histogram of the devices' values";
-  if (h.below + h.above > 0) caption += fmt::format("; {} further off to the left, {} to the right", h.below, h.above);
+  if (h.below > 0) caption += fmt::format("; {} lower than shown", h.below);
+  if (h.above > 0) caption += fmt::format("; {} higher than shown", h.above);
   return drawn_figure(chart, kHalf, caption + ".");
 }
 

@@ -188,7 +188,7 @@ std::string detection_figure(const ReplayView& view) {
          plot_figure("detection", 0,
                      {"Delay against false alarms", "delay", "s",
                       "Delay from each known fault to its detection, for one false alarm of the array in the time on "
-                      "the axis (false_alarm_s). No point: not found while it lasted."},
+                      "the axis. No point: not found while it lasted."},
                      view.title) +
          "</div>\n";
 }

@@ -103,7 +103,7 @@ std::string curves_of(const RunsReport& report, const PooledChannel& c) {
                                   name + (run.differs ? " (differs)" : ""), run.differs));
   }
   const std::string unit = c.channel.unit.empty() ? "U" : c.channel.unit;
-  return curves_figure(std::move(curves), std::string(name_of(longest.type)) + ", " + unit,
+  return curves_figure(std::move(curves), std::string(deviation_row(longest.type).title) + ", " + unit,
                        "Allan curves of all runs of " + c.channel.name);
 }
 

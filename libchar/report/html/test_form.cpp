@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "libchar/allan/deviation_types.hpp"
+#include "libchar/core/noise_terms.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/shown.hpp"
@@ -37,6 +40,22 @@ double number_at(const Json& in, const char* pointer) {
   return value.is_number() ? value.get<double>() : 0;
 }
 
+/// "N white noise" of white_noise; a term of a later version stays as written.
+std::string term_in_words(const std::string& key) {
+  const auto known =
+      std::find_if(kTermNames.begin(), kTermNames.end(), [&](const TermName& t) { return t.key == key; });
+  if (known == kTermNames.end()) return key;
+  std::string words = fmt::format("{} {}", known->letter, key);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// "Overlapping Allan deviation" of oadev.
+std::string deviation_in_words(const std::string& name) {
+  const std::optional<DeviationType> type = deviation_type(name);
+  return type ? std::string(deviation_row(*type).title) : name;
+}
+
 std::string part(int number, const char* head, const std::string& body) {
   return fmt::format("<section class=\"form\">\n<h2>{}. {}</h2>\n{}</section>\n", number, head, body);
 }
@@ -65,12 +84,12 @@ Table method(const Json& document) {
   for (const Json& channel : found(document, "/fit/channels"))
     if (const std::string how = text_at(channel, "/method"); !how.empty())
       fits.push_back(text_at(channel, "/name") + ": " + how);
-  for (const Json& term : found(document, "/config/fit/terms")) terms.push_back(text_at(term, ""));
+  for (const Json& term : found(document, "/config/fit/terms")) terms.push_back(term_in_words(text_at(term, "")));
   for (const Json& word : found(document, "/command")) words.push_back(text_at(word, ""));
   Table out("|");
   out.add({"Coefficients", fmt::format("{}", fmt::join(fits, "; "))});
   if (!terms.empty()) out.add({"Terms offered to the fit", fmt::format("{}", fmt::join(terms, ", "))});
-  out.add({"Allan curve", text_at(document, "/allan/type") + ", 95 % intervals"});
+  out.add({"Allan curve", deviation_in_words(text_at(document, "/allan/type")) + ", 95 % intervals"});
   add_program(out, words);
   return out;
 }

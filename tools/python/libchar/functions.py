@@ -148,6 +148,7 @@ def _of_frame(frame: Any) -> Source:
 
 def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Names, channels: Names) -> dict[str, Any]:
     """Names, units and contiguous columns of what is in memory."""
+    framed = _is_frame(source) or _is_series(source)
     if _is_series(source):
         source = source.to_frame("c0" if source.name is None else str(source.name))  # type: ignore[union-attr]
     if _is_frame(source):
@@ -169,6 +170,8 @@ def _columns(source: Source, rate_hz: Optional[float], names: Names, units: Name
                                  "samples")
             found = {f"c{k}": column for k, column in enumerate(table)}
         unit_of = dict.fromkeys(found, "")
+    if framed:  # a frame keeps the names of a file, "Gyro X (deg/s)"
+        unit_of = {name: unit or _libchar.unit_of_name(name) for name, unit in unit_of.items()}
     if channels is not None:
         missing = [name for name in channels if name not in found]
         if missing:
@@ -239,6 +242,12 @@ def _on_disk(source: Any, rate_hz: Optional[float] = None, names: Names = None, 
             _libchar.write_recording(str(log), _columns(source, rate_hz, names, units, None), False)
         with program.known_as(log, name):
             yield str(log)
+
+
+def _document(verb: str, source: Any, log: str, words: Sequence[str]) -> dict[str, Any]:
+    """What the program prints of a log; samples in memory are named so, not by the file of the call."""
+    made = program.document(verb, [log, *words])
+    return made if _path(source) is not None else program.renamed(made, log, "memory")  # type: ignore[no-any-return]
 
 
 def _reading(arguments: Mapping[str, Any], in_memory: bool) -> dict[str, Any]:
@@ -344,7 +353,7 @@ def allan(source: Source, rate_hz: Optional[float] = None, *, type: str = "oadev
     rate_hz      sampling rate in Hz (rate is the same); not needed for a Recording or a log that has it
     type         adev, oadev, mdev, tdev, hdev, ohdev, totdev, …
     taus         octave, decade, dense, ten, or averaging times in s
-    data         what the samples are: rate, phase (its integral), frequency (in Hz, around nominal_frequency)
+    data         meaning of the samples: rate, phase (its integral), frequency (in Hz, around nominal_frequency)
 
     Deviations are in the unit of the channel. Raises NumericError when no channel has enough samples.
     """
@@ -441,29 +450,47 @@ def characterize(source: Source, rate_hz: Optional[float] = None, *, type: str =
     by_name = {c["name"]: _curve(c, curves.get("type", type)) for c in curves["channels"]}
     fits = {c["name"]: _fit(c) for c in kept.fits()["channels"]}
     units_of = {c["name"]: c["unit"] for c in document["recording"]["channels"]}
-    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), findings) for name,
-               findings in kept.findings()]
+    reports = [ChannelReport(name, units_of.get(name, ""), fits.get(name), by_name.get(name), findings, document) for
+               name, findings in kept.findings()]
     return Characterization(document["verdict"], reports, document, kept.seconds(), kept)
 
 
-def simulate(model: Union[str, "os.PathLike[str]"], *, duration_s: float = 3600, rate_hz: Optional[float] = None,
+def _simulated(models: Sequence[Any], options: Mapping[str, Any]) -> Recording:
+    """Sensors of several models in one recording."""
+    with program.folder() as place, contextlib.ExitStack() as kept:
+        texts = [Model(one) if isinstance(one, str) and "\n" in one else one for one in models]
+        paths = [kept.enter_context(_on_disk(one, name=f"model {k + 1}")) for k, one in enumerate(texts)]
+        words = {"duration": options["duration_s"], "rate": options["rate_hz"], "seed": options["seed"],
+                 "devices": options["devices"], "truth": options["truth"], "fault": options["faults"]}
+        made = place / "simulation.f64"
+        program.run("simulate", [*paths, *program.words_of(words), "--no-scene", f"--output={made}"])
+        return dataclasses.replace(read(made), file="simulation")
+
+
+def simulate(model: Any, *, duration_s: float = 3600, rate_hz: Optional[float] = None,
              seed: int = 1,
              devices: int = 1, truth: Optional[str] = None, faults: Names = None) -> Recording:
-    """Devices of one sensor model, the truth as last channel (`sensorchar simulate`). The same seed gives the
+    """Devices of a sensor model, the truth as last channel (`sensorchar simulate`). The same seed gives the
     same samples.
 
-    model       path of a model (.sensor.yaml), or its text, as `Characterization.models()` has it
+    model       path of a model (.sensor.yaml), or its text, as `Characterization.models()` has it; a list of models,
+                or a Characterization: one channel for each
     duration_s  length in s
     rate_hz     sampling rate in Hz; None: the model's
     truth       what the sensors measure: "0.5", "sine,amplitude=2,frequency_hz=0.1" (docs/scenes.md)
     faults      "SENSOR:KIND=VALUE@FROM..TO", times in s
     """
-    if not isinstance(model, (str, os.PathLike)):
-        raise UsageError(f"model: the path or the text of one model was expected, this is a {_kind(model)}", "E0208",
-                         "model")
-    text = os.fspath(model)
     options = {"duration_s": float(duration_s), "rate_hz": rate_hz, "seed": seed, "devices": devices, "truth": truth,
                "faults": _listed(faults, "faults")}
+    several = model.models() if isinstance(model, Characterization) else model
+    if isinstance(several, (list, tuple)) and several and all(isinstance(one, (str, os.PathLike)) for one in several):
+        if len(several) > 1:
+            return _simulated(several, options)
+        model = several[0]
+    if not isinstance(model, (str, os.PathLike)):
+        raise UsageError(f"model: the path or the text of a model, or a list of these, was expected, this is a "
+                         f"{_kind(model)}", "E0208", "model")
+    text = os.fspath(model)
     return _recording(_libchar.simulate(text, "\n" in text, options))
 
 
@@ -502,7 +529,7 @@ def inspect(source: Source, rate_hz: Optional[float] = None, **options: Any) -> 
     recording, and its findings. rate_hz in Hz, of samples in memory; times in s; options are those of the program:
     topic="imu"."""
     with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
-        made = program.document("inspect", [log, *program.words_of(options)])
+        made = _document("inspect", source, log, program.words_of(options))
     return Document({**made["recordings"][0], "findings": made["findings"]})
 
 
@@ -560,15 +587,15 @@ def cross_spectrum(source: Source, a: str, b: str, rate_hz: Optional[float] = No
     """Cross spectrum and coherence of two channels (`sensorchar psd --cross A,B`): arrays frequency_hz in Hz, real,
     imaginary, phase_rad, coherence… Options are those of the program, such as segment="20s"."""
     with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
-        return Document(program.document("psd", [log, f"--cross={a},{b}", *program.words_of(options)]))
+        return Document(_document("psd", source, log, [f"--cross={a},{b}", *program.words_of(options)]))
 
 
 def cornered_hat(source: Source, rate_hz: Optional[float] = None, *, pairs: bool = False, **options: Any) -> Document:
     """The deviation of each of three or more devices from their differences (`sensorchar allan --hat`): `channels` with
     arrays tau_s in s, deviation, variance, variance_sd. pairs: the channels are the differences a - b, b - c, c - a."""
     with _on_disk(source, _rate_of([source], rate_hz, options)) as log:
-        words = [log, "--hat-pairs" if pairs else "--hat", *program.words_of(options)]
-        return Document(program.document("allan", words))
+        words = ["--hat-pairs" if pairs else "--hat", *program.words_of(options)]
+        return Document(_document("allan", source, log, words))
 
 
 def fuse(source: Source, learnt: Any, rate_hz: Optional[float] = None, **options: Any) -> Recording:

@@ -88,6 +88,15 @@ def _arrays(value: Any) -> Any:
     return [_arrays(item) for item in value]
 
 
+def renamed(value: Any, path: str, name: str) -> Any:
+    """With another name for a file, wherever a text holds it."""
+    if isinstance(value, dict):
+        return {key: renamed(item, path, name) for key, item in value.items()}
+    if isinstance(value, list):
+        return [renamed(item, path, name) for item in value]
+    return value.replace(path, name) if isinstance(value, str) else value
+
+
 def document(verb: str, words: Sequence[str]) -> Any:
     """The document that the program prints (docs/json.md), long lists of numbers as arrays."""
     return _arrays(json.loads(run(verb, [*words, "--json"])))

@@ -137,13 +137,16 @@ class Model(str):
         """The keys of a .sensor.json."""
         return {key: plain(value) for key, value in self._document().items()}
 
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self)}</pre>"
+
     def export(self, to: str, **options: Any) -> str:
-        """The text that another program takes: kalibr, gazebo, … (`sensorchar model --list`)."""
+        """The text that another program takes: kalibr, sdf, … (`sensorchar model --list`)."""
         return export([self], to, **options)
 
 
 def export(models: Sequence[str], to: str, **options: Any) -> str:
-    """The models of one device as the text that another program takes: kalibr, vins, gazebo, matlab, …
+    """The models of one device as the text that another program takes: kalibr, vins, sdf, matlab, …
     (docs/exports.md); options are those of `sensorchar model`, such as axes="rms", anyway=True.
 
     Raises InputError for a coefficient with a finding that makes it unfit."""
@@ -157,9 +160,28 @@ def _plain_document(document: dict[str, Any]) -> dict[str, Any]:
     return {key: plain(value) for key, value in document.items()}
 
 
-class Document(dict):  # type: ignore[type-arg]
+def _compared(document: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The terms of a comparison, one row per channel, term and sensor."""
+    rows = []
+    for group in document["groups"]:
+        for term in group["terms"]:
+            for one in term["sensors"]:
+                low, high = (None, None) if one["ci95"] is None else one["ci95"]
+                rows.append({"channel": group["name"], "term": term["term"], "sensor": one["name"],
+                             "value": one["value"], "low95": low, "high95": high, "upper95": one["upper95"],
+                             "unit": term["unit"], "status": one["status"], "lowest": one["name"] == term["lowest"]})
+    return rows
+
+
+def _of_lot(document: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The quantities of a lot: means and spreads."""
+    keys = ("group", "what", "mean", "spread", "spread_is", "unit", "counted", "members")
+    return [{key: one.get(key) for key in keys} for one in document["quantities"]]
+
+
+class Document(_Shown, dict):  # type: ignore[type-arg]
     """What a verb prints with --json (docs/json.md), long lists of numbers as arrays. `html`: its page, where it has
-    one."""
+    one. Shown as its verdict and its table."""
 
     html: str = ""
 
@@ -171,6 +193,23 @@ class Document(dict):  # type: ignore[type-arg]
     def to_dict(self) -> dict[str, Any]:
         """In plain Python types."""
         return _plain_document(self)
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame of its table: terms of a comparison, quantities of a lot, channels of a log."""
+        rows = self._table()[1]
+        return frame({key: [row[key] for row in rows] for key in (rows[0] if rows else ())})
+
+    def _table(self) -> tuple[str, list[dict[str, Any]]]:
+        if "groups" in self:
+            return self.verdict, _compared(self)
+        if "quantities" in self:
+            return self.verdict, _of_lot(self)
+        named = [one for one in self.get("channels", []) if isinstance(one, dict) and "name" in one]
+        simple = [key for key in (named[0] if named else {}) if
+                  all(isinstance(one.get(key), (str, int, float)) for one in named)]
+        about = str(self.get("file") or self.get("format") or "document")
+        above = self.verdict or f"{about}: {', '.join(self)}"
+        return above, [{key: one[key] for key in simple} for one in named]
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -371,6 +410,17 @@ class ChannelReport(_Result):
     fit: Optional[NoiseFit]
     allan: Optional[AllanCurve]
     findings: list[dict[str, Any]]
+    _document: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False, compare=False)
+
+    def plot(self, **options: Any) -> Figure:
+        """A figure of this channel; options are those of `sensorchar plot`: kind="psd", width="two-columns"…"""
+        return Figure([("report.json", json.dumps(self._document))], {"channel": self.name, **options})
+
+    def _repr_html_(self) -> str:
+        said = "".join(f"<p>{html.escape(one['severity'])}: {html.escape(one['sentence'])}</p>" for one in
+                       self.findings)
+        return ((self.fit._repr_html_() if self.fit else f"<p>{html.escape(self.name)}</p>") + said +
+                (self.allan._repr_html_() if self.allan else ""))
 
     def __repr__(self) -> str:
         shown = [repr(self.fit) if self.fit else self.name] + [repr(self.allan)] * (self.allan is not None)
@@ -399,7 +449,7 @@ class Characterization(_Shown, _Drawn):
         return [Model(text) for text in self._kept.models()]
 
     def export(self, to: str, **options: Any) -> str:
-        """The text that another program takes: kalibr, vins, gazebo, … (`libchar.export`)."""
+        """The text that another program takes: kalibr, vins, sdf, … (`libchar.export`)."""
         return export(self.models(), to, **options)
 
     def _rows(self) -> list[dict[str, Any]]:

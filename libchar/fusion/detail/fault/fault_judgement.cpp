@@ -207,8 +207,8 @@ void FaultDetector::act(const Isolation& found, int window) {
   sets_changed();
   int judged = 0;
   for (const Out out : out_) judged += out == Out::judged ? 1 : 0;
-  // More than half cannot be judged by the rest; nor a quarter where it is not stated that the record
-  // begins without faults.
+  // At most half of the sensors can be judged by the others; at most a quarter unless the record is stated
+  // to begin without faults.
   const int n = static_cast<int>(base_.n);
   if (judged > (fault_free_ > 0 ? n / 2 : std::max(1, n / 4)) || most_judged_together()) stand_down();
 }

@@ -303,7 +303,7 @@ class CarefulLines {
       to_.list_lines();
     } else if (!wanted(line) || (to_.plan.several_clocks && of_another_clock(line))) {
       leave_out(bytes);
-    } else if (row_or_drop(line, bytes)) {
+    } else if (row_or_drop(line, bytes, kind != LineEnd::none)) {
       to_.out.account.row_bytes += bytes;
       to_.note_line();
       ++to_.rows;
@@ -433,15 +433,30 @@ class CarefulLines {
     to_.list_lines();
   }
 
+  // The end of the file is in the middle of this row: as with lines of words, a table has to come before it.
+  void cut_off(const RowNotes& before, std::uint64_t bytes) {
+    static_cast<RowNotes&>(to_.out) = before;
+    to_.out.groups.resize(std::min(to_.out.groups.size(), to_.rows));
+    to_.out.account.comment_bytes += bytes;
+    to_.out.cut = Spot{to_.line, to_.out.problem->spot.column};
+    if (!to_.out.footer) to_.out.footer = std::move(to_.out.problem);
+    to_.out.problem.reset();
+    to_.list_lines();
+  }
+
   // A row that cannot be read is dropped where that is asked for; without stamps its instant stays,
   // as one of missing samples.
-  bool row_or_drop(std::string_view line, std::uint64_t bytes) {
+  bool row_or_drop(std::string_view line, std::uint64_t bytes, bool ended) {
     if (!to_.plan.drop_bad_rows) {
       const Account known = to_.out.account;
+      const std::optional<RowNotes> notes = ended ? std::nullopt : std::optional<RowNotes>(to_.out);
       if (careful_row(line)) return true;
       if (std::string& hint = to_.out.problem->problem.hint; hint.empty())
         hint = "`drop_bad_rows` leaves out and counts rows that cannot be read";
-      may_end(line, known, bytes);
+      if (notes && !like_footer(line) && split(line, to_.dialect.delimiter).size() < to_.plan.target.size())
+        cut_off(*notes, bytes);
+      else
+        may_end(line, known, bytes);
       return false;
     }
     RowNotes before = to_.out;

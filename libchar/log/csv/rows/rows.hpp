@@ -80,6 +80,7 @@ struct ParsedChunk : RowNotes {
   std::optional<RowProblem> problem;
   std::optional<RowProblem> footer;  ///< why the first line of words behind the last row is none: no problem at the end
   std::optional<Spot> unended;       ///< end of a last row that has no line end and may have been cut in its last cell
+  std::optional<Spot> cut;           ///< of a last row that the end of the file cuts: left out
   Tally blank, comment, repeated, mixed_end, bad, footers;
 };
 

@@ -230,7 +230,7 @@ std::string left_out_sentence(const QuantityLot& q) {
              number_text(100 * (left.factor - 1), 2), of_all, number_text(100 * left.spread_high, 3));
 }
 
-/// Whom the mean is of where not all have a value.
+/// Which devices the mean covers when some have no value.
 std::string of_all_sentence(const QuantityLot& q) {
   return fmt::format(
       "Mean and spread are those of {} of {} devices, undetected or doubtful ones included by the squares measured in "
@@ -309,7 +309,7 @@ void add_curve(const FleetReport& report, std::size_t recording, std::size_t cha
   const ChannelResult& result = report.recordings[recording].channels[channel];
   const auto unit = find_unit(result.channel.unit);
   AllanFigure& figure = figure_of(result.channel, unit, figures);
-  figure.deviation = name_of(result.allan.type);
+  figure.deviation = deviation_row(result.allan.type).title;
   const bool strong = stands_out(*report.lot, recording, channel);
   const std::string device = report.records[recording].device + (strong ? " (outlier)" : "");
   const std::size_t known = figure.devices.size(), k = place_in(figure.devices, device);

@@ -126,10 +126,9 @@ std::string group_plot(const CharacterizationView& view, const ChannelGroup& gro
     caption +=
         " Grey on the left, one shade per channel: averaging times at which a filter or noise outside the band also "
         "shapes the curve.";
-  return plot_figure(
-      "group", drawn,
-      {std::string(deviation_row(type).title), std::string(name_of(type)), shown_unit(group.unit), caption},
-      group.title.empty() ? "these channels" : group.title);
+  return plot_figure("group", drawn,
+                     {std::string(deviation_row(type).title), "deviation", shown_unit(group.unit), caption},
+                     group.title.empty() ? "these channels" : group.title);
 }
 
 std::string curve_plots(const ChannelView& view, std::size_t index) {
@@ -139,7 +138,7 @@ std::string curve_plots(const ChannelView& view, std::size_t index) {
   if (view.draws_allan)
     out += plot_figure(
         "allan", index,
-        {std::string(deviation_row(c.allan.type).title), std::string(name_of(c.allan.type)), view.shown_unit,
+        {std::string(deviation_row(c.allan.type).title), "deviation", view.shown_unit,
          "Points: measured, with 68 % and 95 % chi-square intervals; hollow where fewer than 5 degrees of freedom make "
          "them unreliable. Line: fitted model. Dashed: its terms; marked: where each coefficient is read off. Grey: "
          "outside the band in which the terms were fitted."},

@@ -18,8 +18,9 @@ namespace {
 bool is_small(char c) { return c >= 'a' && c <= 'z'; }
 
 /// "term" as "Term"; symbols ("p") stay as they are.
-std::string capital(std::string head) {
-  if (head.size() > 1 && is_small(head[0]) && (is_small(head[1]) || head[1] == ' '))
+std::string capital(const Table::Column& column) {
+  std::string head = column.head;
+  if (!column.name && head.size() > 1 && is_small(head[0]) && (is_small(head[1]) || head[1] == ' '))
     head[0] = static_cast<char>(head[0] - 'a' + 'A');
   return head;
 }
@@ -67,7 +68,7 @@ std::string html_cell(const Cell& cell, const Table::Column& column, std::size_t
   if (!css.empty()) out += fmt::format(" class=\"{}\"", fmt::join(css, " "));
   if (span > 1) out += fmt::format(" colspan=\"{}\"", span);
   if (look.sorted) out += fmt::format(" data-value=\"{}\"", csv_cell(cell.value));
-  if (look.cards && span == 1) out += " data-label=\"" + html_attribute(capital(column.head)) + "\"";
+  if (look.cards && span == 1) out += " data-label=\"" + html_attribute(capital(column)) + "\"";
   return out + ">" + cell_content(cell) + "</td>";
 }
 
@@ -102,7 +103,7 @@ std::string html_head(const Table& table, const Shown& shown) {
     any = any || !column.head.empty();
     out += fmt::format("<th scope=\"col\"{}{}>{}</th>", column.folded ? " class=\"more\"" : "",
                        column.about.empty() ? "" : " title=\"" + html_attribute(column.about) + "\"",
-                       html_text(capital(column.head)));
+                       html_text(capital(column)));
   }
   return any ? out + "</tr></thead>\n" : "";
 }

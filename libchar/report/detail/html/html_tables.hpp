@@ -54,7 +54,8 @@ struct PageTable {
   const char* rest = "";  ///< file beside the page that has all of them
 };
 
-/// Title, table and note. Heads begin with a capital; a table whose heads are all empty has none.
+/// Title, table and note. Heads begin with a capital, but names stay as they are; a table whose heads are all empty has
+/// none.
 std::string html_table(const Table& table, const PageTable& look = {});
 
 /// As many as a page has of a list of any length: a table has no more rows.

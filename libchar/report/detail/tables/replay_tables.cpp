@@ -154,11 +154,11 @@ Table input_table(const ReplayView& view, std::size_t j) {
 }
 
 void add_sensors(Table& table, const ReplayResult& r) {
-  for (const SensorResult& s : r.sensors) table.columns.push_back({s.name});
+  for (const SensorResult& s : r.sensors) table.columns.push_back({.head = s.name, .name = true});
 }
 
 void add_watching(Table& table, const ReplayView& view) {
-  for (const AlgorithmView* a : view.watching) table.columns.push_back({a->result->label});
+  for (const AlgorithmView* a : view.watching) table.columns.push_back({.head = a->result->label, .name = true});
 }
 
 }  // namespace
@@ -208,15 +208,19 @@ Table blind_table(const ReplayView& view) {
 Table weights_table(const ReplayView& view) {
   Table out("median over the run");
   add_sensors(out, *view.result);
-  out.columns.push_back({"distance"});
-  out.note =
-      "Distance: of weights, root mean square over the run of their Euclidean distance from the optimal fixed weights; "
-      "of standard deviations, root mean square of ln(variance / the sensor's mean square error).";
+  const bool far = std::any_of(view.final_rows.begin(), view.final_rows.end(),
+                               [](const FinalRow& final) { return std::isfinite(final.distance); });
+  if (far) out.columns.push_back({"distance"});
+  if (far)
+    out.note =
+        "Distance: of weights, root mean square over the run of their Euclidean distance from the optimal fixed "
+        "weights; "
+        "of standard deviations, root mean square of ln(variance / the sensor's mean square error).";
   for (const FinalRow& final : view.final_rows) {
     std::vector<Cell> row = {final.label};
     for (const double value : final.values) row.push_back(Cell::number(value));
-    row.resize(out.columns.size() - 1, "–");
-    row.push_back(Cell::number(final.distance, 3));
+    row.resize(out.columns.size() - (far ? 1 : 0), "–");
+    if (far) row.push_back(Cell::number(final.distance, 3));
     out.add(std::move(row));
   }
   return out;
