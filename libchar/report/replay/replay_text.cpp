@@ -149,8 +149,11 @@ std::string fuse_text(const FuseResult& result, const std::vector<std::string>& 
              : fmt::format(", {} with a standard deviation\n", percent(result.deviations, result.instants));
   for (const FusedSensor& sensor : result.sensors) {
     if (sensor.missing == 0 && sensor.out == 0) continue;
-    out += fmt::format("{}: missing {} of the time", printable(sensor.name), percent(sensor.missing, result.instants));
-    out += sensor.out > 0 ? fmt::format(", taken out {}\n", percent(sensor.out, result.instants)) : "\n";
+    out += printable(sensor.name) + ":";
+    if (sensor.missing > 0) out += fmt::format(" missing {} of the time", percent(sensor.missing, result.instants));
+    if (sensor.missing > 0 && sensor.out > 0) out += ",";
+    if (sensor.out > 0) out += fmt::format(" taken out {} of the time", percent(sensor.out, result.instants));
+    out += "\n";
   }
   for (const LearntInput& input : result.inputs)
     if (input.reference_offset)
