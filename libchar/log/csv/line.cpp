@@ -115,6 +115,7 @@ bool is_comment(std::string_view line, bool semicolons) {
 
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote) {
   std::vector<Field> fields;
+  if (delimiter != ' ') fields.reserve(static_cast<std::size_t>(std::count(line.begin(), line.end(), delimiter)) + 1);
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   const auto pad = [&](char c) { return blank(c) && (c != delimiter || delimiter == ' '); };
   const auto is_end = [&](char c) { return delimiter == ' ' ? blank(c) : c == delimiter; };

@@ -190,7 +190,9 @@ void choose_cells(Study& study, char separator) {
 TableStart table_start(const Study& study) {
   std::vector<Cells> lines, body;
   for (const Line& line : study.sample) lines.push_back(table_cells(study, line.text));
-  for (std::size_t i = lines.size() / 2; i < lines.size(); ++i)
+  constexpr std::size_t kCells = 2048, kFewest = 8;  // of the last lines, which say the kinds as well
+  const std::size_t most = std::max(kFewest, kCells / std::max<std::size_t>(study.columns, 1));
+  for (std::size_t i = std::max(lines.size() / 2, lines.size() - std::min(lines.size(), most)); i < lines.size(); ++i)
     if (lines[i].size() == study.columns) body.push_back(lines[i]);
   TableStart start = find_table_start(lines, column_kinds(body, study.columns, study.style()), study.style());
   if (study.options.header == "no") return {start.data, {}, {}};
