@@ -156,9 +156,9 @@ void CopiedRows::keep_last(const RowBlock& rows, Before& before) {
 }
 
 void CopiedRows::look(const RowBlock& rows) {
-  constexpr std::size_t kEnough = 1024;
+  constexpr std::size_t kPairs = 1024;
   const std::size_t seen = one_stamp_.all + unlike_.all;
-  for (std::size_t i = 0; i < rows.rows && seen + i <= kEnough; ++i) {
+  for (std::size_t i = 0; i < rows.rows && seen + i <= kPairs; ++i) {
     if (i == 0 && !looked_at_.any) continue;
     Pairs& pairs = rows.time_ns[i] == (i > 0 ? rows.time_ns[i - 1] : looked_at_.stamp) ? one_stamp_ : unlike_;
     ++pairs.all;

@@ -461,35 +461,29 @@ double interval_of_unlike(const FirstSteps& steps, const std::vector<std::size_t
   constexpr int kRounds = 4;
   if (starts.size() < 2 * kBehind) return slope;
   const double rows = mean_rows(starts);
-  const auto late = [&](std::size_t i, double ns) {
-    return steps.line[starts[i]] - static_cast<double>(starts[i]) * ns;
-  };
   double ns = slope;
+  const auto line = [&](std::size_t i) { return steps.line[starts[i]]; };
+  const auto late = [&](std::size_t i) { return line(i) - static_cast<double>(starts[i]) * ns; };
+  const auto stays_late = [&](std::size_t i, std::size_t first) {
+    if (i + kBehind > starts.size()) return false;
+    std::vector<double> before, behind;
+    for (std::size_t k = first; k < i; ++k) before.push_back(late(k));
+    for (std::size_t k = i; k < i + kBehind; ++k) behind.push_back(late(k));
+    return *std::min_element(behind.begin(), behind.end()) - middle_of(std::move(before)) >= kMissing * rows * ns;
+  };
   for (int round = 0; round < kRounds; ++round) {
-    double sum_ky = 0, sum_kk = 0;
+    std::vector<double> slopes;
     for (std::size_t from = 0, i = kBefore; from < starts.size(); ++i) {
-      std::vector<double> before;
-      for (std::size_t k = std::max(from + kBefore, i) - kBefore; k < i && i < starts.size(); ++k)
-        before.push_back(late(k, ns));
-      double least = i + kBehind <= starts.size() ? std::numeric_limits<double>::infinity() : 0;
-      const double usual = middle_of(std::move(before));
-      for (std::size_t k = i; k < i + kBehind && i + kBehind <= starts.size(); ++k)
-        least = std::min(least, late(k, ns) - usual);
-      if (i < starts.size() && least < kMissing * rows * ns) continue;
       const std::size_t end = std::min(i, starts.size());
-      double k_mean = 0, y_mean = 0;
-      for (std::size_t k = from; k < end; ++k) k_mean += static_cast<double>(starts[k]), y_mean += late(k, ns);
-      k_mean /= static_cast<double>(end - from);
-      y_mean /= static_cast<double>(end - from);
-      for (std::size_t k = from; k < end; ++k) {
-        const double off = static_cast<double>(starts[k]) - k_mean;
-        sum_kk += off * off;
-        sum_ky += off * (late(k, ns) - y_mean);
-      }
+      if (end < starts.size() && !stays_late(i, std::max(from + kBefore, i) - kBefore)) continue;
+      const std::size_t half = (end - from) / 2;  // a stall is as seldom among these as among the packets
+      for (std::size_t k = from; half >= kBefore / 2 && k + half < end; ++k)
+        slopes.push_back((line(k + half) - line(k)) / static_cast<double>(starts[k + half] - starts[k]));
       from = end;
-      i = end + 3;
+      i = end + kBefore / 2;
     }
-    if (sum_kk > 0) ns += sum_ky / sum_kk;
+    if (slopes.empty()) break;
+    ns = middle_of(std::move(slopes));
   }
   // Missing packets make the slope too long, by their share.
   constexpr double kMostLost = 0.2, kShorter = 0.02;
@@ -497,7 +491,8 @@ double interval_of_unlike(const FirstSteps& steps, const std::vector<std::size_t
 }
 
 /// Rows arrive in packets, or many share the stamp of a coarse clock. Those that are missing are told one by one.
-StampModel in_packets(const FirstSteps& steps, const std::vector<std::size_t>& starts, StampModel model) {
+StampModel in_packets(const std::vector<std::int64_t>& stamps, const FirstSteps& steps,
+                      const std::vector<std::size_t>& starts, StampModel model) {
   if (const double interval = packet_interval(steps, starts); interval > 0) model.ns = interval;
   const std::size_t alike = rows_of_packets(starts);
   model.packets = {alike > 0 ? static_cast<double>(alike) : mean_rows(starts), alike > 0};
@@ -508,7 +503,8 @@ StampModel in_packets(const FirstSteps& steps, const std::vector<std::size_t>& s
     model.longest_step = kNewPacket * model.packets.rows * model.ns;
     return model;
   }
-  model.ns = interval_of_unlike(steps, starts, model.ns);
+  // Where the link stalls, the rows of the pause come at once behind it.
+  model.ns = interval_of_unlike(steps_of(stamps, false), starts, model.ns);
   model.longest_step = std::max(model.ns, kNewPacket * step_of_half_the_time(steps));
   return model;
 }
@@ -578,7 +574,7 @@ std::optional<StampModel> long_packets(const std::vector<std::int64_t>& stamps, 
   model.pattern = StampPattern::packets;
   model.ns = model.span_ns = steps.mean;
   model.step_ns = inside;
-  model = in_packets(steps, starts, model);
+  model = in_packets(stamps, steps, starts, model);
   model.span_ns = model.ns;
   return model;
 }
@@ -658,14 +654,14 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
   if (!often && !equal_at_times && !common.equal && !beats) return out;
   if (beats || on_one_line(line, steps, common.ns))
     return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
-  if (common.equal) return in_packets(steps, packet_starts(steps), out);
+  if (common.equal) return in_packets(stamps, steps, packet_starts(steps), out);
   if (!often && !common.tidy) out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
   if (!often) return out;
   const StampPattern pattern = explanation(steps, common, found.gaps);
   if (pattern == StampPattern::steps) return out;
   const StampModel even = evenly(steps, common, pattern, line.slope, rate_hz);
   if (even.pattern != StampPattern::packets) return even;
-  const StampModel packets = in_packets(steps, packet_starts(steps), even);
+  const StampModel packets = in_packets(stamps, steps, packet_starts(steps), even);
   return packets.packets.rows > 1 ? packets : even;
 }
 
