@@ -280,6 +280,12 @@ double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
+  if (step_.even()) {  // inside packets, whose first rows scatter: does the line through these say another interval?
+    constexpr double kWithin = 5;
+    const StampModel::Packets& of = step_.model.packets;
+    const double error = of.scatter_ns * std::sqrt(12 * of.rows / rows) / rows;
+    if (std::abs(usual - step_.model.step_ns) <= kWithin * error) return step_.model.step_ns;
+  }
   const double ends = std::max(2.0 * static_cast<double>(step_.longest),  // where the log begins and ends in a packet
                                1.5 * step_.model.packets.rows * step_.ns);
   if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, ends)) return usual;

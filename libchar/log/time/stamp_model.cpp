@@ -498,7 +498,10 @@ StampModel in_packets(const std::vector<std::int64_t>& stamps, const FirstSteps&
   model.packets = {alike > 0 ? static_cast<double>(alike) : mean_rows(starts), alike > 0};
   if (alike > 0) {
     // However late they are, the line through all is that of their rate; where some are missing it is a start.
-    if (keeps_to_a_line(steps)) model.ns = line_through(steps.line).slope;
+    // Of a link that stalls the line lacks the stalls, which were taken for pauses.
+    constexpr double kStalls = 0.05;
+    const double slope = line_through(steps.line).slope;
+    if (keeps_to_a_line(steps) && std::fabs(slope - model.ns) < kStalls * model.ns) model.ns = slope;
     model.ns = interval_of_alike(steps, starts, alike, model.ns);
     model.longest_step = kNewPacket * model.packets.rows * model.ns;
     return model;
