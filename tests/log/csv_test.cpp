@@ -628,6 +628,13 @@ TEST_CASE("a table of several hundred kinds: each is a channel, also behind the 
   CHECK(log.info.time.rate_hz == Approx(1));
 }
 
+TEST_CASE("units that begin with those of a humidity are no comment") {
+  const Recording log = read_text("Humidity;gyro_y;Force\n%;deg/s;N\n21.4;21.0;-9.9\n21.5;21.2;-9.8\n21.4;21.1;-9.9\n");
+  REQUIRE(log.info.channels.size() == 3);
+  CHECK(log.info.channels[0].unit == "%");
+  CHECK(log.info.channels[2].unit == "N");
+}
+
 TEST_CASE("a title of few words above rows between blanks has no names") {
   std::string text = " Table Mountain, CO\n   40.125  -105.237 1689 m version 1\n";
   for (int i = 0; i < 60; ++i)
