@@ -177,13 +177,9 @@ void add_reading_options_without_channel(VerbOptions& verb, Session& session, li
   add_channel_values(verb, options);
   add_time_options(verb, options);
   add_dialect_options(verb, options, with_format);
-  verb.add_parsed(
+  verb.add_parsed_each(
           "--missing", "VALUE,…",
-          [&options](const std::string& text) {
-            std::istringstream marks(text);
-            for (std::string mark; std::getline(marks, mark, ',');)
-              options.missing.marks.push_back(libchar::parse_number(mark));
-          },
+          [&options](const std::string& mark) { options.missing.marks.push_back(libchar::parse_number(mark)); },
           "values that mean \"no reading\" in the log, such as -999 (default: none)")
       .group("Reading");
   add_accepting_flag(verb, "--overflow", "nan", options.missing.overflow,

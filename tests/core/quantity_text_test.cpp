@@ -101,6 +101,8 @@ TEST_CASE("typed durations, rates and sizes have their units") {
   CHECK(parse_rate_hz("1e9") == 1e9);
   CHECK(parse_rate_hz("1/300") == 1.0 / 300);
   CHECK(parse_rate_hz("1/300Hz") == 1.0 / 300);
+  CHECK(parse_rate_hz("60/min") == 1);
+  CHECK(parse_rate_hz("1/h") == 1.0 / 3600);
   CHECK(parse_rate_hz("5min") == 1.0 / 300);
   CHECK(parse_rate_hz("2ms") == 500);
   for (const char* bad : {"0", "-5", "9e-10", "1.1e9", "5GHz", "5 per s", "1/0", "/5", "0s"})

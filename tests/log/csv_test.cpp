@@ -629,3 +629,32 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   options.kinds.where = {"no=c"};
   CHECK_THAT(failure("t,id,x\n0,a,1\n0,b,2\n", options), Catch::Contains("E0320"));
 }
+
+TEST_CASE("a table of several hundred kinds: each is a channel, also behind the first hundred rows") {
+  std::string text = "t [s],id,x\n";
+  for (int row = 0; row < 40; ++row)
+    for (int id = 0; id < 300; ++id) text += fmt::format("{},node{},{}\n", row, id, row + 100 * id);
+  ReadOptions options;
+  options.kinds.group_by = "id";
+  const Recording log = read_text(text, options);
+  REQUIRE(log.samples.size() == 300);
+  CHECK(log.samples[299][39] == 39 + 29900);
+  CHECK(log.info.time.rate_hz == Approx(1));
+}
+
+TEST_CASE("units that begin with those of a humidity are no comment") {
+  const Recording log = read_text("Humidity;gyro_y;Force\n%;deg/s;N\n21.4;21.0;-9.9\n21.5;21.2;-9.8\n21.4;21.1;-9.9\n");
+  REQUIRE(log.info.channels.size() == 3);
+  CHECK(log.info.channels[0].unit == "%");
+  CHECK(log.info.channels[2].unit == "N");
+}
+
+TEST_CASE("a title of few words above rows between blanks has no names") {
+  std::string text = " Table Mountain, CO\n   40.125  -105.237 1689 m version 1\n";
+  for (int i = 0; i < 60; ++i)
+    text += fmt::format(" 2019   1  1  1  0 {:2}  {:.3f}  88.15   294.{} 0    12.4 0\n", i, i / 60.0, i % 10);
+  const Recording log = read_text(text);
+  CHECK(log.info.time.rate_hz == Approx(1.0 / 60).epsilon(1e-6));
+  REQUIRE(log.samples.size() == 6);
+  CHECK(log.samples[2][7] == 294.7);
+}

@@ -147,6 +147,59 @@ TEST_CASE("doubled stamps: the first row is kept") {
   CHECK(r.samples[0][0] == 0);
 }
 
+// A log whose rows are written twice here and there, the next row lost or not: `lost` of 20,000 at 100 Hz.
+std::string copied_log(double share, bool lost, double step, std::size_t from, std::size_t& missing) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0, 0.01);
+  std::uniform_real_distribution<double> chance(0, 1);
+  std::string text = "t_ms,x,y\n";
+  missing = 0;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const auto value = [&] { return std::round(noise(random) / step) * step; };
+    const std::string row = fmt::format("{},{},{}\n", 10 * i, value(), value());
+    text += row;
+    if (i < from || i + 3 > 3000 || chance(random) >= share) continue;
+    text += row;
+    if (!lost) continue;
+    ++i;
+    ++missing;
+  }
+  return text;
+}
+
+TEST_CASE("rows that are written twice are one sample, also where the next row is lost") {
+  for (const double share : {0.01, 0.1, 0.3, 1.0})
+    for (const bool lost : {false, true})
+      for (const double step : {1e-5, 0.005})
+        for (const std::size_t from : {std::size_t{0}, std::size_t{2000}}) {
+          if (from > 0 && step > 1e-4) continue;  // a chance pair of coarse values is no copy
+          std::size_t missing = 0;
+          const std::string text = copied_log(share, lost, step, from, missing);
+          INFO(share << (lost ? " lost" : " more") << " step " << step << " from " << from);
+          const bool each_second = lost && share == 1 && from == 0;
+          for (const std::size_t bytes : {std::size_t{50}, std::size_t{1} << 20U}) {
+            ReadOptions options;
+            options.block_bytes = bytes;
+            const Recording r = read_text(text, options);
+            CHECK(r.info.time.rate_hz == Approx(each_second ? 50 : 100).epsilon(1e-4));
+            if (!each_second && !(lost && share == 1)) CHECK(r.info.time.missing_samples == missing);
+            CHECK(r.info.rows_dropped > 0);
+            CHECK(count(r, "held_stamp") == 0);
+          }
+        }
+}
+
+TEST_CASE("rows of a slow sensor with the stamps of a coarse clock are no copies") {
+  for (const int changes : {7, 40, 1000}) {  // rows between two values of the sensor
+    std::string text = "t[s],x\n";
+    for (int i = 0; i < 4000; ++i) text += fmt::format("{},{}\n", i / 10, (i / changes * 7919) % 1000);
+    const Recording r = read_text(text);
+    INFO(changes);
+    CHECK(r.info.time.rate_hz == Approx(10).epsilon(1e-3));
+    CHECK(r.info.rows_dropped == 0);
+  }
+}
+
 TEST_CASE("a clock too coarse to tell rows apart keeps all rows") {
   std::vector<std::int64_t> t;
   for (int i = 0; i < 4000; ++i) t.push_back(i / 2);  // 2 kHz in whole milliseconds

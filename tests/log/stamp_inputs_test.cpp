@@ -367,6 +367,99 @@ TEST_CASE("packets that are late by a good part of one keep the rate of the rows
     }
 }
 
+TEST_CASE("a host's time on each packet, whose rows stand an interval apart: early packets are no step back") {
+  for (const std::size_t packet : {8U, 50U, 190U})
+    for (const double late : {0.2, 3.0})  // rows, in the mean
+      for (const unsigned seed : {3U, 5U, 8U}) {
+        if (late > static_cast<double>(packet) / 8) continue;
+        std::mt19937_64 random(seed);
+        std::gamma_distribution<double> delay(2, late / 2);
+        for (const bool lost : {false, true}) {
+          TimedRows rows = even_rows({});
+          std::size_t missing = 0;
+          double of_packet = 0;
+          for (std::size_t i = 0; i < rows.instants.size(); ++i) {
+            if (i % packet == 0) {
+              of_packet = delay(random) / rows.rate_hz;
+              if (lost && i / packet % 7 == 3) missing += 4 * packet;
+            }
+            rows.instants[i] = 1000 + static_cast<double>(i + missing) / rows.rate_hz + of_packet;
+          }
+          INFO(packet << " rows, late by " << late << (lost ? ", some lost" : "") << ", seed " << seed);
+          const Recording r = read_text(text_of(rows, kClocks[2]));
+          CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+          CHECK(static_cast<double>(r.info.time.missing_samples) == Approx(missing).epsilon(0.01));
+          CHECK(r.info.rows_dropped == 0);
+        }
+      }
+}
+
+// 100 Hz over a link that sends what is ready at each of its events, of which some fail (the rows wait for the next)
+// and some are lost with their rows.
+TimedRows sent(unsigned seed, double rows_an_event, double fails, double loses) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> chance(0, 1);
+  TimedRows out{{}, 100, 0};
+  std::size_t row = 0;
+  for (double event = 1; out.instants.size() < 6000; event += 1) {
+    const auto ready = static_cast<std::size_t>(std::ceil(event * rows_an_event));
+    if (chance(random) < fails) continue;
+    const bool lost = chance(random) < loses && out.instants.size() > 20;
+    const double at = event * rows_an_event / 100 + 1e-4 * chance(random);
+    for (std::size_t k = 0; row < ready; ++row, ++k)
+      if (lost)
+        ++out.missing;
+      else
+        out.instants.push_back(1000 + at + 1e-4 * static_cast<double>(k));
+  }
+  return out;
+}
+
+TEST_CASE("rows of a link come late together, and packets of any size that it loses are missing") {
+  for (const double rows_an_event : {4.3, 7.5, 11.8})
+    for (const double loses : {0.0, 0.02})
+      for (const unsigned seed : {3U, 5U, 8U}) {
+        const TimedRows rows = sent(seed, rows_an_event, loses > 0 ? 0 : 0.05, loses);
+        INFO(rows_an_event << " rows an event, " << rows.missing << " lost, seed " << seed);
+        const Recording r = read_text(text_of(rows, kClocks[2]));
+        CHECK(r.info.time.rate_hz == Approx(100).epsilon(2e-3));
+        CHECK(static_cast<double>(r.info.time.missing_samples) == Approx(rows.missing).epsilon(0.1).margin(0.5));
+      }
+}
+
+TEST_CASE("packets of many rows that are written less than ten times as fast as they come") {
+  for (const double inside : {0.15, 0.3, 0.5})
+    for (const std::size_t packet : {45U, 60U}) {
+      std::mt19937_64 random(3);
+      std::normal_distribution<double> noise(0, 0.02);
+      TimedRows rows = even_rows({});
+      for (std::size_t i = 0; i < rows.instants.size(); ++i)
+        rows.instants[i] = 1000 + (static_cast<double>((i / packet + 1) * packet) +
+                                   inside * static_cast<double>(i % packet) + noise(random)) /
+                                      rows.rate_hz;
+      INFO(packet << " rows, a step inside of " << inside);
+      CHECK(read_text(text_of(rows, kClocks[2])).info.time.rate_hz == Approx(100).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a sensor that pauses again and again, its rows even: two rates, or gaps where the pauses are unlike") {
+  TimedRows rows = even_rows({});
+  for (std::size_t i = 0; i < rows.instants.size(); ++i)
+    rows.instants[i] = 1000 + (static_cast<double>(i) + 60 * static_cast<double>(i / 25)) / rows.rate_hz;
+  CHECK_THROWS_WITH(read_text(text_of(rows, kClocks[2])), Catch::Contains("E0324"));
+  ReadOptions told;
+  told.rate_hz = 100;
+  CHECK(read_text(text_of(rows, kClocks[2]), told).info.time.rate_hz == Approx(100).epsilon(1e-4));
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> pause(10, 120);
+  double paused = 0;
+  for (std::size_t i = 0; i < rows.instants.size(); ++i) {
+    if (i % 25 == 0) paused += pause(random);
+    rows.instants[i] = 1000 + (static_cast<double>(i) + paused) / rows.rate_hz;
+  }
+  CHECK(read_text(text_of(rows, kClocks[2])).info.time.rate_hz == Approx(100).epsilon(1e-3));
+}
+
 TEST_CASE("a rate that is told and kept by all rows leaves no room for gaps where rows come late together") {
   int without_gap = 0;
   constexpr unsigned kSeeds = 5;

@@ -105,14 +105,17 @@ double parse_duration_s(std::string_view text, bool lasts) {
 
 double parse_rate_hz(std::string_view text) {
   const std::string expected =
-      "a sampling rate above zero such as 200Hz, 1.5kHz or 1/300, or an interval such as 5min (a bare number is in "
+      "a sampling rate above zero such as 200Hz, 1.5kHz, 1/300 or 60/min, or an interval such as 5min (a bare number "
+      "is in "
       "hertz)";
   const auto rate = [&] {
     const std::size_t over = text.find('/');
     if (over != std::string_view::npos && over > 0) {
       std::string_view under = text.substr(over + 1);
       if (under.ends_with("Hz")) under.remove_suffix(2);
-      return with_unit(text.substr(0, over), {{"", 1}}, expected) / seconds_in(under, expected);
+      const bool unit = !under.empty() && under[0] >= 'a' && under[0] <= 'z';  // "60/min"
+      return with_unit(text.substr(0, over), {{"", 1}}, expected) /
+             (unit ? seconds_in("1" + std::string(under), expected) : seconds_in(under, expected));
     }
     const char end = text.empty() ? ' ' : text.back();
     if (end == 's' || end == 'n' || end == 'h' || end == 'd') return 1 / seconds_in(text, expected);

@@ -107,14 +107,16 @@ bool is_comment(std::string_view line, bool semicolons) {
   line = trimmed(line);
   constexpr std::string_view kChrony = "Date (UTC) Time     ";  // every 32 rows
   if (is_ruler(line) || line.starts_with(kChrony)) return true;
-  if (line.size() > 1 && line[0] == '#' && std::string_view(",;\t|").find(line[1]) != std::string_view::npos)
-    return false;  // "#,ax,ay": the name of a count of the rows
+  if (line.size() > 1 && (line[0] == '#' || line[0] == '%') &&
+      std::string_view(",;\t|").find(line[1]) != std::string_view::npos)
+    return false;  // "#,ax,ay": the name of a count of the rows; "%;deg/s;N": units
   return !line.empty() &&
          (line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//" || (semicolons && line[0] == ';'));
 }
 
 std::vector<Field> split(std::string_view line, char delimiter, bool* open_quote) {
   std::vector<Field> fields;
+  if (delimiter != ' ') fields.reserve(static_cast<std::size_t>(std::count(line.begin(), line.end(), delimiter)) + 1);
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   const auto pad = [&](char c) { return blank(c) && (c != delimiter || delimiter == ' '); };
   const auto is_end = [&](char c) { return delimiter == ' ' ? blank(c) : c == delimiter; };

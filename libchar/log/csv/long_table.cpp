@@ -19,7 +19,7 @@
 namespace libchar::csv {
 namespace {
 
-constexpr std::size_t kMostKinds = 64, kMostNumbers = 16;
+constexpr std::size_t kMostKinds = 64, kMostNumbers = 16, kMostGroups = 1024;
 
 bool names_kinds(std::string_view name) {
   static constexpr std::array<std::string_view, 25> kNames = {
@@ -218,14 +218,20 @@ std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dia
   return out;
 }
 
+bool many_groups(const std::vector<Cells>& rows, const ReadOptions& options, const Dialect& dialect,
+                 const LogInfo& info) {
+  if (options.kinds.group_by.empty()) return false;
+  return 3 * values_of(rows, column_named(options.kinds.group_by, dialect, info), rows.size()).size() > rows.size();
+}
+
 void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
   if (options.kinds.group_by.empty()) return;
   const std::size_t column = column_named(options.kinds.group_by, dialect, info);
   dialect.group_column = static_cast<int>(column);
-  dialect.groups = values_of(rows, column);
-  if (dialect.groups.size() > kMostKinds)
+  dialect.groups = values_of(rows, column, kMostGroups);
+  if (dialect.groups.size() > kMostGroups)
     throw usage_error("E0328", info.file)
-        .says("more than {} values in the column of `group_by`", kMostKinds)
+        .says("more than {} values in the column of `group_by`", kMostGroups)
         .got(options.kinds.group_by)
         .hint("a column of names of sensors was expected");
   std::size_t changes = 0;

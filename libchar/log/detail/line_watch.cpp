@@ -45,7 +45,10 @@ LIBCHAR_LANES void line_bits_lanes(const double* x, std::size_t n, std::uint64_t
     words[i / 64] = static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
   }
   if (i < n) words[i / 64] = 0;
-  for (; i < n; ++i) words[i / 64] |= std::uint64_t{on_line(x[i - 2], x[i - 1], x[i], kStraight)} << (i % 64);
+  for (; i < n; ++i) {
+    const double* at = x + i;
+    words[i / 64] |= std::uint64_t{on_line(at[-2], at[-1], at[0], kStraight)} << (i % 64);
+  }
 }
 constexpr InLanes<line_bits_lanes> line_bits;
 

@@ -50,8 +50,14 @@ struct DateScanner {
     rest.remove_prefix(n);
     return value;
   }
+  bool begins(std::string_view lower) const {
+    if (rest.size() < lower.size()) return false;
+    for (std::size_t i = 0; i < lower.size(); ++i)
+      if ((rest[i] >= 'A' && rest[i] <= 'Z' ? rest[i] - 'A' + 'a' : rest[i]) != lower[i]) return false;
+    return true;
+  }
   bool word(std::string_view wanted) {
-    if (ascii_lower(rest.substr(0, wanted.size())) != wanted) return false;
+    if (!begins(wanted)) return false;
     const char next = peek(wanted.size());
     if ((next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z')) return false;
     rest.remove_prefix(wanted.size());
@@ -173,7 +179,7 @@ bool take_days(CalendarStamp& out, int year, int month, int day) {
 // "Wed", "Wednesday," in front of a date, which they do not change.
 void skip_weekday(DateScanner& at) {
   for (const std::string_view day : {"mon", "tue", "wed", "thu", "fri", "sat", "sun"})
-    if (ascii_lower(at.rest.substr(0, day.size())) == day) {
+    if (at.begins(day)) {
       while (std::isalpha(static_cast<unsigned char>(at.peek()))) at.rest.remove_prefix(1);
       at.take(',');
       at.blanks();

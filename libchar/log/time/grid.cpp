@@ -63,14 +63,20 @@ bool TimeGrid::push(RowBlock& block) {
   item.rows_before = counts_.rows;
   counts_.rows += block.rows;
   std::swap(item.block, block);
-  if (stamped_ && !clocks_.rows.decided()) clocks_.rows.decide(item.block);
+  const bool undecided = stamped_ && !clocks_.rows.decided();
+  if (undecided) {
+    clocks_.copies.look(item.block);
+    clocks_.rows.decide(item.block);
+  }
   if (!spare_.empty()) {
     block = std::move(spare_.back());
     spare_.pop_back();
   }
   pending_.push_back(std::move(item));
-  if (clocks_.rows.apart())
-    for (Pending& waiting : pending_) leave_out_blank(waiting);
+  if (stamped_ && clocks_.rows.decided()) {
+    if (undecided) clocks_.copies.decide();
+    for (Pending& waiting : pending_) leave_out(waiting);
+  }
   waiting_ = 0;
   for (const Pending& waiting : pending_) waiting_ += waiting.block.rows - waiting.done;
   process(false);
@@ -196,7 +202,7 @@ std::size_t TimeGrid::take_one_by_one(Pending& front, std::size_t from, std::siz
     last_.any = true;
     sketch_.add(last_.index, stamp);
     recent_.rows.push(stamp);
-    if (step_.model.packet > 0 && step > step_.longest) recent_.packets.push(last_.index, stamp);
+    if (step_.starts_packet(step)) recent_.packets.push(last_.index, stamp);
     if (place_in_window(stamp)) continue;
     if (!window_.over) {
       run = i + 1;
@@ -274,8 +280,14 @@ double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
+  if (step_.even()) {  // inside packets, whose first rows scatter: does the line through these say another interval?
+    constexpr double kWithin = 5;
+    const StampModel::Packets& of = step_.model.packets;
+    const double error = of.scatter_ns * std::sqrt(12 * of.rows / rows) / rows;
+    if (std::abs(usual - step_.model.step_ns) <= kWithin * error) return step_.model.step_ns;
+  }
   const double ends = std::max(2.0 * static_cast<double>(step_.longest),  // where the log begins and ends in a packet
-                               1.5 * static_cast<double>(step_.model.packet) * step_.ns);
+                               1.5 * step_.model.packets.rows * step_.ns);
   if (!(spanned > 0) || off * rows <= std::max(0.01 * spanned * rows, ends)) return usual;
   warnings_.add("uneven_sampling", fmt::format("long stretches of the log keep {} Hz, rows over time are {} Hz, which "
                                                "is used: the sampling is uneven, and times on the axes are off by that",

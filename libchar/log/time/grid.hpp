@@ -72,6 +72,36 @@ bool blank_row(const RowBlock& rows, std::size_t row);
 /// Takes the rows without a value out of the block, and says how many there were.
 std::size_t leave_out_blank_rows(RowBlock& rows);
 
+/// Rows written twice, with their stamp and all their values. Where values change from row to row that is no chance:
+/// the copy is no sample, also where it took the place of the next row.
+class CopiedRows {
+ public:
+  /// Of a log's first rows, in file order.
+  void look(const RowBlock& rows);
+  void decide();
+  /// Takes copies out of the next block; where the first of them stood, and how many there were.
+  struct Left {
+    std::size_t first = 0, count = 0;
+  };
+  Left leave_out(RowBlock& rows);
+
+ private:
+  /// The row before, across blocks.
+  struct Before {
+    std::vector<double> values;
+    std::int64_t stamp = 0;
+    bool any = false;
+  };
+  bool as_before(const RowBlock& rows, std::size_t row, const Before& before) const;
+  static void keep_last(const RowBlock& rows, Before& before);
+  struct Pairs {
+    std::size_t all = 0, alike = 0;  ///< of neighbours; with the same values
+  };
+  Pairs one_stamp_, unlike_;
+  Before looked_at_, passed_;
+  bool any_ = false;
+};
+
 /// Samples on their way to the sink: long runs as they stand in a block, others assembled first.
 class GridOutput {
  public:
@@ -112,7 +142,7 @@ class TimeGrid {
     std::size_t done = 0;
     bool own = false;  ///< without the rows that are left out
   };
-  void leave_out_blank(Pending& item);
+  void leave_out(Pending& item);
   void begin();
   bool ready(bool end);
   std::size_t rows_to_learn() const;
@@ -168,8 +198,13 @@ class TimeGrid {
         : model(found),
           ns(found.ns),
           longest(static_cast<std::int64_t>(std::min(found.longest_step, 9e18))),
-          shortest(std::max<std::int64_t>(1, clamped_whole<std::int64_t>(std::ceil(std::min(0.75 * ns, 9e18))))),
+          shortest(std::max<std::int64_t>(
+              1, clamped_whole<std::int64_t>(std::ceil(std::min((even() ? 0.95 : 0.75) * ns, 9e18))))),
           coarse(found.pattern != StampPattern::steps) {}
+    bool even() const { return model.packets.scatter_ns > 0; }  ///< inside packets
+    bool starts_packet(std::int64_t step) const {
+      return model.packets.rows > 0 && (step > longest || (even() && step < shortest));
+    }
     StampModel model;
     double ns = 0;
     std::int64_t longest = 0, shortest = 1;  ///< regular ones
@@ -213,6 +248,7 @@ class TimeGrid {
   struct Clocks {
     OwnRows rows;
     ChannelClocks channels;
+    CopiedRows copies;
   } clocks_;
   struct Recent {
     RecentStamps rows;

@@ -29,9 +29,16 @@ bool steps_are_alike(const std::vector<std::int64_t>& stamps, double ns) {
 
 }  // namespace
 
-void TimeGrid::leave_out_blank(Pending& item) {
+void TimeGrid::leave_out(Pending& item) {
   if (item.own) return;
   item.own = true;
+  const CopiedRows::Left copies = clocks_.copies.leave_out(item.block);
+  counts_.dropped += copies.count;
+  if (copies.count > 0)
+    warnings_.add("duplicate_timestamp",
+                  "rows that repeat the stamp and all values of the row before: the first is kept",
+                  place(item, copies.first), copies.count);
+  if (!clocks_.rows.apart()) return;
   const std::size_t blank = leave_out_blank_rows(item.block);
   counts_.dropped += blank;
   if (blank > 0)
@@ -44,9 +51,10 @@ void TimeGrid::leave_out_blank(Pending& item) {
 bool TimeGrid::ready(bool end) {
   if (end && !clocks_.rows.decided()) {
     clocks_.rows.decide_at_end();
+    clocks_.copies.decide();
     waiting_ = 0;
     for (Pending& waiting : pending_) {
-      if (clocks_.rows.apart()) leave_out_blank(waiting);
+      leave_out(waiting);
       waiting_ += waiting.block.rows - waiting.done;
     }
   }

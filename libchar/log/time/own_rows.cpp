@@ -113,12 +113,10 @@ double ChannelClocks::every(std::size_t channel) const {
   return keeps_own_clock(of.steps, of.over_blanks, (rows - count) / rows) ? rows / count : 1;
 }
 
-std::size_t leave_out_blank_rows(RowBlock& rows) {
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < rows.rows; ++i)
-    if (!blank_row(rows, i)) kept.push_back(i);
-  const std::size_t left_out = rows.rows - kept.size();
-  if (left_out == 0) return 0;
+namespace {
+
+/// Keeps these rows of the block.
+void keep_rows(RowBlock& rows, const std::vector<std::size_t>& kept) {
   if (rows.line_offset.empty() && rows.first_line > 0)
     for (std::size_t i = 0; i < rows.rows; ++i) rows.line_offset.push_back(static_cast<std::uint32_t>(i));
   const auto compact = [&](auto& values) {
@@ -129,7 +127,81 @@ std::size_t leave_out_blank_rows(RowBlock& rows) {
   compact(rows.line_offset);
   for (auto& column : rows.columns) compact(column);
   rows.rows = kept.size();
+}
+
+}  // namespace
+
+std::size_t leave_out_blank_rows(RowBlock& rows) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.rows; ++i)
+    if (!blank_row(rows, i)) kept.push_back(i);
+  const std::size_t left_out = rows.rows - kept.size();
+  if (left_out > 0) keep_rows(rows, kept);
   return left_out;
+}
+
+bool CopiedRows::as_before(const RowBlock& rows, std::size_t row, const Before& before) const {
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t c = 0; c < rows.columns.size(); ++c)
+    if (!same(rows.columns[c][row], row > 0 ? rows.columns[c][row - 1] : before.values[c])) return false;
+  return !rows.columns.empty();
+}
+
+void CopiedRows::keep_last(const RowBlock& rows, Before& before) {
+  if (rows.rows == 0) return;
+  before.any = true;
+  before.stamp = rows.time_ns[rows.rows - 1];
+  before.values.clear();
+  for (const auto& column : rows.columns) before.values.push_back(column[rows.rows - 1]);
+}
+
+void CopiedRows::look(const RowBlock& rows) {
+  constexpr std::size_t kPairs = 1024;
+  const std::size_t seen = one_stamp_.all + unlike_.all;
+  for (std::size_t i = 0; i < rows.rows && seen + i <= kPairs; ++i) {
+    if (i == 0 && !looked_at_.any) continue;
+    Pairs& pairs = rows.time_ns[i] == (i > 0 ? rows.time_ns[i - 1] : looked_at_.stamp) ? one_stamp_ : unlike_;
+    ++pairs.all;
+    pairs.alike += as_before(rows, i, looked_at_) ? 1 : 0;
+  }
+  keep_last(rows, looked_at_);
+}
+
+// Pairs of one stamp are copies where nearly all have the same values, and others so rarely that it is no chance. Where
+// none of the first rows are a pair, those that come later are copies if values hardly ever stay.
+void CopiedRows::decide() {
+  constexpr double kNearlyAll = 0.95, kHardlyEver = 0.02, kAtTimes = 0.5, kNoChance = 1e-4;
+  constexpr std::size_t kFewest = 8, kSome = 3;
+  const auto share = [](const Pairs& pairs) {
+    return static_cast<double>(pairs.alike) / static_cast<double>(std::max<std::size_t>(pairs.all, 1));
+  };
+  const double stay = share(unlike_);
+  const bool change = unlike_.all >= kFewest && stay <= kHardlyEver;
+  const bool no_chance =
+      unlike_.all >= kSome && stay <= kAtTimes && std::pow(stay, static_cast<double>(one_stamp_.all)) < kNoChance;
+  any_ = one_stamp_.all == 0 ? change : share(one_stamp_) >= kNearlyAll && (change || no_chance);
+}
+
+CopiedRows::Left CopiedRows::leave_out(RowBlock& rows) {
+  Left left;
+  if (!any_) return left;
+  std::vector<std::size_t> kept;
+  const auto copy = [&](std::size_t i) {
+    return (i > 0 || passed_.any) && rows.time_ns[i] == (i > 0 ? rows.time_ns[i - 1] : passed_.stamp) &&
+           as_before(rows, i, passed_);
+  };
+  std::size_t i = 0;
+  while (i < rows.rows && !copy(i)) ++i;
+  left.first = i;
+  const bool some = i < rows.rows;
+  if (some) {
+    for (std::size_t k = 0; k < rows.rows; ++k)
+      if (k < i || !copy(k)) kept.push_back(k);
+    left.count = rows.rows - kept.size();
+  }
+  keep_last(rows, passed_);
+  if (some) keep_rows(rows, kept);
+  return left;
 }
 
 }  // namespace libchar

@@ -34,6 +34,8 @@ namespace {
 constexpr double kSameRate = 0.02;
 constexpr std::size_t kLeastOdd = 8;   // steps that make a pattern
 constexpr double kLongestPacket = 40;  // rows
+constexpr double kFaster = 10;         // rows are written than they come, at least, where that says packets
+constexpr double kEvenInside = 0.01;   // steps scatter inside a packet, of them
 constexpr double kPause = 3;           // times the longest of the usual steps
 constexpr double kNewPacket = 0.3;     // of the time from packet to packet
 constexpr std::size_t kAhead = 16;     // rows looked at before a long step is called a gap
@@ -303,27 +305,44 @@ double regular_step(const FirstSteps& steps) {
   return count > 0 ? time / count : usual;
 }
 
-/// First rows of packets.
-std::vector<std::size_t> packet_starts(const FirstSteps& steps) {
-  const double least = kNewPacket * step_of_half_the_time(steps);
+/// First rows of packets: those behind longer steps than that.
+std::vector<std::size_t> packet_starts(const FirstSteps& steps, double least) {
   std::vector<std::size_t> out;
   for (std::size_t i = 1; i < steps.line.size(); ++i)
     if (steps.line[i] - steps.line[i - 1] > least) out.push_back(i);
   return out;
 }
+std::vector<std::size_t> packet_starts(const FirstSteps& steps) {
+  return packet_starts(steps, kNewPacket * step_of_half_the_time(steps));
+}
+
+/// Rows of each packet.
+double mean_rows(const std::vector<std::size_t>& starts) {
+  return starts.size() < 2
+             ? 0
+             : static_cast<double>(starts.back() - starts.front()) / static_cast<double>(starts.size() - 1);
+}
 
 /// Rows of a packet, where nearly all have as many, or as many as several that came together; else 0.
-std::size_t rows_of_packets(const std::vector<std::size_t>& starts) {
-  constexpr double kAlike = 0.85;
-  constexpr std::size_t kFewest = 8;
-  if (starts.size() < kFewest) return 0;
+std::size_t rows_of_packets(const std::vector<std::size_t>& starts, std::size_t fewest = 8, double share = 0.85) {
+  if (starts.size() < fewest) return 0;
   std::vector<double> sizes;
   for (std::size_t i = 1; i < starts.size(); ++i) sizes.push_back(static_cast<double>(starts[i] - starts[i - 1]));
   const auto count = static_cast<double>(sizes.size());
   const double usual = middle_of(sizes);
   const auto alike = static_cast<double>(
       std::count_if(sizes.begin(), sizes.end(), [&](double size) { return std::fmod(size, usual) == 0; }));
-  return usual > 1 && alike >= kAlike * count ? static_cast<std::size_t>(usual) : 0;
+  return usual > 1 && alike >= share * count ? static_cast<std::size_t>(usual) : 0;
+}
+
+/// First rows follow each other evenly.
+bool come_evenly(const FirstSteps& steps, const std::vector<std::size_t>& starts) {
+  constexpr double kEven = 0.1;
+  std::vector<double> apart, off;
+  for (std::size_t i = 1; i < starts.size(); ++i) apart.push_back(steps.line[starts[i]] - steps.line[starts[i - 1]]);
+  const double usual = middle_of(apart);
+  for (const double one : apart) off.push_back(std::fabs(one - usual));
+  return middle_of(std::move(off)) < kEven * usual;
 }
 
 /// Rows between longer steps, as unlike as where each row is lost with one probability: then they scatter as much as
@@ -383,8 +402,13 @@ StampPattern explanation(const FirstSteps& steps, const CommonStep& common, cons
   const bool turns = to_a_line && !coarse && takes_turns(steps);
   if (!coarse && !turns && share(whole) > 0.9) return StampPattern::steps;
   const double rows_a_gap = static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
-  const bool in_packets = rows_a_gap <= kLongestPacket &&
+  constexpr double kSurely = 5;
+  const bool alike = rows_of_packets(packet_starts(steps)) > 0, even_inside = common.spread < kEvenInside;
+  const bool in_packets = (rows_a_gap <= kLongestPacket || (to_a_line && alike)) &&
                           (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
+  // As even inside as a sensor that pauses: only rows that are written far faster than they come are surely packets.
+  if (in_packets && alike && even_inside && steps.mean < kSurely * common.ns)
+    return come_evenly(steps, packet_starts(steps)) ? StampPattern::disputed : StampPattern::steps;
   if (to_a_line) return in_packets ? StampPattern::packets : coarse ? StampPattern::coarse : StampPattern::uneven;
   if (steps.mean > 2 * common.ns && in_packets) return StampPattern::packets;
   if (!common.tidy) return StampPattern::steps;
@@ -429,53 +453,131 @@ double interval_of_alike(const FirstSteps& steps, const std::vector<std::size_t>
   return ns;
 }
 
-/// What rows behind the first of a packet are late by, the median over the packets.
-double usual_lag(const FirstSteps& steps, const std::vector<std::size_t>& starts, double ns) {
-  std::vector<double> all;
-  for (const std::size_t i : starts) {
-    std::vector<double> lags;
-    for (std::size_t j = 0; j < kAhead && i + j < steps.line.size(); ++j)
-      lags.push_back((steps.line[i + j] - steps.line[i - 1]) / ns - static_cast<double>(j + 1));
-    all.push_back(common_lag(std::move(lags)));
+/// The same of packets of any size: where the next ones are later than the last by most of a packet, and stay so, some
+/// are missing, and another stretch begins.
+double interval_of_unlike(const FirstSteps& steps, const std::vector<std::size_t>& starts, double slope) {
+  constexpr std::size_t kBefore = 8, kBehind = 10;
+  constexpr double kMissing = 0.5;  // of a packet
+  constexpr int kRounds = 4;
+  if (starts.size() < 2 * kBehind) return slope;
+  const double rows = mean_rows(starts);
+  double ns = slope;
+  const auto line = [&](std::size_t i) { return steps.line[starts[i]]; };
+  const auto late = [&](std::size_t i) { return line(i) - static_cast<double>(starts[i]) * ns; };
+  const auto stays_late = [&](std::size_t i, std::size_t first) {
+    if (i + kBehind > starts.size()) return false;
+    std::vector<double> before, behind;
+    for (std::size_t k = first; k < i; ++k) before.push_back(late(k));
+    for (std::size_t k = i; k < i + kBehind; ++k) behind.push_back(late(k));
+    return *std::min_element(behind.begin(), behind.end()) - middle_of(std::move(before)) >= kMissing * rows * ns;
+  };
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> slopes;
+    for (std::size_t from = 0, i = kBefore; from < starts.size(); ++i) {
+      const std::size_t end = std::min(i, starts.size());
+      if (end < starts.size() && !stays_late(i, std::max(from + kBefore, i) - kBefore)) continue;
+      const std::size_t half = (end - from) / 2;  // a stall is as seldom among these as among the packets
+      for (std::size_t k = from; half >= kBefore / 2 && k + half < end; ++k)
+        slopes.push_back((line(k + half) - line(k)) / static_cast<double>(starts[k + half] - starts[k]));
+      from = end;
+      i = end + kBefore / 2;
+    }
+    if (slopes.empty()) break;
+    ns = middle_of(std::move(slopes));
   }
-  return std::max(0.0, middle_of(std::move(all)));
+  // Missing packets make the slope too long, by their share.
+  constexpr double kMostLost = 0.2, kShorter = 0.02;
+  return ns > (1 - kMostLost) * slope && ns < (1 + kShorter) * slope ? ns : slope;
 }
 
-/// Rows arrive in packets, or many share the stamp of a coarse clock. Of packets alike those that are missing are
-/// told one by one.
-StampModel in_packets(const FirstSteps& steps, StampModel model) {
-  const std::vector<std::size_t> starts = packet_starts(steps);
+/// Rows arrive in packets, or many share the stamp of a coarse clock. Those that are missing are told one by one.
+StampModel in_packets(const std::vector<std::int64_t>& stamps, const FirstSteps& steps,
+                      const std::vector<std::size_t>& starts, StampModel model) {
   if (const double interval = packet_interval(steps, starts); interval > 0) model.ns = interval;
-  model.packet = rows_of_packets(starts);
-  if (model.packet > 0) {
+  const std::size_t alike = rows_of_packets(starts);
+  model.packets = {alike > 0 ? static_cast<double>(alike) : mean_rows(starts), alike > 0};
+  if (alike > 0) {
     // However late they are, the line through all is that of their rate; where some are missing it is a start.
-    if (keeps_to_a_line(steps)) model.ns = line_through(steps.line).slope;
-    model.ns = interval_of_alike(steps, starts, model.packet, model.ns);
-    model.longest_step = kNewPacket * static_cast<double>(model.packet) * model.ns;
+    // Of a link that stalls the line lacks the stalls, which were taken for pauses.
+    constexpr double kStalls = 0.05;
+    const double slope = line_through(steps.line).slope;
+    if (keeps_to_a_line(steps) && std::fabs(slope - model.ns) < kStalls * model.ns) model.ns = slope;
+    model.ns = interval_of_alike(steps, starts, alike, model.ns);
+    model.longest_step = kNewPacket * model.packets.rows * model.ns;
     return model;
   }
-  std::vector<double> longer = steps.rising;
-  std::sort(longer.begin(), longer.end());
-  model.longest_step = std::max(1.5 * model.ns, 2 * longer[longer.size() * 98 / 100]);
-  model.usual_lag = usual_lag(steps, starts, model.ns);
+  // Where the link stalls, the rows of the pause come at once behind it.
+  model.ns = interval_of_unlike(steps_of(stamps, false), starts, model.ns);
+  model.longest_step = std::max(model.ns, kNewPacket * step_of_half_the_time(steps));
   return model;
 }
 
+/// A host puts its time on the first row of a packet, and the rows behind it stand an interval apart: packets alike,
+/// even inside, whose first rows scatter about one line by less than a packet, forth and back.
+std::optional<StampModel> even_packets(const std::vector<std::int64_t>& stamps) {
+  constexpr std::size_t kLeastRows = 4, kFew = 4;
+  constexpr double kEven = 0.05, kFar = 0.5, kOther = 0.01, kEarly = 0.15, kScatter = 0.05, kWithin = 4;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(step_between(stamps[i - 1], stamps[i]));
+  double ns = middle_of(steps);
+  if (!(ns > 0)) return std::nullopt;
+  double time = 0, count = 0;
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (std::fabs(steps[i] - ns) > kEven * ns) {
+      starts.push_back(i + 1);
+      continue;
+    }
+    time += steps[i];
+    ++count;
+  }
+  const std::size_t rows = std::max(rows_of_packets(starts), rows_of_packets(starts, kFew, 1));
+  if (rows < kLeastRows) return std::nullopt;
+  ns = time / count;
+  const double inside = ns;
+  std::vector<double> off;
+  double early = 0, apart = 0, between = 0;
+  for (int round = 0; round < 3; ++round) {
+    apart = between = 0;
+    off.clear();
+    early = 0;
+    for (std::size_t i = 1; i < starts.size(); ++i) {
+      const auto n = static_cast<double>(starts[i] - starts[i - 1]);
+      const double step = step_between(stamps[starts[i - 1]], stamps[starts[i]]);
+      if (std::fabs(step - n * ns) > kFar * static_cast<double>(rows) * ns) continue;
+      apart += step;
+      between += n;
+      off.push_back(std::fabs(step - n * ns));
+      early += steps[starts[i] - 1] < inside ? 1 : 0;
+    }
+    if (2 * off.size() < starts.size()) return std::nullopt;
+    ns = apart / between;
+  }
+  const auto packets = static_cast<double>(off.size());
+  const double scatter = kMadToSd / std::sqrt(2) * middle_of(std::move(off));
+  if (std::fabs(ns - inside) * between <= kWithin * scatter) ns = inside;  // which is known better
+  if (std::fabs(ns / inside - 1) > kOther || early < kEarly * packets || scatter < kScatter * ns) return std::nullopt;
+  return StampModel{
+      ns, (1 + kEven) * ns, StampPattern::packets, inside, ns, {static_cast<double>(rows), true, scatter}};
+}
+
 /// Packets of so many rows that the step between them is too rare to be a usual one: alike, several a second, and
-/// written much faster than they come. A sensor that sleeps between bursts has longer ones.
+/// written much faster than they come, or unevenly. A sensor that sleeps between bursts has longer ones, or even rows.
 std::optional<StampModel> long_packets(const std::vector<std::int64_t>& stamps, std::optional<double> rate_hz) {
-  constexpr double kFaster = 10, kSlowest = 2.5e9;  // ns
+  constexpr double kSlowest = 2.5e9, kApart = 3;  // ns; steps
   const FirstSteps steps = steps_of(stamps, false);
   if (steps.rising.empty() || step_of_half_the_time(steps) > kSlowest) return std::nullopt;
   const double inside = middle_of(steps.rising);
-  const auto rows = static_cast<double>(rows_of_packets(packet_starts(steps)));
-  if (rows <= kLongestPacket || steps.mean < kFaster * inside || (rate_hz && same_rate(1e9 / *rate_hz, inside)))
-    return std::nullopt;
+  const bool faster = steps.mean > kFaster * inside, uneven = common_step(steps, false).spread > kEvenInside;
+  const std::vector<std::size_t> starts = faster ? packet_starts(steps) : packet_starts(steps, kApart * inside);
+  const auto rows = static_cast<double>(rows_of_packets(starts));
+  const bool told = rate_hz && same_rate(1e9 / *rate_hz, inside);
+  if (rows <= kLongestPacket || told || !(faster || (uneven && come_evenly(steps, starts)))) return std::nullopt;
   StampModel model;
   model.pattern = StampPattern::packets;
   model.ns = model.span_ns = steps.mean;
   model.step_ns = inside;
-  model = in_packets(steps, model);
+  model = in_packets(stamps, steps, starts, model);
   model.span_ns = model.ns;
   return model;
 }
@@ -555,15 +657,15 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
   if (!often && !equal_at_times && !common.equal && !beats) return out;
   if (beats || on_one_line(line, steps, common.ns))
     return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
-  if (common.equal) return in_packets(steps, out);
+  if (common.equal) return in_packets(stamps, steps, packet_starts(steps), out);
   if (!often && !common.tidy) out.pattern = StampPattern::equal;  // stamps that scatter by more than a step
   if (!often) return out;
   const StampPattern pattern = explanation(steps, common, found.gaps);
   if (pattern == StampPattern::steps) return out;
   const StampModel even = evenly(steps, common, pattern, line.slope, rate_hz);
   if (even.pattern != StampPattern::packets) return even;
-  const StampModel packets = in_packets(steps, even);
-  return packets.packet > 0 ? packets : even;
+  const StampModel packets = in_packets(stamps, steps, packet_starts(steps), even);
+  return packets.packets.rows > 1 ? packets : even;
 }
 
 }  // namespace
@@ -573,6 +675,7 @@ StampModel model_of_stamps(const std::vector<std::int64_t>& stamps, std::optiona
   if (steps.rising.empty()) return {};
   if (auto told = rate_hz ? as_told(stamps, steps, *rate_hz) : std::nullopt) return *told;
   if (auto packets = long_packets(stamps, rate_hz)) return *packets;
+  if (auto packets = even_packets(stamps)) return *packets;
   const auto change = find_rate_change(stamps);
   if (!change) return model_of_one_rate(stamps, steps, rate_hz);
   const auto at = stamps.begin() + static_cast<std::ptrdiff_t>(change->row);
@@ -625,7 +728,6 @@ std::vector<std::int64_t> caught_up(const std::vector<std::int64_t>& stamps) {
 
 std::size_t at_once_in_front(const std::vector<std::int64_t>& stamps) {
   constexpr std::size_t kFewest = 8;
-  constexpr double kFaster = 10;
   const FirstSteps steps = steps_of(stamps, false);
   if (steps.rising.empty() || stamps.size() < 2 * kFewest) return 0;
   const double usual = regular_step(steps);

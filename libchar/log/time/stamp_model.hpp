@@ -29,10 +29,14 @@ struct StampModel {
   double ns = 0;            ///< sampling interval; what tells a gap from a step
   double longest_step = 0;  ///< a longer one may be a gap, ns
   StampPattern pattern = StampPattern::steps;
-  double step_ns = 0;      ///< the common step alone
-  double span_ns = 0;      ///< rows over time, pauses left out
-  std::size_t packet = 0;  ///< rows of each packet, where they are alike; 0: not
-  double usual_lag = 0;  ///< of packets: rows that the first of one and those behind it are late by, as common_lag says
+  double step_ns = 0;  ///< the common step alone
+  double span_ns = 0;  ///< rows over time, pauses left out
+  /// Of packets.
+  struct Packets {
+    double rows = 0;        ///< of each, in the mean; 0: the stamps are none of packets
+    bool alike = false;     ///< all of them have as many
+    double scatter_ns = 0;  ///< of first rows, where those behind them stand evenly; 0: they do not
+  } packets = {};
 };
 
 /// From the first stamps, in file order. `rate_hz` decides where stamps can be read in two ways.

@@ -138,6 +138,8 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     warnings_.add("duplicate_timestamp", "rows with the stamp of the row before: the first is kept", place(front, row));
     return Verdict::drop;
   }
+  if (step < 0 && step_.even() && static_cast<double>(-step) < step_.model.packets.rows * step_.ns)
+    return Verdict::keep;  // an early packet
   if (step < 0) return backward(front, row, stamp);
   if (const std::int64_t hour = skipped_hour(last_.stamp, stamp, source_.info().time, step_.ns)) {
     last_.wrap -= hour;
@@ -145,7 +147,7 @@ TimeGrid::Verdict TimeGrid::decide(const Pending& front, std::size_t row, std::i
     warnings_.add("clock_change", "an hour is skipped, as at the beginning of summer time: no gap", place(front, row));
     return Verdict::keep;
   }
-  const bool packets = step_.model.packet > 0;
+  const bool packets = step_.model.packets.rows > 0;
   const RowsAtOnce behind = packets || step_.coarse ? RowsAtOnce{} : rows_at_once(front, row);
   const std::size_t at_once = behind.count();
   const std::int64_t gap = packets ? packet_lag(front, row, stamp, ahead) : lag(front, row, stamp, ahead, at_once);
@@ -324,8 +326,7 @@ std::vector<double> TimeGrid::lags_ahead(const Pending& front, std::size_t row, 
                                          std::size_t at_once) const {
   const double last_late = step_.coarse ? 0 : recent_.rows.last_late(step_.ns);
   const auto late = [&](std::int64_t t, std::size_t j) {
-    return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns - static_cast<double>(j + 1) -
-           step_.model.usual_lag;
+    return (static_cast<double>(t - last_.stamp) + last_late) / step_.ns - static_cast<double>(j + 1);
   };
   // Of two rows that changed places the second is dropped: its place is empty.
   const bool close = static_cast<double>(stamp - last_.stamp) < 3 * step_.ns;
@@ -358,33 +359,40 @@ std::int64_t TimeGrid::lag(const Pending& front, std::size_t row, std::int64_t s
       std::round(std::clamp(common_lag(lags_ahead(front, row, stamp, ahead, at_once)), -9e18, 9e18))));
 }
 
-// Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them.
+// Rows missing in front of a packet. One that comes late, and those behind it in time, is none of them. Of packets that
+// stand evenly inside a few rows are known to be missing, of others most of a packet.
 std::int64_t TimeGrid::packet_lag(const Pending& front, std::size_t row, std::int64_t stamp, std::size_t ahead) const {
   constexpr double kOff = 0.35, kLate = 0.5;  // of a packet: further off it is no whole number of them, or on time
   constexpr double kLost = 0.9;               // what the last ones of a log are late by where one is missing
-  constexpr std::size_t kPackets = 6;         // looked at, however many come with them
-  constexpr std::size_t kTogether = 4;        // of these, in the mean
-  constexpr std::size_t kFewest = 3;          // at the end of a log fewer are late as one may be
+  constexpr double kFewRows = 1.5, kBeyond = 6, kSame = 3;  // rows; standard deviations of first rows
+  constexpr std::size_t kFewest = 3;                        // at the end of a log fewer are late as one may be
   if (!recent_.packets.any()) return 0;
-  const auto rows = static_cast<double>(step_.model.packet);
-  double late = recent_.packets.late(last_.index + 1, stamp, step_.ns);
+  const StampModel::Packets& of = step_.model.packets;
+  const std::size_t most = of.alike ? 6 : 10;  // packets looked at, however many come with them: four in the mean
+  const double packet = of.rows * step_.ns;
+  const double least = step_.even() ? std::min(kLate * packet, std::max(kFewRows * step_.ns, kBeyond * of.scatter_ns))
+                                    : std::max(kLate * packet, of.alike ? 0 : kFewRows * step_.ns);
+  std::vector<double> late{recent_.packets.late(last_.index + 1, stamp, step_.ns)};
   std::size_t item = 0, i = row;
   const Pending* at = &front;
   std::int64_t before = stamp;
-  std::size_t seen = 1;
-  const std::size_t looked = std::min(ahead, kTogether * kPackets * step_.model.packet + 2);
-  for (std::size_t j = 1; j < looked && seen <= kPackets && late >= kLate * rows * step_.ns; ++j) {
+  const auto looked = std::min(static_cast<double>(ahead), 4 * static_cast<double>(most) * of.rows + 2);
+  for (std::int64_t j = 1; static_cast<double>(j) < looked && late.size() <= most && late.back() >= least; ++j) {
     if (!next_row(at, item, i)) break;
     std::int64_t t = 0, step = 0;
     if (__builtin_add_overflow(at->block.time_ns[i], last_.wrap, &t) || __builtin_sub_overflow(t, before, &step)) break;
     before = t;
-    if (step <= step_.longest) continue;
-    ++seen;
-    late = std::min(late, recent_.packets.late(last_.index + 1 + static_cast<std::int64_t>(j), t, step_.ns));
+    if (step_.starts_packet(step)) late.push_back(recent_.packets.late(last_.index + 1 + j, t, step_.ns));
   }
-  const double packets = late / (rows * step_.ns), whole = std::round(packets);
-  if (packets < (last_.ended && seen < kFewest ? kLost : kLate) || late > 9e18) return 0;
-  return static_cast<std::int64_t>(std::fabs(packets - whole) < kOff ? whole * rows : std::round(late / step_.ns));
+  const bool cut = last_.ended && late.size() < kFewest;
+  const double soonest = *std::min_element(late.begin(), late.end());
+  if (soonest < (cut ? std::max(least, kLost * packet) : least)) return 0;
+  std::erase_if(late, [&](double one) { return one > soonest + std::max(least, packet); });  // behind the next gap
+  const double usual = median_in_place(late, Middle::lower), packets = usual / packet, whole = std::round(packets);
+  if (usual > 9e18) return 0;
+  const double off = step_.even() ? std::min(kOff, kSame * of.scatter_ns / packet) : kOff;
+  const bool counted = of.alike && whole > 0 && std::fabs(packets - whole) < off;
+  return static_cast<std::int64_t>(counted ? whole * of.rows : std::round(usual / step_.ns));
 }
 
 // A row with the stamp of the one before has a place of its own where those behind it stand where they would then:

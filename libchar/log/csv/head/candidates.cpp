@@ -58,7 +58,7 @@ LineWorth worth_of(const Line& line, char delimiter) {
   out.cells = fields.size();
   out.ends_empty = fields.size() > 1 && fields.back().text.empty() && !fields.back().quoted && delimiter != ' ';
   for (const Field& field : fields) {
-    const bool mark = field.text.find_first_of(".,") != std::string::npos;
+    const bool mark = std::any_of(field.text.begin(), field.text.end(), [](char c) { return c == '.' || c == ','; });
     const double point = worth_of(field, '.');
     out.worth.point += point;
     out.worth.comma += mark ? worth_of(field, ',') : point;
@@ -92,12 +92,18 @@ bool names_fit(const std::vector<LineWorth>& lines, std::size_t columns) {
   return names.cells == columns && (columns > 1 || names.worth.point > 0);
 }
 
+// At either end: fewer of lines that have many cells, which say as much.
+std::size_t lines_looked_at(const Line& one) {
+  constexpr std::size_t kMost = 24, kFewest = 8, kBytes = 8192;
+  return std::clamp(kBytes / std::max<std::size_t>(one.text.size(), 1), kFewest, kMost);
+}
+
 // What stands in front of a table is no table: of many lines the last ones say how it is written.
 void add_candidates(const std::vector<Line>& lines, char delimiter, char decimal, std::vector<Candidate>& out) {
   std::vector<LineWorth> all;
-  constexpr std::size_t kLooked = 24;  // at either end
+  const std::size_t looked = lines_looked_at(lines.back());
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i >= kLooked && i + kLooked < lines.size()) continue;
+    if (i >= looked && i + looked < lines.size()) continue;
     if (lines[i].end != LineEnd::none || all.size() < 2)  // a last line without its end may be cut
       all.push_back(worth_of(lines[i], delimiter));
   }
@@ -204,7 +210,9 @@ char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal
   std::map<char, std::size_t> found;
   for (const Line& line : lines)
     for (const Field& field : split(line.text, delimiter)) {
-      if (field.text.find_first_of(decimal == ',' ? ".' " : ",' ") == std::string::npos) continue;
+      const char other = decimal == ',' ? '.' : ',';
+      const auto mark = [&](char c) { return c == other || c == '\'' || c == ' '; };
+      if (std::none_of(field.text.begin(), field.text.end(), mark)) continue;
       if (cell_kind(field, {decimal}) == CellKind::number) continue;
       for (const char group : {',', '.', '\'', ' '}) {
         if (group == decimal || (group == ' ' && delimiter == ' ')) continue;

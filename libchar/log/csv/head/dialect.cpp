@@ -187,14 +187,23 @@ void choose_cells(Study& study, char separator) {
 
 // Where the table begins.
 
+// "Table Mountain, CO" above rows of twelve numbers between blanks: words of a sentence, of which none is a time.
+bool is_title(const Study& study, const Cells& names) {
+  return study.dialect.delimiter == ' ' && study.dialect.lead.empty() && names.size() + 1 < study.columns &&
+         std::none_of(names.begin(), names.end(), [](const Field& field) { return called_time(field.text); });
+}
+
 TableStart table_start(const Study& study) {
   std::vector<Cells> lines, body;
   for (const Line& line : study.sample) lines.push_back(table_cells(study, line.text));
-  for (std::size_t i = lines.size() / 2; i < lines.size(); ++i)
+  constexpr std::size_t kCells = 2048, kFewest = 8;  // of the last lines, which say the kinds as well
+  const std::size_t most = std::max(kFewest, kCells / std::max<std::size_t>(study.columns, 1));
+  for (std::size_t i = std::max(lines.size() / 2, lines.size() - std::min(lines.size(), most)); i < lines.size(); ++i)
     if (lines[i].size() == study.columns) body.push_back(lines[i]);
   TableStart start = find_table_start(lines, column_kinds(body, study.columns, study.style()), study.style());
   if (study.options.header == "no") return {start.data, {}, {}};
   if (study.options.header == "yes" && !start.names) return {start.data + 1, start.data, {}};
+  if (start.names && is_title(study, lines[*start.names])) start.names.reset();
   return start;
 }
 
@@ -308,13 +317,16 @@ std::optional<double> stated_tick(const Study& study) {
 void gather_rows(Study& study) {
   study.dialect.filters = filters_of(study.options, study.dialect, study.info);
   const auto& filters = study.dialect.filters;
+  std::size_t most = kSample;
   if (filters.empty()) {
     for (const Line& line : study.sample)
       if (line.offset >= study.dialect.data_offset) study.rows.push_back(cells_in(study.dialect, line.text));
-    return;
+    if (!many_groups(study.rows, study.options, study.dialect, study.info)) return;
+    most = 64 * kSample;
+    study.rows.clear();
   }
   std::size_t offset = study.dialect.data_offset;
-  while (offset < study.head.size() && study.rows.size() < kSample) {
+  while (offset < study.head.size() && study.rows.size() < most) {
     const Line line = line_at(study.head, offset, 0);
     offset = line.after;
     Cells row = cells_in(study.dialect, line.text);
@@ -353,7 +365,7 @@ void find_kinds(Study& study) {
   constexpr std::size_t kEnough = 8;
   study.kinds = column_kinds(study.rows, study.dialect.columns.size(), study.style());
   std::vector<std::size_t> empty;
-  for (std::size_t c = 0; c < study.kinds.size() && study.rows.size() >= kSample / 2; ++c)
+  for (std::size_t c = 0; c < study.kinds.size() && study.rows.size() >= kSample / 4; ++c)
     if (study.kinds[c] == ColumnKind::empty) empty.push_back(c);
   std::vector<std::vector<Cells>> later = filled_cells(study, empty, kEnough);
   for (std::size_t k = 0; k < empty.size(); ++k) {

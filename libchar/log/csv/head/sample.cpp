@@ -47,10 +47,13 @@ Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::
                     const std::string& file) {
   Sample sample;
   sample.semicolon_comments = semicolons_comment(head, offset);
-  constexpr std::size_t kMost = 8 * kSample;
-  std::size_t wanted = kSample;
+  constexpr std::size_t kMost = 8 * kSample, kFewest = 32, kBytes = 24576, kLook = 8;
+  std::size_t wanted = kSample, bytes = 0;
   bool found = false;
   while (offset < head.size()) {
+    const std::size_t so_far = sample.lines.size();  // of wide tables fewer lines say as much
+    if (wanted == kSample && so_far >= kFewest && so_far % kLook == 0 && bytes > kBytes && rows_alike(sample.lines))
+      break;
     if (sample.lines.size() == wanted) {  // behind a long preamble as many lines again are those of a table
       const bool rows = rows_alike(sample.lines);
       if (found || (rows && wanted == kSample) || wanted >= kMost) break;
@@ -71,6 +74,7 @@ Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::
       (sample.lines.empty() ? sample.comments : sample.later_comments).push_back(line);
     } else if (!text.empty()) {
       sample.lines.push_back(line);
+      bytes += text.size();
     }
     offset = line.after;
     number += line.lines;

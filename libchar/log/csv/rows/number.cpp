@@ -38,7 +38,8 @@ bool means_missing(std::string_view text) {
 }
 
 bool means_infinite(std::string_view text) {
-  if (!text.empty() && (text[0] == '+' || text[0] == '-')) text.remove_prefix(1);
+  if (is_digit(text.back())) return false;
+  if (text[0] == '+' || text[0] == '-') text.remove_prefix(1);
   return is_word(text, "inf") || is_word(text, "infinity");
 }
 
@@ -231,7 +232,7 @@ Cell read_cell(std::string_view text, char point) {
   if (!whole || status != std::errc() || !std::isfinite(value)) return explain(text, point);
   cell.kind = Cell::value;
   cell.number = value;
-  cell.integer = digits.find_first_not_of("0123456789-") == std::string_view::npos;
+  cell.integer = std::all_of(digits.begin(), digits.end(), [](char c) { return is_digit(c) || c == '-'; });
   if (cell.integer && std::fabs(value) >= 9007199254740992.0) {  // 2^53: does the integer survive?
     Int128 exact = 0;
     for (const char c : digits)
