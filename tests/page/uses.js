@@ -60,11 +60,12 @@ class Session {
   }
   command() { return this.tab.locator("#command").innerText(); }
   text() { return this.tab.locator("#text").innerText(); }
-  /** Brings the uses into sight: a click right after scrolling would go to the report's frame, which was there a moment before. */
-  async toUses() {
-    await this.tab.locator("#use").evaluate(section => section.scrollIntoView());
+  /** Brings a part into sight: a click right after scrolling would go to the report's frame, which was there a moment before. */
+  async to(part) {
+    await part.evaluate(element => element.scrollIntoView());
     await this.tab.waitForTimeout(200);
   }
+  toUses() { return this.to(this.tab.locator("#use")); }
   /** Chooses a use and runs it. */
   async run(use, fill = async () => {}) {
     await this.toUses();
@@ -265,7 +266,9 @@ async function mended(one) {
   await one.ended("a still stretch is asked for");
   check(/--missing=-999 .*--still auto|--still auto .*--missing=-999/.test(await one.command()), "both are in the command");
   check((await one.tab.locator("#found .bad").count()) === 0, "inspect is not told what it does not know");
-  await one.tab.getByRole("button", { name: "Take back --missing=-999" }).click();
+  const takeBack = one.tab.getByRole("button", { name: "Take back --missing=-999" });
+  await one.to(takeBack);
+  await takeBack.click();
   await one.ended("the mark is taken back");
   check(!(await one.command()).includes("missing"), "it is not in the command any more");
   const words = await one.tab.evaluate(() => [listed("a, b", ["a, b", "ab"]), listed("a, b", ["x", "a, b", "a_ b"]), together("-999", "-99,-999"),
