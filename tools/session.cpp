@@ -176,11 +176,13 @@ bool is_of_threads(const std::exception& error) {
          std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
-/// Where the file that cannot be read as a log is a table of a curve: the verb that reads it.
+/// Where the file that cannot be read as a log is a table of a curve: the verb that fits it. `plot` and `compare` read
+/// such tables themselves.
 libchar::Problem with_curve_hint(const Session& session, libchar::Problem problem) {
   const bool of_content = problem.kind == ErrorKind::input || problem.kind == ErrorKind::numeric;
-  const bool known = std::any_of(session.command.begin(), session.command.end(),
-                                 [](const auto& w) { return w.starts_with("--curve"); });
+  const bool known = std::any_of(session.command.begin(), session.command.end(), [](const auto& w) {
+    return w.starts_with("--curve") || w == "plot" || w == "compare";
+  });
   if (!of_content || known) return problem;
   for (const std::string& word : session.command) {
     if (problem.where != word && !problem.where.starts_with(word + ":")) continue;

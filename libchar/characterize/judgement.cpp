@@ -235,6 +235,11 @@ std::vector<Finding> findings_of(const ChannelResult& channel) {
   return worst_first(std::move(found.out));
 }
 
+void detail::add_findings_of(const Findings& recording, std::vector<Finding>& findings) {
+  for (const Finding& one : recording.list())
+    if (!one.effects.empty()) findings.push_back(one);
+}
+
 bool detail::is_described(const NoiseFit& fit) {
   constexpr double kMisfit = 1e-3;  // of residuals so large once in a thousand recordings
   return letters_with(fit, Status::misfit).empty() && !(fit.goodness.p < kMisfit);

@@ -51,6 +51,9 @@ std::vector<std::string> findings(const NoiseFit& fit, const std::string& unit);
 std::vector<std::string> findings_beside_terms(const NoiseFit& fit, const std::string& unit);
 
 namespace detail {
+/// What the reader found and a quantity depends on goes with each of its channels.
+void add_findings_of(const Findings& recording, std::vector<Finding>& findings);
+
 /// The terms describe the record, or the band of it that is fitted, within its scatter.
 bool is_described(const NoiseFit& fit);
 

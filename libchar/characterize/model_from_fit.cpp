@@ -60,10 +60,8 @@ void set_means(SensorModel& model, const NoiseFit& fit) {
   if (fit.temperature && fit.temperature->order > 0) set_temperature_terms(model, *fit.temperature);
 }
 
-/// What the reader found and a coefficient depends on.
 void add_findings_of(const LogInfo& log, SensorModel& model) {
-  for (const Finding& one : log.warnings.list())
-    if (!one.effects.empty()) model.findings.push_back(one);
+  detail::add_findings_of(log.warnings, model.findings);
   model.findings = worst_first(std::move(model.findings));
 }
 

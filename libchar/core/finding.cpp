@@ -127,7 +127,9 @@ std::vector<Finding> detail::findings_in_cell(std::string_view cell) {
     const auto severity = find_enum<Severity>(word.substr(std::min(colon + 1, word.size())));
     if (kind == nullptr || !severity) continue;
     const std::string title(kind->title), meaning(kind->meaning);
-    out.push_back(finding(kind->code, fmt::format("In the recording of this curve: {}. {}", title, meaning), title));
+    const char* const stop = title.ends_with('?') ? "" : ".";
+    out.push_back(
+        finding(kind->code, fmt::format("In the recording of this curve: {}{} {}", title, stop, meaning), title));
     out.back().severity = *severity;
   }
   return out;

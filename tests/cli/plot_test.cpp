@@ -77,7 +77,9 @@ TEST_CASE("plot gives the numbers, and reads what allan and psd print") {
 }
 
 TEST_CASE("what plot cannot do it says in a sentence, and writes nothing") {
-  const test::TemporaryFolder folder;
+  const test::TemporaryFolder folder, tables;
+  const std::string cut = (tables / "cut.csv").string();
+  std::ofstream(cut) << "tau_s,deviation\n1,0.5\n10\n";
   const std::string out = (folder / "x.svg").string();
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const struct {
@@ -97,6 +99,7 @@ TEST_CASE("what plot cannot do it says in a sentence, and writes nothing") {
       {{"plot", plotted_report(), "-c", "gyro_z", "--x-range", "3..1", "-o", out}, 2, "E0201"},
       {{"plot", plotted_report(), "-c", "gyro_z", "--kind", "alan", "-o", out}, 2, "allan"},
       {{"plot", (folder / "absent").string(), "-o", out}, 3, "absent"},
+      {{"plot", cut, "-o", out}, 3, "each row has a value for each name of the header"},
   };
   for (const auto& row : kRows) {
     const test::Ran ran = test::run(row.words);

@@ -86,6 +86,8 @@ TEST_CASE("findings: a cell of a table carries what is no note, and reads back")
   CHECK(detail::findings_cell(read) == "motion:bad held_values:caution");
   for (const char* other : {"", "none", "motion", "motion:worse", ":bad", "see page 3", "no_such_code:bad"})
     CHECK(detail::findings_in_cell(other).empty());
+  const std::string asked = detail::findings_in_cell("missing_mark:bad")[0].sentence;
+  CHECK(asked.find("values? One") != std::string::npos);
   std::vector<Finding> all;
   detail::add_cautions(all, known, "gx");
   detail::add_cautions(all, known, "gx");

@@ -176,6 +176,11 @@ TEST_CASE("what does not go together is refused in a sentence") {
       test::figure_source_of({test::figure_curve("IMU 0/GyrX", "deg/s"), test::figure_curve("IMU 0/AccX", "g")});
   CHECK_THROWS_WITH(chart_of(joined, "allan", {"IMU*"}), Contains("`channels` ('*/Gyr*')"));
   CHECK(chart_of(joined, "allan", {"*/Gyr*"}).series.size() == 1);
+  const FigureSource board =
+      test::figure_source_of({test::figure_curve("imu1_gyr_x", "deg/s"), test::figure_curve("imu1_gyr_y", "deg/s"),
+                              test::figure_curve("imu1_acc_x", "g")});
+  CHECK_THROWS_WITH(chart_of(board, "allan"), Contains("`channels` ('imu1_g*')"));
+  CHECK(chart_of(board, "allan", {"imu1_g*"}).series.size() == 2);
   CHECK_THROWS_WITH(chart_of(mixed, "allan", {"gyroo"}), Contains("E0977") && Contains("gyro"));
   CHECK_THROWS_WITH(chart_of(mixed, "psd"), Contains("E0978") && Contains("no spectrum"));
   CHECK_THROWS_WITH(chart_of(mixed, "alan"), Contains("E0978") && Contains("allan"));

@@ -93,11 +93,15 @@ void name_by_statistic(std::vector<ChosenCurve>& chosen) {
     one.name = names.size() == 1 ? one.curve->statistic.title : one.name + ", " + one.curve->statistic.title;
 }
 
-/// A pattern for channels like this one: "gyr*" for gyro_x, "*/Gyr*" for "IMU 0/GyrX".
-std::string pattern_like(const std::string& channel) {
-  const std::size_t slash = channel.rfind('/');
-  const bool topic = slash != std::string::npos;
-  return (topic ? "*/" : "") + channel.substr(topic ? slash + 1 : 0, 3) + "*";
+/// A pattern for channels like this one and unlike another: "gyr*" for gyro_x, "*/Gyr*" for "IMU 0/GyrX", "imu1_g*"
+/// for imu1_gyr_x beside imu1_acc_x.
+std::string pattern_like(const std::string& channel, const std::string& unlike) {
+  constexpr std::size_t kShortest = 3;
+  const auto own_name = [](const std::string& name) { return name.substr(name.rfind('/') + 1); };
+  const std::string own = own_name(channel), other = own_name(unlike);
+  const auto apart = std::mismatch(own.begin(), own.end(), other.begin(), other.end()).first - own.begin();
+  const std::size_t length = std::max(kShortest, static_cast<std::size_t>(apart) + 1);
+  return (own == channel ? "" : "*/") + own.substr(0, length) + "*";
 }
 
 void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
@@ -108,7 +112,8 @@ void refuse_unlike(const std::vector<ChosenCurve>& chosen) {
           .says("curves in different units do not share an axis: {} in {}, {} in {}", first.name,
                 first.curve->unit.empty() ? "1" : first.curve->unit, other.name,
                 other.curve->unit.empty() ? "1" : other.curve->unit)
-          .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(first.curve->channel));
+          .hint("choose some with `channels` ('{}'), a figure for each unit",
+                pattern_like(first.curve->channel, other.curve->channel));
     if (other.curve->value_unit != first.curve->value_unit && other.curve->statistic != first.curve->statistic &&
         other.curve->is_allan)
       throw input_error("E0976")
@@ -408,7 +413,7 @@ Chart trace_figure(std::span<const FigureSource> sources, const FigureOptions& o
       throw input_error("E0976")
           .says("recordings in different units do not share an axis: {} in {}, {} in {}", chosen[0].second,
                 chosen[0].first->unit, name, trace->unit)
-          .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(chosen[0].second));
+          .hint("choose some with `channels` ('{}'), a figure for each unit", pattern_like(chosen[0].second, name));
     FigureSeries series;
     series.name = chosen.size() > 1 ? name : "";
     for (std::size_t i = 0; i < trace->low.size(); ++i)

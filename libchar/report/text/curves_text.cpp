@@ -22,8 +22,7 @@ namespace {
 
 /// What is known of a curve: of its channel, and of the recording where a quantity depends on it.
 std::string known_of(std::vector<Finding> findings, const Findings& recording) {
-  for (const Finding& one : recording.list())
-    if (!one.effects.empty()) findings.push_back(one);
+  detail::add_findings_of(recording, findings);
   return detail::findings_cell(findings);
 }
 
