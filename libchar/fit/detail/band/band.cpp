@@ -38,6 +38,7 @@ constexpr double kDeepCut = 0.25;  ///< of half the rate
 /// shape would take the place of slow noise.
 constexpr double kDeepest = 0.125;
 constexpr double kPeak = 4;              ///< standard deviations that a broad peak stands above its sides
+constexpr double kFewestPeakDof = 16;    ///< of its bins
 constexpr std::size_t kSkirt = 2;        ///< bins on each side of it that hold too much of it as well
 constexpr std::size_t kMostLeftOut = 4;  ///< a quarter of the bins
 constexpr std::array<std::uint64_t, 13> kTaps = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 64};
@@ -197,14 +198,14 @@ struct BroadPeak {
 /// so that a slope or a rising end is none.
 BroadPeak highest_peak(const std::vector<PowerBin>& bins, const Trial& trial) {
   constexpr std::size_t kReach = 10, kLongest = 10;
-  constexpr double kFewestDof = 16, kLowest = 0.02;
+  constexpr double kLowest = 0.02;
   BroadPeak best;
   for (std::size_t from = kReach; from < trial.index.size(); ++from) {
     const double before = median_of_ratio(trial.ratio, from - kReach, from);
     double sum = 0, dof = 0;
     for (std::size_t to = from + 1; to <= std::min(from + kLongest, trial.index.size()); ++to) {
       const PowerBin& bin = bins[trial.index[to - 1]];
-      if (bin.dof < kFewestDof) break;
+      if (bin.dof < kFewestPeakDof) break;
       sum += bin.dof * trial.ratio[to - 1];
       dof += bin.dof;
       const double after = median_of_ratio(trial.ratio, to, std::min(to + kReach, trial.ratio.size()));
@@ -221,7 +222,9 @@ struct Search {
   double rate_hz;
   const TermSet& terms;
   const BandOptions& options;
-  std::optional<Trial> closest;  ///< of those that did not pass
+  std::optional<Trial> closest;    ///< of those that did not pass
+  bool edges = false;              ///< what looked like peaks
+  double highest_step = 1.0 / 12;  ///< corner of a shelf or loop, of the rate: higher ones are left of other filters
 
   /// Lower edge of the slowest coefficient: a quarter over the duration.
   double slowest_hz() const {
@@ -279,10 +282,9 @@ struct Search {
                                 double hopeless) const {
     // A corner shows by what is beyond it; less damped it is a peak.
     // Two poles far apart, or a corner in the slowest coefficients, are a drift that is no noise.
-    // Shelves and loops of high corners are what is left of other filters.
     constexpr double kInside = 0.5, kDamped = 0.25, kOverdamped = 2, kPeriods = 12;
     const bool low_pass = family == NamedShape::Family::second_order || family == NamedShape::Family::third_order;
-    const double highest = low_pass ? 0.2 : 1.0 / 12;
+    const double highest = low_pass ? 0.2 : highest_step;
     if (members(bins, band).size() < kFewestBins) return std::nullopt;
     TermSet offered = terms;
     offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
@@ -471,9 +473,25 @@ struct Search {
     return best;
   }
 
+  /// Each hole stands above the level of the slow side somewhere: the edge of a filter does not, which unlike skirts
+  /// describe as well.
+  bool all_rise(const Trial& trial, const std::vector<std::size_t>& order) const {
+    for (const auto& [from, to] : holes_of(trial.band, order)) {
+      double clearest = 0;
+      for (std::size_t i = from; i < to; ++i) {
+        const PowerBin& bin = bins[order[i]];
+        if (bin.dof < kFewestPeakDof) continue;
+        const double excess = bin.energy / expected_energy(bin, trial.theta) - 1;
+        clearest = std::max(clearest, excess * std::sqrt(bin.dof / 2));
+      }
+      if (!(clearest > kPeak)) return false;
+    }
+    return true;
+  }
+
   /// The whole band without `holes`, each a resonance whose skirts are fitted, wider where that does not pass: a shape
   /// beside a narrow hole, or none, would put the skirts into N.
-  std::optional<Band> between_peaks(Band band) const {
+  std::optional<Band> between_peaks(Band band) {
     constexpr std::size_t kOf = 4;  ///< a quarter wider on each side
     const std::vector<std::size_t> order = by_frequency();
     const std::size_t fewest = bins.size() - bins.size() / kMostLeftOut;
@@ -488,7 +506,10 @@ struct Search {
     for (;;) {
       const std::optional<Trial> trial = with_skirts(band);
       if (!trial || trial->index.size() < fewest) return std::nullopt;
-      if (trial->band.passes) return trial->band;
+      if (trial->band.passes) {
+        edges = !all_rise(*trial, order);
+        return edges ? std::nullopt : std::optional(trial->band);
+      }
       const Band before = band;
       for (const auto& [from, to] : holes_of(before, order)) {
         const std::size_t width = (to - from + kOf - 1) / kOf;
@@ -502,14 +523,16 @@ struct Search {
   /// `narrow`, or the band without broad peaks where that is twice as wide. What is left of their skirts is a small
   /// misfit, and moves the coefficients less than a deep cut does: there a smaller probability passes.
   std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
-    const Band holes = without_peaks(whole);
+    const Band holes = edges ? whole : without_peaks(whole);
     if (holes.inside == whole.inside) return narrow;
     BandOptions lenient = options;
     lenient.probability = options.misfit;
     Search eased{bins, rate_hz, terms, lenient, std::nullopt};
     for (Search* search : {this, &eased}) {
       std::optional<Band> found = search->between_peaks(holes);
+      if (search->edges) break;
       if (!found) found = search->widest(holes, rate_hz / 2);
+      if (const auto trial = found ? at(*found) : std::nullopt; trial && !all_rise(*trial, by_frequency())) break;
       if (found && (!narrow || found->top_hz > 2 * narrow->top_hz)) narrow = found;
     }
     return narrow;
@@ -654,23 +677,35 @@ struct ShelfTest {
   double largest = 0, rising = 0, echo = 0;
   NamedShape clearest;  ///< the shelf of the largest
 };
-ShelfTest shelf_test(const Search& search, const Trial& unshaped, double slowest_hz) {
+/// The columns and that of the corner of a low-pass, which is fitted too.
+Eigen::MatrixXd with_corner(const Search& search, const Trial& trial, const Eigen::ArrayXd& root,
+                            Eigen::MatrixXd columns) {
+  if (!trial.band.low_pass) return columns;
+  columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+  for (Eigen::Index j = 0; j < columns.rows(); ++j) {
+    const PowerBin& bin = search.bins[trial.index[static_cast<std::size_t>(j)]];
+    columns(j, columns.cols() - 1) =
+        root[j] * low_pass_gain(bin, trial.band.low_pass->corner_hz, search.rate_hz).log_slope;
+  }
+  return columns;
+}
+ShelfTest shelf_test(const Search& search, const Trial& trial, double slowest_hz) {
   constexpr double kTopOctave = 0.25, kSeen = 1e-3, kLargest = 2;  ///< of ln gain
   constexpr int kLongestEcho = 8;
-  const BinProblem problem = band_problem(search.bins, unshaped.band, search.rate_hz);
-  const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, unshaped.theta);
+  const BinProblem problem = band_problem(search.bins, trial.band, search.rate_hz);
+  const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, trial.theta);
   std::vector<Eigen::Index> in;
   for (std::size_t i = 0; i < kTerms; ++i)
     // One at zero would take its own opposite for the slope of a high-pass.
-    if (unshaped.theta[i] > 0) in.push_back(static_cast<Eigen::Index>(i));
+    if (trial.theta[i] > 0) in.push_back(static_cast<Eigen::Index>(i));
   Eigen::MatrixXd columns(problem.size(), static_cast<Eigen::Index>(in.size()));
   for (std::size_t i = 0; i < in.size(); ++i)
     columns.col(static_cast<Eigen::Index>(i)) = (root * problem.unit.col(in[i]) / model).matrix();
-  const Eigen::MatrixXd basis = column_basis(columns);
+  const Eigen::MatrixXd basis = column_basis(with_corner(search, trial, root, std::move(columns)));
   const Eigen::VectorXd residual = (root * (problem.energy / model - 1)).matrix();
   Eigen::ArrayXd square(problem.size());
   for (Eigen::Index j = 0; j < problem.size(); ++j)
-    square[j] = std::pow(search.bins[unshaped.index[static_cast<std::size_t>(j)]].frequency_hz, 2);
+    square[j] = std::pow(search.bins[trial.index[static_cast<std::size_t>(j)]].frequency_hz, 2);
   ShelfTest out;
   const auto tested = [&](const Eigen::ArrayXd& log_gain) {
     const Eigen::VectorXd shape = (root * log_gain).matrix();
@@ -721,6 +756,18 @@ double slow_end_of(const Search& search, const Trial& trial) {
 }
 
 double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, trial.band.top.p); }
+
+/// A low-pass is the first that passes of what falls: where a directed test sees more, a filter or loop with another
+/// root takes its place, or is known to its interval.
+Band low_pass_or(const Search& search, Trial trial, const Band& whole, double slowest_hz) {
+  constexpr double kWorth = 4;  ///< of ln L
+  const ShelfTest beside = shelf_test(search, trial, slowest_hz);
+  if (!(std::max(beside.largest, beside.echo) > search.options.step)) return trial.band;
+  trial.band.hidden.push_back(beside.clearest);
+  const std::optional<Band> named = search.named(whole);
+  const std::optional<Trial> other = named && named->top_hz > 0.99 * whole.top_hz ? search.at(*named) : std::nullopt;
+  return other && other->half_deviance < trial.half_deviance - kWorth ? *named : trial.band;
+}
 
 Band passing(const Trial& trial) {
   Band band = trial.band;
@@ -831,7 +878,8 @@ std::optional<Band> judged(const std::vector<PowerBin>& bins, double rate_hz, co
 std::optional<Band> with_shelf(const std::vector<PowerBin>& bins, double rate_hz, const TermSet& terms,
                                const Band& band, const NamedShape& start) {
   const BandOptions options;
-  const Search search{bins, rate_hz, terms, options, std::nullopt};
+  Search search{bins, rate_hz, terms, options, std::nullopt};
+  search.highest_step = 0.2;
   const auto trial = search.named_in(band, NamedShape::Family::shelf, start, std::numeric_limits<double>::infinity());
   return trial ? std::optional(trial->band) : std::nullopt;
 }
@@ -873,7 +921,8 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   offered[kLentTerm] = offered[kLentTerm] || options.tau_s;
   low_pass.low_pass = fit_low_pass(bins_of(bins, whole, rate_hz), rate_hz, offered);
   if (low_pass.low_pass)
-    if (const auto trial = search.at(low_pass); trial && trial->band.passes && worth(*trial)) return trial->band;
+    if (auto trial = search.at(low_pass); trial && trial->band.passes && worth(*trial))
+      return low_pass_or(search, std::move(*trial), whole, slowest_hz);
   const Trial& plainest = rises ? *quantized : *unshaped;
   if (describes && echoes)
     if (const auto wavy = search.wavy(plainest)) return *wavy;

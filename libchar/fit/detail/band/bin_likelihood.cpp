@@ -369,6 +369,24 @@ ScoringResult climb(const BinProblem& problem, const Scoring& scoring, const Mod
   return result;
 }
 
+const ScoringResult& better(const ScoringResult& a, const ScoringResult& b) {
+  return b.half_deviance < a.half_deviance || !std::isfinite(a.half_deviance) ? b : a;
+}
+
+/// The maximum without a shape, then of its first columns, one more at a time: of a steep filter other starts may end
+/// among slow terms, which no step leaves.
+ModelPoint by_columns(const BinProblem& problem, const TermSet& free, const ModelPoint* fixed, double tolerance) {
+  BinProblem fewer = problem;
+  fewer.shape = problem.shape.leftCols(0);
+  const Scoring first(fewer, free, fixed);
+  ModelPoint at = climb(fewer, first, first.first_guesses()[0], tolerance).at;
+  for (Eigen::Index columns = 1; columns < problem.shapes(); ++columns) {
+    fewer.shape = problem.shape.leftCols(columns);
+    at = climb(fewer, Scoring(fewer, free, fixed), at, tolerance).at;
+  }
+  return at;
+}
+
 }  // namespace
 
 ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelPoint* start, double tolerance) {
@@ -382,8 +400,9 @@ ScoringResult score(const BinProblem& problem, const TermSet& free, const ModelP
   const double hopeless = kHopeless * static_cast<double>(problem.size());
   if (guesses.size() < 2 || result.half_deviance < hopeless) return result;
   // With many unknowns one of the starts may end far from the maximum.
-  const ScoringResult other = climb(problem, scoring, guesses[1], tolerance);
-  return other.half_deviance < result.half_deviance || !std::isfinite(result.half_deviance) ? other : result;
+  result = better(result, climb(problem, scoring, guesses[1], tolerance));
+  if (result.half_deviance < hopeless) return result;
+  return better(result, climb(problem, scoring, by_columns(problem, free, start, tolerance), tolerance));
 }
 
 }  // namespace libchar

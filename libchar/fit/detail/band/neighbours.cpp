@@ -70,8 +70,8 @@ std::vector<Band> with_roots(const std::vector<PowerBin>& bins, const Band& band
 }
 
 bool is_plain(const Band& band) {
-  return band.orders == 0 && band.filter.kind == NoiseShape::Kind::none && band.named.family == Family::none &&
-         band.resonances.empty();
+  return band.orders == 0 && !band.low_pass && band.filter.kind == NoiseShape::Kind::none &&
+         band.named.family == Family::none && band.resonances.empty();
 }
 
 /// What is white above a low corner may have another level below it, and slow terms make up for it; a walk may be
@@ -79,7 +79,7 @@ bool is_plain(const Band& band) {
 std::vector<Band> with_hidden(const std::vector<PowerBin>& bins, const Band& band, const TermSet& kept,
                               const TermSet& offered, double rate_hz) {
   std::vector<Band> out;
-  if (band.low_pass || band.tau_s) return out;  // a process has the spectrum of a step
+  if (band.tau_s) return out;  // a process has the spectrum of a step
   for (const NamedShape& hidden : band.hidden) {
     const TermSet& terms = hidden.family == Family::high_pass ? offered : kept;
     const auto shape = fit_named_shape(bins_of(bins, band, rate_hz), rate_hz, terms, hidden.family, hidden);
@@ -91,9 +91,20 @@ std::vector<Band> with_hidden(const std::vector<PowerBin>& bins, const Band& ban
   return out;
 }
 
+/// Where a directed test sees more than one pole.
+std::vector<Band> beside_low_pass(const std::vector<PowerBin>& bins, const Band& band, const TermSet& kept,
+                                  double rate_hz) {
+  if (band.hidden.empty()) return {};
+  Band plain = band;
+  plain.low_pass.reset();
+  plain.small = {};
+  return with_roots(bins, plain, kept, {Family::shelf, Family::second_order, Family::loop}, rate_hz);
+}
+
 std::vector<Band> neighbours_of(const std::vector<PowerBin>& bins, const Band& band, const TermSet& kept,
                                 const TermSet& offered, double rate_hz) {
   if (is_plain(band)) return with_hidden(bins, band, kept, offered, rate_hz);
+  if (band.low_pass && band.orders == 0) return beside_low_pass(bins, band, kept, rate_hz);
   if (band.orders == 0 && band.filter.kind == NoiseShape::Kind::none) return {};
   if (band.named.family != Family::none) return with_roots(bins, band, kept, richer(band.named.family), rate_hz);
   std::vector<Band> out = richer_polynomials(band);
@@ -251,7 +262,7 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
   constexpr double kOfLimit = 3;   ///< of ln L, from which on limits know of a high-pass
   constexpr double kUnseen = 0.5;  ///< standard deviation of the level below a step that hardly has coefficients
   const auto price_of = [&](const Band& other) {
-    return plain ? kOfHidden : (taps ? kOfWeights : 1) * (other.orders - band.orders);
+    return plain ? kOfHidden : (taps ? kOfWeights : 1) * (other.orders - band.orders - (band.low_pass ? 1 : 0));
   };
   if (band.named.family == Family::high_pass) return;
   const TermSet kept = only_positive(fit.theta);
@@ -269,7 +280,9 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     // The columns of a polynomial are those of the poorer one and more; a named shape begins at its maximum.
     const bool goes_on = other.named.family == Family::none;
     const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
-    if (plain && other.named.family == Family::shelf && !shows_white_below(bins, other.named, there.at.theta)) continue;
+    const bool rises = other.named.zero_hz > 0 && other.named.pole_hz > other.named.zero_hz;
+    const bool of_level = plain ? other.named.family == Family::shelf : band.low_pass && rises;
+    if (of_level && !shows_white_below(bins, other.named, there.at.theta)) continue;
     // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
     const double likelier = chosen - there.half_deviance - price_of(other);
     const double weight = std::exp(std::min(likelier, kMostLikelier));

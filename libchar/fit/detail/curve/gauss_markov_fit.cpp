@@ -44,6 +44,7 @@ constexpr double kSteep = 4;            ///< of the plateau over that: less may 
 constexpr double kBeside =
     0.2;  ///< of the plateau over flicker and walk at its corner: less is their exponent's affair
 constexpr double kLongest = 0.5;  ///< of the record
+constexpr double kFarAbove = 8;   ///< of the rate over the fewest samples, which is six of its corner
 constexpr double kWidth = 1.9;    ///< of the other band that is worth the process
 constexpr double kBadlyKnown = 0.30;
 constexpr auto kLent = static_cast<std::size_t>(Term::ramp);
@@ -232,8 +233,8 @@ double process_at(const Peak& peak, double frequency_hz) {
   return process_at(peak.at.theta[kLent], peak.tau_s, frequency_hz);
 }
 
-/// A fall from a plateau that flicker and walk do not hide at its corner to white noise.
-bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
+/// A fall from a plateau of at least `steep` times white noise that flicker and walk do not hide at its corner to that.
+bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak, double steep = kSteep) {
   const double plateau = process_at(peak, 0), corner_hz = 1 / (2 * std::numbers::pi * peak.tau_s);
   const double white = peak.at.theta[0];
   const auto at = std::find_if(bins.begin(), bins.end(), [&](const PowerBin& bin) { return bin.high_hz > corner_hz; });
@@ -241,7 +242,7 @@ bool falls_to_white(const std::vector<PowerBin>& bins, const Peak& peak) {
   double slow = 0;
   for (const Term term : {Term::flicker, Term::walk})
     slow += peak.at.theta[static_cast<std::size_t>(term)] * at->unit[static_cast<std::size_t>(term)];
-  return white > kFloor * plateau && plateau > kSteep * white && plateau > kBeside * slow;
+  return white > kFloor * plateau && plateau > steep * white && plateau > kBeside * slow;
 }
 
 /// The whole spectrum with a process has no rival that is as wide: chance may speak against it as it does once in a
@@ -280,12 +281,17 @@ std::optional<Band> as_shelf(const std::vector<PowerBin>& bins, double rate_hz, 
   return describing(with_shelf(bins, rate_hz, terms, band, start));
 }
 
-/// The whole spectrum with one process of few samples, where that describes it, as a shelf.
+/// The whole spectrum with one process of few samples, where that describes it, as a shelf: of a step that may be small
+/// where the shape that takes its place describes the whole spectrum too, less likely, of `rival`, for its unknowns.
 std::optional<Band> band_of_fast(const std::vector<PowerBin>& bins, double rate_hz, double duration_s,
-                                 const TermSet& terms) {
+                                 const TermSet& terms, std::optional<double> rival) {
+  constexpr double kWorth = 3;     ///< of ln L, two of them for the unknowns
+  constexpr double kLeast = 0.1;   ///< of white noise
+  constexpr double kShortest = 1;  ///< sample of the correlation time
   const Band whole = whole_band(bins, rate_hz);
-  const Peak peak = search_tau(bins, whole, rate_hz, duration_s, terms, kFewest).peak;
-  if (!(peak.tau_s < kFastest / rate_hz) || !falls_to_white(bins, peak)) return std::nullopt;
+  const Peak peak = search_tau(bins, whole, rate_hz, duration_s, terms, rival ? kShortest : kFewest).peak;
+  if (!(peak.tau_s < kFastest / rate_hz) || !falls_to_white(bins, peak, rival ? kLeast : kSteep)) return std::nullopt;
+  if (rival && !(peak.half_deviance + kWorth < *rival)) return std::nullopt;
   return as_shelf(bins, rate_hz, terms, whole, peak.tau_s, process_at(peak, 0) / peak.at.theta[0]);
 }
 
@@ -337,7 +343,8 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
                                                      double rate_hz, double duration_s, const TermSet& terms) {
   const bool cut = !band.passes || band.top_hz < 0.99 * rate_hz / 2;
   // The corner of a process looks like a peak to a spectrum without one: what is left out as a resonance may be that.
-  const bool shaped = unknowns_of(band) > 0 && band.named.family != NamedShape::Family::high_pass;
+  const std::size_t unknowns = unknowns_of(band) + (band.low_pass && !band.hidden.empty() ? 1 : 0);
+  const bool shaped = unknowns > 0 && band.named.family != NamedShape::Family::high_pass;
   if (terms[kLent] || duration_s * rate_hz * kLongest < 4 * kFewestSamples) return std::nullopt;
   if (!terms[0] || !terms[static_cast<std::size_t>(Term::walk)]) return std::nullopt;
   AtTau rival(bins, band, rate_hz, without_slow(terms));
@@ -367,7 +374,9 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
     if (two && deviance(*two) + kNeeded / 2 < one) other = two;
   }
   const bool free = other.has_value();  // of a filter's affair
-  if (!other && cut) other = other_band(bins, band, rate_hz, duration_s, terms, here.peak.tau_s);
+  // Above its corner a process is a walk: a band that ends octaves above the fastest one was not cut by it.
+  const bool cut_far_above = band.passes && band.top_hz > kFarAbove * rate_hz / kFewestSamples;
+  if (!other && cut && !cut_far_above) other = other_band(bins, band, rate_hz, duration_s, terms, here.peak.tau_s);
   if (other) {
     here = search_tau(bins, *other, rate_hz, duration_s, terms, free ? kFastest : kFewestSamples);
     if (here.ratio > kNeeded && (free || !filters(*other, here.peak)))
@@ -378,8 +387,11 @@ std::optional<GaussMarkovChoice> choose_gauss_markov(const std::vector<PowerBin>
     return choice;
   }
   // A free shape and a cut band see the slow side of a fall alone.
-  if (cut || (shaped && band.named.family == NamedShape::Family::none))
-    if (const auto fast = band_of_fast(bins, rate_hz, duration_s, terms)) choice.band = *fast;
+  if (cut || (shaped && band.named.family == NamedShape::Family::none)) {
+    std::optional<double> as_likely;
+    if (!cut) as_likely = here.without + static_cast<double>(unknowns);
+    if (const auto fast = band_of_fast(bins, rate_hz, duration_s, terms, as_likely)) choice.band = *fast;
+  }
   const Peak alone = most_likely(rival, kFewestSamples / rate_hz, kLongest * duration_s);
   if (alone.tau_s < 0.45 * duration_s && alone.half_deviance < with_slow - kRival / 2) {
     choice.tau_s = alone.tau_s;
