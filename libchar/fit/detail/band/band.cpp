@@ -524,17 +524,22 @@ struct Search {
   /// misfit, and moves the coefficients less than a deep cut does: there a smaller probability passes.
   std::optional<Band> wider_between_peaks(const Band& whole, std::optional<Band> narrow) {
     const Band holes = edges ? whole : without_peaks(whole);
-    if (holes.inside == whole.inside) return narrow;
+    if (holes.inside == whole.inside && !edges) return narrow;
     BandOptions lenient = options;
     lenient.probability = options.misfit;
     Search eased{bins, rate_hz, terms, lenient, std::nullopt};
-    for (Search* search : {this, &eased}) {
-      std::optional<Band> found = search->between_peaks(holes);
-      if (search->edges) break;
-      if (!found) found = search->widest(holes, rate_hz / 2);
-      if (const auto trial = found ? at(*found) : std::nullopt; trial && !all_rise(*trial, by_frequency())) break;
+    const auto take = [&](const std::optional<Band>& found) {
       if (found && (!narrow || found->top_hz > 2 * narrow->top_hz)) narrow = found;
+    };
+    for (Search* search : {this, &eased}) {
+      if (edges) break;
+      std::optional<Band> found = search->between_peaks(holes);
+      if (!found && !search->edges) found = search->widest(holes, rate_hz / 2);
+      const auto trial = found ? at(*found) : std::nullopt;
+      edges = search->edges || (trial && !all_rise(*trial, by_frequency()));
+      if (!edges) take(found);
     }
+    if (edges) take(eased.widest(whole, rate_hz / 2));
     return narrow;
   }
 
