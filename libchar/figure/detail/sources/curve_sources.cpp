@@ -8,6 +8,7 @@
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -303,6 +304,16 @@ void add_model(FigureSource& out, const SensorModel& model) {
     out.curves.push_back(std::move(curve));
   }
   detail::add_cautions(out.findings, model.findings, model.channel);
+}
+
+void add_fits(FigureSource& out, const MapReader& fits) {
+  for (const MapReader& channel : fits.maps("channels")) {
+    if (!channel.has("goodness")) continue;
+    NoiseFit fit;
+    read_fields(noise_fit_fields(), channel, fit);
+    const Channel named{.name = channel.text_or("name", ""), .unit = channel.text_or("unit", "")};
+    add_model(out, sensor_model_from_curve(named, fit, "fit", {}));
+  }
 }
 
 }  // namespace libchar
