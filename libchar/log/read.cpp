@@ -241,13 +241,15 @@ void warn_of_unused(const std::vector<Channel>& channels, const ReadOptions& opt
         warnings.add("unused_option", "`channel_scale` and `channel_unit` for channels that are not read", word);
 }
 
-// Some quantities have units that no list has; a slip must not look like one of them.
-void warn_of_units(const ReadOptions& options, Findings& warnings) {
-  std::vector<std::string> units = options.units;
-  for (const std::string& word : options.channel_unit) units.push_back(word.substr(word.rfind('=') + 1));
-  for (const std::string& unit : units)
-    if (!find_unit(unit))
-      warnings.add("unknown_unit", "units in `units` that are not known: kept as written, nothing is converted", unit);
+// Some quantities have units that no list has; a slip must not look like one of them. Formats that are no tables of
+// text have their units from lists of their own.
+void warn_of_units(const LogInfo& info, const ReadOptions& options, Findings& warnings) {
+  const bool somebody_wrote_them = info.format == "csv" || !options.units.empty() || !options.channel_unit.empty();
+  for (const Channel& channel : info.channels)
+    if (somebody_wrote_them && !channel.unit.empty() && !find_unit(channel.unit))
+      warnings.add("unknown_unit",
+                   "units that are not known: kept as written, nothing is converted; `channel_unit` states another",
+                   fmt::format("{} [{}]", channel.name, channel.unit));
 }
 
 [[noreturn]] void refuse_empty(const LogInfo& info) {
@@ -312,7 +314,7 @@ LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
   LogInfo info = open_log(path, options)->info();
   dress_channels(info.channels, options, nullptr);
   warn_of_unused(info.channels, options, info.warnings);
-  warn_of_units(options, info.warnings);
+  warn_of_units(info, options, info.warnings);
   return info;
 }
 
@@ -464,7 +466,7 @@ LogInfo read_rows(const std::string& path, const ReadOptions& options, std::uint
   take_grid(known, info);
   if (first == 0 && channels.first == 0) {  // what is said of the whole log is said once
     warn_of_unused(info.channels, whole, warnings);
-    warn_of_units(whole, warnings);
+    warn_of_units(info, whole, warnings);
   }
   info.warnings = std::move(warnings);
   return info;
@@ -495,7 +497,7 @@ LogInfo read_log(const std::string& log, const ReadOptions& options, BlockSink& 
     info.channels[c].every = std::max(info.channels[c].every, grid.clocks().every(c));
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);
-  warn_of_units(options, warnings);
+  warn_of_units(info, options, warnings);
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());
   info.warnings = std::move(warnings);

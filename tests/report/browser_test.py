@@ -431,6 +431,24 @@ def check_colours(browser, page):
     expect(sum(len(inks) > 2 for inks in found.values()) > 5, f"{page}: no line stands in several plots")
 
 
+def check_without_weights(browser, page, method):
+    """A chart of weights or variances that the chosen method does not have is a sentence, not an empty sheet."""
+    browser.open(page.resolve().as_uri())
+    browser.run(UNFOLD)
+    browser.run(DRAW_ALL)
+    browser.run("const c = document.querySelector('.choice select');"
+                f"c.value = Array.from(c.options).findIndex((o) => o.textContent === '{method}');"
+                "c.dispatchEvent(new Event('change'))")
+    said = "Array.from(document.querySelectorAll('figure.weights .nothing')).map((n) => n.textContent)"
+    expect(browser.until(f"return {said}.join().includes('{method}')"), f"{page}: no sentence about {method}'s weights")
+    for kind in ("weights", "variances"):
+        part = f"document.querySelector('figure.{kind} "
+        drawn = browser.run(f"return {part}.canvas').offsetHeight > 50")
+        note = browser.run(f"return {part}.nothing').offsetHeight > 5")
+        expect(drawn != note, f"{page}: {kind} of {method}: chart {drawn}, sentence {note}")
+    expect(not browser.console(), f"{page}: console says something about {method}")
+
+
 def check_copying(browser, page):
     """The buttons copy every weight to its last digit, as CSV and as YAML; without a clipboard the text is
     there to be taken by hand."""
@@ -561,6 +579,7 @@ def main():
             check_dark(browser, folder / "replay-plain/report.html")
             check_colours(browser, folder / "replay-large/report.html")
             check_copying(browser, folder / "replay-plain/report.html")
+            check_without_weights(browser, folder / "replay-plain/report.html", "neural-simplex")
             check_paper(browser, folder / "replay-plain/report.html", 12)
             check_without_script(browser, folder / "replay-plain/report.html")
             for kind, devices in {"400": 400, "20000": 20000, "hostile": 40}.items():
