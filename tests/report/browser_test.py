@@ -482,6 +482,12 @@ def check_paper(browser, page, most):
                                             {"preferCSSPageSize": True, "printBackground": True})["data"])
     pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
     expect(0 < pages <= most, f"{page}: {pages} pages of paper, more than {most}")
+    if not shutil.which("pdftotext"):
+        return
+    texts = subprocess.run(["pdftotext", "-layout", "-", "-"], input=pdf, stdout=subprocess.PIPE, check=True).stdout
+    headings = set(browser.run("return Array.from(document.querySelectorAll('h2, h3')).map((h) => h.innerText.trim())"))
+    last = [text.split("\n")[-1].strip() for text in map(str.strip, texts.decode().split("\f")) if text]
+    expect(not headings & set(last), f"{page}: a page of paper ends with the heading {headings & set(last)}")
 
 
 def check_without_script(browser, page):
@@ -587,6 +593,7 @@ def main():
                 check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
             check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
             check_drawings(browser, folder / "fleet-400/index.html")
+            check_paper(browser, folder / "fleet-400/index.html", 12)
             for given in map(pathlib.Path, sys.argv[4:]):
                 text = given.read_text()
                 check_page(browser, given, replay="<title>Sensor fusion" in text[:4000])
