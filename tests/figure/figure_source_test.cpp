@@ -94,6 +94,10 @@ TEST_CASE("a fit gives the curves of its coefficients") {
   CHECK(source.curves[0].marks[1].text == "K = 0.00100 deg/s/√s");
   REQUIRE(source.findings.size() == 2);  // one of each channel
   CHECK(source.findings[0].subject == "gx");
+  const double plain = source.curves[0].y.front();
+  fit.flicker_phase.emplace().value = 0.01;  // of a clock: written as a power law
+  const Json clock = noise_fit_document(Json::array({noise_fit_json("y", "", fit)}));
+  CHECK(read_figure_source(written(folder, "clock.json", clock.dump())).curves[0].y.front() > 1.1 * plain);
   const Json none = noise_fit_document(Json::array({no_fit_json("c", "V", {moved})}));
   CHECK_THROWS_WITH(read_figure_source(written(folder, "none.json", none.dump())), Contains("E0975"));
 }
