@@ -241,12 +241,38 @@ void warn_of_unused(const std::vector<Channel>& channels, const ReadOptions& opt
         warnings.add("unused_option", "`channel_scale` and `channel_unit` for channels that are not read", word);
 }
 
+// A symbol of a quantity that nothing is said of, such as "mA", or a count.
+bool is_other_symbol(std::string_view symbol) {
+  static constexpr std::string_view kSymbols[] = {
+      "A",   "B",   "C",   "F", "H",  "J",  "L",  "N",  "S",  "W",  "m",   "l",   "kg",   "lm",  "lx",    "lux",   "cd",
+      "mol", "ohm", "Ohm", "Ω", "dB", "Ah", "Wh", "VA", "Nm", "px", "raw", "bit", "bits", "LSB", "count", "counts"};
+  const auto is_one = [](std::string_view text) {
+    return std::find(std::begin(kSymbols), std::end(kSymbols), text) != std::end(kSymbols);
+  };
+  for (const std::string_view prefix : {"", "n", "µ", "μ", "u", "m", "c", "k", "M", "G"})
+    if (symbol.starts_with(prefix) && is_one(symbol.substr(prefix.size()))) return true;
+  return find_unit(symbol).has_value();
+}
+
+// "lux", "µA", "m/s", "kg m^2": of other quantities than those whose units are converted, and no slip.
+bool has_other_unit(std::string unit) {
+  for (const std::string_view sign : {"·", "²", "³", "⁻", "¹"})
+    for (std::size_t at; (at = unit.find(sign)) != std::string::npos;) unit.replace(at, sign.size(), " ");
+  constexpr std::string_view kBetween = " */^()-.0123456789";
+  for (std::size_t from = unit.find_first_not_of(kBetween); from != std::string::npos;) {
+    const std::size_t to = std::min(unit.find_first_of(kBetween, from), unit.size());
+    if (!is_other_symbol(std::string_view(unit).substr(from, to - from))) return false;
+    from = unit.find_first_not_of(kBetween, to);
+  }
+  return true;
+}
+
 // Some quantities have units that no list has; a slip must not look like one of them. Formats that are no tables of
 // text have their units from lists of their own.
 void warn_of_units(const LogInfo& info, const ReadOptions& options, Findings& warnings) {
   const bool somebody_wrote_them = info.format == "csv" || !options.units.empty() || !options.channel_unit.empty();
   for (const Channel& channel : info.channels)
-    if (somebody_wrote_them && !channel.unit.empty() && !find_unit(channel.unit))
+    if (somebody_wrote_them && !channel.unit.empty() && !find_unit(channel.unit) && !has_other_unit(channel.unit))
       warnings.add("unknown_unit",
                    "units that are not known: kept as written, nothing is converted; `channel_unit` states another",
                    fmt::format("{} [{}]", channel.name, channel.unit));

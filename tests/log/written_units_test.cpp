@@ -248,6 +248,7 @@ TEST_CASE("a unit that is not known is said with its channel, whoever wrote it")
   REQUIRE(said != nullptr);
   CHECK(said->count == 1);
   CHECK(said->where.rows == std::vector<std::string>{"gx [dgs]"});
+  CHECK(count(read_text(rows("t,w [rad_s^-1],p [kg m^2/s],i [µA]")), "unknown_unit") == 0);
   ReadOptions options;
   options.channel_unit = {"gx=deg/s"};
   CHECK(count(read_text(rows("t,gx [dgs],ax [m/s^2],n"), options), "unknown_unit") == 0);
