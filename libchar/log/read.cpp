@@ -15,6 +15,7 @@
 #include <map>
 #include <string>
 
+#include "libchar/core/axis_name.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
