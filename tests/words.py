@@ -4,9 +4,9 @@ usage: words.py ROOT [--lower] [--list [KEY]]
 Reads README.md, the pages of docs/ and fixtures/, the texts of findings, the documentation of the Python module, the
 string literals of libchar/ and tools/ and of the scripts of pages, the words of tools/page/page.html, and the comments
 of public headers, of docs/examples and of the C that `model --to c` writes. RULES lists what is refused and what to
-write instead. gates/words.tsv lists where a pattern may still occur, and how often, with a reason: a number there may
-fall, never grow, and --lower lowers it to what is there. --list prints each occurrence (of the keys that begin with
-KEY).
+write instead, LONGEST how long a sentence may be. gates/words.tsv lists where a pattern may still occur, and how often,
+with a reason: a number there may fall, never grow, and --lower lowers it to what is there. --list prints each
+occurrence (of the keys that begin with KEY).
 """
 import ast
 import collections
@@ -64,13 +64,21 @@ RULES = [
     ("as asked", r"\bas\s+asked\b", "as requested", ""),
     ("exponent", r"(?<![\w.])\d+(?:\.\d+)?e[-+]?\d+\b", "an SI prefix or a word; digits", "table"),
     ("digits", r"(?<![\w.^/-])(?<!arXiv )\d+\.\d+(?![\w.]*[\w/-])", "at most four digits", "table"),
+    ("long", None, "two sentences", ""),
 ]
+TABLES = RULES[:-1]  # the documentation of a Python function: tables without marks
+# The most words of a sentence, and of its part up to a semicolon or a colon. Code, formulas and numbers do not count.
+LONGEST = ((40, re.compile(r"(?<!\be\.g)(?<!\bi\.e)[.!?](?=[)\"”*_]*(?:\s|$))")),
+           (28, re.compile(r"(?<!\be\.g)(?<!\bi\.e)[.!?;:](?=[)\"”*_]*(?:\s|$))")))
+# What a text is made of: a row of a table, a heading, or a paragraph or item of a list.
+ROW, HEADING, ITEM = r"[ \t]*\|[^\n]*", r"#+ [^\n]*", r"[ \t]*(?:[-*+]|\d+\.)[ \t]"
+BLOCK = re.compile(rf"^(?:{ROW}|{HEADING}|[^\n]*\S[^\n]*(?:\n(?!{ITEM}|{ROW}|{HEADING})[^\n]*\S[^\n]*)*)$", re.M)
 # Of a command's help alone: options are noun phrases, and a default is marked as one.
 QUESTION = ("question", r"[a-z]\?(?=\s*(?:\(default|$))", "an imperative or a noun phrase", "")
 DEFAULT = ("default", r"\((?:\d+(?:\.\d+)?|all|none|one|auto|the [a-z ]+|from the \w+|by its \w+|auto: [^)]*)\)$",
            "(default: …)", "")
 PATTERNS = {name: re.compile(pattern, 0 if name in ("per", "is none") else re.I)
-            for name, pattern, *_ in [*RULES, QUESTION, DEFAULT]}
+            for name, pattern, *_ in [*RULES, QUESTION, DEFAULT] if pattern}
 
 
 def blanks(match):
@@ -145,7 +153,7 @@ def texts(root):
         name = path.relative_to(root).as_posix()
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                yield name, name, node.lineno, node.value, RULES
+                yield name, name, node.lineno, node.value, TABLES
     html = root / "tools/page/page.html"
     yield "tools/page", "tools/page/page.html", 1, words_of_html(html.read_text()), RULES
     for path in sorted([*(root / "tools/page").rglob("*.js"), *(root / "libchar/report").rglob("*.js")]):
@@ -166,10 +174,33 @@ def texts(root):
                 yield f"comments {floor}", path, line, value, RULES
 
 
+def blocks(text):
+    """(place, paragraph or cell)"""
+    for block in BLOCK.finditer(text):
+        cells = re.compile(r"[^|]+" if block[0].lstrip().startswith("|") else r"[^\t]+")
+        yield from ((block.start() + cell.start(), cell[0]) for cell in cells.finditer(block[0]))
+
+
+def long_ones(text):
+    """(place in the text, its first words) of each sentence, or part of one, that is longer than LONGEST."""
+    for place, block in blocks(text):
+        for most, end in LONGEST:
+            begin = 0
+            for stop in [*(hit.end() for hit in end.finditer(block)), len(block)]:
+                said = re.sub(r"`[^`]*`|\{[^}]*\}|<[^>]*>", "", block[begin:stop])
+                words = re.findall(r"(?<![^\s(“\"'*_/–-])[^\W\d_][\w’'-]*", said)
+                if len(words) > most and len(words) > .75 * len(said.split()):  # otherwise it is code
+                    yield place + begin, f"{' '.join(said.split()[:6])} …, {len(words)} words of {most}"
+                begin = stop
+
+
 def hits(text, rules, page):
     """(rule, place in the text, what is said, what to write)"""
     outside = re.sub(r"^[ \t]*\|[^\n]*$", blanks, text, flags=re.M) if page else text
-    for name, _, instead, apart in rules:
+    for name, pattern, instead, apart in rules:
+        if not pattern:
+            yield from ((name, at, said, instead) for at, said in long_ones(text))
+            continue
         for hit in PATTERNS[name].finditer(outside if apart == "table" else text):
             if name != "digits" or len(hit[0].replace(".", "").lstrip("0")) > 4:
                 yield name, hit.start(), re.sub(r"\s+", " ", hit[0]), instead
@@ -193,8 +224,8 @@ def main():
         return 0
     counts = collections.defaultdict(structure.Count)
     for key, name, place, said, instead in found:
-        counts["words", key].add(f"{place} “{said}” ({name}: {instead})")
-    limits = {"words": (0, "patterns of tests/words.py (--list shows them)")}
+        counts["long" if name == "long" else "words", key].add(f"{place} “{said}” ({name}: {instead})")
+    limits = {"words": (0, "patterns of tests/words.py (--list shows them)"), "long": (0, "long sentences")}
     if "--lower" in sys.argv:
         structure.lower(CEILINGS, counts, limits)
     ceilings = structure.read_ceilings(CEILINGS)

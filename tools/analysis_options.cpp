@@ -140,10 +140,11 @@ void add_allan_options(VerbOptions& verb, AnalysisOptions& a) {
                 "bias of mtotdev, ttotdev and htotdev: sp1065 removes it as in SP 1065, none keeps it as allantools "
                 "does (default: sp1065)")
       .only("with --type mtotdev, ttotdev or htotdev", [&a] { return has_bias(a); });
-  verb.add_flag("--full-overlap", a.options.full_overlap,
-                "use every term of the deviation, however long the recording is (default: octaves and dense times take "
-                "every (m/4)th term beyond 1048576 samples, all times beyond 131072; Theo1 and the total deviations of "
-                "windows every (m/16)th or less where one averaging time would take seconds)");
+  verb.add_flag(
+      "--full-overlap", a.options.full_overlap,
+      "use every term of the deviation (default: of long recordings every (m/4)th, beyond 1048576 samples for "
+      "octaves and dense times, 131072 for all times; of Theo1 and the total deviations every (m/16)th or "
+      "less where one time would take seconds)");
 }
 
 void add_spectrum_options(VerbOptions& verb, WelchOptions& spectrum, double& segment_s, bool& quarter) {

@@ -183,6 +183,7 @@ const Fields<BenchReport>& bench_fields() {
       field<&T::command>("command"),
       field<&T::quick>("quick"),
       field<&T::seed>("seed"),
+      computed<detail::bench_verdict>("verdict", {.meaning = "a sentence for each part"}),
       part<&T::machine>("machine", kMachineFields),
       list_of<&T::characterization>("characterization", kCharacterizationFields),
       maybe_part<&T::fusion>("fusion", kFusionFields),

@@ -128,7 +128,7 @@ BenchSection legend_section(const CharacterizationBench& bench) {
       "Bound: the Cramér-Rao bound, the smallest standard deviation that an unbiased method can reach on such a "
       "recording. RMSE over it: 1 is the best possible; a coefficient that is in the records and not detected counts "
       "as an estimate of "
-      "zero, which can be nearer than the bound says where the bound is wide. False terms: records in which a "
+      "zero. Where the bound is wide, zero can be nearer than the bound says. False terms: records in which a "
       "coefficient is stated that is not in them (–: its terms are given, or all are there). Time over the first: of "
       "the first method listed below, record by record. Methods that are given the terms count against each other "
       "only. A "

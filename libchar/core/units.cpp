@@ -83,13 +83,13 @@ std::optional<std::pair<std::string_view, std::string_view>> plain_sign(std::str
 }
 
 // Lower case, blanks, '*' and '·' dropped, raised digits lowered: "rad s^-1", "Rad·s⁻¹", "rad*s-1",
-// "rad.s-1" and "rad/(s)" are the same.
+// "rad.s-1", "rad_s^-1" and "rad/(s)" are the same.
 std::string normal(std::string_view text) {
   std::string out;
-  const bool divided = text.find("/(") != std::string_view::npos;
+  const bool divided = text.find("/(") != std::string_view::npos, raised = text.find("^-") != std::string_view::npos;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == ' ' || c == '*' || (divided && (c == '(' || c == ')'))) continue;
+    if (c == ' ' || c == '*' || (divided && (c == '(' || c == ')')) || (raised && c == '_')) continue;
     if (c == '.' && !out.empty() && text.substr(i + 1).starts_with('s')) continue;
     if (const auto plain = plain_sign(text.substr(i))) {
       out += plain->second;

@@ -14,8 +14,8 @@ namespace libchar {
 namespace {
 
 constexpr const char* kReadable =
-    "plot draws report.json of characterize or replay (or its folder), what allan and psd print, curves.csv, and "
-    "sensor models";
+    "plot draws report.json of characterize or replay (or its folder), what allan, psd and fit print, "
+    "curves.csv, and sensor models";
 
 std::string format_in(const Document& document) {
   const DocumentEntry* entry = document.kind == Document::Kind::map ? document.find("format") : nullptr;
@@ -53,7 +53,10 @@ void read_document(FigureSource& out, const Document& document, const std::strin
   out.findings = detail::reported_findings(map);
   if (format == "allan") return add_allan_curves(out, map);
   if (format == "spectrum") return add_spectra(out, map);
-  if (format == "noise-fit") return add_residuals(out, map);
+  if (format == "noise-fit") {
+    add_residuals(out, map);
+    return add_fits(out, map);
+  }
   if (map.has("allan")) add_allan_curves(out, map.map("allan"));
   if (map.has("spectrum")) add_spectra(out, map.map("spectrum"));
   if (map.has("fit")) {

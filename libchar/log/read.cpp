@@ -15,6 +15,7 @@
 #include <map>
 #include <string>
 
+#include "libchar/core/axis_name.hpp"
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/process/work.hpp"
 #include "libchar/core/refusal.hpp"
@@ -241,13 +242,41 @@ void warn_of_unused(const std::vector<Channel>& channels, const ReadOptions& opt
         warnings.add("unused_option", "`channel_scale` and `channel_unit` for channels that are not read", word);
 }
 
-// Some quantities have units that no list has; a slip must not look like one of them.
-void warn_of_units(const ReadOptions& options, Findings& warnings) {
-  std::vector<std::string> units = options.units;
-  for (const std::string& word : options.channel_unit) units.push_back(word.substr(word.rfind('=') + 1));
-  for (const std::string& unit : units)
-    if (!find_unit(unit))
-      warnings.add("unknown_unit", "units in `units` that are not known: kept as written, nothing is converted", unit);
+// A symbol of a quantity that nothing is said of, such as "mA", or a count.
+bool is_other_symbol(std::string_view symbol) {
+  static constexpr std::string_view kSymbols[] = {
+      "A",   "B",   "C",   "F", "H",  "J",  "L",  "N",  "S",  "W",  "m",   "l",   "kg",   "lm",  "lx",    "lux",   "cd",
+      "mol", "ohm", "Ohm", "Ω", "dB", "Ah", "Wh", "VA", "Nm", "px", "raw", "bit", "bits", "LSB", "count", "counts"};
+  const auto is_one = [](std::string_view text) {
+    return std::find(std::begin(kSymbols), std::end(kSymbols), text) != std::end(kSymbols);
+  };
+  for (const std::string_view prefix : {"", "n", "µ", "μ", "u", "m", "c", "k", "M", "G"})
+    if (symbol.starts_with(prefix) && is_one(symbol.substr(prefix.size()))) return true;
+  return find_unit(symbol).has_value();
+}
+
+// "lux", "µA", "m/s", "kg m^2": of other quantities than those whose units are converted, and no slip.
+bool has_other_unit(std::string unit) {
+  for (const std::string_view sign : {"·", "²", "³", "⁻", "¹"})
+    for (std::size_t at; (at = unit.find(sign)) != std::string::npos;) unit.replace(at, sign.size(), " ");
+  constexpr std::string_view kBetween = " */^()-.0123456789";
+  for (std::size_t from = unit.find_first_not_of(kBetween); from != std::string::npos;) {
+    const std::size_t to = std::min(unit.find_first_of(kBetween, from), unit.size());
+    if (!is_other_symbol(std::string_view(unit).substr(from, to - from))) return false;
+    from = unit.find_first_not_of(kBetween, to);
+  }
+  return true;
+}
+
+// Some quantities have units that no list has; a slip must not look like one of them. Formats that are no tables of
+// text have their units from lists of their own.
+void warn_of_units(const LogInfo& info, const ReadOptions& options, Findings& warnings) {
+  const bool somebody_wrote_them = info.format == "csv" || !options.units.empty() || !options.channel_unit.empty();
+  for (const Channel& channel : info.channels)
+    if (somebody_wrote_them && !channel.unit.empty() && !find_unit(channel.unit) && !has_other_unit(channel.unit))
+      warnings.add("unknown_unit",
+                   "units that are not known: kept as written, nothing is converted; `channel_unit` states another",
+                   fmt::format("{} [{}]", channel.name, channel.unit));
 }
 
 [[noreturn]] void refuse_empty(const LogInfo& info) {
@@ -312,7 +341,7 @@ LogInfo read_log_head(const std::string& log, const ReadOptions& options) {
   LogInfo info = open_log(path, options)->info();
   dress_channels(info.channels, options, nullptr);
   warn_of_unused(info.channels, options, info.warnings);
-  warn_of_units(options, info.warnings);
+  warn_of_units(info, options, info.warnings);
   return info;
 }
 
@@ -464,7 +493,7 @@ LogInfo read_rows(const std::string& path, const ReadOptions& options, std::uint
   take_grid(known, info);
   if (first == 0 && channels.first == 0) {  // what is said of the whole log is said once
     warn_of_unused(info.channels, whole, warnings);
-    warn_of_units(whole, warnings);
+    warn_of_units(info, whole, warnings);
   }
   info.warnings = std::move(warnings);
   return info;
@@ -495,7 +524,7 @@ LogInfo read_log(const std::string& log, const ReadOptions& options, BlockSink& 
     info.channels[c].every = std::max(info.channels[c].every, grid.clocks().every(c));
   refuse_without_samples(info, options);
   judge_values(watch, info, options, warnings);
-  warn_of_units(options, warnings);
+  warn_of_units(info, options, warnings);
   info.sha256 = source->sha256();
   info.bytes = std::max(info.bytes, source->bytes_read());
   info.warnings = std::move(warnings);

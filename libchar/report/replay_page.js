@@ -266,20 +266,28 @@
       pen.restore();
     },
   });
-  function weightsChart() {
-    const sets = tracked && flatWeights(tracked) ? sensorSets(tracked.weight_track, tracked.weights, false, "") : [];
-    return chart(sets, timeAxis(), linearAxis("weight", undefined, undefined), [dragging].concat(sets.length ? [] : [nothing((tracked ? tracked.label : "This method") + " has no single weights")]));
+  // A chart without a line is not drawn: a sentence says why.
+  function drawnIf(sets, figure, why) {
+    const note = figure.querySelector(".nothing") || figure.appendChild(Object.assign(document.createElement("p"), { className: "note nothing" }));
+    note.textContent = (tracked ? tracked.label : "This method") + " " + why;
+    note.hidden = sets.length > 0;
+    figure.querySelectorAll(".canvas, figcaption, .save").forEach((part) => { part.hidden = sets.length === 0; });
   }
-  function variancesChart(index, axis, u) {
+  function weightsChart(index, axis, u, figure) {
+    const sets = tracked && flatWeights(tracked) ? sensorSets(tracked.weight_track, tracked.weights, false, "") : [];
+    drawnIf(sets, figure, "does not weight the sensors by one number each.");
+    return chart(sets, timeAxis(), linearAxis("weight", undefined, undefined), [dragging]);
+  }
+  function variancesChart(index, axis, u, figure) {
     const sets = tracked ? sensorSets(tracked.variance_track, tracked.variances, true, u) : [];
-    const estimated = sets.length > 0;
-    if (estimated) {
+    drawnIf(sets, figure, "does not estimate variances.");
+    if (sets.length) {
       drawnSensors(tracked.variances, true).forEach((i) => {
         const s = report.sensors[i];
         if (positive(s.rmse)) sets.push(Object.assign(flat("", s.rmse * s.rmse, { colour: faint(sensorStyle(i).colour, 0.55), dash: [1, 3] }), { order: 6, borderWidth: 1.3 }));
       });
     }
-    return chart(sets, timeAxis(), logFor(axis + (u ? ", " + u : ""), sets, 1.3), [dragging].concat(estimated ? [] : [nothing((tracked ? tracked.label : "This method") + " estimates no variances")]));
+    return chart(sets, timeAxis(), logFor(axis + (u ? ", " + u : ""), sets, 1.3), [dragging]);
   }
 
   const MOST_ROWS = 24;

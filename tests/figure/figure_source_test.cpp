@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "libchar/core/error.hpp"
+#include "libchar/fit/fit_json.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -62,6 +63,43 @@ TEST_CASE("a model gives its Allan curve and its spectrum") {
   CHECK(model.curves[1].y.back() == Approx(2e-4).epsilon(1e-2));
   REQUIRE(allan.marks.size() == 2);
   CHECK(allan.marks[0].text == "N = 0.0100 deg/s·√s");
+}
+
+TEST_CASE("a fit gives the curves of its coefficients") {
+  const test::TemporaryFolder folder;
+  NoiseFit fit;
+  fit.rate_hz = 100;
+  fit.duration_s = 1000;
+  const auto detected = [&](Term term, double value) {
+    Coefficient& c = fit.term[static_cast<std::size_t>(term)];
+    c.status = Status::detected;
+    c.value = value;
+    c.ci95 = {0.9 * value, 1.1 * value};
+  };
+  detected(Term::white, 0.01);
+  detected(Term::walk, 0.001);
+  Finding moved;
+  moved.code = "motion";
+  moved.severity = Severity::bad;
+  fit.findings = {moved};
+  const Json document =
+      noise_fit_document(Json::array({noise_fit_json("gx", "deg/s", fit), no_fit_json("c", "V", {moved})}));
+  const FigureSource source = read_figure_source(written(folder, "fit.json", document.dump()));
+  REQUIRE(source.curves.size() == 2);
+  CHECK(source.curves[0].channel == "gx");
+  CHECK(source.curves[0].of_model);
+  CHECK(source.curves[0].y.front() == Approx(0.1).epsilon(1e-2));
+  CHECK(source.curves[1].y.back() == Approx(2e-4).epsilon(1e-2));
+  REQUIRE(source.curves[0].marks.size() == 2);
+  CHECK(source.curves[0].marks[1].text == "K = 0.00100 deg/s/√s");
+  REQUIRE(source.findings.size() == 2);  // one of each channel
+  CHECK(source.findings[0].subject == "gx");
+  const double plain = source.curves[0].y.front();
+  fit.flicker_phase.emplace().value = 0.01;  // of a clock: written as a power law
+  const Json clock = noise_fit_document(Json::array({noise_fit_json("y", "", fit)}));
+  CHECK(read_figure_source(written(folder, "clock.json", clock.dump())).curves[0].y.front() > 1.1 * plain);
+  const Json none = noise_fit_document(Json::array({no_fit_json("c", "V", {moved})}));
+  CHECK_THROWS_WITH(read_figure_source(written(folder, "none.json", none.dump())), Contains("E0975"));
 }
 
 TEST_CASE("what is no curve is refused with what to do") {

@@ -216,7 +216,8 @@ class Words(unittest.TestCase):
                            ("that there is", "the figures that there are"), ("told", "not told from another term"),
                            ("stands", "the log in which it stands"), ("beside", "the folder beside it"),
                            ("of which", "an array of which more is to be said"), ("exponent", "agrees to 1e-12"),
-                           ("digits", "regret 26070.09 %")):
+                           ("digits", "regret 26070.09 %"), ("long", "word " * 29 + "."),
+                           ("long", "| cell | " + "word " * 29 + "|"), ("long", "half a word, " * 7 + "and so; " * 10)):
             self.assertIn(rule, self.found(text), text)
         self.assertEqual(self.found("rows to skip? (default: 0)", [words.QUESTION]), ["question"])
 
@@ -224,7 +225,9 @@ class Words(unittest.TestCase):
         for text in ("one file per channel", "a file in a folder", "a scene names a file", "There is no gap.",
                      "empty where there is none", "when it took a channel out",
                      "It is no longer used.", "It has not changed.", "letters stand for axes", "`told` and 0.24 deg/√h",
-                     "```sh\nallan --taus 1e-3\n```", "| 1e-12 | 0.004021 |", "one second a minute later"):
+                     "```sh\nallan --taus 1e-3\n```", "| 1e-12 | 0.004021 |", "one second a minute later",
+                     "word " * 28 + ". " + "word " * 28, "- " + "word " * 28 + "\n- " + "word " * 28,
+                     "a key: " + "`code`, 12, " * 30):
             self.assertEqual(self.found(text), [], text)
 
     def test_sources(self):

@@ -236,3 +236,22 @@ TEST_CASE("one name above week and second of the week") {
   CHECK(log.info.time.column == "GPST");
   CHECK(log.info.channels.back().name == "height");
 }
+
+TEST_CASE("a unit that is not known is said with its channel, whoever wrote it") {
+  const auto rows = [](const std::string& head) {
+    return unit_rows(head + "\n",
+                     [](int k) { return fmt::format("{},{},{},{}", k * 0.01, unit_value(k), k % 7, k % 5); });
+  };
+  const Recording log = read_text(rows("t,gx [dgs],ax [m/s^2],n"));
+  CHECK(log.info.channels[0].unit == "dgs");
+  const Finding* said = log.info.warnings.find("unknown_unit");
+  REQUIRE(said != nullptr);
+  CHECK(said->count == 1);
+  CHECK(said->where.rows == std::vector<std::string>{"gx [dgs]"});
+  CHECK(count(read_text(rows("t,w [rad_s^-1],p [kg m^2/s],i [µA]")), "unknown_unit") == 0);
+  ReadOptions options;
+  options.channel_unit = {"gx=deg/s"};
+  CHECK(count(read_text(rows("t,gx [dgs],ax [m/s^2],n"), options), "unknown_unit") == 0);
+  options.channel_unit = {"n=sverdrup"};
+  CHECK(count(read_text(rows("t,gx [deg/s],ax [m/s^2],n"), options), "unknown_unit") == 1);
+}

@@ -473,6 +473,9 @@ class HasEveryVerb(unittest.TestCase):
             self.assertIn("<svg", libchar.plot(noise(), noise(seed=2), rate=100).svg)
             self.assertIn("<svg", self.log.plot(kind="trace", channel="gyro_z").svg)
             self.assertIn("<svg", self.result["gyro_z"].plot(kind="residuals").svg)
+            for fit in (libchar.fit(self.log, channels=["gyro_z"])[0], self.result["gyro_z"].fit):
+                self.assertIn("N = 0.00402 deg/s·√s", fit.plot().svg)
+                self.assertIn("<svg", libchar.plot(fit, self.result, channel="gyro_z").svg)
             self.assertIn("<svg", libchar.plot(IMU, channel="gyro_z").svg)
         self.assertEqual(list(libchar.fit(self.log)[0].to_dataframe()["coefficient"])[0], "white_noise")
         for shown in (self.log, self.result, self.result["gyro_z"], libchar.fit(self.log)[0],

@@ -59,6 +59,8 @@ TEST_CASE("bench: page, Markdown, text and document say the same, names escaped"
   CHECK_THAT(bench_text(report), Contains("first") && Contains("1.00 [0.900, 1.10]"));
   const Json document = document_of(bench_fields(), report);
   CHECK(document["format"] == "bench");
+  REQUIRE(document["verdict"].size() == 1);
+  CHECK_THAT(document["verdict"][0].get<std::string>(), Contains("first is the most accurate, 1.00 × the bound"));
   CHECK(document["characterization"][0]["methods"][1]["terms"][0]["rmse_over_bound"]["value"] == 3);
 }
 

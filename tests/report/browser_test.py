@@ -431,6 +431,24 @@ def check_colours(browser, page):
     expect(sum(len(inks) > 2 for inks in found.values()) > 5, f"{page}: no line stands in several plots")
 
 
+def check_without_weights(browser, page, method):
+    """A chart of weights or variances that the chosen method does not have is a sentence, not an empty sheet."""
+    browser.open(page.resolve().as_uri())
+    browser.run(UNFOLD)
+    browser.run(DRAW_ALL)
+    browser.run("const c = document.querySelector('.choice select');"
+                f"c.value = Array.from(c.options).findIndex((o) => o.textContent === '{method}');"
+                "c.dispatchEvent(new Event('change'))")
+    said = "Array.from(document.querySelectorAll('figure.weights .nothing')).map((n) => n.textContent)"
+    expect(browser.until(f"return {said}.join().includes('{method}')"), f"{page}: no sentence about {method}'s weights")
+    for kind in ("weights", "variances"):
+        part = f"document.querySelector('figure.{kind} "
+        drawn = browser.run(f"return {part}.canvas').offsetHeight > 50")
+        note = browser.run(f"return {part}.nothing').offsetHeight > 5")
+        expect(drawn != note, f"{page}: {kind} of {method}: chart {drawn}, sentence {note}")
+    expect(not browser.console(), f"{page}: console says something about {method}")
+
+
 def check_copying(browser, page):
     """The buttons copy every weight to its last digit, as CSV and as YAML; without a clipboard the text is
     there to be taken by hand."""
@@ -464,6 +482,12 @@ def check_paper(browser, page, most):
                                             {"preferCSSPageSize": True, "printBackground": True})["data"])
     pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
     expect(0 < pages <= most, f"{page}: {pages} pages of paper, more than {most}")
+    if not shutil.which("pdftotext"):
+        return
+    texts = subprocess.run(["pdftotext", "-layout", "-", "-"], input=pdf, stdout=subprocess.PIPE, check=True).stdout
+    headings = set(browser.run("return Array.from(document.querySelectorAll('h2, h3')).map((h) => h.innerText.trim())"))
+    last = [text.split("\n")[-1].strip() for text in map(str.strip, texts.decode().split("\f")) if text]
+    expect(not headings & set(last), f"{page}: a page of paper ends with the heading {headings & set(last)}")
 
 
 def check_without_script(browser, page):
@@ -561,6 +585,7 @@ def main():
             check_dark(browser, folder / "replay-plain/report.html")
             check_colours(browser, folder / "replay-large/report.html")
             check_copying(browser, folder / "replay-plain/report.html")
+            check_without_weights(browser, folder / "replay-plain/report.html", "neural-simplex")
             check_paper(browser, folder / "replay-plain/report.html", 12)
             check_without_script(browser, folder / "replay-plain/report.html")
             for kind, devices in {"400": 400, "20000": 20000, "hostile": 40}.items():
@@ -568,6 +593,7 @@ def main():
                 check_fleet(browser, folder / ("fleet-" + kind) / "index.html", devices)
             check_widths(browser, folder / "fleet-400/index.html", (390, 800, 1400))
             check_drawings(browser, folder / "fleet-400/index.html")
+            check_paper(browser, folder / "fleet-400/index.html", 12)
             for given in map(pathlib.Path, sys.argv[4:]):
                 text = given.read_text()
                 check_page(browser, given, replay="<title>Sensor fusion" in text[:4000])

@@ -147,8 +147,9 @@ void add_simulated(FigureSource& out, const MapReader& verification);
 /// A table of curves (fit/curve_table.hpp).
 void add_table(FigureSource& out, const std::string& file, bool is_allan);
 
-/// Allan curve and spectrum that a model implies, with its terms.
+/// Allan curve and spectrum that a model implies, with its terms; of a document of fits those of each that has one.
 void add_model(FigureSource& out, const SensorModel& model);
+void add_fits(FigureSource& out, const MapReader& fits);
 
 /// "N = 0.00401 deg/s·√s": a coefficient as a mark says it.
 std::string mark_text(Term term, double value, const std::string& unit);

@@ -253,7 +253,7 @@ std::string sentence_of(const Stationarity& found, double limit) {
   }
   return fmt::format(
       "The noise is not the same throughout: at an averaging time of {}, the Allan deviations of {} stretches vary by "
-      "{} % (1 sd) more than chance explains, from {} times that of the whole recording ({} to {} s) to {} times ({} "
+      "{} % (1 sd) more than chance explains: from {} times that of the whole recording ({} to {} s) to {} times ({} "
       "to {} s){}. "
       "Another recording may differ as much.",
       duration_text(found.clearest_tau_s), duration_text(found.stretch_s), number_text(100 * there, 2),

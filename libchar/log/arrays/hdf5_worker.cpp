@@ -45,6 +45,13 @@ L(H5Tinsert) L(H5Tis_variable_str) L(H5check_version) L(H5free_memory) L(H5open)
 bool is_here() { return true; }
 #endif
 
+// What H5Oget_info_by_name2 fills in; 1.12 gave the plain name to another structure.
+#if H5_VERSION_GE(1, 12, 0)
+using ObjectInfo = H5O_info1_t;
+#else
+using ObjectInfo = H5O_info_t;
+#endif
+
 constexpr std::size_t kMaxDepth = 32, kMaxObjects = 100000, kMaxMemberBytes = 1U << 20U;
 constexpr std::uint64_t kMaxChunk = std::uint64_t{256} << 20U;
 constexpr std::uint64_t kMostAnswer = std::uint64_t{256} << 20U;
@@ -423,7 +430,7 @@ class Worker {
                                              : " is a link to another file, which is never followed"));
       return 0;
     }
-    H5O_info_t about;
+    ObjectInfo about;
     if (H5Oget_info_by_name2(group, name.c_str(), &about, H5O_INFO_BASIC, H5P_DEFAULT) < 0) {
       listing.left_out.push_back(path + " is damaged");
       return 0;

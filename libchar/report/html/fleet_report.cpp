@@ -91,9 +91,8 @@ std::string quantities_part(const FleetLot& lot) {
          "measurement uncertainty removed (≤: upper 97.5 % limit). 95 % of devices: values as measured. A mean \"of\" "
          "more devices than are counted includes undetected or doubtful ones, by the squares measured in their "
          "recordings. "
-         "Otherwise only detected values count: no mean is given if fewer than two thirds of the devices were "
-         "detected, "
-         "and “too large by up to” is the bias if all other devices are smaller.</p>\n";
+         "Otherwise only detected values count, and no mean is given if fewer than two thirds of the devices were "
+         "detected. “Too large by up to” is the bias if all other devices are smaller.</p>\n";
 }
 
 std::string figures_part(const FleetReport& report) {

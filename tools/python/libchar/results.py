@@ -355,7 +355,7 @@ class NoiseTerm(_Result):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class NoiseFit(_Shown, _Result):
+class NoiseFit(_Shown, _Drawn):
     """Noise coefficients of a channel (docs/theory/fit.md)."""
 
     name: str
@@ -384,6 +384,9 @@ class NoiseFit(_Shown, _Result):
 
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
+
+    def _drawn(self) -> tuple[str, dict[str, Any]]:
+        return "noise-fit", {"channels": [self.to_dict()]}
 
     def terms(self) -> dict[str, NoiseTerm]:
         """The coefficients by their names."""

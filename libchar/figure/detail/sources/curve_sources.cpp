@@ -8,12 +8,14 @@
 #include "libchar/allan/deviation_types.hpp"
 #include "libchar/characterize/curves/curve_document.hpp"
 #include "libchar/characterize/curves/model_curve.hpp"
+#include "libchar/characterize/model_from_fit.hpp"
 #include "libchar/core/not_known.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/figure/detail/figure_parts.hpp"
 #include "libchar/fit/curve/curve_table.hpp"
+#include "libchar/fit/curve/power_laws.hpp"
 #include "libchar/fit/fit_json.hpp"
 #include "libchar/log/text_table.hpp"
 #include "libchar/spectrum/spectrum.hpp"
@@ -303,6 +305,32 @@ void add_model(FigureSource& out, const SensorModel& model) {
     out.curves.push_back(std::move(curve));
   }
   detail::add_cautions(out.findings, model.findings, model.channel);
+}
+
+namespace {
+
+// A clock's flicker phase is in the document as a power law only.
+void read_flicker_phase(NoiseFit& fit, const MapReader& channel) {
+  NoiseFit one;
+  one.rate_hz = fit.rate_hz;
+  one.flicker_phase.emplace().value = 1;
+  if (channel.has("power_laws"))
+    for (const MapReader& law : channel.maps("power_laws"))
+      if (law.number_or("alpha", 0) == 1 && law.has("h"))
+        fit.flicker_phase.emplace().value = std::sqrt(law.number("h") / *power_laws(one)[1].h.value);
+}
+
+}  // namespace
+
+void add_fits(FigureSource& out, const MapReader& fits) {
+  for (const MapReader& channel : fits.maps("channels")) {
+    if (!channel.has("goodness")) continue;
+    NoiseFit fit;
+    read_fields(noise_fit_fields(), channel, fit);
+    read_flicker_phase(fit, channel);
+    const Channel named{.name = channel.text_or("name", ""), .unit = channel.text_or("unit", "")};
+    add_model(out, sensor_model_from_curve(named, fit, "fit", {}));
+  }
 }
 
 }  // namespace libchar

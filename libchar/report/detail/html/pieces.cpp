@@ -86,8 +86,8 @@ std::string limits_section(const LimitReport& report) {
          (report.sensor.empty() ? std::string() : " of " + html_text(report.sensor)) + "</h2>\n<p>" +
          html_prose(report.verdict) + "</p>\n" + html_table(judgements(report)) + "<p class=\"note\">From " +
          html_text(report.file) +
-         ". A term passes or fails if its whole 95 % interval is within or above the limit; a term exactly at the "
-         "limit passes or fails by chance in at most 2.5 % of recordings each, and passes in 5 % if only an upper "
+         ". A term passes or fails if its whole 95 % interval is within or above the limit. A term exactly at the "
+         "limit passes or fails by chance in at most 2.5 % of recordings each. It passes in 5 % if only an upper "
          "limit is known.</p>\n</section>\n";
 }
 
