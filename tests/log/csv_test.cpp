@@ -583,6 +583,23 @@ TEST_CASE("rows of several sensors in turn are no one sensor, however even their
   CHECK(read_text(table("unit", [](int i) { return i / 50 % 2; })).samples.size() == 2);
 }
 
+TEST_CASE("more names than the first rows repeat are kinds where they share stamps, and all are counted") {
+  std::string text = "t [s],node,x\n", numbered = "t [ms],addr,x\n";
+  for (int i = 0; i < 30; ++i)
+    for (int k = 0; k < 120; ++k) text += fmt::format("{},node{:03},{}\n", i, k, (i * 120 + k) % 17);
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 60; ++k) numbered += fmt::format("{},{},{}\n", 100 * i + k / 2, k * 37 % 60, (i * 60 + k) % 17);
+  CHECK_THAT(failure(text), Catch::Contains("E0327") && Catch::Contains("`group_by` node"));
+  CHECK_THAT(failure(numbered),
+             Catch::Contains("E0327") && Catch::Contains("`group_by` addr") && Catch::Contains("and 48 more"));
+  ReadOptions options;
+  options.kinds.group_by = "node";
+  CHECK(read_text(text, options).samples.size() == 120);
+  options = {};
+  options.channels = {"!node"};
+  CHECK(read_text(text, options).samples.size() == 1);
+}
+
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
   options.kinds.group_by = "id";
