@@ -152,7 +152,8 @@ CellKind cell_kind(const Field& field, NumberStyle style) {
   const Cell cell = read_sampled(text, style);
   if (cell.kind == Cell::missing) return CellKind::blank;
   if (cell.kind != Cell::bad) return CellKind::number;
-  if (const auto stamp = read_calendar(text))
+  constexpr std::size_t kLongestDate = 128;  // longer ones are whole lines, split by another delimiter
+  if (const auto stamp = text.size() > kLongestDate ? std::nullopt : read_calendar(text))
     return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
   if (const std::size_t label = label_length(text); label > 0 && !field.quoted && is_digit(text[label])) {
     const CellKind behind = cell_kind({std::string(text.substr(label)), 0, false}, style);  // "time=2024-05-01T…"
