@@ -595,6 +595,11 @@ TEST_CASE("more names than the first rows repeat are kinds where they share stam
   ReadOptions options;
   options.kinds.group_by = "node";
   CHECK(read_text(text, options).samples.size() == 120);
+  // A source that speaks for the first time behind the first hundred rows.
+  std::string late = "t [s],node,x\n";
+  for (int i = 0; i < 400; ++i)
+    for (int k = 0; k < (i < 200 ? 2 : 3); ++k) late += fmt::format("{},n{},{}\n", i, k, (i * 3 + k) % 17);
+  CHECK(read_text(late, options).samples.size() == 3);
   options = {};
   options.channels = {"!node"};
   CHECK(read_text(text, options).samples.size() == 1);

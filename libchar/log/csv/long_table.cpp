@@ -228,10 +228,10 @@ std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dia
   return out;
 }
 
-bool many_groups(const std::vector<Cells>& rows, const ReadOptions& options, const Dialect& dialect,
-                 const LogInfo& info) {
-  if (options.kinds.group_by.empty()) return false;
-  return 3 * values_of(rows, column_named(options.kinds.group_by, dialect, info), rows.size()).size() > rows.size();
+bool more_groups(const std::vector<Cells>& first, const std::vector<Cells>& more, const ReadOptions& options,
+                 const Dialect& dialect, const LogInfo& info) {
+  const std::size_t column = column_named(options.kinds.group_by, dialect, info);
+  return values_of(more, column, more.size()).size() > values_of(first, column, first.size()).size();
 }
 
 void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
