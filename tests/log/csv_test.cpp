@@ -583,6 +583,19 @@ TEST_CASE("rows of several sensors in turn are no one sensor, however even their
   CHECK(read_text(table("unit", [](int i) { return i / 50 % 2; })).samples.size() == 2);
 }
 
+TEST_CASE("a stamp with more digits than nanoseconds have does no harm where parts of a second may count") {
+  std::string text = "time,x\n";
+  for (int i = 0; i < 400; ++i) {
+    const int at = i == 301 ? 200 : i;
+    text += fmt::format("2024-05-17 08:{:02}:{:02}.{},{}\n", at / 60, at % 60,
+                        i == 300     ? "4294967295000"
+                        : i % 2 == 1 ? "25"
+                                     : "0",
+                        i * i % 17);
+  }
+  CHECK(read_text(text).info.rows == 400);
+}
+
 TEST_CASE("more names than the first rows repeat are kinds where they share stamps, and all are counted") {
   std::string text = "t [s],node,x\n", numbered = "t [ms],addr,x\n";
   for (int i = 0; i < 30; ++i)

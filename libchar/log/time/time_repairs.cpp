@@ -51,7 +51,7 @@ void Bursts::add(double after_first_ns, double gap_ns) {
 
 double Bursts::period() const {
   constexpr std::size_t kFewest = 2;
-  constexpr double kAlike = 0.15, kShare = 0.85, kLong = 0.3, kAwake = 2e9, kSlow = 2.5e9;  // of the usual one; ns
+  constexpr double kAlike = 0.25, kShare = 0.85, kLong = 0.3, kAwake = 2e9, kSlow = 2.5e9;  // of the usual one; ns
   /// The usual one of lengths that are alike, else 0.
   const auto usual_of = [&](std::vector<double> lengths) {
     const double usual = lengths.empty() ? 0 : median_in_place(lengths, Middle::lower);

@@ -518,7 +518,8 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
   out = part.of_hour && !stamp->of_hour && !stamp->seconds ? stamp->ns / 60 : stamp->ns;
   if (part.fraction_ns > 0) {  // digits that count
     std::int64_t one = 1000000000;
-    for (std::size_t digit = 0; digit < stamp->fraction_digits; ++digit) one /= 10;
+    constexpr std::size_t kMostDigits = 9;  // of nanoseconds
+    for (std::size_t digit = 0; digit < std::min(stamp->fraction_digits, kMostDigits); ++digit) one /= 10;
     out += stamp->fraction_ns / one * part.fraction_ns - stamp->fraction_ns;
   }
   return StampDefect::none;
