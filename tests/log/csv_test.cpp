@@ -583,6 +583,41 @@ TEST_CASE("rows of several sensors in turn are no one sensor, however even their
   CHECK(read_text(table("unit", [](int i) { return i / 50 % 2; })).samples.size() == 2);
 }
 
+TEST_CASE("a stamp with more digits than nanoseconds have does no harm where parts of a second may count") {
+  std::string text = "time,x\n";
+  for (int i = 0; i < 400; ++i) {
+    const int at = i == 301 ? 200 : i;
+    text += fmt::format("2024-05-17 08:{:02}:{:02}.{},{}\n", at / 60, at % 60,
+                        i == 300     ? "4294967295000"
+                        : i % 2 == 1 ? "25"
+                                     : "0",
+                        i * i % 17);
+  }
+  CHECK(read_text(text).info.rows == 400);
+}
+
+TEST_CASE("more names than the first rows repeat are kinds where they share stamps, and all are counted") {
+  std::string text = "t [s],node,x\n", numbered = "t [ms],addr,x\n";
+  for (int i = 0; i < 30; ++i)
+    for (int k = 0; k < 120; ++k) text += fmt::format("{},node{:03},{}\n", i, k, (i * 120 + k) % 17);
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 60; ++k) numbered += fmt::format("{},{},{}\n", 100 * i + k / 2, k * 37 % 60, (i * 60 + k) % 17);
+  CHECK_THAT(failure(text), Catch::Contains("E0327") && Catch::Contains("`group_by` node"));
+  CHECK_THAT(failure(numbered),
+             Catch::Contains("E0327") && Catch::Contains("`group_by` addr") && Catch::Contains("and 48 more"));
+  ReadOptions options;
+  options.kinds.group_by = "node";
+  CHECK(read_text(text, options).samples.size() == 120);
+  // A source that speaks for the first time behind the first hundred rows.
+  std::string late = "t [s],node,x\n";
+  for (int i = 0; i < 400; ++i)
+    for (int k = 0; k < (i < 200 ? 2 : 3); ++k) late += fmt::format("{},n{},{}\n", i, k, (i * 3 + k) % 17);
+  CHECK(read_text(late, options).samples.size() == 3);
+  options = {};
+  options.channels = {"!node"};
+  CHECK(read_text(text, options).samples.size() == 1);
+}
+
 TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   ReadOptions options;
   options.kinds.group_by = "id";

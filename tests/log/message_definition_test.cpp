@@ -76,7 +76,7 @@ TEST_CASE("definitions: comments, constants, defaults, bounds and arrays are tol
 TEST_CASE("definitions that cannot be used have a reason") {
   CHECK_THAT(why("Missing m\n"), Catch::Contains("a/Missing is missing"));
   CHECK_THAT(why("B again\n"), Catch::Contains("nested too deep"));
-  CHECK_THAT(why("wstring w\nfloat64 x\n", "", "cdr"), Catch::Contains("wide text"));
+  CHECK_THAT(why("wstring w\nfloat64 x\n", "", "cdr"), Catch::Contains("its field w is wide text"));
   CHECK(why("string s\n") == "no numbers");
   CHECK(why("float64[100] x\n") == "arrays of more than 64 numbers");
   CHECK_THAT(why("float64 x\n", "1234"), Catch::Contains("do not fit"));

@@ -556,3 +556,56 @@ TEST_CASE("clocks of a day and a week, totals beside the time of a step, minutes
         }) == Approx(1 / 60.0));
   CHECK(rate_of("epochMs", [](int i) { return fmt::format("{:.3f}", 12.5 + 10.0 * i); }) == Approx(100));
 }
+
+TEST_CASE("bursts each few seconds or more seldom are a slow link or a sensor that pauses: both rates are offered") {
+  for (const double period : {3.0, 10.0, 30.0})
+    for (const std::size_t size : {120U, 600U}) {
+      TimedRows rows;
+      for (std::size_t i = 0; i < 12 * size; ++i)
+        rows.instants.push_back(1000 + period * static_cast<double>(i / size + 1) +
+                                0.02 * period * static_cast<double>(i % size) / static_cast<double>(size));
+      INFO(period << " s, " << size);
+      const std::string text = text_of(rows, kClocks[2]);
+      try {
+        const Recording r = read_text(text);
+        CHECK(r.info.time.rate_hz == Approx(static_cast<double>(size) / period).epsilon(3e-3));
+      } catch (const Error& error) {
+        CHECK_THAT(error.what(), Catch::Contains("E0324") && Catch::Contains("`time_column` none"));
+      }
+    }
+}
+
+TEST_CASE("a sensor that is awake for seconds is no burst") {
+  for (const double rate_hz : {5.0, 50.0}) {
+    TimedRows rows;
+    const auto awake = static_cast<std::size_t>(5 * rate_hz);
+    for (std::size_t i = 0; i < 12 * awake; ++i)
+      rows.instants.push_back(1000 + 600 * static_cast<double>(i / awake) + static_cast<double>(i % awake) / rate_hz);
+    CHECK(read_text(text_of(rows, kClocks[1])).info.time.rate_hz == Approx(rate_hz).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("packets of one stamp are packets also where the first that is missing comes late") {
+  for (const std::size_t size : {4U, 8U, 10U}) {
+    TimedRows rows;
+    for (std::size_t i = 0; i < 4000; ++i)
+      if (i / size != 290 && i / size != 333 && i / size != 351)
+        rows.instants.push_back(1000 + static_cast<double>(i / size * size) / 80);
+    INFO(size);
+    const Recording r = read_text(text_of(rows, kClocks[2]));
+    CHECK(r.info.time.rate_hz == Approx(80).epsilon(5e-4));
+    CHECK(r.info.time.missing_samples == 3 * size);
+  }
+}
+
+TEST_CASE("three rates one after another are no grid, also where one of them is a part of another") {
+  for (const std::vector<double>& rates :
+       {std::vector<double>{80, 10, 100}, {20, 100, 10}, {100, 200, 25}, {80, 10, 25}}) {
+    TimedRows rows;
+    double at = 1000;
+    for (const double rate_hz : rates)
+      for (int i = 0; i < 1200; ++i) rows.instants.push_back(at += 1 / rate_hz);
+    INFO(rates[0] << ", " << rates[1] << ", " << rates[2]);
+    CHECK_THROWS_WITH(read_text(text_of(rows, kClocks[2])), Catch::Contains("E0334"));
+  }
+}

@@ -128,6 +128,31 @@ TEST_CASE("LabVIEW: time in one column, in equal ones, or in none, and segments 
   CHECK_THAT(outcome(StoredTable("a.lvm", "LabVIEW Measurement\t\nSeparator\tTab\n").path), Catch::Contains("E0340"));
 }
 
+TEST_CASE("LabVIEW: clocks a percent apart, or that part after hundreds of rows, are two clocks") {
+  for (const bool late : {false, true}) {
+    std::string text =
+        "Channels\t2\nSamples\t400\t400\nX0\t0,0\t\t0,0\nDelta_X\t0,01\t\t0,01\n***End_of_Header***\n"
+        "X_Value\tA\tX_Value\tB\n";
+    for (int k = 0; k < 400; ++k) {
+      const int other = !late ? 101 * k : k < 200 ? 100 * k : 20000 + 200 * (k - 200);
+      text += fmt::format("{},{:04}\t{}\t{},{:04}\t{}\n", k / 100, k % 100 * 100, k % 5, other / 10000, other % 10000,
+                          k % 7);
+    }
+    const StoredTable file("a.lvm", lvm("Multi", text));
+    const Recording log = read_recording(file.path);
+    INFO(late);
+    CHECK(names(log) == "A B ");
+    REQUIRE(!log.info.channels[1].own_clock.empty());
+    ReadOptions options;
+    options.time_column = log.info.channels[1].own_clock;
+    options.channels = {"B"};
+    if (late)
+      CHECK_THAT(outcome(file.path), !Catch::Contains("error"));
+    else
+      CHECK(read_recording(file.path, options).info.time.rate_hz == Approx(1e4 / 101));
+  }
+}
+
 TEST_CASE("LabVIEW: channels with clocks of their own have columns of stamps, in the file or by Delta_X") {
   const auto header = [](const std::string& x0, const std::string& delta) {
     return "Channels\t3\nSamples\t40\t10\t40\nX0\t" + x0 + "\nDelta_X\t" + delta + "\n***End_of_Header***\n";

@@ -740,3 +740,63 @@ TEST_CASE("the finer clock of a table is the time, and a coarse one that keeps t
   for (int k = 0; k < 300; ++k) text += fmt::format("{},{:.2f}\n", k / 20, 0.05 * k);
   CHECK(test::read_text(text).info.time.column == "time");
 }
+
+TEST_CASE("the unit of text without names is decided where only one makes sense, else both are offered") {
+  const auto read = [](const std::string& front, double begin, double step, double wander) {
+    std::string text = front;
+    for (int i = 0; i < 40; ++i)
+      text += fmt::format("{:.0f},{}\n", begin + step * i + wander * (i % 3), i * 7919 % 101);
+    return test::read_text(text).info;
+  };
+  const auto refused = [&](double begin, double step) {
+    try {
+      return "read as " + read("", begin, step, 0).time.unit;
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK_THAT(refused(12345, 1e7), Catch::Contains("E0325") && Catch::Contains("`time_unit` us or `time_unit` ns"));
+  CHECK_THAT(refused(5e9, 1e6), Catch::Contains("E0325"));
+  CHECK_THAT(refused(12345, 1000), Catch::Contains("E0325") && Catch::Contains("`time_unit` ms or `time_unit` us"));
+  CHECK_THAT(refused(12345, 4000), Catch::Contains("read as us"));
+  CHECK(read("", 12345, 10, 0).time.unit == "ms");
+  CHECK(read("", 5e9, 1e7, 1).time.unit == "us");  // nanoseconds that wander by two do not exist
+  CHECK(read("", 2e13, 1e6, 0).time.unit == "ns");
+}
+
+TEST_CASE("seconds kept in 32 bits are no days of a spreadsheet, and rates between their steps are even") {
+  std::string text = "time,gx\n", finer = "time,gx\n";
+  for (int i = 0; i < 3000; ++i) {
+    text += fmt::format("{:.6f},{}\n", static_cast<double>(static_cast<float>(70000 + i / 64.0)), i * 7919 % 101);
+    finer += fmt::format("{:.6f},{}\n", static_cast<double>(static_cast<float>(20000 + i / 400.0)), i * 7919 % 101);
+  }
+  CHECK(test::read_text(text).info.time.rate_hz == Approx(64).epsilon(1e-3));
+  const Recording r = test::read_text(finer);
+  CHECK(r.info.time.rate_hz == Approx(400).epsilon(1e-3));
+  CHECK(r.info.time.missing_samples == 0);
+}
+
+TEST_CASE("what exceeds a week is no second of it") {
+  const auto rate = [](const std::string& name, double begin, double step, int decimals) {
+    std::string text = name + ",gx\n";
+    for (int i = 0; i < 500; ++i) text += fmt::format("{:.{}f},{}\n", begin + step * i, decimals, i * 7919 % 101);
+    return test::read_text(text).info.time.rate_hz;
+  };
+  CHECK(rate("TOW", 302400000, 20, 0) == Approx(50));
+  CHECK(rate("TOW", 302400, 0.02, 2) == Approx(50));
+  CHECK(rate("iTOW", 302400, 0.02, 2) == Approx(50));
+  CHECK(rate("iTOW", 302400000, 20, 0) == Approx(50));
+}
+
+TEST_CASE("milliseconds since 1970 of a thermometer are no seconds") {
+  std::string text = "timestamp,Temperature [degC],Humidity [%]\n";
+  for (int i = 0; i < 500; ++i) text += fmt::format("{},20.{},40\n", 1715933602000 + 5 * i, i * 7919 % 101);
+  CHECK(test::read_text(text).info.time.rate_hz == Approx(200));
+}
+
+TEST_CASE("first rows that share one time of a spreadsheet are days") {
+  std::string text = "DateTime,x\n";
+  for (int i = 0; i < 3000; ++i)
+    text += fmt::format("{:.10f},{}\n", 45429.3427314815 + 3.0 * (i / 300) / 86400, i * 7919 % 101);
+  CHECK(test::read_text(text).info.time.rate_hz == Approx(100).epsilon(1e-2));
+}

@@ -33,8 +33,9 @@ bool names_kinds(std::string_view name) {
 
 /// The same of numbers: a counter of packets goes round as well.
 bool numbers_kinds(std::string_view name) {
-  static constexpr std::array<std::string_view, 7> kThings = {"imu",    "sensor", "device", "node",
-                                                              "module", "unit",   "channel"};
+  static constexpr std::array<std::string_view, 13> kThings = {"imu",     "sensor",  "device",  "node", "module",
+                                                               "unit",    "channel", "station", "tag",  "beacon",
+                                                               "vehicle", "addr",    "can"};
   static constexpr std::array<std::string_view, 6> kNumbers = {"id", "no", "nr", "index", "number", "address"};
   const std::string lower = ascii_lower(name);
   for (const std::string_view thing : kThings) {
@@ -156,6 +157,15 @@ bool many_numbered(const std::vector<Cells>& rows, std::size_t column, const Dia
          !std::is_sorted(numbers.begin(), numbers.end());
 }
 
+/// More words than the first rows repeat, most of them at the stamp of the one before: a column called after kinds.
+bool many_words(const std::vector<Cells>& rows, std::size_t column, const Dialect& dialect) {
+  std::vector<std::int64_t> stamps;
+  for (const Cells& row : rows)
+    if (const auto stamp = stamp_of(row, dialect); stamp && column < row.size()) stamps.push_back(*stamp);
+  const Steps whole = steps_of(stamps);
+  return 3 * whole.standing >= 2 * whole.all;
+}
+
 bool whole_numbers(const std::vector<std::string>& values) {
   return values.size() <= kMostNumbers && std::all_of(values.begin(), values.end(), [](const auto& text) {
            const Cell cell = read_cell(text, '.');
@@ -218,10 +228,10 @@ std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dia
   return out;
 }
 
-bool many_groups(const std::vector<Cells>& rows, const ReadOptions& options, const Dialect& dialect,
-                 const LogInfo& info) {
-  if (options.kinds.group_by.empty()) return false;
-  return 3 * values_of(rows, column_named(options.kinds.group_by, dialect, info), rows.size()).size() > rows.size();
+bool more_groups(const std::vector<Cells>& first, const std::vector<Cells>& more, const ReadOptions& options,
+                 const Dialect& dialect, const LogInfo& info) {
+  const std::size_t column = column_named(options.kinds.group_by, dialect, info);
+  return values_of(more, column, more.size()).size() > values_of(first, column, first.size()).size();
 }
 
 void choose_groups(const std::vector<Cells>& rows, const ReadOptions& options, Dialect& dialect, LogInfo& info) {
@@ -269,14 +279,15 @@ void refuse_long_table(const std::vector<Cells>& rows, const std::vector<ColumnK
     const auto& asked = options.channels;  // who leaves it out knows that it names no source
     if (std::find(asked.begin(), asked.end(), "!" + name) != asked.end()) continue;
     const std::vector<std::string> values = values_of(rows, c, words ? kMostKinds : kMostNumbers);
-    if (values.size() > kMostKinds) continue;
+    if (values.size() > kMostKinds && !(timed && numbers_kinds(column.name) && many_words(rows, c, dialect))) continue;
+    if (values.size() > kMostKinds) refuse(name, values_of(rows, c, rows.size()), info);
     if (values.size() == 1) {
       if (words && names_kinds(column.name)) dialect.filters.push_back({static_cast<int>(c), values[0], true});
     } else if (words && names_kinds(column.name) && !timed) {
       refuse(name, values, info);
     } else if (timed && !words && dialect.filters.empty() && values.size() > kMostNumbers &&
                numbers_kinds(column.name) && many_numbered(rows, c, dialect)) {
-      refuse(name, values, info);
+      refuse(name, values_of(rows, c, rows.size()), info);
     } else if (timed && (options.channels.empty() || names_kinds(column.name)) && (words || whole_numbers(values)) &&
                (told_apart(rows, c, words && names_kinds(column.name), dialect) ||
                 ((numbers_kinds(column.name) || (words && !dialect.has_header)) && in_turn(rows, c)))) {

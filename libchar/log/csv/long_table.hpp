@@ -9,9 +9,9 @@ namespace libchar::csv {
 /// The filters of options.kinds.where. Throws Error(usage) for a column that is not there or a word without '='.
 std::vector<RowFilter> filters_of(const ReadOptions& options, const Dialect& dialect, const LogInfo& info);
 
-/// These rows may be too few to know all groups of options.kinds.group_by.
-bool many_groups(const std::vector<Cells>& rows, const ReadOptions& options, const Dialect& dialect,
-                 const LogInfo& info);
+/// The first rows know fewer groups of options.kinds.group_by than these.
+bool more_groups(const std::vector<Cells>& first, const std::vector<Cells>& more, const ReadOptions& options,
+                 const Dialect& dialect, const LogInfo& info);
 
 /// Fills the groups of options.kinds.group_by from the first `rows`; says which that come in turn are
 /// stamped apart. Throws Error(input) when they come one after the other.

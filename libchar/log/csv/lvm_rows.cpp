@@ -153,13 +153,18 @@ class LvmRows final : public MadeText {
   void find_clocks() {
     clocks_ = {0};
     const auto written = time_ == TimeIn::a_column_each ? rows_ahead() : std::vector<Cells>{};
+    const auto unlike = [&](std::size_t c, std::size_t other) {
+      const auto differs = [&](const std::vector<double>& values) { return values[c] != values[other]; };
+      const bool none = time_ == TimeIn::no_column && c < segment_.samples.size() && segment_.samples[c] == 0;
+      return !none && ((time_ == TimeIn::no_column && (differs(segment_.x0) || differs(segment_.delta))) ||
+                       std::any_of(written.begin(), written.end(), [&](const Cells& row) {
+                         return 2 * c < row.size() && !row[2 * c].empty() && row[2 * c] != row[2 * other];
+                       }));
+    };
     for (std::size_t c = 1; c < channels_.size() && time_ != TimeIn::one_column; ++c) {
-      const auto differs = [&](const std::vector<double>& values) { return values[c] != values[c - 1]; };
-      bool unlike = time_ == TimeIn::no_column && (differs(segment_.x0) || differs(segment_.delta));
-      for (const Cells& row : written)
-        unlike = unlike || (2 * c < row.size() && !row[2 * c].empty() && row[2 * c] != row[2 * c - 2]);
-      if (time_ == TimeIn::no_column && c < segment_.samples.size() && segment_.samples[c] == 0) unlike = false;
-      if (unlike) clocks_.push_back(c);
+      if (!unlike(c, c - 1)) continue;
+      clocks_.push_back(c);
+      if (unlike(c, 0)) others_.push_back(c);
     }
   }
 
@@ -167,7 +172,9 @@ class LvmRows final : public MadeText {
     for (std::size_t c = 0, clock = 0; c < channels_.size(); ++c) {
       if (c > 0) text += ',';
       if (clock < clocks_.size() && clocks_[clock] == c) {
-        text += "X_Value,";
+        text += "X_Value";
+        if (std::find(others_.begin(), others_.end(), c) != others_.end()) text += fmt::format("_{}", c + 1);
+        text += ',';
         ++clock;
       }
       const std::string unit = c < segment_.units.size() ? segment_.units[c] : "";
@@ -293,6 +300,7 @@ class LvmRows final : public MadeText {
   Cells channels_;
   Segment segment_;                  // that is read; a value for each channel
   std::vector<std::size_t> clocks_;  // channels behind a column of stamps
+  std::vector<std::size_t> others_;  // those of them whose stamps are not the first channel's
   double start_s_ = 0, first_start_s_ = 0, shift_s_ = 0, last_x_ = 0;
 };
 

@@ -324,10 +324,10 @@ void TimeGrid::judge_rate_change() {
     std::swap(before, after);  // the first rows are the odd ones
     at_ns = static_cast<double>(odd.ended_ns) + odd.intervals * step_.ns;
   }
-  if (const auto change = lasting_change(asks); change && (asks || odd.rows == 0)) {  // which says the place better
+  if (const auto change = lasting_change(asks); change && (asks || odd.rows == 0 || odd.whole())) {
     asks = true;
-    at_ns = change->row;
-    if (odd.rows == 0) {  // else rows of the other rate have taken more than a place each
+    at_ns = change->row;                 // which says the place better
+    if (odd.rows == 0 || odd.whole()) {  // else rows of the other rate have taken more than a place each
       before = 1e9 / change->before_ns;
       after = 1e9 / change->after_ns;
     }
@@ -347,6 +347,23 @@ void TimeGrid::judge_rate_change() {
                   fmt::format("the sampling rate changes ({} to {} Hz): the grid keeps the first",
                               brief_text(before, 6), brief_text(after, 6)),
                   odd.place);
+}
+
+// Rows written within a tenth of the time, again and again: their rate is that inside the bursts, or that over time.
+void TimeGrid::refuse_bursts() const {
+  constexpr std::uint64_t kFaster = 9;  // missing samples for each that is there
+  const double period = options_.rate_hz || counts_.missing < kFaster * counts_.used ? 0 : bursts_.period();
+  if (!(period > 0)) return;
+  const double inside = 1e9 / step_.ns;
+  const auto rows = static_cast<double>(counts_.used), all = rows + static_cast<double>(counts_.missing);
+  throw input_error("E0324", source_.info().file)
+      .says(
+          "two sampling rates: the rows come in bursts, one each {}, at {} inside and {} over time: a slow link or a "
+          "sensor that pauses",
+          duration_text(period * 1e-9), detail::frequency_text(inside, 5),
+          detail::frequency_text(inside * rows / all, 5))
+      .hint("`rate_hz` {} takes the pauses as gaps, `time_column` none with `rate_hz` {} the rows one after the other",
+            shortest(rounded(inside, 5)), shortest(rounded(inside * rows / all, 5)));
 }
 
 void TimeGrid::finish(LogInfo& info) {
@@ -381,6 +398,7 @@ void TimeGrid::finish(LogInfo& info) {
   time.missing_samples = counts_.missing;
   refuse_many_backward();
   judge_rate_change();
+  refuse_bursts();
   const double interval = even_interval();
   time.rate_hz = interval > 0 ? 1e9 / interval : 0;
   const auto deviation = sketch_.deviation(interval);

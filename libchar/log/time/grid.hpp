@@ -154,6 +154,7 @@ class TimeGrid {
   void say_pattern(const StampModel& found);
   double even_interval();
   void judge_rate_change();
+  void refuse_bursts() const;
   std::optional<RateChange> lasting_change(bool odd) const;
   void process(bool end);
   std::size_t process_rows(Pending& front, std::size_t count);
@@ -243,6 +244,7 @@ class TimeGrid {
   Last last_;
   Counts counts_;
   RateWatch watch_;
+  Bursts bursts_;
   BackwardRows backward_;
   std::optional<std::int64_t> start_ns_;
   struct Clocks {

@@ -158,12 +158,24 @@ bool multiple_of(double value, double unit, double tolerance) {
 }
 
 /// The clock's own step: the least difference between stamps, or between the steps themselves.
-double tick_of(std::vector<double> steps) {
+double tick_of(std::vector<double> steps, double least = 0) {
   std::sort(steps.begin(), steps.end());
   double tick = steps.front();
   for (std::size_t i = 1; i < steps.size(); ++i)
-    if (steps[i] > steps[i - 1]) tick = std::min(tick, steps[i] - steps[i - 1]);
+    if (steps[i] - steps[i - 1] > least) tick = std::min(tick, steps[i] - steps[i - 1]);
   return tick;
+}
+
+/// The same of a clock of 32 bits, whose steps of 1/512 s six digits round.
+double rounded_tick(const std::vector<double>& steps) {
+  constexpr double kRounded = 1e-3;
+  const double about = tick_of(steps, kRounded * *std::min_element(steps.begin(), steps.end()));
+  double time = 0, ticks = 0;
+  for (const double step : steps) {
+    time += step;
+    ticks += std::round(step / about);
+  }
+  return time / ticks;
 }
 
 /// Steps on a lattice with rows missing at random: its interval, or 0. Few missing rows need no such care.
@@ -253,14 +265,20 @@ bool equal_are_samples(const FirstSteps& steps) {
   return share > kFewest && steps.mean > middle_of(steps.rising) * (1 - share / 2) && keeps_to_a_line(steps);
 }
 
-bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) {
-  const double tick = tick_of(steps.rising);
+/// A clock that cannot tell rows apart passes no tick without some: where it does, packets are missing.
+bool on_one_line(const StampLine& line, const FirstSteps& steps, double common, double tick) {
+  constexpr double kSeveral = 0.6, kPassed = 1.5;
   std::size_t odd = steps.equal;
   for (const double step : steps.rising) {
-    if (!multiple_of(step, tick, 1e-3)) return false;
+    if (!multiple_of(step, tick, 1e-3) || (steps.mean < kSeveral * tick && step > kPassed * tick)) return false;
     odd += std::fabs(step - common) > 0.5 * tick;
   }
   return odd >= kLeastOdd && line.spread <= (odd >= 2 * kLeastOdd ? 2 : 1.5) * tick;
+}
+
+bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) {
+  return on_one_line(line, steps, common, tick_of(steps.rising)) ||
+         on_one_line(line, steps, common, rounded_tick(steps.rising));
 }
 
 /// Samples a little slower or faster than a clock of whole seconds tells them apart: now and then a step more or
@@ -400,13 +418,19 @@ StampPattern explanation(const FirstSteps& steps, const CommonStep& common, cons
   const double exact = near <= 0.05 ? near - 0.01 : std::min(0.25, near);
   const auto whole = [&](double gap) { return gap < longest && multiple_of(gap, 1, exact); };
   const bool turns = to_a_line && !coarse && takes_turns(steps);
-  if (!coarse && !turns && share(whole) > 0.9) return StampPattern::steps;
   const double rows_a_gap = static_cast<double>(steps.line.size()) / static_cast<double>(gaps.size());
-  constexpr double kSurely = 5;
+  constexpr double kSurely = 5, kAwake = 2e9;  // steps; ns: nobody takes as long to write a packet
   const bool alike = rows_of_packets(packet_starts(steps)) > 0, even_inside = common.spread < kEvenInside;
   const bool in_packets = (rows_a_gap <= kLongestPacket || (to_a_line && alike)) &&
                           (steps.mean > 2 * common.ns || (steps.mean > 1.2 * common.ns && rows_a_gap > 2.5));
+  if (!coarse && !turns && share(whole) > 0.9)  // nobody loses most of the rows as regularly as that
+    return in_packets && alike && even_inside && steps.mean > 2 * common.ns && rows_a_gap * common.ns < kAwake &&
+                   come_evenly(steps, packet_starts(steps))
+               ? StampPattern::disputed
+               : StampPattern::steps;
   // As even inside as a sensor that pauses: only rows that are written far faster than they come are surely packets.
+  if (alike && even_inside && rows_a_gap * common.ns > kAwake && steps.mean > kSurely * common.ns)
+    return StampPattern::steps;
   if (in_packets && alike && even_inside && steps.mean < kSurely * common.ns)
     return come_evenly(steps, packet_starts(steps)) ? StampPattern::disputed : StampPattern::steps;
   if (to_a_line) return in_packets ? StampPattern::packets : coarse ? StampPattern::coarse : StampPattern::uneven;
@@ -655,6 +679,10 @@ StampModel model_of_one_rate(const std::vector<std::int64_t>& stamps, const Firs
   const bool equal_at_times = steps.equal * 50 > stamps.size();
   const bool beats = beats_with_clock(line, steps, common.ns);
   if (!often && !equal_at_times && !common.equal && !beats) return out;
+  constexpr std::size_t kFewPackets = 8;
+  constexpr double kAllAlike = 0.98;  // else two sizes by turns, as a coarse clock makes them
+  if (common.equal && rows_of_packets(packet_starts(steps), kFewPackets, kAllAlike) > 0)
+    return in_packets(stamps, steps, packet_starts(steps), out);
   if (beats || on_one_line(line, steps, common.ns))
     return evenly(steps, common, StampPattern::coarse, line.slope, rate_hz);
   if (common.equal) return in_packets(stamps, steps, packet_starts(steps), out);

@@ -385,8 +385,14 @@ double usual_step(const std::vector<double>& values) {
   return steps.empty() ? 0 : median_in_place(steps, Middle::lower);
 }
 
+bool clock_of_labview(const std::string& column, const std::string& chosen) {
+  constexpr std::string_view kName = "X_Value";
+  return column != chosen && column.starts_with(kName) && chosen.starts_with(kName);
+}
+
 bool numbered_alike(const std::string& a, const std::string& b) {
   const auto letters = [](const std::string& name) { return name.find_last_not_of("0123456789") + 1; };
+  if (a == b) return true;
   const std::size_t front = letters(a);
   return front > 0 && front < a.size() && front == letters(b) && front < b.size() &&
          a.compare(0, front, b, 0, front) == 0;
@@ -403,14 +409,15 @@ std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t c
   std::vector<std::size_t> out;
   for (std::size_t c = 0; c + 1 < table.columns.size() && step > 0; ++c) {
     const ColumnLabel& column = table.columns[c];
-    const bool numbered = numbered_alike(column.name, table.columns[chosen].name);
+    const bool labview = clock_of_labview(column.name, table.columns[chosen].name);
+    const bool numbered = labview || numbered_alike(column.name, table.columns[chosen].name);
     if (c == chosen || column.text || column.calendar || !(numbered || is_clock(c))) continue;
-    const std::int64_t own = unit_said(column);
+    const std::int64_t own = labview ? unit : unit_said(column);
     const bool beside = is_clock(c + 1) || (c > 0 && is_clock(c - 1));
     if (unit_of_another_quantity(column) || beside || (own == 0) != (unit == 0)) continue;
     const double units = own == 0 ? 1 : static_cast<double>(own) / static_cast<double>(unit);
     if (steady_clock(table.first_values(c).values) &&
-        std::fabs(step_of(c) * units / step - 1) > (numbered ? kSame : kAlike))
+        (labview || std::fabs(step_of(c) * units / step - 1) > (numbered ? kSame : kAlike)))
       out.push_back(c);
   }
   return out;

@@ -84,7 +84,10 @@ bool keeps_time(const TableFront& table, std::size_t coarse, std::size_t fine);
 /// side by side.
 std::vector<std::size_t> clocks_of_others(const TableFront& table, std::size_t chosen);
 
-/// "Tiempo1" and "Tiempo2".
+/// "X_Value_2" beside "X_Value": columns of stamps of a .lvm, which part somewhere.
+bool clock_of_labview(const std::string& column, const std::string& chosen);
+
+/// "Tiempo1" and "Tiempo2", or one name twice.
 bool numbered_alike(const std::string& a, const std::string& b);
 
 /// The usual distance of two values, 0 for fewer.

@@ -43,8 +43,41 @@ GridStretch gap_in_window(std::int64_t gap, double before_ns, double dt_ns, std:
   return inside;
 }
 
+void Bursts::add(double after_first_ns, double gap_ns) {
+  if (gaps_.size() == kMost) return;
+  ends_.push_back(after_first_ns);
+  gaps_.push_back(gap_ns);
+}
+
+double Bursts::period() const {
+  constexpr std::size_t kFewest = 2;
+  constexpr double kAlike = 0.25, kShare = 0.85, kLong = 0.3, kAwake = 2e9, kSlow = 2.5e9;  // of the usual one; ns
+  /// The usual one of lengths that are alike, else 0.
+  const auto usual_of = [&](std::vector<double> lengths) {
+    const double usual = lengths.empty() ? 0 : median_in_place(lengths, Middle::lower);
+    const auto alike = static_cast<double>(std::count_if(
+        lengths.begin(), lengths.end(), [&](double one) { return std::fabs(one - usual) <= kAlike * usual; }));
+    return alike >= kShare * static_cast<double>(lengths.size()) ? usual : 0;
+  };
+  const double longest = gaps_.empty() ? 0 : *std::max_element(gaps_.begin(), gaps_.end());
+  std::vector<double> gaps, apart, awake;
+  double before = 0;
+  for (std::size_t i = 0; i < gaps_.size(); ++i) {
+    if (gaps_[i] < kLong * longest) continue;  // within a burst
+    if (!gaps.empty()) {
+      apart.push_back(ends_[i] - before);
+      awake.push_back(apart.back() - gaps.back());
+    }
+    gaps.push_back(gaps_[i]);
+    before = ends_[i];
+  }
+  if (gaps.size() < kFewest || usual_of(gaps) == 0) return 0;
+  const double period = usual_of(apart);
+  return period > kSlow && median_in_place(awake, Middle::lower) < kAwake ? period : 0;
+}
+
 bool OddRun::whole() const {
-  constexpr double kMost = 10.5, kOff = 0.12;  // further rows apart, nobody left out the rows between
+  constexpr double kMost = 3.5, kOff = 0.12;  // further rows apart, nobody left out the rows between
   return intervals > 1.5 && intervals < kMost &&
          std::fabs(intervals - std::round(intervals)) < std::min(0.03 * intervals, kOff);
 }
@@ -88,7 +121,11 @@ void RateWatch::count(double near, double share) {
   if (run_.rows == 0) run_ = {0, usual, first_ns_, 0, place_};
   run_.rows += rows;
   run_.ended_ns = last_ns_;
-  if (run_.rows > longest_.rows) longest_ = run_;
+  // Rows that are only left out say less than any other rate.
+  constexpr std::uint64_t kRate = 64;
+  const bool surer = !run_.whole() && run_.rows >= kRate && longest_.whole();
+  const bool less_sure = run_.whole() && !longest_.whole() && longest_.rows >= kRate;
+  if (surer || (run_.rows > longest_.rows && !less_sure)) longest_ = run_;
 }
 
 std::string TimeGrid::place(const Pending& front, std::size_t row) const {
@@ -217,6 +254,7 @@ TimeGrid::Verdict TimeGrid::pass_gap(const Pending& front, std::size_t row, std:
     warnings_.add("gap", "gaps in the stamps: the missing samples stay missing", place(front, row));
   if (inside.count() > 0 && !start_ns_)
     start_ns_ = last_.stamp + clamped_whole<std::int64_t>(std::round(static_cast<double>(inside.first) * step_.ns));
+  bursts_.add(static_cast<double>(last_.stamp - last_.first), static_cast<double>(gap) * step_.ns);
   leave_missing(inside.count(), gap);
   // The step that is left is a usual one; of packets and the like only the lag says what that is.
   const double left_out = step_.coarse ? static_cast<double>(gap) * step_.ns : static_cast<double>(step) - step_.ns;

@@ -29,6 +29,20 @@ struct OddRun {
   bool whole() const;
 };
 
+/// Gaps as alike as the stretches between them: a slow link sends what it gathered, or a sensor sleeps.
+class Bursts {
+ public:
+  /// A gap behind the row at that time after the first stamp, and how long it is, ns.
+  void add(double after_first_ns, double gap_ns);
+  /// From one to the next, where all are as far apart and too short for a sensor that is switched on for them, ns;
+  /// else 0.
+  double period() const;
+
+ private:
+  static constexpr std::size_t kMost = 4096;
+  std::vector<double> ends_, gaps_;
+};
+
 /// Where steps that are none of the grid's are another rate.
 class RateWatch {
  public:

@@ -57,18 +57,28 @@ bool minutes_in_days(const std::vector<double>& values) {
   return std::fabs(seconds - 10 * std::round(seconds / 10)) < 1e-3 * seconds && seconds > 19 && seconds < 61;
 }
 
+/// Seconds that a program kept in 32 bits: after half a day they step by 1/128 s, which no fraction of a day does but
+/// in whole quarters of an hour.
+bool seconds_of_32_bits(double step) {
+  constexpr double kPart = 1024, kOff = 1e-3;
+  const double parts = std::round(step * kPart);
+  return parts > 0 && std::fabs(step * kPart - parts) < kOff;
+}
+
 /// Fractions of days: their steps are odd numbers that make whole milliseconds, or of no sensor when taken as seconds.
 const OldCount* old_count(const std::string& stem, const FirstValues& first, std::int64_t unit_ns) {
   constexpr double kFrom = 7305, kTo = 47482, kFastest = 2e-4;  // days: 1990, 2100
   const std::string name = ascii_lower(stem);
-  if (first.values.size() < 2) return nullptr;
+  if (first.values.empty()) return nullptr;
   const double step = usual_step(first.values), size = first.values[0];
+  constexpr double kFour = 1e4;  // decimals: more of them, in first rows that share a stamp, are no seconds
+  const bool fine = std::fabs(size * kFour - std::round(size * kFour)) > 1e-3;
   for (const OldCount& count : kOldCounts) {
     const bool said = *count.word != '\0' && name.find(count.word) != std::string::npos;
     if ((*count.word != '\0' && !said) || (unit_ns != 0 && unit_ns != count.unit_ns)) continue;
     const double days = (size - count.of_1970) * static_cast<double>(count.unit_ns) / static_cast<double>(kDayNs);
     if (days < kFrom || days > kTo) continue;
-    const bool fractions = !first.integers && step > 0 && step < 1 &&
+    const bool fractions = !first.integers && (step > 0 || fine) && step < 1 && !seconds_of_32_bits(step) &&
                            (step < kFastest || !few_digits(step) || minutes_in_days(first.values));
     if (said || (count.unit_ns == kDayNs ? fractions : first.integers)) return &count;
   }
@@ -100,6 +110,13 @@ bool usual_interval(double seconds) {
   return rate <= 2000 && std::fabs(rate - unit * std::round(rate / unit)) < 1e-9 * rate;
 }
 
+/// Pauses are kept to a thousandth, and a device's clock is no better.
+bool near_a_usual_interval(double seconds) {
+  constexpr double kDigits = 1e3;
+  const double decade = std::pow(10, std::floor(std::log10(seconds)));
+  return seconds >= 0.2 && usual_interval(std::round(seconds / decade * kDigits) / kDigits * decade);
+}
+
 /// The step of whole numbers is a usual interval in these units; nobody counts ten seconds and more in fractions.
 std::vector<std::int64_t> usual_units(double step) {
   constexpr double kLongest = 5, kLongestOfMicros = 10;  // as ns at 100 Hz
@@ -111,6 +128,14 @@ std::vector<std::int64_t> usual_units(double step) {
       out.push_back(unit);
   }
   return out;
+}
+
+/// Counts that wander by a few of a million: a device's microseconds do, nanoseconds never keep to so few.
+bool wanders_by_ones(const std::vector<double>& values, double step) {
+  constexpr double kFew = 20, kLongStep = 2e5;
+  double most = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) most = std::max(most, std::fabs(values[i] - values[i - 1] - step));
+  return step >= kLongStep && most > 0 && most <= kFew;
 }
 
 /// Seconds from before 2015 are as well milliseconds of a device that has been on for two weeks.
@@ -147,7 +172,8 @@ std::int64_t guess_unit(const FirstValues& first) {
   constexpr double kLongOn = 1e4;  // three hours in s, ten seconds in ms
   if (uneven_ones(first) && size >= kLongOn) return 1000000;
   const std::int64_t by_step = unit_by_step(step);
-  if (!first.integers || says_a_date(first)) return by_step;
+  if (first.integers && wanders_by_ones(values, step)) return kStampUnits[2];
+  if (says_a_date(first)) return by_step;
   const std::vector<std::int64_t> usual = usual_units(step);
   constexpr double kMinute = 60;
   return usual.size() == 1 && usual.front() == kStampUnits[0] && step >= kMinute ? usual.front() : by_step;
@@ -185,6 +211,19 @@ bool weather(const TableFront& table, std::size_t time) {
   return any;
 }
 
+constexpr std::size_t kFewest = 4;  // stamps: of less the first cell that is no number is what is wrong
+
+/// Of text without names: microseconds may be nanoseconds, and milliseconds microseconds, where both make a usual rate.
+std::vector<std::int64_t> units_without_a_name(const FirstValues& first, std::int64_t unit) {
+  constexpr double kSince = 1e13;  // nobody's microseconds begin as late
+  const double step = usual_step(first.values), coarser = step * static_cast<double>(unit) * 1e-6;
+  const bool counted = first.integers && (unit == kStampUnits[2] || unit == kStampUnits[3]) && first.values[0] < kSince;
+  if (!counted || first.values.size() < kFewest || wanders_by_ones(first.values, step) ||
+      !near_a_usual_interval(coarser))
+    return {};
+  return {unit * 1000, unit};
+}
+
 /// Whole numbers with one step, of no usual interval in any unit.
 bool counts_of_a_timer(const FirstValues& first) {
   const std::vector<double>& values = first.values;
@@ -220,15 +259,19 @@ bool near_a_pause(double seconds) {
   return std::any_of(kPauses.begin(), kPauses.end(), [&](double s) { return std::fabs(seconds - s) < kNear * s; });
 }
 
+[[noreturn]] void refuse_without_unit(double step, const std::vector<std::int64_t>& both, const LogInfo& info) {
+  const std::string one = unit_name(both[0]), other = unit_name(both[1]);
+  throw input_error("E0325", info.file)
+      .says("the stamps state no unit: their step of {} is {} Hz in {} and {} Hz in {}", brief_text(step, 6),
+            brief_text(rate_in(step, both[0]), 6), one, brief_text(rate_in(step, both[1]), 6), other)
+      .hint("`time_unit` {} or `time_unit` {} decides", one, other);
+}
+
 /// The unit that the steps alone say, and which other one they might mean; false where they say seconds only.
 bool say_guess_by_step(const TableFront& table, const FirstValues& first, std::int64_t unit, LogInfo& info) {
-  constexpr std::size_t kFewest = 4;  // stamps: of less the first cell that is no number is what is wrong
   const double step = usual_step(first.values);
   if (!first.integers && unit == kStampUnits[1] && first.values.size() >= kFewest && !inertial(table))
-    throw input_error("E0325", info.file)
-        .says("the stamps state no unit: their step of {} is {} Hz in seconds and {} Hz in milliseconds",
-              brief_text(step, 6), brief_text(rate_in(step, kStampUnits[0]), 6), brief_text(rate_in(step, unit), 6))
-        .hint("`time_unit` s or `time_unit` ms decides");
+    refuse_without_unit(step, {kStampUnits[0], unit}, info);
   std::vector<std::int64_t> units = first.integers ? usual_units(step) : std::vector<std::int64_t>{};
   if (uneven_ones(first) || (!first.integers && unit == kStampUnits[1])) units = {kStampUnits[0], kStampUnits[1]};
   const auto add = [&](std::vector<std::int64_t>::const_iterator where, std::int64_t one) {
@@ -262,6 +305,17 @@ std::int64_t unit_from_options(const std::string& word) {
 
 // Xsens devices count SampleTimeFine by 0.1 ms or by 1 us, at 1 to 2000 Hz the one, at 1 to 120 Hz the other.
 std::int64_t guess_fine(const FirstValues& first) { return usual_step(first.values) < 2000 ? 100000 : 1000; }
+
+/// A week has fewer seconds than that, and nobody samples a receiver every few microseconds: whatever the name usually
+/// means.
+std::int64_t unit_in_the_week(const std::string& stem, const FirstValues& first, std::int64_t said) {
+  constexpr double kWeek = 604800, kFastest = 0.05;  // s; steps in ms
+  const std::string name = ascii_lower(stem);
+  if (!(name.ends_with("tow") || name.ends_with("sow")) || first.values.empty()) return said;
+  if (said == kStampUnits[0] && first.values[0] > kWeek) return kStampUnits[1];
+  const double step = usual_step(first.values);
+  return said == kStampUnits[1] && step > 0 && step < kFastest ? kStampUnits[0] : said;
+}
 
 bool rates_agree(double rate_hz, double stated_hz) { return rate_hz > 0.8 * stated_hz && rate_hz < 1.25 * stated_hz; }
 
@@ -304,6 +358,8 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     info.dialect.push_back(fmt::format("stamps count {} s each, from the preamble", shortest(*table.stated_tick_s)));
   }
   FirstValues first = table.first_values(column);
+  if (options.time_unit == "auto" && unit_behind(table.columns[column]) == 0)
+    unit.ns = unit_in_the_week(stem, first, unit.ns);
   if (usual_step(first.values) == 0)  // rows of several sources share their stamps
     first.values.erase(std::unique(first.values.begin(), first.values.end()), first.values.end());
   const double step = usual_step(first.values);
@@ -318,12 +374,16 @@ StampUnit find_time_unit(const TableFront& table, std::size_t column, const Read
     constexpr double kSlow = 5;  // s
     if (guess == kStampUnits[0] && first.integers && step > kSlow && !says_a_date(first) && inertial(table))
       guess = kStampUnits[1];
-    if (guess == kStampUnits[1] && first.integers && usual_interval(step) && weather(table, column))
+    if (guess == kStampUnits[1] && first.integers && !says_a_date(first) && usual_interval(step) &&
+        weather(table, column))
       guess = kStampUnits[0];
     unit.ns = comparable ? unit_of_rate(guess, first.values, *table.stated_rate_hz, info) : guess;
     info.time.unit_guessed = true;
     const std::int64_t other = comparable || first.integers ? 0 : unit_by_another_clock(table, column, step);
     if (other > 0) unit.ns = other;
+    if (!comparable && !table.named)
+      if (const std::vector<std::int64_t> both = units_without_a_name(first, unit.ns); !both.empty())
+        refuse_without_unit(step, both, info);
     const bool by_step = !comparable && other == 0 && !says_a_date(first) && first.values.size() > 1;
     if (!by_step || !say_guess_by_step(table, first, unit.ns, info))
       info.guesses.push_back(fmt::format(

@@ -27,10 +27,11 @@ double worth_of(const Field& field, char decimal) {
   // A number with a point is nothing else under a comma than a thousand.
   const bool pointed = decimal == ',' && !field.quoted && text.find('.') != std::string::npos &&
                        text.find_first_not_of("+-0123456789.eE") == std::string::npos &&
-                       read_cell(text, '.').kind == Cell::value;
+                       (plain_number(text, '.') || read_cell(text, '.').kind == Cell::value);
   const CellKind kind = pointed ? CellKind::odd : cell_kind(field, {decimal});
   if (kind < CellKind::word) return 1;
   for (const char group : {decimal == ',' ? '.' : ',', ' '}) {
+    if (text.find(group) == std::string::npos) continue;
     const std::string plain = without_thousands(text, {decimal, group});
     if (plain != text && read_cell(plain, decimal).kind == Cell::value)
       return text.find(decimal) != std::string::npos ? 1 : kGrouped;
@@ -94,7 +95,7 @@ bool names_fit(const std::vector<LineWorth>& lines, std::size_t columns) {
 
 // At either end: fewer of lines that have many cells, which say as much.
 std::size_t lines_looked_at(const Line& one) {
-  constexpr std::size_t kMost = 24, kFewest = 8, kBytes = 8192;
+  constexpr std::size_t kMost = 24, kFewest = 8, kBytes = 4096;
   return std::clamp(kBytes / std::max<std::size_t>(one.text.size(), 1), kFewest, kMost);
 }
 
@@ -215,7 +216,8 @@ char thousands_mark(const std::vector<Line>& lines, char delimiter, char decimal
       if (std::none_of(field.text.begin(), field.text.end(), mark)) continue;
       if (cell_kind(field, {decimal}) == CellKind::number) continue;
       for (const char group : {',', '.', '\'', ' '}) {
-        if (group == decimal || (group == ' ' && delimiter == ' ')) continue;
+        if (group == decimal || field.text.find(group) == std::string::npos || (group == ' ' && delimiter == ' '))
+          continue;
         const auto measured = number_and_unit(field.text);
         const std::string_view number = measured ? measured->number : field.text;
         const std::string plain = without_thousands(number, {decimal, group});

@@ -135,12 +135,25 @@ Cell read_sampled(std::string_view text, NumberStyle style) {
   return measured ? read_styled(measured->number, style) : cell;
 }
 
+bool plain_number(std::string_view text, char decimal) {
+  constexpr std::size_t kLongest = 18;  // no double overflows by so many digits
+  std::size_t i = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0, digits = 0, marks = 0;
+  for (; i < text.size(); ++i) {
+    digits += is_digit(text[i]) ? 1 : 0;
+    marks += text[i] == decimal ? 1 : 0;
+    if (!is_digit(text[i]) && (text[i] != decimal || marks > 1)) return false;
+  }
+  return digits > 0 && text.size() <= kLongest;
+}
+
 CellKind cell_kind(const Field& field, NumberStyle style) {
   const std::string_view text = field.text;
+  if (plain_number(text, style.decimal)) return CellKind::number;
   const Cell cell = read_sampled(text, style);
   if (cell.kind == Cell::missing) return CellKind::blank;
   if (cell.kind != Cell::bad) return CellKind::number;
-  if (const auto stamp = read_calendar(text))
+  constexpr std::size_t kLongestDate = 128;  // longer ones are whole lines, split by another delimiter
+  if (const auto stamp = text.size() > kLongestDate ? std::nullopt : read_calendar(text))
     return !stamp->clock ? CellKind::date : stamp->date ? CellKind::stamp : CellKind::clock;
   if (const std::size_t label = label_length(text); label > 0 && !field.quoted && is_digit(text[label])) {
     const CellKind behind = cell_kind({std::string(text.substr(label)), 0, false}, style);  // "time=2024-05-01T…"

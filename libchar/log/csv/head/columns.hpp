@@ -38,6 +38,9 @@ std::optional<MeasuredCell> number_and_unit(std::string_view text);
 /// Two spellings of one unit, in UTF-8 or Windows-1252.
 bool same_unit(std::string_view a, std::string_view b);
 
+/// Digits with one decimal mark at most: a number, without reading it.
+bool plain_number(std::string_view text, char decimal);
+
 /// read_styled for cells that are studied, where a unit behind the number does no harm; rows must
 /// have the unit of their column.
 Cell read_sampled(std::string_view text, NumberStyle style);

@@ -321,10 +321,10 @@ void gather_rows(Study& study) {
   if (filters.empty()) {
     for (const Line& line : study.sample)
       if (line.offset >= study.dialect.data_offset) study.rows.push_back(cells_in(study.dialect, line.text));
-    if (!many_groups(study.rows, study.options, study.dialect, study.info)) return;
+    if (study.options.kinds.group_by.empty()) return;
     most = 64 * kSample;
-    study.rows.clear();
   }
+  const std::vector<Cells> first = std::exchange(study.rows, {});
   std::size_t offset = study.dialect.data_offset;
   while (offset < study.head.size() && study.rows.size() < most) {
     const Line line = line_at(study.head, offset, 0);
@@ -341,6 +341,7 @@ void gather_rows(Study& study) {
         .says("no row has the value that is asked for")
         .got(study.options.kinds.where.front())
         .hint("values are compared letter by letter");
+  if (filters.empty() && !more_groups(first, study.rows, study.options, study.dialect, study.info)) study.rows = first;
 }
 
 // All columns hold words; or all but that of the stamps, and they are numbers in another notation.

@@ -47,7 +47,7 @@ Sample sample_lines(std::string_view head, bool whole, std::size_t offset, std::
                     const std::string& file) {
   Sample sample;
   sample.semicolon_comments = semicolons_comment(head, offset);
-  constexpr std::size_t kMost = 8 * kSample, kFewest = 32, kBytes = 24576, kLook = 8;
+  constexpr std::size_t kMost = 8 * kSample, kFewest = 32, kBytes = 12288, kLook = 8;
   std::size_t wanted = kSample, bytes = 0;
   bool found = false;
   while (offset < head.size()) {

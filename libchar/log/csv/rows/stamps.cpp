@@ -208,7 +208,7 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
       if (read_stamp(row[at].text, study.style.decimal, 1000000000, ns, offset) != StampDefect::none) continue;
       const auto clock = clock_of_digits(ns);
       if (!clock) return false;
-      take(1e-9 * static_cast<double>(ns), 1e-9 * static_cast<double>(*clock));
+      if (!take(1e-9 * static_cast<double>(ns), 1e-9 * static_cast<double>(*clock))) return false;
     }
     return true;
   };
@@ -216,13 +216,13 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
     return false;
   if (dates_in_digits(study, column, true)) return true;
   std::vector<double> numbers, clocks;
-  bool rises = true;
   const auto collect = [&](double number, double clock) {
-    rises = rises && (numbers.empty() || number >= numbers.back() || number < 1);
+    const bool rises = numbers.empty() || number >= numbers.back() || number < 1;
     numbers.push_back(number);
     clocks.push_back(clock);
+    return rises;
   };
-  if (!times(study.rows, column, collect) || !rises || numbers.size() < 3) return false;
+  if (!times(study.rows, column, collect) || numbers.size() < 3) return false;
   // 93059 is 9:30:59. Fewer digits are a clock's shortly after midnight, and any elapsed seconds.
   constexpr std::size_t kFewestDigits = 5;
   constexpr double kFastest = 0.09;  // receivers of that kind: at most 10 Hz
@@ -233,7 +233,7 @@ bool is_clock_digits(const StampStudy& study, std::size_t column, const std::str
   if (!named && std::min(front.find(study.style.decimal), front.size()) < kFewestDigits) return false;
   numbers.clear();
   clocks.clear();
-  if (!study.whole_head || !times(study.whole_head(column), 0, collect) || !rises) return false;
+  if (!study.whole_head || !times(study.whole_head(column), 0, collect)) return false;
   return odd_steps(clocks) < odd_steps(numbers);
 }
 
@@ -440,6 +440,18 @@ void find_own_clocks(const TableFront& table, std::size_t index, Dialect& dialec
   }
 }
 
+/// Two clocks in one unit, or in two.
+bool ratio_of_units(double scale, std::size_t steps) {
+  constexpr std::array kUnits = {1.0, 60.0, 3600.0, 86400.0};
+  constexpr double kOff = 2e-3;  // of a step
+  return std::any_of(kUnits.begin(), kUnits.end(), [&](double unit) {
+    return std::any_of(kUnits.begin(), kUnits.end(), [&](double other) {
+      const double ratio = std::fabs(scale) * unit / other, decade = std::pow(10, std::round(std::log10(ratio)));
+      return std::fabs(ratio / decade - 1) * static_cast<double>(steps) <= kOff;
+    });
+  });
+}
+
 /// "seconds_elapsed" beside "time": columns called time that are the stamps once more.
 void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialect) {
   const std::vector<double> stamps = table.first_values(index).values;
@@ -455,7 +467,7 @@ void find_same_clock(const TableFront& table, std::size_t index, Dialect& dialec
     if (values.size() != stamps.size() || values.size() < 3) continue;
     const double scale = (values.back() - values.front()) / (stamps.back() - stamps.front());
     const double most = 1e-3 * std::fabs(usual_step(values));
-    bool same = most > 0;
+    bool same = most > 0 && ratio_of_units(scale, values.size() - 1) && !clock_of_labview(column.name, chosen);
     for (std::size_t i = 0; i < values.size() && same; ++i)
       same = std::fabs(values[i] - values[0] - scale * (stamps[i] - stamps[0])) <= most;
     dialect.columns[c].clock = dialect.columns[c].clock || same;
@@ -506,7 +518,8 @@ StampDefect read_part(std::string_view text, const StampPart& part, const Dialec
   out = part.of_hour && !stamp->of_hour && !stamp->seconds ? stamp->ns / 60 : stamp->ns;
   if (part.fraction_ns > 0) {  // digits that count
     std::int64_t one = 1000000000;
-    for (std::size_t digit = 0; digit < stamp->fraction_digits; ++digit) one /= 10;
+    constexpr std::size_t kMostDigits = 9;  // of nanoseconds
+    for (std::size_t digit = 0; digit < std::min(stamp->fraction_digits, kMostDigits); ++digit) one /= 10;
     out += stamp->fraction_ns / one * part.fraction_ns - stamp->fraction_ns;
   }
   return StampDefect::none;

@@ -294,7 +294,8 @@ class Compiler {
     if (!known.unit.empty()) place.unit = known.unit;
     if (!known.usual) place.usual = false;
     ++place.depth;
-    if (field.kind == Primitive::wide_text) return fail("it holds wide text");
+    if (field.kind == Primitive::wide_text)
+      return fail(fmt::format("its field {} is wide text (wstring)", place.prefix));
     if (field.kind == Primitive::text) return add_texts(field, draft);
     if (field.kind == Primitive::message) return add_messages(field, place, draft);
     add_numbers(type, field, place, draft);
